@@ -65,6 +65,7 @@ class Builder {
             keptStations(strip, card.widen, cards_.tolerance, cards_.segments + 1);
         const bool bent = isBent(strip, cards_.tolerance);
         const std::vector<float> columns = bent ? std::vector<float>{-1, 0, 1} : std::vector<float>{-1, 1};
+        addRoots(c, strip);
         const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
         for (const std::size_t k : kept)
             for (const float x : columns) cards_.mesh.vertices.push_back(vertex(c, strip, k, x, bent));
@@ -78,10 +79,52 @@ class Builder {
     }
 
   private:
-    CardVertex vertex(std::uint32_t c, const Strip& strip, std::size_t k, float x, bool bent) const {
+    /// From the side one looks below a card, since it is one surface where hair is many: what is seen there
+    /// is hair, not skin.
+    void addRoots(std::uint32_t c, const Strip& strip) {
         const Card& card = cards_.cards[c];
+        const RootPatch& patch = card.roots;
+        constexpr float kLeast = 0.001f;  // metres
+        if (std::min(patch.halfLength, patch.halfWidth) < kLeast) return;
+        // Where textures are densest, in their own scale.
+        constexpr float kDense = 0.35f, kMostShown = 0.4f;
+        const float shown = std::min(kMostShown, 2 * patch.halfLength / std::max(strip.length(), kLeast));
+        const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
+        for (const float y : {-1.0f, 1.0f}) {
+            for (const float x : {-1.0f, 1.0f}) {
+                CardVertex v;
+                v.position_ws =
+                    patch.middle + x * patch.halfWidth * patch.across + y * patch.halfLength * patch.along;
+                v.normal_ws = patch.normal, v.along_ws = patch.along;
+                wear(card, Vec2f(0.5f + 0.5f * x, kDense + 0.5f * y * shown), 0, v);
+                v.card = c;
+                cards_.mesh.vertices.push_back(v);
+            }
+        }
+        for (const std::uint32_t i : {0u, 1u, 2u, 2u, 1u, 3u}) cards_.mesh.indices.push_back(first + i);
+    }
+
+    /// A place of its texture, with the colour that the card has at a station.
+    void wear(const Card& card, const Vec2f& place, std::size_t station, CardVertex& v) const {
         const Card& painter = cards_.cards[cards_.painters[card.texture]];
         const Rect& rect = cards_.atlas.rects[card.texture];
+        v.place = place;
+        const auto side = static_cast<float>(cards_.atlas.side());
+        v.uv = Vec2f(static_cast<float>(rect.x) + place.x() * static_cast<float>(rect.width),
+                     static_cast<float>(rect.y) + place.y() * static_cast<float>(rect.height)) /
+               side;
+        const auto painted = static_cast<std::size_t>(place.y() * static_cast<float>(kStations - 1) + 0.5f);
+        constexpr float kMost = 4;
+        for (int i = 0; i < 3; ++i) {
+            v.tint[i] = cards_.brightness *
+                        std::clamp(card.albedo[station][i] / std::max(painter.albedo[painted][i], 1e-4f),
+                                   1 / kMost, kMost);
+        }
+        v.open = std::clamp(card.open[station] / std::max(painter.open[painted], 1e-4f), 1 / kMost, kMost);
+    }
+
+    CardVertex vertex(std::uint32_t c, const Strip& strip, std::size_t k, float x, bool bent) const {
+        const Card& card = cards_.cards[c];
         CardVertex v;
         const float across = x * card.widen;
         v.position_ws = bent ? strip.at(k, across)
@@ -89,18 +132,8 @@ class Builder {
         const float slope = bent ? 2 * strip.bend[k] * across * strip.halfWidth[k] : 0.0f;
         v.normal_ws = (strip.normal[k] - slope * strip.cross[k]).normalized();
         v.along_ws = strip.along[k];
-        v.place = Vec2f(0.5f + 0.5f * x, static_cast<float>(k) / static_cast<float>(kStations - 1));
-        const auto side = static_cast<float>(cards_.atlas.side());
-        v.uv = Vec2f(static_cast<float>(rect.x) + v.place.x() * static_cast<float>(rect.width),
-                     static_cast<float>(rect.y) + v.place.y() * static_cast<float>(rect.height)) /
-               side;
-        constexpr float kMost = 4;
-        for (int i = 0; i < 3; ++i) {
-            v.tint[i] =
-                cards_.brightness *
-                std::clamp(card.albedo[k][i] / std::max(painter.albedo[k][i], 1e-4f), 1 / kMost, kMost);
-        }
-        v.open = std::clamp(card.open[k] / std::max(painter.open[k], 1e-4f), 1 / kMost, kMost);
+        v.hangs = static_cast<float>(k) / static_cast<float>(kStations - 1);
+        wear(card, Vec2f(0.5f + 0.5f * x, v.hangs), k, v);
         v.card = c;
         return v;
     }

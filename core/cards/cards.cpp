@@ -182,6 +182,7 @@ Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOpti
                 const Strip fitted = fitStrip(fine, card.strands, hair.rootNormals_ws);
                 card.strip = finishStrip(fine, card.strands, fitted, kStations, hair.rootNormals_ws);
             }
+            card.roots = rootPatch(fine, card.strands, card.strip, hair.rootNormals_ws);
             measure(hair, light, card);
         }
     });

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/cards/clusters.h"
+#include "core/cards/root_patch.h"
 #include "core/cards/texture.h"
 
 namespace hairloom::cards {
@@ -39,6 +40,7 @@ struct Card {
     std::vector<std::uint32_t> strands;
     std::array<Vec3f, kStations> albedo;  ///< means of its strands
     std::array<float, kStations> open;
+    RootPatch roots;  ///< a quad with a piece of the texture covers the skin there
     std::uint32_t texture = 0;
     float widen = 1;  ///< factor on the width, by which a shared texture covers as much as its own strands do
 
@@ -58,6 +60,7 @@ struct CardVertex {
     Vec3f tint =
         Vec3f::Ones();  ///< factor on the albedo: what the card has beside the texture that it shares
     float open = 1;     ///< factor on the ambient occlusion, likewise
+    float hangs = 0;    ///< share of the way to the tip, of what moves it
     std::uint32_t card = 0;
 };
 

@@ -46,14 +46,21 @@ render::Image shownAs(const Shot& shot) {
     return render::toneMap(linear, kExposure);
 }
 
+Shares sharesOf(std::span<const Shot> strands, std::span<const Shot> level) {
+    double covered = 0, wanted = 0;
+    for (const Shot& shot : strands)
+        for (const float share : shot.coverage) wanted += static_cast<double>(share);
+    for (const Shot& shot : level)
+        for (const float share : shot.coverage) covered += static_cast<double>(share);
+    const double light = hairLuminance(strands);
+    return {wanted > 0 ? covered / wanted : 1, light > 0 ? hairLuminance(level) / light : 1};
+}
+
 Result<Difference> difference(std::span<const Shot> strands, std::span<const Shot> level) {
     Difference result;
-    double covered = 0, wanted = 0;
     Outline outlines;
     for (std::size_t i = 0; i < strands.size(); ++i) {
         const Shot &a = strands[i], &b = level[i];
-        for (const float share : a.coverage) wanted += static_cast<double>(share);
-        for (const float share : b.coverage) covered += static_cast<double>(share);
         const auto flip = render::flipDifference(shownAs(a), shownAs(b));
         if (!flip) return tl::unexpected(flip.error());
         result.flip += flip->mean / static_cast<double>(strands.size());
@@ -61,9 +68,8 @@ Result<Difference> difference(std::span<const Shot> strands, std::span<const Sho
         const Outline one = outline(a, b);
         outlines.between += one.between, outlines.length += one.length;
     }
-    result.coverage = wanted > 0 ? covered / wanted : 1;
-    const double wantedLight = hairLuminance(strands);
-    result.light = wantedLight > 0 ? hairLuminance(level) / wantedLight : 1;
+    const Shares shares = sharesOf(strands, level);
+    result.coverage = shares.coverage, result.light = shares.light;
     result.silhouettePx = outlines.length > 0 ? outlines.between / outlines.length : 0;
     return result;
 }

@@ -71,6 +71,13 @@ double hairLuminance(std::span<const Shot> shots);
 /// As people see it.
 render::Image shownAs(const Shot& shot);
 
+/// What a level has of what the strands have, over all directions.
+struct Shares {
+    double coverage = 1;  ///< by its hair
+    double light = 1;     ///< of its hair, summed up
+};
+Shares sharesOf(std::span<const Shot> strands, std::span<const Shot> level);
+
 /// How a level differs from the strands, over all directions.
 struct Difference {
     double coverage = 1;      ///< by its hair, times that of the strands

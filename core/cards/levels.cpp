@@ -28,6 +28,7 @@ struct Work {
     const StrandLight& strandLight;
     const std::vector<View>& views;
     const std::map<std::uint32_t, std::vector<Shot>>& strands;  ///< by pixels of a head
+    double strandsMs;                                           ///< to draw them in a direction
     const ChainOptions& options;
     const std::function<void()>& tick;  ///< called now and then while a level is made
     Cancel cancel;
@@ -89,12 +90,12 @@ std::vector<Shot> chosen(const std::vector<Shot>& shots, const std::vector<std::
     return some;
 }
 
-Result<Difference> measured(const Work& work, const Level& level) {
+Result<Shares> measured(const Work& work, const Level& level) {
     work.tick();
     const auto which = work.viewsFor(level.spec);
     const Shooting shooting = shoot(work, level, which, level.spec.headPx);
     if (cancelled(work.cancel)) return stopped();
-    return difference(chosen(work.strands.at(level.spec.headPx), which), shooting.shots);
+    return sharesOf(chosen(work.strands.at(level.spec.headPx), which), shooting.shots);
 }
 
 /// A level's light at a height of the head, times that of all strands, from all directions.
@@ -109,7 +110,7 @@ Result<double> lightAt(const Work& work, const Level& level, std::uint32_t px) {
 }
 
 constexpr double kFarEnough = 0.004;  // from 1: what coverage and light are set to
-constexpr int kRounds = 4;
+constexpr int kRounds = 5;
 
 Status makeStrands(const Work& work, Level& level) {
     if (level.spec.amount >= 1) {
@@ -122,14 +123,19 @@ Status makeStrands(const Work& work, Level& level) {
         const auto off = measured(work, level);
         if (!off) return tl::unexpected(off.error());
         if (std::abs(off->coverage - 1) < kFarEnough) break;
-        widen *= static_cast<float>(std::pow(off->coverage, -1.5));
+        // Of few hairs none may be seen.
+        constexpr double kMost = 8;
+        widen *= static_cast<float>(std::clamp(std::pow(off->coverage, -1.5), 1 / kMost, kMost));
     }
     return {};
 }
 
 /// Sets thickness and brightness so that coverage and light are those of the strands.
 Status calibrate(const Work& work, Cards& made, Level& level) {
+    // Coverage grows by some power of the thickness: 1 of thin hair, less where strands lie over each other.
+    constexpr double kSmall = 0.1, kOfThickHair = 0.4, kLeast = 0.15;
     float thickness = 1;
+    double power = 1, lastCover = 0, lastThick = 0;
     for (int round = 0; round < kRounds; ++round) {
         level.content = made;
         const auto off = measured(work, level);
@@ -139,8 +145,14 @@ Status calibrate(const Work& work, Cards& made, Level& level) {
         const bool covers = std::abs(off->coverage - 1) < kFarEnough;
         if (!covers) {
             constexpr float kThinnest = 0.2f, kThickest = 8;
-            thickness = std::clamp(thickness * static_cast<float>(std::pow(off->coverage, -2.5)), kThinnest,
-                                   kThickest);
+            const double cover = std::log(std::max(off->coverage, 1e-3));
+            const auto thick = static_cast<double>(std::log(thickness));
+            if (round == 0) power = std::abs(cover) < kSmall ? kOfThickHair : 1;
+            if (round > 0 && thick != lastThick)
+                power = std::clamp((cover - lastCover) / (thick - lastThick), kLeast, 1.0);
+            lastCover = cover, lastThick = thick;
+            thickness =
+                std::clamp(thickness * static_cast<float>(std::exp(-cover / power)), kThinnest, kThickest);
             if (auto status = bakeAtlas(work.hair, work.light, thickness, made, work.cancel); !status)
                 return status;
         }
@@ -285,9 +297,11 @@ Status walk(const Work& work, Level& level) {
 }
 
 Status finish(const Work& work, Level& level) {
-    Shooting shooting = shoot(work, level, work.allViews(), level.spec.headPx);
-    if (cancelled(work.cancel)) return stopped();
     level.strands = work.strands.at(level.spec.headPx);
+    const bool isAll = level.spec.kind == LevelKind::strands && level.spec.amount >= 1;
+    Shooting shooting = isAll ? Shooting{level.strands, work.strandsMs}
+                              : shoot(work, level, work.allViews(), level.spec.headPx);
+    if (cancelled(work.cancel)) return stopped();
     const auto off = difference(level.strands, shooting.shots);
     if (!off) return tl::unexpected(off.error());
     level.difference = *off;
@@ -306,23 +320,30 @@ Status finish(const Work& work, Level& level) {
     return count(work, level);
 }
 
-/// Pictures of all strands by pixels of a head.
-Result<std::map<std::uint32_t, std::vector<Shot>>> shootStrands(const Hair& hair, const StrandLight& light,
-                                                                const std::vector<View>& views,
-                                                                const std::vector<LevelSpec>& specs,
-                                                                Cancel cancel) {
+/// Pictures of all strands by pixels of a head, and the mean time of drawing a direction, ms.
+struct StrandShots {
     std::map<std::uint32_t, std::vector<Shot>> shots;
+    double drawMs = 0;
+};
+Result<StrandShots> shootStrands(const Hair& hair, const StrandLight& light, const std::vector<View>& views,
+                                 const std::vector<LevelSpec>& specs, Cancel cancel) {
+    StrandShots result;
+    auto& shots = result.shots;
+    std::vector<double> seconds(views.size());
     for (const LevelSpec& spec : specs) shots[spec.headPx].resize(views.size());
     parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end && !cancelled(cancel); ++v) {
             Plate plate(views[v], kSamplesPerHead);
             plate.drawHead(hair);
+            const Stopwatch watch;
             plate.drawStrands(hair, light);
+            seconds[v] = watch.seconds();
             for (auto& [px, all] : shots) all[v] = plate.developed(px);
         }
     });
     if (cancelled(cancel)) return stopped();
-    return shots;
+    for (const double s : seconds) result.drawMs += 1000 * s / static_cast<double>(seconds.size());
+    return result;
 }
 
 }  // namespace
@@ -383,7 +404,7 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
         const double end = (2 + static_cast<double>(chain.levels.size())) / steps;
         progress(making, share += 0.1 * (end - share));
     };
-    const Work work{hair, *light, onStrands, chain.views, *shots, options, tick, cancel};
+    const Work work{hair, *light, onStrands, chain.views, shots->shots, shots->drawMs, options, tick, cancel};
     for (std::size_t i = 0; i < specs.size(); ++i) {
         Level level;
         level.spec = specs[i];

@@ -146,6 +146,21 @@ float levelOf(const Cards& cards, const std::array<const CardVertex*, 3>& v, flo
     return std::clamp(level, 0.0f, static_cast<float>(cards.atlas.levels.size() - 1));
 }
 
+/// Triangles as an eye meets them: what lies behind needs no look at its texture.
+std::vector<std::uint32_t> nearestFirst(const CardMesh& mesh, const Vec3f& toEye_ws) {
+    std::vector<std::pair<float, std::uint32_t>> keyed(mesh.indices.size() / 3);
+    for (std::uint32_t t = 0; t < keyed.size(); ++t) {
+        float away = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            away -= mesh.vertices[mesh.indices[3 * std::size_t{t} + k]].position_ws.dot(toEye_ws);
+        keyed[t] = {away, t};
+    }
+    std::ranges::sort(keyed);
+    std::vector<std::uint32_t> order;
+    for (const auto& [away, t] : keyed) order.push_back(t);
+    return order;
+}
+
 template <class T>
 T mixed(const Vec3f& b, const T& x, const T& y, const T& z) {
     return b.x() * x + b.y() * y + b.z() * z;
@@ -162,7 +177,7 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         for (std::size_t k = 0; k < 3; ++k) v[k] = &cards.mesh.vertices[cards.mesh.indices[3 * triangle + k]];
         return v;
     };
-    for (std::uint32_t t = 0; t < levels.size(); ++t) {
+    for (const std::uint32_t t : nearestFirst(cards.mesh, view_.toEye_ws)) {
         const auto v = corners(t);
         const Vec3f a = onPlate(v[0]->position_ws), b = onPlate(v[1]->position_ws),
                     c = onPlate(v[2]->position_ws);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "core/base/math.h"
 
@@ -49,6 +50,24 @@ void forSamplesOfLine(const LinePoint& a, const LinePoint& b, int width, int hei
     }
 }
 
+/// Of a row of samples those that may lie in the triangle: where no barycentric is clearly below 0.
+inline std::pair<int, int> spanOfRow(const Vec2f& a, const Vec2f& b, const Vec2f& c, float area,
+                                     const Vec3f& growth, float y, int x0, int x1) {
+    constexpr float kRounding = 1e-3f;
+    const Vec2f p(static_cast<float>(x0) + 0.5f, y);
+    const float u = ((b - p).x() * (c - p).y() - (b - p).y() * (c - p).x()) / area;
+    const float v = ((c - p).x() * (a - p).y() - (c - p).y() * (a - p).x()) / area;
+    const Vec3f at = Vec3f(u, v, 1 - u - v) + Vec3f::Constant(kRounding);
+    float low = 0, high = static_cast<float>(x1 - x0);
+    for (int i = 0; i < 3; ++i) {
+        if (growth[i] > 0) low = std::max(low, -at[i] / growth[i] - 1);
+        if (growth[i] < 0) high = std::min(high, at[i] / -growth[i] + 2);
+        if (growth[i] == 0 && at[i] < 0) return {x0, x0};
+    }
+    return low < high ? std::pair(x0 + static_cast<int>(low), x0 + static_cast<int>(high))
+                      : std::pair(x0, x0);
+}
+
 /// Calls f(x, y, barycentrics) for the samples of a triangle of either orientation.
 template <class F>
 void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height, const F& f) {
@@ -59,8 +78,11 @@ void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int wi
     const int y0 = std::max(0, static_cast<int>(std::floor(std::max(low.y(), 0.0f))));
     const int x1 = std::min(width, static_cast<int>(std::ceil(std::min(high.x(), 1e6f))));
     const int y1 = std::min(height, static_cast<int>(std::ceil(std::min(high.y(), 1e6f))));
+    // A barycentric grows by so much from one sample of a row to the next.
+    const Vec3f growth = Vec3f(b.y() - c.y(), c.y() - a.y(), a.y() - b.y()) / area;
     for (int y = y0; y < y1; ++y) {
-        for (int x = x0; x < x1; ++x) {
+        const auto [begin, end] = spanOfRow(a, b, c, area, growth, static_cast<float>(y) + 0.5f, x0, x1);
+        for (int x = begin; x < end; ++x) {
             const Vec2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
             const float u = ((b - p).x() * (c - p).y() - (b - p).y() * (c - p).x()) / area;
             const float v = ((c - p).x() * (a - p).y() - (c - p).y() * (a - p).x()) / area;

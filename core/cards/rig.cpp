@@ -73,7 +73,7 @@ Binding bind(const Rig& rig, const Cards& cards) {
     Binding binding;
     for (const CardVertex& vertex : cards.mesh.vertices) {
         const Hold& hold = holds[vertex.card];
-        const float at = vertex.place.y() * static_cast<float>(rig.perChain - 1);
+        const float at = vertex.hangs * static_cast<float>(rig.perChain - 1);
         const auto joint = std::min(static_cast<std::uint32_t>(at), rig.perChain - 2);
         const float next = at - static_cast<float>(joint);
         const float a = hold.share, b = 1 - hold.share;

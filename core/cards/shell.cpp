@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace hairloom::cards {
 namespace {
@@ -106,6 +107,24 @@ ShellVertex ShellField::vertexAt(const Vec3f& place) const {
     return v;
 }
 
+namespace {
+
+/// What is thinner than a cell folds up when it is simplified: two triangles with the same corners.
+void dropRepeats(std::vector<std::uint32_t>& indices) {
+    std::set<std::array<std::uint32_t, 3>> seen;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
+        std::ranges::sort(corners);
+        if (!seen.insert(corners).second) continue;
+        for (std::size_t k = 0; k < 3; ++k) indices[kept + k] = indices[i + k];
+        kept += 3;
+    }
+    indices.resize(kept);
+}
+
+}  // namespace
+
 // Naive surface nets (Gibson 1998): a vertex in each cube that the surface crosses, a quad for each edge.
 Shell ShellField::cut(float level, std::uint32_t triangles) const {
     const auto value = [&](int x, int y, int z) {
@@ -162,6 +181,7 @@ Shell ShellField::cut(float level, std::uint32_t triangles) const {
         simple.data(), shell.indices.data(), shell.indices.size(), shell.vertices[0].position_ws.data(),
         shell.vertices.size(), sizeof(ShellVertex),
         std::min(std::size_t{3} * triangles, shell.indices.size()), kLargestError, 0, nullptr));
+    dropRepeats(simple);
     meshopt_optimizeVertexCache(simple.data(), simple.data(), simple.size(), shell.vertices.size());
     std::vector<ShellVertex> used(shell.vertices.size());
     used.resize(meshopt_optimizeVertexFetch(used.data(), simple.data(), simple.size(), shell.vertices.data(),

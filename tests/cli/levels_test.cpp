@@ -33,8 +33,19 @@ TEST_F(LodJob, MakesAndMeasuresAChainThatIsTheSameForAnyThreads) {
                                 "coverage", "flip", "light", "silhouette_px", "ms_draw", "ms_move"})
             EXPECT_TRUE(level.contains(key)) << key;
         EXPECT_GT(level["triangles"], 0);
+        EXPECT_NEAR(level["coverage"].get<double>(), 1, 0.05) << "thin hair as well";
     }
-    EXPECT_GT(report["largest_light_step"].get<double>(), 0);
+    // What one sees who walks away from level to level: of 400 hairs more than the 2 % of full heads.
+    double before = 0, largest = 0;
+    for (const auto& level : report["levels"]) {
+        for (const auto& at : level["lights"]) {
+            const double light = at["light"];
+            if (before > 0) largest = std::max(largest, std::abs(light / before - 1));
+            before = light;
+        }
+    }
+    EXPECT_LT(largest, 0.1);
+    EXPECT_NEAR(report["largest_light_step"].get<double>(), largest, 1e-9);
     EXPECT_EQ(report["levels"][1]["lights"].size(), 3u) << "at 64, 48 and 32 pixels of head height";
     EXPECT_EQ(report["springs"]["motion"], "nod");
     EXPECT_LT(report["springs"]["error_mm"], report["springs"]["default_error_mm"]);
@@ -115,7 +126,8 @@ TEST_F(LodJob, CardsAreExportedAsGltf) {
     EXPECT_EQ(few["format"], "gltf");
     ASSERT_EQ(few["levels"].size(), 4u);
     EXPECT_LE(few["levels"][0]["cards"], 8);
-    EXPECT_LE(few["levels"][0]["triangles"], 8 * 4) << "one segment of at most two quads a card";
+    EXPECT_LE(few["levels"][0]["triangles"], 8 * 6)
+        << "one segment of at most two quads a card, and one over its roots";
     EXPECT_NEAR(few["levels"][0]["distance_m"], 5.8, 0.01);
 }
 
@@ -128,9 +140,9 @@ TEST_F(LodJob, CardsAreExportedForProgramsThatReadNoGltf) {
     for (const auto& name : fbx["companions"]) EXPECT_TRUE(fs::exists(folder / name.get<std::string>()));
     // Our own reader, another one's of FBX: centimetres became metres, and the meshes are there.
     const auto read = runJson("info hair.fbx");
-    EXPECT_NEAR(read["scalp"]["triangles"].get<int>(),
-                fbx["levels"][0]["triangles"].get<int>() + fbx["levels"][1]["triangles"].get<int>(), 10)
-        << "but for those of no area";
+    EXPECT_EQ(read["scalp"]["triangles"].get<int>(),
+              fbx["levels"][0]["triangles"].get<int>() + fbx["levels"][1]["triangles"].get<int>())
+        << "none is of no area, none is there twice: the reader would drop them";
     EXPECT_NEAR(read["bounds"]["max"][1].get<double>(), 1.9, 0.4) << "metres";
     fs::create_directory(folder / "again");
     runJson("export hair.hairloom --format fbx" + levels + "again/hair.fbx");
