@@ -3,27 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "exporters/usd_curves.h"
+#include "exporters/usda_numbers.h"
 
 namespace hairloom {
 namespace {
-
-/// "[(1, 2, 3), …]", or "[1, 2, …]" of single numbers, as short as reads back to the same bits.
-template <class T>
-void writeNumbers(std::string& out, std::span<const T> numbers, std::size_t components) {
-    const auto to = std::back_inserter(out);
-    out += '[';
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const std::size_t c = i % components;
-        if (i > 0) out += ", ";
-        if (components > 1 && c == 0) out += '(';
-        fmt::format_to(to, "{}", numbers[i]);
-        if (components > 1 && c + 1 == components) out += ')';
-    }
-    out += ']';
-}
 
 void writeAttribute(std::string& out, const ExportedAttribute& attribute) {
     out += fmt::format("        {}[] primvars:{} = ", usdTypeOf(attribute), usdName(attribute.name));
@@ -33,10 +17,6 @@ void writeAttribute(std::string& out, const ExportedAttribute& attribute) {
         writeNumbers(out, std::span<const std::int32_t>(attribute.whole), 1);
     out += fmt::format(" (\n            interpolation = \"{}\"\n        )\n",
                        attribute.perPoint ? "vertex" : "uniform");
-}
-
-std::span<const float> numbersOf(std::span<const Vec3f> values) {
-    return {values[0].data(), values.size() * 3};
 }
 
 /// What strands that move have at each frame beside the first, which stands for all who look at no time.

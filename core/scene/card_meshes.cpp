@@ -11,11 +11,8 @@
 #include <memory>
 #include <string_view>
 
-#include "core/base/content_kind.h"
-#include "core/base/output_file.h"
-#include "core/cards/atlas_images.h"
 #include "core/cards/level_arrays.h"
-#include "core/render/png.h"
+#include "core/scene/card_files.h"
 
 namespace hairloom {
 namespace {
@@ -146,7 +143,7 @@ aiNode* jointNodes(const Rig& rig, float scale) {
 
 struct Files {
     std::unique_ptr<aiScene> scene = std::make_unique<aiScene>();
-    std::vector<std::pair<std::string, render::Image>> textures;
+    NamedImages textures;
 };
 
 Files filesOf(const cards::Chain& chain, CardMeshFormat format, const std::string& stem) {
@@ -159,19 +156,13 @@ Files filesOf(const cards::Chain& chain, CardMeshFormat format, const std::strin
     for (const Level& level : chain.levels) {
         if (level.spec.kind == cards::LevelKind::strands) continue;
         const LevelArrays arrays = cards::arraysOf(level, chain.rig);
-        std::string colour, normal;
-        if (const auto* made = std::get_if<cards::Cards>(&level.content)) {
-            const cards::Picture picture = cards::brightened(made->atlas, arrays.albedoScale);
-            colour = fmt::format("{}_{}_colour.png", stem, level.name);
-            normal = fmt::format("{}_{}_normal.png", stem, level.name);
-            files.textures.emplace_back(colour, cards::colourImage(picture, 1));
-            files.textures.emplace_back(normal, cards::normalImage(picture));
-        }
+        LevelTextures textures = texturesOf(level, arrays, stem);
         // Unity makes a group of levels of names that end so.
         const std::string name = fmt::format("{}_LOD{}", level.name, meshes.size());
         const auto index = static_cast<unsigned>(meshes.size());
         meshes.push_back(meshOf(name, arrays, index, scale, isFbx ? &chain.rig : nullptr));
-        materials.push_back(materialOf(level, colour, normal));
+        materials.push_back(materialOf(level, textures.colour, textures.normal));
+        std::ranges::move(textures.images, std::back_inserter(files.textures));
         nodes.push_back(new aiNode(name));
         nodes.back()->mNumMeshes = 1;
         nodes.back()->mMeshes = new unsigned[1]{index};
@@ -256,24 +247,7 @@ Result<std::vector<std::string>> writeCardMeshes(const cards::Chain& chain, Card
         written.emplace_back(written.empty() ? path : path.parent_path() / blob->name.C_Str(),
                              std::move(bytes));
     }
-    for (const auto& [name, image] : files.textures) {
-        auto bytes = render::encodePng(image);
-        if (!bytes) return tl::unexpected(bytes.error());
-        written.emplace_back(path.parent_path() / name, std::move(*bytes));
-    }
-    std::vector<OutputFile> outputs;
-    for (const auto& [to, bytes] : written) {
-        auto file = OutputFile::open(to, contentKind(bytes));
-        if (!file) return tl::unexpected(file.error());
-        if (auto status = file->write(bytes); !status) return tl::unexpected(status.error());
-        outputs.push_back(std::move(*file));
-    }
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-        if (auto status = outputs[i].finish(); !status) return tl::unexpected(status.error());
-        if (i > 0) names.push_back(written[i].first.filename().string());
-    }
-    return names;
+    return writeTogether(std::move(written), files.textures);
 }
 
 }  // namespace hairloom

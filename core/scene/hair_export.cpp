@@ -13,6 +13,7 @@
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/scene/card_meshes.h"
+#include "core/scene/card_usd.h"
 #include "core/scene/root_rotations.h"
 #include "core/simulation/simulation.h"
 
@@ -88,7 +89,7 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
     return moving;
 }
 
-constexpr const char *kQuantised = "gltf-quantised", *kObj = "obj-cards", *kFbx = "fbx";
+constexpr const char *kQuantised = "gltf-quantised", *kObj = "obj-cards", *kFbx = "fbx", *kUsd = "usda-cards";
 
 Result<ExportReport> writeCardFile(const cards::Chain& chain, const Groom& groom, const std::string& format,
                                    const std::filesystem::path& path) {
@@ -101,14 +102,19 @@ Result<ExportReport> writeCardFile(const cards::Chain& chain, const Groom& groom
         return std::move(file->report);
     }
     auto companions =
-        writeCardMeshes(chain, format == kFbx ? CardMeshFormat::fbx : CardMeshFormat::obj, path);
+        format == kUsd
+            ? writeCardUsd(chain, path)
+            : writeCardMeshes(chain, format == kFbx ? CardMeshFormat::fbx : CardMeshFormat::obj, path);
     if (!companions) return tl::unexpected(companions.error());
     ExportReport report = levelReport(chain, groom);
     report.companions = std::move(*companions);
     report.bytes = std::filesystem::file_size(path);
     std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
     report.leftBehind.push_back({"springs, and the distances of levels", "write them as gltf"});
-    if (format == kObj) report.leftBehind.push_back({"joints and weights", "write them as fbx"});
+    if (format != kFbx) report.leftBehind.push_back({"joints and weights", "write them as fbx"});
+    if (format == kUsd)
+        report.leftBehind.push_back({"what cards have beside a texture that they share",
+                                     "multiply displayColor in, which UsdPreviewSurface cannot"});
     return report;
 }
 
@@ -116,7 +122,7 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
     if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
         return fail("another unit, axis or number of points is asked for, and cards have none",
-                    "glTF and OBJ of cards are in metres, FBX in centimetres, Y up");
+                    "glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
     const auto progress = wanted.progress ? wanted.progress : [](std::string_view, double) {};
     const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
     if (!chain) return tl::unexpected(chain.error());
@@ -177,6 +183,9 @@ const std::vector<StrandWriter>& hairWriters() {
                                       " For readers of KHR_mesh_quantization.",
                                       {}},
                                      "glb"));
+        writers.push_back(cardWriter(kUsd, "Cards as USD .usda",
+                                     "a variant for each level, textures beside the file",
+                                     {"cards-usd", "Engines without strands: cards (USD)", "", {}}, "usda"));
         if (canWriteCardMeshes()) {
             writers.push_back(cardWriter(kFbx, "Cards as FBX", "a skin, and textures beside the file",
                                          {"cards-fbx", "Engines without strands: cards (FBX)", "", {}},

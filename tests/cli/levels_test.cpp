@@ -12,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 class LodJob : public CommandLineTest {
   protected:
@@ -152,6 +153,14 @@ TEST_F(LodJob, CardsAreExportedForProgramsThatReadNoGltf) {
     EXPECT_THAT(readText(folder / "hair.obj"), HasSubstr("mtllib hair.mtl"));
     EXPECT_THAT(readText(folder / "hair.mtl"), HasSubstr("hair_cards-12_colour.png"));
     EXPECT_EQ(runJson("info hair.obj")["scalp"]["triangles"], read["scalp"]["triangles"]);
+    const auto usd = runJson("export hair.hairloom --target cards-usd" + levels + "hair.usda");
+    EXPECT_EQ(usd["companions"], fbx["companions"]);
+    const std::string text = readText(folder / "hair.usda");
+    EXPECT_EQ(usd["bytes"], text.size());
+    for (const char* part : {"#usda 1.0", "variantSet \"lod\"", "\"LOD1\"", "def Mesh \"cards_12\"",
+                             "def Mesh \"shell_200\"", "@./hair_cards-12_colour.png@", "primvars:st"})
+        EXPECT_THAT(text, HasSubstr(part));
+    EXPECT_THAT(text, Not(HasSubstr("nan")));
     EXPECT_GT(runJson("export hair.hairloom --format gltf" + levels + "hair.glb")["bytes"],
               runJson("export hair.hairloom --format gltf-quantised" + levels + "small.glb")["bytes"]);
 }
