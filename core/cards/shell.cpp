@@ -109,7 +109,7 @@ ShellVertex ShellField::vertexAt(const Vec3f& place) const {
 
 namespace {
 
-/// What is thinner than a cell folds up when it is simplified: two triangles with the same corners.
+/// What is thinner than a cell folds up under simplification: two triangles with the same corners.
 void dropRepeats(std::vector<std::uint32_t>& indices) {
     std::set<std::array<std::uint32_t, 3>> seen;
     std::size_t kept = 0;
