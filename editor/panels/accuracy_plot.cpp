@@ -29,7 +29,9 @@ std::vector<double> ticksOf(double low, double high) {
 }
 
 QString short_(double value) {
-    return QString::number(value, 'g', 3);
+    constexpr double kThousand = 1000;
+    if (value < kThousand) return QString::number(value, 'g', 3);
+    return QStringLiteral("%1 k").arg(value / kThousand, 0, 'g', 3);
 }
 
 QString inUnit(const QString& value, const QString& unit) {

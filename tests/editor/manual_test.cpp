@@ -163,7 +163,7 @@ TEST_F(ManualTest, Effects) {
 TEST_F(ManualTest, Levels) {
     openSampleHair("shoulder");
     Groom fewer = groom();
-    fewer.interpolation.followPerGuide = 5;
+    fewer.interpolation.followPerGuide = 1;  // each level is held against all hairs
     document().open(fewer, {}, "shoulder");
     showFromThreeQuarters();
     raise("levels");
