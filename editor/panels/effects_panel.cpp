@@ -196,7 +196,9 @@ class EffectsPanel : public QWidget {
         item.setData(kName, Qt::UserRole, "frame");
         item.setData(kName, Qt::CheckStateRole, {});
         item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
-        item.setText(kMs, ms > 0 ? QString::number(ms, 'f', 2) : QStringLiteral("–"));
+        constexpr double kRound_ms = 100;  // from which on nobody asks for hundredths
+        const int decimals = ms < kRound_ms ? 2 : 0;
+        item.setText(kMs, ms > 0 ? QString::number(ms, 'f', decimals) : QStringLiteral("–"));
         item.setData(kMs, CostBars::kMilliseconds, ms > 0 ? QVariant(ms) : QVariant());
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
         const QString of = tr("%1 % of the budget").arg(100 * ms / budget_->value(), 0, 'f', 0);
