@@ -73,7 +73,7 @@ def write_curves(strands: Strands, root_radius: float, tip_scale: float, folder:
 
 
 class TruthScene:
-    """`view` is the content of a view file; lights may be directional, or an environment of one radiance."""
+    """`view` is the content of a view file; lights may be directional, rectangles, or an environment of one radiance."""
 
     def __init__(self, mi, view: dict, eumelanin: float, head: Path, curves: list[Path]):
         self.mi = mi
@@ -121,7 +121,7 @@ class TruthScene:
             "hair_bsdf": bsdf,
         }
         for i, light in enumerate(view["lights"]):
-            scene[f"light_{i}"] = self._light(light)
+            scene[f"light_{i}"] = self._light(mi, light)
         for i, path in enumerate(curves):
             scene[f"curves_{i}"] = {
                 "type": "bsplinecurve",
@@ -131,7 +131,7 @@ class TruthScene:
         self.scene = mi.load_dict(scene)
 
     @staticmethod
-    def _light(light: dict) -> dict:
+    def _light(mi, light: dict) -> dict:
         if light["type"] == "directional":
             return {
                 "type": "directional",
@@ -140,6 +140,12 @@ class TruthScene:
             }
         if light["type"] == "environment" and "radiance" in light:
             return {"type": "constant", "radiance": {"type": "rgb", "value": light["radiance"]}}
+        if light["type"] == "rectangle":
+            position, facing = np.array(light["position"]), np.array(light["facing"])
+            placed = mi.ScalarTransform4f().look_at(position, position + facing, light.get("up", [0, 1, 0]))
+            size = mi.ScalarTransform4f().scale([light["width"] / 2, light["height"] / 2, 1])
+            radiance = {"type": "rgb", "value": light["radiance"]}
+            return {"type": "rectangle", "to_world": placed @ size, "emitter": {"type": "area", "radiance": radiance}}
         raise SystemExit(f"error: a light of type {light['type']!r} has no counterpart here")
 
     def render(self, depth: int, samples: int) -> np.ndarray:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders a groom with hairloom-cli and with Mitsuba 3 from the same view file, for blond, brown and black hair, and
-reports how far they are apart. ./dev truth runs it; --help lists what can be chosen."""
+"""Renders a groom with hairloom-cli and with Mitsuba 3 from the same view file, under several lights, for blond, brown and
+black hair, and reports how far they are apart. ./dev truth runs it; --help lists what can be chosen."""
 
 import argparse
 import json
@@ -18,11 +18,13 @@ from hair_file import Strands, read_hair
 COLOURS = {"blond": 0.3, "brown": 1.3, "black": 8.0}
 ABSORPTION = np.array([0.419, 0.697, 1.37])
 HEADS = {"skin": [0.5, 0.35, 0.27], "black": [0.0, 0.0, 0.0]}
+LIGHTS = ("key", "back", "side", "box")
 ALL_ORDERS = 100
 
 
 @dataclass
 class Verdict:
+    light: str
     colour: str
     head: str
     truth_ratio: float
@@ -34,7 +36,7 @@ class Verdict:
 
 
 def view_of(strands: Strands, size: int) -> dict:
-    """A camera before and to the right of the head, and one key light; the whole of the hair in the picture."""
+    """A camera before and to the right of the head; the whole of the hair in the picture."""
     low, high = strands.bounds()
     target = (low + high) / 2
     direction = np.array([0.42, 0.08, 0.9])
@@ -48,7 +50,6 @@ def view_of(strands: Strands, size: int) -> dict:
             "fov_y_deg": 22.0,
         },
         "size": [size, size],
-        "lights": [{"type": "directional", "to_light": [0.5, 0.8, 0.6], "irradiance": [np.pi] * 3}],
         "hair": {
             "radius_m": 0.0002,
             "tip_scale": 0.3,
@@ -57,6 +58,31 @@ def view_of(strands: Strands, size: int) -> dict:
             "alpha_deg": [-2.0, 1.0, 3.0],
             "azimuthal_roughness": 0.3,
         },
+    }
+
+
+def light_of(name: str, view: dict) -> dict:
+    """One of LIGHTS, with the irradiance pi in the middle of the hair: from the camera's side and above, from behind, from
+    its right, and a soft box of 20 degrees."""
+    eye, target = (np.array(view["camera"][key]) for key in ("eye", "target"))
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(forward, [0, 1, 0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    ways = {"key": [0.5, 0.8, 0.6], "back": 0.3 * right + 0.5 * up + 0.8 * forward, "side": right + 0.15 * up}
+    if name in ways:
+        return {"type": "directional", "to_light": list(ways[name]), "irradiance": [np.pi] * 3}
+    distance = 1.2
+    side = 2 * distance * np.tan(np.radians(10))
+    way = -0.8 * forward + 0.5 * up - 0.35 * right
+    way /= np.linalg.norm(way)
+    return {
+        "type": "rectangle",
+        "position": (target + distance * way).tolist(),
+        "facing": (-way).tolist(),
+        "width": side,
+        "height": side,
+        "radiance": [np.pi * distance**2 / side**2] * 3,
     }
 
 
@@ -92,7 +118,7 @@ class Ours:
         return np.array(self.mi.Bitmap(str(exr)))[..., :3].astype(np.float64)
 
 
-def compare(args: argparse.Namespace) -> tuple[list[Verdict], dict]:
+def compare(args: argparse.Namespace) -> list[Verdict]:
     mi = path_trace.start()
     args.out.mkdir(parents=True, exist_ok=True)
     hair_file = args.out / "strands.hair"
@@ -109,19 +135,20 @@ def compare(args: argparse.Namespace) -> tuple[list[Verdict], dict]:
     view = json.loads(args.view.read_text()) if args.view else view_of(strands, args.size)
     if args.size:
         view["size"] = [args.size, args.size]
+    lights = {"view": view["lights"]} if args.view else {name: [light_of(name, view)] for name in args.lights}
     hair = view["hair"]
     curves = path_trace.write_curves(strands, hair["radius_m"], hair["tip_scale"], args.out / "curves")
     ours = Ours(args.cli, plain, args.out, mi)
-    verdicts, sheets = [], {}
-    for head, albedo in HEADS.items():
-        view["head_albedo"] = albedo
+    verdicts = []
+    for light, head in ((light, head) for light in lights for head in HEADS):
+        view["lights"], view["head_albedo"] = lights[light], HEADS[head]
         rows: list[list[np.ndarray]] = [[], [], [], []]
         for colour, eumelanin in COLOURS.items():
             hair["sigma_a_per_radius"] = (eumelanin * ABSORPTION).tolist()
             scene = path_trace.TruthScene(mi, view, eumelanin, args.head, curves)
             truth = {depth: scene.render(depth, args.samples) for depth in (2, ALL_ORDERS)}
             covered = scene.coverage()
-            name = f"{head}_{colour}"
+            name = f"{light}_{head}_{colour}"
             single, dual = (ours.render(view, name, scatter) for scatter in ("single", "dual"))
             mean = {
                 key: judge.mean_where(image, covered)
@@ -129,6 +156,7 @@ def compare(args: argparse.Namespace) -> tuple[list[Verdict], dict]:
             }
             verdicts.append(
                 Verdict(
+                    light,
                     colour,
                     head,
                     mean["a"] / mean["s"],
@@ -141,20 +169,20 @@ def compare(args: argparse.Namespace) -> tuple[list[Verdict], dict]:
             )
             for row, image in zip(rows, (truth[2], single, truth[ALL_ORDERS], dual)):
                 row.append(image)
-        sheets[head] = rows
-        judge.save_sheet(mi, rows, args.exposure, args.out / f"sheet_{head}.png")
-    return verdicts, sheets
+            print(table(verdicts[-1:]).splitlines()[-1], flush=True)
+        judge.save_sheet(mi, rows, args.exposure, args.out / f"sheet_{light}_{head}.png")
+    return verdicts
 
 
 def table(verdicts: list[Verdict]) -> str:
     lines = [
-        "| hair | head | all / single, path-traced | ours | single, ours / truth | all, ours / truth | "
+        "| light | hair | head | all / single, path-traced | ours | single, ours / truth | all, ours / truth | "
         "blurred relMSE | FLIP |",
-        "|---|---|---|---|---|---|---|---|",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     for v in verdicts:
         lines.append(
-            f"| {v.colour} | {v.head} | {v.truth_ratio:.3f} | {v.our_ratio:.3f} | {v.single_over_truth:.2f} | "
+            f"| {v.light} | {v.colour} | {v.head} | {v.truth_ratio:.3f} | {v.our_ratio:.3f} | {v.single_over_truth:.2f} | "
             f"{v.all_over_truth:.2f} | {v.blurred_relative_mse:.4f} | {v.flip:.3f} |"
         )
     return "\n".join(lines) + "\n"
@@ -165,13 +193,14 @@ def main() -> None:
     parser.add_argument("--cli", type=Path, required=True, help="hairloom-cli")
     parser.add_argument("--groom", type=Path, required=True, help="project, at rest")
     parser.add_argument("--head", type=Path, required=True, help="its head as OBJ or PLY, in metres")
-    parser.add_argument("--view", type=Path, help="view file; else a camera that fits the hair, and a key light")
+    parser.add_argument("--view", type=Path, help="view file; else a camera that fits the hair, and --lights")
+    parser.add_argument("--lights", nargs="+", choices=LIGHTS, default=LIGHTS, help="from where light comes")
     parser.add_argument("--size", type=int, default=256, help="pixels along one side")
     parser.add_argument("--samples", type=int, default=128, help="paths a pixel, a multiple of 16")
     parser.add_argument("--exposure", type=float, default=6.0, help="factor on the light that is shown and that FLIP sees")
     parser.add_argument("-o", "--out", type=Path, required=True, help="folder of results")
     args = parser.parse_args()
-    verdicts, _ = compare(args)
+    verdicts = compare(args)
     (args.out / "truth.json").write_text(json.dumps([asdict(v) for v in verdicts], indent=1) + "\n")
     (args.out / "truth.md").write_text(table(verdicts))
     print(table(verdicts), end="")
