@@ -90,6 +90,8 @@ const std::map<std::string, render::Ribbons> kRibbons{{"auto", render::Ribbons::
                                                       {"tess", render::Ribbons::tessellated},
                                                       {"compute", render::Ribbons::compute}};
 const std::map<std::string, render::Transparency> kTransparency{
+    {"auto", render::Transparency::automatic},
+    {"sorted", render::Transparency::sorted},
     {"stochastic", render::Transparency::stochastic},
     {"a2c", render::Transparency::alphaToCoverage},
     {"weighted", render::Transparency::weighted}};
@@ -113,11 +115,7 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.headAbsorption = options.headAbsorption.value_or(view.headAbsorption.value_or(0));
     picture.shadowBlur = options.shadowBlur.value_or(view.shadowBlur.value_or(0));
     picture.ribbons = kRibbons.at(options.ribbons);
-    // One frame is least noisy when blended; the average of several has no bias when left to chance.
-    const std::string transparency = options.transparency != "auto"           ? options.transparency
-                                     : picture.frames > 1 || picture.temporal ? "stochastic"
-                                                                              : "weighted";
-    picture.transparency = kTransparency.at(transparency);
+    picture.transparency = kTransparency.at(options.transparency);
     picture.detail = options.detail;
     picture.exposure = options.exposure;
     picture.surface = !options.aovs.empty();
@@ -408,13 +406,14 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::IsMember(namesOf(kAntiAliasing)));
     job.add_option("--ribbons", options->ribbons,
                    "How hairs are drawn: as pulled strips, as tessellated patches, or rasterised by kernels; "
-                   "auto: kernels on a GPU, strips without one or where hair is blended")
+                   "auto: kernels on a GPU, strips without one or where hair is blended by weights")
         ->check(CLI::IsMember(namesOf(kRibbons)));
-    job.add_option("--transparency", options->transparency,
-                   "Hairs thinner than a sample: a random part of the samples, a fixed part, or blended by "
-                   "weights; auto: "
-                   "blended where the picture is drawn once")
-        ->check(CLI::IsMember({"auto", "stochastic", "a2c", "weighted"}));
+    job.add_option(
+           "--transparency", options->transparency,
+           "Hairs thinner than a sample: the nearest of a pixel blended in their order, a random part "
+           "of the samples, a fixed part, or blended by weights; auto: stochastic for an average, "
+           "sorted where a GPU draws once, else weighted")
+        ->check(CLI::IsMember(namesOf(kTransparency)));
     job.add_option(
            "--detail", options->detail,
            "Leave out hairs that are thinner than this part of a pixel, and widen the others; 0: draw all")

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/render/light.h"
+#include "shaders/shared/render_types.h"
 
 namespace hairloom::render {
 
@@ -45,6 +46,10 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
         return fail("hair that kernels rasterise, blended by weights",
                     "stochastic or a fixed set of samples");
     }
+    if (o.transparency == Transparency::sorted && o.ribbons != Ribbons::compute &&
+        o.ribbons != Ribbons::automatic) {
+        return fail("hair blended in its order and not rasterised by kernels", "ribbons by kernels");
+    }
     if (!(o.exposure > 0) || !(o.exposure < 1e6f)) return fail("an exposure that is not positive");
     return {};
 }
@@ -71,13 +76,32 @@ Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::Dev
     return options.samples;
 }
 
-Ribbons chooseRibbons(const RenderOptions& options, std::uint32_t samples, const gpu::DeviceInfo& device) {
-    if (options.ribbons != Ribbons::automatic) return options.ribbons;
-    const std::uint64_t words = std::uint64_t{options.width} * options.height * samples;
+RenderOptions chooseWays(const RenderOptions& options, std::uint32_t samples, bool kernels,
+                         const gpu::DeviceInfo& device) {
+    RenderOptions chosen = options;
+    const std::uint64_t words =
+        std::uint64_t{options.width} * options.height * std::max(samples, std::uint32_t{HAIRLOOM_FRAGMENTS});
+    const bool fits = words * sizeof(std::uint32_t) <= device.maxBufferBytes;
     // A software device has no fixed-function units to be slower than its kernels.
-    const bool can = device.type != gpu::DeviceType::Cpu && options.transparency != Transparency::weighted &&
-                     words * sizeof(std::uint32_t) <= device.maxBufferBytes;
-    return can ? Ribbons::compute : Ribbons::strip;
+    const bool gpu = kernels && fits && device.type != gpu::DeviceType::Cpu;
+    if (chosen.transparency == Transparency::automatic) {
+        const bool free = chosen.ribbons == Ribbons::automatic;
+        const bool sorts = kernels && fits && (free ? gpu : chosen.ribbons == Ribbons::compute);
+        chosen.transparency = chosen.frames > 1 ? Transparency::stochastic
+                              : sorts           ? Transparency::sorted
+                              : chosen.temporal || chosen.ribbons == Ribbons::compute
+                                  ? Transparency::stochastic
+                                  : Transparency::weighted;
+    }
+    if (!kernels && chosen.transparency == Transparency::sorted)
+        chosen.transparency = Transparency::stochastic;
+    if (chosen.ribbons == Ribbons::automatic) {
+        const bool compute = chosen.transparency == Transparency::sorted ||
+                             (gpu && chosen.transparency != Transparency::weighted);
+        chosen.ribbons = compute ? Ribbons::compute : Ribbons::strip;
+    }
+    if (!kernels && chosen.ribbons == Ribbons::compute) chosen.ribbons = Ribbons::strip;
+    return chosen;
 }
 
 }  // namespace hairloom::render

@@ -18,7 +18,7 @@ enum class Shadows {
 
 /// How ribbons come about. All draw the same curve.
 enum class Ribbons {
-    automatic,    ///< compute on a GPU where it can, else strip: chooseRibbons()
+    automatic,    ///< compute on a GPU where it can, else strip: chooseWays()
     strip,        ///< a vertex shader pulls the points of the curve
     tessellated,  ///< hull and domain shaders, finer near the eye; needs DeviceInfo::tessellation
     compute,      ///< kernels rasterise hair and head; no weighted transparency
@@ -26,6 +26,8 @@ enum class Ribbons {
 
 /// How hair that covers part of a sample shows what lies behind it.
 enum class Transparency {
+    automatic,   ///< stochastic for averages; single frames: sorted on a GPU, else weighted
+    sorted,      ///< the nearest fragments of a pixel, blended in their order; by kernels
     stochastic,  ///< a random part of the samples (Enderton et al. 2010); averaging frames removes its noise
     alphaToCoverage,  ///< a fixed part of the samples, the same for all hairs of a pixel
     weighted,         ///< blended in any order with weights of depth (McGuire and Bavoil 2013)
@@ -89,7 +91,9 @@ Status check(const RenderOptions& options, const gpu::DeviceInfo& device);
 /// `samples` of the options, with 0 resolved. Errors: the device has no such number of samples.
 Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::DeviceInfo& device);
 
-/// `ribbons` of the options, with automatic resolved for a picture of so many samples a pixel.
-Ribbons chooseRibbons(const RenderOptions& options, std::uint32_t samples, const gpu::DeviceInfo& device);
+/// `ribbons` and `transparency`, with automatic resolved for a picture of so many samples a pixel.
+/// `kernels`: what is drawn can be rasterised by kernels.
+RenderOptions chooseWays(const RenderOptions& options, std::uint32_t samples, bool kernels,
+                         const gpu::DeviceInfo& device);
 
 }  // namespace hairloom::render

@@ -15,7 +15,7 @@ using gpu::Binding;
 
 // Software rasterisers corrupt geometry when one draw emits more than 65,536 vertices.
 constexpr std::uint32_t kPatchesPerDrawOnCpu = 32;
-constexpr float kPixelsPerPiece = 2;  // of a tessellated ribbon
+constexpr float kDeviation = 0.05f;  // pixels, of a tessellated ribbon from its curve
 
 /// One element of zeros, where there is none yet.
 Status prepareBuffer(gpu::Device& device, const char* name, std::uint32_t elementBytes,
@@ -30,14 +30,19 @@ Status prepareBuffer(gpu::Device& device, const char* name, std::uint32_t elemen
     return {};
 }
 
-/// Offsets of a frame in pixels: Gaussian (sigma 0.45), which makes the average a Gaussian filter.
-std::array<float, 2> jitter(std::uint32_t number, std::uint32_t frames) {
-    if (frames == 1) return {0, 0};
+/// Offsets of a frame in pixels, Gaussian, which makes the average a Gaussian filter (sigma 0.45).
+std::array<float, 2> jitter(std::uint32_t number, const RenderOptions& options) {
+    constexpr std::uint32_t kTemporalFrames = 64;
+    if (options.temporal) number %= kTemporalFrames;
+    if (!options.temporal && options.frames == 1) return {0, 0};
+    // Fragments that are sorted cover a tent, whose variance is 1/6 of a pixel.
+    const double sigma =
+        options.transparency == Transparency::sorted ? std::sqrt(0.45 * 0.45 - 1.0 / 6) : 0.45;
     // The R2 sequence (Roberts 2018), then Box and Muller.
     const double n = number;
     const double u = std::fmod(0.5 + n * 0.7548776662466927, 1.0);
     const double v = std::fmod(0.5 + n * 0.5698402909980532, 1.0);
-    const double radius = std::min(0.45 * std::sqrt(-2 * std::log(std::max(u, 1e-3))), 1.5);
+    const double radius = std::min(sigma * std::sqrt(-2 * std::log(std::max(u, 1e-3))), 1.5);
     const double angle = 2 * static_cast<double>(kPi) * v;
     return {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle))};
 }
@@ -98,7 +103,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
     shaders::PatchConstants constants{};
     constants.width = static_cast<float>(state.options.width);
     constants.height = static_cast<float>(state.options.height);
-    constants.pieceLength = kPixelsPerPiece;
+    constants.deviation = kDeviation;
     constants.subdivisions = state.detail.subdivisions;
     for (const DrawBatch& batch : state.scene.batches) {
         if (state.scene.groups[batch.group].material.tubes) continue;
@@ -109,7 +114,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
         for (std::uint32_t first = 0; first < count; first += step) {
             constants.firstPatch = first;
             list.setConstants(2, gpu::bytesOf(constants));
-            list.draw(std::min(step, count - first) * HAIRLOOM_PATCH_POINTS);
+            list.draw(std::min(step, count - first));
         }
     }
 }
@@ -329,9 +334,7 @@ Mat4f pastCameraMatrix(const RendererState& state) {
 }
 
 void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number) {
-    constexpr std::uint32_t kTemporalJitter = 64;
-    const auto [jitterX, jitterY] = state.options.temporal ? jitter(number % kTemporalJitter, kTemporalJitter)
-                                                           : jitter(number, state.options.frames);
+    const auto [jitterX, jitterY] = jitter(number, state.options);
     const Mat4f clipFromWorld = cameraMatrix(state, state.bounds(), jitterX, jitterY);
     if (state.plan.runs(Pass::nearest)) {
         recordRasterised(list, state, clipFromWorld, number);

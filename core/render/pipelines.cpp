@@ -71,7 +71,7 @@ gpu::GraphicsPipelinePtr Pipelines::graphics(const GraphicsNeeds& needs) {
     desc.hull = shader(needs.hull, gpu::ShaderStage::Hull);
     desc.domain = shader(needs.domain, gpu::ShaderStage::Domain);
     desc.topology = needs.topology;
-    if (needs.topology == gpu::Topology::PatchList) desc.patchControlPoints = HAIRLOOM_PATCH_POINTS;
+    if (needs.topology == gpu::Topology::PatchList) desc.patchControlPoints = 1;
     desc.samples = needs.samples;
     if (needs.colour != gpu::Format::Unknown) {
         desc.colourFormats = {needs.colour};

@@ -143,12 +143,16 @@ class Planner {
         buffer(BufferId::surface, pixels(), sizeof(shaders::SurfacePixel), surface,
                "depth, strand, velocity and albedo");
         const bool kernels = options_.ribbons == Ribbons::compute;
+        const bool sorts = kernels && facts_.hair && options_.transparency == Transparency::sorted;
         pass(Pass::nearest, kernels,
-             kernels ? "what is in front in each sample" : "the device's rasteriser finds what is in front");
+             sorts     ? "what of the head is in front, and each pixel's nearest hairs"
+             : kernels ? "what is in front in each sample"
+                       : "the device's rasteriser finds what is in front");
         pass(Pass::draw, true,
-             kernels  ? "light of what is in front"
-             : blends ? "the head, and hair that covers whole samples"
-                      : "head, hair and background");
+             sorts     ? "light of each pixel's nearest hairs, blended in their order"
+             : kernels ? "light of what is in front"
+             : blends  ? "the head, and hair that covers whole samples"
+                       : "head, hair and background");
         pass(Pass::blend, blends, blends ? "fine hair blends in any order" : "no hair is blended by weights");
         pass(Pass::composite, blends, blends ? "blended hair goes over the head" : "nothing was blended");
         const std::string many =
@@ -159,6 +163,12 @@ class Planner {
         buffer(BufferId::nearest, pixels() * samples_, 4, kernels, "depth of what is in front, " + many);
         buffer(BufferId::light, pixels() * samples_, 4, kernels,
                "linear light with a common exponent, " + many);
+        buffer(BufferId::fragmentDepths, pixels() * HAIRLOOM_FRAGMENTS, 4, sorts,
+               "depths of each pixel's nearest hairs");
+        buffer(BufferId::fragmentLight, pixels() * HAIRLOOM_FRAGMENTS, 4, sorts,
+               "their light with a common exponent");
+        buffer(BufferId::fragmentCover, pixels() * HAIRLOOM_COVER_WORDS, 4, sorts,
+               "their shares of the pixel, and how much all hair lets through");
         picture(TargetId::blendSum, Format::Rgba16Float, samples_, blends, "weighted light of blended hair");
         picture(TargetId::blendRest, Format::Rgba16Float, samples_, blends, "what blended hair lets through");
         picture(TargetId::blendSumResolved, Format::Rgba16Float, 1, blends && samples_ > 1,
@@ -251,6 +261,9 @@ const char* bufferName(BufferId buffer) {
                                                            "sky layers",
                                                            "nearest",
                                                            "light",
+                                                           "nearest hairs",
+                                                           "light of nearest hairs",
+                                                           "cover of nearest hairs",
                                                            "sum",
                                                            "sum without shadows",
                                                            "blur halfway",

@@ -71,6 +71,9 @@ enum class BufferId {
     skyLayers,
     nearest,         ///< depths of all samples as bits
     light,           ///< of all samples
+    fragmentDepths,  ///< of each pixel's nearest fragments of hair as bits, in their order
+    fragmentLight,   ///< theirs
+    fragmentCover,   ///< HAIRLOOM_COVER_WORDS a pixel
     sum,             ///< of frames
     litSum,          ///< the same without shadows, where these are blurred
     blurHalfway,     ///< both, blurred along rows
@@ -147,7 +150,7 @@ struct RenderPlan {
     std::uint64_t bytes() const;  ///< of all targets, buffers and tables
 };
 
-/// `samples` and the ribbons of the options as chooseSamples() and chooseRibbons() give them.
+/// `samples` and `options` as chooseSamples() and chooseWays() give them.
 RenderPlan planRender(const SceneFacts& facts, const RenderOptions& options, std::uint32_t samples);
 
 }  // namespace hairloom::render

@@ -32,6 +32,11 @@ std::span<const std::array<int, 2>> samplePattern(std::uint32_t samples) {
     }
 }
 
+/// Hair is kept as each pixel's nearest fragments.
+bool sorts(const RendererState& state) {
+    return state.plan.has(BufferId::fragmentDepths);
+}
+
 shaders::RasterConstants frameConstants(const RendererState& state, std::uint32_t phase) {
     const std::uint32_t width = state.options.width;
     shaders::RasterConstants c{};
@@ -40,6 +45,7 @@ shaders::RasterConstants frameConstants(const RendererState& state, std::uint32_
     c.phase = phase;
     c.samples = state.samples;
     c.slices = 1;
+    c.sorts = sorts(state) ? 1 : 0;
     const auto pattern = samplePattern(state.samples);
     int reach = 0;
     for (std::size_t i = 0; i < pattern.size(); ++i) {
@@ -58,6 +64,7 @@ void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& c
     list.setPipeline(state.pipelines.compute("mesh_raster.comp"));
     bindShadows(list, state);
     list.setConstants(0, gpu::bytesOf(lightsOfFrame(state)));
+    bind(list, {Binding::read(4, state.orPlaceholder(BufferId::fragmentCover))});
     const shaders::RasterConstants raster = frameConstants(state, phase);
     for (const MeshOnDevice& mesh : state.scene.meshes) {
         if (mesh.indices.empty()) continue;
@@ -73,9 +80,18 @@ void dispatchPhase(gpu::CommandList& list, RendererState& state, const Mat4f& cl
     bind(list, {Binding::write(0, t[BufferId::nearest]), Binding::write(1, t[BufferId::light])});
     if (state.scene.triangles() > 0) dispatchMeshes(list, state, clipFromWorld, phase);
     if (state.scene.batches.empty()) return;
-    list.setPipeline(state.pipelines.compute("strand_raster.comp"));
+    shaders::RasterConstants raster = frameConstants(state, phase);
+    if (sorts(state)) {
+        raster.sampleReach = 0.5f;  // of the square that cover is counted in
+        list.setPipeline(state.pipelines.compute("strand_sorted.comp"));
+        bind(list,
+             {Binding::read(2, t[BufferId::nearest]), Binding::write(0, t[BufferId::fragmentDepths]),
+              Binding::write(1, t[BufferId::fragmentLight]), Binding::write(2, t[BufferId::fragmentCover])});
+    } else {
+        list.setPipeline(state.pipelines.compute("strand_raster.comp"));
+    }
     list.setConstants(0, gpu::bytesOf(viewConstants(state, clipFromWorld, number)));
-    dispatchStrands(list, state, frameConstants(state, phase));
+    dispatchStrands(list, state, raster);
 }
 
 void recordResolve(gpu::CommandList& list, RendererState& state, std::uint32_t number) {
@@ -90,8 +106,13 @@ void recordResolve(gpu::CommandList& list, RendererState& state, std::uint32_t n
     constants.background =
         state.options.transparentBackground ? shaders::float4{0, 0, 0, 0} : toShader(state.background, 1);
     list.beginPass({passName(Pass::accumulate), {}, {}});
-    list.setPipeline(state.pipelines.compute("resolve.comp"));
+    list.setPipeline(state.pipelines.compute(sorts(state) ? "resolve_sorted.comp" : "resolve.comp"));
     list.setConstants(0, gpu::bytesOf(constants));
+    if (sorts(state)) {
+        bind(list,
+             {Binding::read(2, t[BufferId::fragmentDepths]), Binding::read(3, t[BufferId::fragmentLight]),
+              Binding::read(4, t[BufferId::fragmentCover])});
+    }
     bind(list, {Binding::read(0, t[BufferId::nearest]), Binding::read(1, t[BufferId::light]),
                 Binding::write(0, state.frames())});
     list.dispatch(rows.groups, rows.rows);
@@ -158,6 +179,11 @@ void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f&
     list.beginPass({passName(Pass::nearest), {}, {}});
     fill(list, state, BufferId::nearest, std::bit_cast<std::uint32_t>(1.0f));
     fill(list, state, BufferId::light, 0);
+    if (sorts(state)) {
+        fill(list, state, BufferId::fragmentDepths, std::bit_cast<std::uint32_t>(1.0f));
+        fill(list, state, BufferId::fragmentLight, 0);
+        fill(list, state, BufferId::fragmentCover, 0);
+    }
     dispatchPhase(list, state, clipFromWorld, number, HAIRLOOM_PHASE_NEAREST);
     list.endPass();
     list.beginPass({passName(Pass::draw), {}, {}});

@@ -261,12 +261,10 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     if (auto status = check(options, device.info()); !status) return status;
     const auto samples = chooseSamples(options, device.info());
     if (!samples) return tl::unexpected(samples.error());
-    RenderOptions resolved = options;
-    resolved.ribbons = chooseRibbons(options, *samples, device.info());
     // Round strands are shaded a pixel at a time, which kernels do not do.
     const bool tubes = std::ranges::any_of(state.scene.groups,
                                            [](const StrandGroup& group) { return group.material.tubes; });
-    if (tubes && resolved.ribbons == Ribbons::compute) resolved.ribbons = Ribbons::strip;
+    const RenderOptions resolved = chooseWays(options, *samples, !tubes, device.info());
     changes.add(compare(state.options, resolved));
     if (newLights || resolved.shadowLights != state.options.shadowLights ||
         resolved.shadowResolution != state.options.shadowResolution) {

@@ -32,24 +32,15 @@ std::vector<std::uint32_t> ribbonIndices(const DrawBatch& batch, std::uint32_t s
     return indices;
 }
 
-/// Strands of more than 32 points become several patches that overlap, so that each knows its neighbours'
-/// tangents.
 std::vector<shaders::StrandPatch> strandPatches(DrawBatch& batch) {
-    constexpr std::uint32_t kControlPoints = HAIRLOOM_PATCH_POINTS;
     std::vector<shaders::StrandPatch> patches;
     batch.patchesBefore = {0};
     for (std::uint32_t strand = 0; strand < batch.strandCount(); ++strand) {
         const std::uint32_t segments = batch.segmentsBefore[strand + 1] - batch.segmentsBefore[strand];
-        for (std::uint32_t done = 0; done < segments;) {
-            shaders::StrandPatch patch;
-            const std::uint32_t before = done > 0 ? 1 : 0;
-            patch.strand = strand;
-            patch.firstPoint = done - before;
-            patch.pointCount = std::min(segments + 1 - patch.firstPoint, kControlPoints);
-            const bool ends = patch.firstPoint + patch.pointCount == segments + 1;
-            patch.segments = patch.pointCount - 1 - before - (ends ? 0 : 1);
-            done += patch.segments;
-            patches.push_back(patch);
+        const std::uint32_t count = (segments + HAIRLOOM_PATCH_SEGMENTS - 1) / HAIRLOOM_PATCH_SEGMENTS;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const std::uint32_t first = i * segments / count, end = (i + 1) * segments / count;
+            patches.push_back({strand, first, end - first, segments + 1});
         }
         batch.patchesBefore.push_back(static_cast<std::uint32_t>(patches.size()));
     }

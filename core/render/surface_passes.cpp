@@ -9,8 +9,9 @@ namespace {
 
 using gpu::Binding;
 
-// Of what moves more frames would trail; what rests becomes as smooth as a still picture.
-constexpr float kFramesMoving = 16, kFramesStill = 64;
+// Of what moves more frames would trail, and fragments that are sorted have no noise that needs as many; what
+// rests becomes as smooth as a still picture.
+constexpr float kFramesMoving = 16, kFramesSorted = 3, kFramesStill = 64;
 
 /// Metres along the view of a place (x, y, z, 1).
 shaders::float4 forwardOf(const Camera& camera) {
@@ -139,7 +140,8 @@ void recordTemporal(gpu::CommandList& list, RendererState& state, bool moves) {
     constants.width = state.options.width;
     constants.height = state.options.height;
     constants.hasPast = state.temporal.frames > 0 ? 1 : 0;
-    constants.most = moves ? kFramesMoving : kFramesStill;
+    const bool sorted = state.options.transparency == Transparency::sorted;
+    constants.most = !moves ? kFramesStill : sorted ? kFramesSorted : kFramesMoving;
     constants.moves = moves ? 1 : 0;
     list.beginPass({passName(Pass::temporal), {}, {}});
     list.setPipeline(state.pipelines.compute("temporal.comp"));

@@ -26,6 +26,7 @@ render::RenderOptions viewportOptions(std::uint32_t width, std::uint32_t height)
     options.detail = 0.5f;
     options.bakeBehind = true;
     options.temporal = true;
+    options.transparency = render::Transparency::automatic;
     return options;
 }
 

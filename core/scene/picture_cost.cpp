@@ -91,13 +91,17 @@ class Candidates {
     void addTransparency() {
         using render::Transparency;
         choices<Transparency>("transparency", &render::RenderOptions::transparency,
-                              {{"weighted", Transparency::weighted},
+                              {{"automatic", Transparency::automatic},
+                               {"weighted", Transparency::weighted},
                                {"alphaToCoverage", Transparency::alphaToCoverage},
-                               {"stochastic", Transparency::stochastic}});
-        for (Candidate& candidate : list_) {  // what kernels cannot blend, strips can
+                               {"stochastic", Transparency::stochastic},
+                               {"sorted", Transparency::sorted}});
+        for (Candidate& candidate : list_) {  // ribbons that can blend so
             render::RenderOptions& picture = candidate.settings.picture;
-            if (candidate.settings != now_ && picture.transparency == Transparency::weighted &&
-                picture.ribbons == render::Ribbons::compute)
+            const bool byKernels = picture.ribbons == render::Ribbons::compute;
+            if (candidate.settings != now_ && picture.ribbons != render::Ribbons::automatic &&
+                (byKernels ? picture.transparency == Transparency::weighted
+                           : picture.transparency == Transparency::sorted))
                 picture.ribbons = render::Ribbons::automatic;
         }
     }

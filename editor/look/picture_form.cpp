@@ -82,10 +82,12 @@ class PictureForm : public OptionForm {
         addEnum("filter", tr("Filter"), tr("Softens the edges that are left in the finished picture"),
                 {tr("None"), tr("FXAA"), tr("FXAA, long search")}, &PictureQuality::filter);
         addEnum("transparency", tr("Thin hair"),
-                tr("How hair that is thinner than a sample shows what lies behind it: by a random part of "
-                   "the samples, "
-                   "by a fixed part, or blended in any order"),
-                {tr("Random samples"), tr("Fixed samples"), tr("Blended")}, &PictureQuality::transparency);
+                tr("How hair that is thinner than a sample shows what lies behind it: as is nearest to the "
+                   "truth on the device, by the nearest hairs of a pixel in their order, by a random part "
+                   "of the samples, by a fixed part, or blended in any order"),
+                {tr("Automatic"), tr("In their order"), tr("Random samples"), tr("Fixed samples"),
+                 tr("Blended in any order")},
+                &PictureQuality::transparency);
         addEnum(
             "ribbons", tr("Curves"),
             tr("How curves become ribbons: as is fastest on the device, as strips, or tessellated, which is "

@@ -14,7 +14,9 @@ render::RenderOptions stillOptions(const PictureQuality& quality, const gpu::Dev
     options.frames = quality.frames;
     options.filter = quality.filter;
     options.transparency = quality.transparency;
-    if (device.tessellation || quality.ribbons != render::Ribbons::tessellated)
+    // Only kernels blend hair in its order.
+    const bool sorted = quality.transparency == render::Transparency::sorted;
+    if (!sorted && (device.tessellation || quality.ribbons != render::Ribbons::tessellated))
         options.ribbons = quality.ribbons;
     options.subdivisions = quality.subdivisions;
     options.shadows = quality.shadows;

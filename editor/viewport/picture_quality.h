@@ -15,7 +15,7 @@ struct PictureQuality {
     std::uint32_t frames = 8;  ///< averaged when the picture is still, 1…256
     bool joinsFrames = true;   ///< while something moves: render::RenderOptions::temporal
     render::PostFilter filter = render::PostFilter::none;
-    render::Transparency transparency = render::Transparency::stochastic;
+    render::Transparency transparency = render::Transparency::automatic;
     /// Strips where the device cannot tessellate.
     render::Ribbons ribbons = render::Ribbons::automatic;
     render::Shadows shadows = render::Shadows::deepOpacity;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles into the samples of a frame, as strand_raster.comp.hlsl does hair.
+#include "shaders/render/fragments.hlsli"
 #include "shaders/render/skin.hlsli"
 #include "shaders/render/triangle_raster.hlsli"
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
 StructuredBuffer<float> gNormals : register(t1);
 StructuredBuffer<float4> gAlbedo : register(t3);  // per triangle
+StructuredBuffer<uint> gCover : register(t4);     // of hair, where that is sorted
 RWStructuredBuffer<uint> gNearest : register(u0);
 RWStructuredBuffer<uint> gLight : register(u1);
 
@@ -17,6 +19,8 @@ float3 lightAt(Corners c, float2 at, uint face) {
 void visitPixel(Corners c, int2 pixel, uint face) {
     const float2 middle = float2(pixel - c.origin) + 0.5;
     const uint samples = gRaster.samples;
+    const bool sees = gRaster.phase == HAIRLOOM_PHASE_NEAREST || gRaster.sorts == 0u;
+    if (!sees && gCover[stepsOf(pixelIndex(pixel))] >= kMostSteps) return;  // hair hides it
     const uint base = pixelIndex(pixel) * samples;
     uint shown = 0;
     float2 place = 0;

@@ -1,38 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tangents of the control points, and how finely the patch is cut: by the length of its segments in pixels.
+// How finely a patch is cut: so that no chord lies farther from the curve than a part of a pixel. Nothing of what is out of sight.
 #include "shaders/render/strand_patch.hlsli"
 
-cbuffer Constants : register(b0) { ViewConstants gView; };
-cbuffer Patches : register(b2) { PatchConstants gPatch; };
-
-float2 onScreen(float3 position_ws, out float w) {
+float2 onScreen(float3 position_ws, inout bool behind) {
     const float4 clip = mul(gView.clipFromWorld, float4(position_ws, 1));
-    w = clip.w;
+    behind = behind || clip.w <= 0;
     return clip.xy / max(clip.w, 1e-6);
 }
 
-PatchFactors factors(InputPatch<ControlPoint, POINTS> points) {
-    const uint segments = points[0].patch.z;
-    const uint first = points[0].patch.w & 1u;
-    float pixels = 0;
-    float2 minimum = 1e9;
-    float2 maximum = -1e9;
-    float w;
-    float2 before = onScreen(points[first].position_ws.xyz, w);
-    bool behind = w <= 0;
-    for (uint i = 0; i <= segments; ++i) {
-        const float2 here = onScreen(points[first + i].position_ws.xyz, w);
-        behind = behind || w <= 0;
-        pixels += length((here - before) * 0.5 * float2(gPatch.width, gPatch.height));
-        minimum = min(minimum, here);
-        maximum = max(maximum, here);
-        before = here;
+// In pixels; beyond the ends the curve goes on as a mirror image.
+struct Window {
+    float2 before, here, next, after;
+};
+
+// Of the curve between `here` and `next` (Eq. 55), at its ends, where it is greatest.
+float secondDerivative(Window w) {
+    const float2 way = 6.0 * (w.next - w.here);
+    const float2 tangentHere = 0.5 * (w.next - w.before);
+    const float2 tangentNext = 0.5 * (w.after - w.here);
+    return max(length(way - 4.0 * tangentHere - 2.0 * tangentNext), length(2.0 * tangentHere + 4.0 * tangentNext - way));
+}
+
+PatchFactors factors(InputPatch<ControlPoint, 1> points) {
+    const ControlPoint c = points[0];
+    const uint first = c.patch.z;
+    const uint segments = c.patch.w;
+    const float2 pixels = 0.5 * float2(gPatch.width, gPatch.height);
+    bool behind = false;
+    Window w;
+    w.here = onScreen(givenPoint(c, first).position_ws.xyz, behind) * pixels;
+    w.next = onScreen(givenPoint(c, first + 1u).position_ws.xyz, behind) * pixels;
+    w.before = 2.0 * w.here - w.next;
+    if (first > 0u) w.before = onScreen(givenPoint(c, first - 1u).position_ws.xyz, behind) * pixels;
+    float2 minimum = min(w.here, w.next);
+    float2 maximum = max(w.here, w.next);
+    float bend = 0;
+    for (uint k = 0; k < segments; ++k) {
+        w.after = 2.0 * w.next - w.here;
+        const uint beyond = first + k + 2u;
+        if (beyond < c.points) w.after = onScreen(givenPoint(c, beyond).position_ws.xyz, behind) * pixels;
+        bend = max(bend, secondDerivative(w));
+        minimum = min(minimum, w.next);
+        maximum = max(maximum, w.next);
+        w.before = w.here;
+        w.here = w.next;
+        w.next = w.after;
     }
-    // A whole number of pieces a segment, so that the curve's points stay corners.
-    const float pieces = clamp(ceil(pixels / (float(segments) * gPatch.pieceLength)), 1.0, floor(64.0 / float(segments)));
-    const bool seen = behind || (all(maximum > -1.1) && all(minimum < 1.1));
+    // A curve's arc lies an eighth of its second derivative from its chord, and n pieces of it n² times less. A whole number of
+    // pieces a segment, so that the curve's points stay corners.
+    const float pieces = clamp(ceil(sqrt(bend / (8.0 * gPatch.deviation))), 1.0, floor(64.0 / float(segments)));
+    const bool seen = behind || (all(maximum > -1.1 * pixels) && all(minimum < 1.1 * pixels));
     PatchFactors o;
-    const float along = seen ? float(segments) * max(pieces, 1.0) : 0.0;
+    const float along = seen ? float(segments) * pieces : 0.0;
     const float across = seen ? 1.0 : 0.0;
     o.edge[0] = across;
     o.edge[1] = along;
@@ -46,17 +65,9 @@ PatchFactors factors(InputPatch<ControlPoint, POINTS> points) {
 [domain("quad")]
 [partitioning("integer")]
 [outputtopology("triangle_cw")]
-[outputcontrolpoints(POINTS)]
+[outputcontrolpoints(1)]
 [patchconstantfunc("factors")]
 [maxtessfactor(64.0)]
-ControlPoint main(InputPatch<ControlPoint, POINTS> points, uint i : SV_OutputControlPointID) {
-    ControlPoint o = points[i];
-    const uint last = (points[0].patch.w >> 8u) - 1u;
-    const uint k = min(i, last);
-    // Beyond the ends the curve goes on as a mirror image.
-    const float3 here = points[k].position_ws.xyz;
-    const float3 before = k > 0u ? points[k - 1u].position_ws.xyz : 2 * here - points[1].position_ws.xyz;
-    const float3 after = k < last ? points[k + 1u].position_ws.xyz : 2 * here - points[k - 1u].position_ws.xyz;
-    o.tangent.xyz = 0.5 * (after - before);
-    return o;
+ControlPoint main(InputPatch<ControlPoint, 1> points, uint i : SV_OutputControlPointID) {
+    return points[i];
 }

@@ -23,9 +23,9 @@ namespace hairloom::shaders {
 #define HAIRLOOM_SHADOWS_OPACITY_MAPS 3
 
 // render::Transparency
-#define HAIRLOOM_TRANSPARENCY_STOCHASTIC 0
-#define HAIRLOOM_TRANSPARENCY_ALPHA_TO_COVERAGE 1
-#define HAIRLOOM_TRANSPARENCY_WEIGHTED 2
+#define HAIRLOOM_TRANSPARENCY_STOCHASTIC 2
+#define HAIRLOOM_TRANSPARENCY_ALPHA_TO_COVERAGE 3
+#define HAIRLOOM_TRANSPARENCY_WEIGHTED 4
 
 // One strand as it was given: a run of points, and where its finer curve goes.
 struct StrandHeader {
@@ -49,13 +49,13 @@ struct CurvePoint {
     float opacity;  // 0...1
 };
 
-// A run of a strand's given points that one tessellated ribbon has as control points.
-#define HAIRLOOM_PATCH_POINTS 32
+// A run of a strand's given segments that one tessellated ribbon covers; devices cut it into 64 pieces at most.
+#define HAIRLOOM_PATCH_SEGMENTS 21
 struct StrandPatch {
-    uint strand;      // in its batch
-    uint firstPoint;  // of the strand; the one before the ribbon's first where that is not the root
-    uint pointCount;
-    uint segments;  // that the ribbon covers
+    uint strand;  // in its batch
+    uint firstSegment;
+    uint segments;
+    uint pointCount;  // of the strand
 };
 
 struct CurveConstants {
@@ -82,7 +82,7 @@ struct PatchConstants {
     uint unused0, unused1;
     float width;  // of the view in pixels
     float height;
-    float pieceLength;  // pixels that a piece of a ribbon may be long
+    float deviation;  // pixels that a piece of a ribbon may lie beside the curve
     float unused2;
 };
 
@@ -214,20 +214,26 @@ struct LookConstants {
 // Where compute kernels that rasterise put what they find.
 #define HAIRLOOM_MAX_SAMPLES 8
 struct RasterConstants {
-    float4 window;     // xy: upper left corner of what is drawn, in pixels of the buffer; zw: its size
-    uint count;        // curve points, or triangles
-    uint rowLength;    // of the dispatch, in threads; of triangles in groups
-    uint bufferWidth;  // pixels
-    uint phase;        // HAIRLOOM_PHASE_*
-    uint samples;      // in a pixel
-    uint layers;       // of opacity
-    uint slices;       // that a triangle is cut into
-    uint unused0;
+    float4 window;      // xy: upper left corner of what is drawn, in pixels of the buffer; zw: its size
+    uint count;         // curve points, or triangles
+    uint rowLength;     // of the dispatch, in threads; of triangles in groups
+    uint bufferWidth;   // pixels
+    uint phase;         // HAIRLOOM_PHASE_*
+    uint samples;       // in a pixel
+    uint layers;        // of opacity
+    uint slices;        // that a triangle is cut into
+    uint sorts;         // 1: hair is kept as each pixel's nearest fragments
     float sampleReach;  // farthest that a sample lies from the middle of its pixel along x or y, pixels
     float unused1, unused2, unused3;
     float4
         samplePositions[HAIRLOOM_MAX_SAMPLES / 2];  // of the samples from the middle, in pixels, two in each
 };
+// Of a pixel, that are blended in their order.
+#define HAIRLOOM_FRAGMENTS 8
+// Of a pixel: its fragments' cover, 16 bits each, then by how often all hair in it halves what lies behind,
+// in steps.
+#define HAIRLOOM_COVER_WORDS (HAIRLOOM_FRAGMENTS / 2 + 1)
+#define HAIRLOOM_HALVING_STEPS 512
 #define HAIRLOOM_PHASE_NEAREST 0
 #define HAIRLOOM_PHASE_LIGHT 1
 // Where they tell what is nearest in the middle of a pixel: which of what has the least depth, and all about

@@ -32,12 +32,13 @@ class TemporalTest : public RenderTest {
         return picture ? picture->image : Image();
     }
     /// The same moment, without what was before.
-    Image truth(const RenderScene& scene) {
+    Image truth(const RenderScene& scene, double* luminance = nullptr) {
         RenderOptions options = moving(false);
         options.frames = 64;
         options.samples = 4;
         const auto picture = renderPicture(*device, scene, options);
         EXPECT_TRUE(picture) << picture.error().message();
+        if (picture && luminance != nullptr) *luminance = meanLuminance(picture->linear);
         return picture ? picture->image : Image();
     }
     LinearImage linear_;
@@ -124,6 +125,29 @@ TEST_F(TemporalTest, MovingHairIsNearManyPasses) {
     }
     EXPECT_LT(flicker(shown, expected), 0.02);
     EXPECT_GT(flicker(single, expected), 0.05);
+}
+
+// As a GPU draws them.
+TEST_F(TemporalTest, SortedFramesJoin) {
+    Moving hair;
+    Renderer joined(*device);
+    ASSERT_TRUE(joined.setScene(hair.scene()));
+    RenderOptions sorted = moving(true);
+    sorted.transparency = Transparency::sorted;
+    std::array<Image, 2> shown, expected;
+    double light = 0, wanted = 0;
+    for (std::uint32_t i = 0; i < 26; ++i) {
+        hair.at(static_cast<int>(i));
+        hair.show(joined);
+        const Image now = frame(joined, sorted);
+        if (i < 24) continue;
+        shown[i - 24] = now;
+        light = meanLuminance(linear_);
+        expected[i - 24] = truth(hair.scene(), &wanted);
+        EXPECT_GT(decibels(shown[i - 24], expected[i - 24]), 36);
+    }
+    EXPECT_LT(flicker(shown, expected), 0.02);
+    EXPECT_NEAR(light / wanted, 1, 0.02);
 }
 
 TEST_F(TemporalTest, WhatRestsBecomesAStillPicture) {
