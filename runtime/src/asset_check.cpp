@@ -5,6 +5,8 @@
 
 #include "hairloom/asset.h"
 #include "src/asset_error.h"
+#include "src/asset_points.h"
+#include "src/checks.h"
 
 namespace hairloom::runtime {
 
@@ -14,9 +16,17 @@ namespace {
 
 using Problem = std::optional<AssetError>;
 
-bool allFinite(std::span<const float> values) {
+/// Whether all are numbers of which none is beyond ±1e6.
+bool allWithin(std::span<const float> values) {
     return std::all_of(std::begin(values), std::end(values),
-                       [](float value) { return std::isfinite(value); });
+                       [](float value) { return std::abs(value) <= kFarthest; });
+}
+
+/// Whether two directions are of unit length and perpendicular.
+bool isFrame(Float3 a, Float3 b) {
+    constexpr float kSlack = 1e-3f;
+    return std::abs(dot(a, a) - 1) <= kSlack && std::abs(dot(b, b) - 1) <= kSlack &&
+           std::abs(dot(a, b)) <= kSlack;
 }
 
 bool inside(Text place, std::span<const char> text) {
@@ -26,12 +36,13 @@ bool inside(Text place, std::span<const char> text) {
 /// Most points of an asset, so that counts fit 32 bits with room to spare.
 constexpr std::uint64_t kMaxAssetPoints = 1u << 30u;
 constexpr std::uint32_t kMaxHairsPerGuide = 4096;
+constexpr float kLargestArea = 1e12f;
 
 }  // namespace
 
 Problem Asset::checkContent() const {
-    for (const auto& check :
-         {&Asset::checkStrands, &Asset::checkScalp, &Asset::checkFollowHairs, &Asset::checkSettings}) {
+    for (const auto& check : {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp,
+                              &Asset::checkFollowHairs, &Asset::checkSettings}) {
         if (Problem problem = (this->*check)()) return problem;
     }
     return std::nullopt;
@@ -62,22 +73,43 @@ Problem Asset::checkStrands() const {
     if (!radii.empty() && radii.size() != points)
         return damaged(placeOf(radii.data()),
                        number(radii.size()) + " radii of " + number(points) + " points");
-    if (!allFinite(header().boundsMin) || !allFinite(header().boundsMax))
-        return damaged(32, "bounds that are not finite");
+    return std::nullopt;
+}
+
+Problem Asset::checkPoints() const {
+    const std::array<float, 3>&low = header().boundsMin, &high = header().boundsMax;
+    if (!allWithin(low) || !allWithin(high)) return damaged(32, "bounds that are no numbers within 1e6 m");
+    const std::byte* residual = residuals.data();
+    for (std::size_t s = 0; s < strands.size(); ++s) {
+        const Strand& strand = strands[s];
+        AssetGrid least{}, most{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto cell = [&](float metres) { return std::ldexp(double{metres}, strand.gridBits); };
+            least[axis] = static_cast<std::int64_t>(std::floor(cell(low[axis])));
+            most[axis] = static_cast<std::int64_t>(std::ceil(cell(high[axis])));
+        }
+        bool inside = true;
+        forPoints(strand, residual, [&](const AssetGrid& at) {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                inside = inside && at[axis] >= least[axis] && at[axis] <= most[axis];
+        });
+        if (!inside) return damaged(placeOf(&strand), "strand " + number(s) + " leaves the file's bounds");
+    }
     return std::nullopt;
 }
 
 Problem Asset::checkScalp() const {
     for (const Bone& bone : bones) {
-        if (!inside(bone.name, texts) || !allFinite(bone.inverseBind))
+        if (!inside(bone.name, texts) || !allWithin(bone.inverseBind))
             return damaged(placeOf(&bone), "a bone without name or matrix");
     }
     for (const ScalpVertex& vertex : scalpVertices) {
-        bool known = allFinite(vertex.position);
+        bool known = allWithin(vertex.position);
         for (std::size_t i = 0; i < 4; ++i)
             known = known && (vertex.weights[i] == 0 || vertex.bones[i] < bones.size());
         if (!known)
-            return damaged(placeOf(&vertex), "a vertex of the scalp that is not finite or hangs on no bone");
+            return damaged(placeOf(&vertex),
+                           "a vertex of the scalp without place within 1e6 m, or that hangs on no bone");
     }
     for (const ScalpTriangle& triangle : scalpTriangles) {
         for (const std::uint32_t vertex : triangle.vertices) {
@@ -93,12 +125,14 @@ Problem Asset::checkScalp() const {
         if (root.triangle >= scalpTriangles.size())
             return damaged(placeOf(&root), "a root in triangle " + number(root.triangle) + " of " +
                                                number(scalpTriangles.size()));
+        if (std::uint32_t{root.b} + root.c > 65535u)
+            return damaged(placeOf(&root), "a root beside its triangle");
     }
     for (const asset::Sphere& sphere : spheres) {
         const bool boned =
             sphere.bone >= -1 && (sphere.bone < 0 || static_cast<std::size_t>(sphere.bone) < bones.size());
-        if (!boned || !inside(sphere.name, texts) || !allFinite(sphere.centre) || !(sphere.radius > 0) ||
-            !std::isfinite(sphere.radius))
+        if (!boned || !inside(sphere.name, texts) || !allWithin(sphere.centre) || !(sphere.radius > 0) ||
+            sphere.radius > kFarthest)
             return damaged(placeOf(&sphere), "a sphere without name, place or bone");
     }
     return std::nullopt;
@@ -114,21 +148,21 @@ Problem Asset::checkFollowHairs() const {
     if (r.hairsPerGuide > kMaxHairsPerGuide || r.pointsPerHair < 2 || r.pointsPerHair > kMaxPoints)
         return wrong("of " + number(r.pointsPerHair) + " points, " + number(r.hairsPerGuide) +
                      " of each guide");
-    const float numbers[] = {r.radiusRoot, r.radiusTip, r.blend, r.shiftStep};
-    if (!allFinite(numbers) || r.radiusRoot < 0 || r.radiusTip < 0 || r.blend < 0 || r.blend > 1 ||
-        r.shiftStep < 0)
-        return wrong("with a radius, blend or step out of range");
+    for (const float value : {r.radiusRoot, r.radiusTip, r.blend, r.shiftStep}) {
+        if (!(value >= 0 && value <= 1)) return wrong("with a radius, blend or step that is not from 0 to 1");
+    }
     const float limits[] = {r.beginAngle, r.endAngle, r.beginSpread, r.endSpread};
-    if (!allFinite(limits) || !(r.endAngle > r.beginAngle) || !(r.endSpread > r.beginSpread))
+    if (!allWithin(limits) || !(r.endAngle > r.beginAngle) || !(r.endSpread > r.beginSpread))
         return wrong("with a parting that ends before it begins");
     for (const Guide& guide : guides) {
-        if (guide.strand >= strands.size() || !allFinite(guide.normal) || !allFinite(guide.axis))
+        const std::array<float, 3>&n = guide.normal, &a = guide.axis;
+        if (guide.strand >= strands.size() || !isFrame({n[0], n[1], n[2]}, {a[0], a[1], a[2]}))
             return damaged(placeOf(&guide), "a guide that is no strand or has no frame");
     }
     for (const GuideTriangle& triangle : guideTriangles) {
         const bool known = std::all_of(std::begin(triangle.guides), std::end(triangle.guides),
                                        [&](std::uint32_t g) { return g < guides.size(); });
-        if (!known || !(triangle.area >= 0) || !std::isfinite(triangle.area))
+        if (!known || !(triangle.area >= 0 && triangle.area <= kLargestArea))
             return damaged(placeOf(&triangle), "a triangle of guides that there are not, or without area");
     }
     const std::uint64_t hairs = std::uint64_t{r.hairsPerGuide} * guides.size();

@@ -2,10 +2,10 @@
 // What an asset's records stand for: strands, settings, follow hairs.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "hairloom/asset.h"
 #include "hairloom/follow_recipe.h"
+#include "src/asset_points.h"
 
 namespace hairloom::runtime {
 
@@ -13,34 +13,7 @@ using namespace asset;
 
 namespace {
 
-using Grid = std::array<std::int64_t, 3>;
-
-template <class T>
-T load(const std::byte* at) {
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-}
-
-/// Ten bits as a signed number.
-std::int64_t tenBits(std::uint32_t bits) {
-    return static_cast<std::int64_t>(bits & 1023u) - ((bits & 512u) != 0 ? 1024 : 0);
-}
-
-Grid residualAt(const std::byte* at, std::uint8_t bytes) {
-    if (bytes == 4) {
-        const auto packed = load<std::uint32_t>(at);
-        return {tenBits(packed), tenBits(packed >> 10u), tenBits(packed >> 20u)};
-    }
-    if (bytes == 6) {
-        const auto packed = load<std::array<std::int16_t, 3>>(at);
-        return {packed[0], packed[1], packed[2]};
-    }
-    const auto packed = load<std::array<std::int32_t, 3>>(at);
-    return {packed[0], packed[1], packed[2]};
-}
-
-Float3 positionOf(const Grid& grid, double step) {
+Float3 positionOf(const AssetGrid& grid, double step) {
     return {static_cast<float>(static_cast<double>(grid[0]) * step),
             static_cast<float>(static_cast<double>(grid[1]) * step),
             static_cast<float>(static_cast<double>(grid[2]) * step)};
@@ -112,19 +85,8 @@ Asset::Strands Asset::strandsAtRest() const {
     const std::byte* residual = residuals.data();
     for (const Strand& strand : strands) {
         const double step = stepOf(strand.gridBits);
-        Grid before{strand.root[0], strand.root[1], strand.root[2]};
-        Grid at{before[0] + strand.first[0], before[1] + strand.first[1], before[2] + strand.first[2]};
-        decoded.positions_ss.push_back(positionOf(before, step));
-        decoded.positions_ss.push_back(positionOf(at, step));
-        for (std::uint32_t p = 2; p < strand.points; ++p, residual += strand.residualBytes) {
-            const Grid farther = residualAt(residual, strand.residualBytes);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const std::int64_t next = 2 * at[axis] - before[axis] + farther[axis];
-                before[axis] = at[axis];
-                at[axis] = next;
-            }
-            decoded.positions_ss.push_back(positionOf(at, step));
-        }
+        forPoints(strand, residual,
+                  [&](const AssetGrid& at) { decoded.positions_ss.push_back(positionOf(at, step)); });
         decoded.offsets.push_back(static_cast<std::uint32_t>(decoded.positions_ss.size()));
     }
     return decoded;

@@ -53,6 +53,12 @@ float between(float root, float tip, std::size_t p, std::size_t points) {
     return root + (tip - root) * static_cast<float>(p) / static_cast<float>(points - 1);
 }
 
+/// `usual` where the asset has none, or one out of range.
+float numberWithin(const Asset& asset, std::string_view name, double min, double max, double usual) {
+    const double value = asset.numberOf(name, usual);
+    return static_cast<float>(value >= min && value <= max ? value : usual);
+}
+
 std::size_t bytesOf(const Engine& engine) {
     std::size_t bytes = engine.baseBytes();
     for (std::uint32_t effect = 0; effect < kEffectCount; ++effect)
@@ -151,8 +157,8 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     instance.positions_.resize(strands.positions_ss.size());
     for (const std::uint16_t radius : asset.radii)
         instance.radii_.own.push_back(static_cast<float>(radius) * asset::kRadiusStep);
-    instance.radii_.root = static_cast<float>(asset.numberOf("material.rootRadius", 0.00004));
-    instance.radii_.tip = instance.radii_.root * static_cast<float>(asset.numberOf("material.tipScale", 0.4));
+    instance.radii_.root = numberWithin(asset, "material.rootRadius", 5e-6, 0.05, 4e-5);
+    instance.radii_.tip = instance.radii_.root * numberWithin(asset, "material.tipScale", 0, 1, 0.4);
     if (wantsHairs && asset.hairCount() > 0) {
         FollowHairs::Result hairs = asset.followHairs(strands, instance.host_);
         if (!hairs.hairs) return {std::nullopt, std::move(hairs.error)};

@@ -92,4 +92,13 @@ inline Groom dome(std::uint32_t side, std::uint32_t step, std::uint32_t points, 
     return growStraight(mesh, all, roots, length, points).value();
 }
 
+/// With wind, follow hairs and a sphere.
+inline Groom wholeGroom() {
+    Groom groom = dome(4, 2, 12, 0.1f);
+    groom.interpolation.followPerGuide = 6;
+    groom.simulation.windSpeed = 3;
+    groom.spheres = {{"skull", Vec3f(0, 1.6f, 0), 0.09f, ""}};
+    return groom;
+}
+
 }  // namespace hairloom::test

@@ -39,8 +39,8 @@ class Asset {
     static Result open(std::span<const std::byte> bytes);
     /// Compares all checksums, then as checkContent(). Nothing where all is well.
     std::optional<AssetError> check() const;
-    /// Whether counts and indices fit each other, so that the calls below may be made. Time: one look at each
-    /// record.
+    /// Whether counts and indices fit each other and numbers are within their ranges, so that the calls below
+    /// may be made. Time: one look at each record and point.
     std::optional<AssetError> checkContent() const;
 
     std::uint16_t major() const { return header().major; }
@@ -106,6 +106,7 @@ class Asset {
               std::string& problem);
     std::optional<AssetError> takeSection(const asset::Section& section);
     std::optional<AssetError> checkStrands() const;
+    std::optional<AssetError> checkPoints() const;  ///< after checkStrands()
     std::optional<AssetError> checkScalp() const;
     std::optional<AssetError> checkFollowHairs() const;
     std::optional<AssetError> checkSettings() const;
