@@ -25,7 +25,7 @@ cp "$packages"/*.deb "$root/try/"
 cp -r "$top/samples/player" "$root/try/player"
 awk '/^```c$/ { inside = 1; next } inside && /^```$/ { exit } inside' "$top/docs/integrate.md" > "$root/try/game.c"
 inside apt-get update -qq
-inside sh -c 'apt-get install -y -qq --no-install-recommends /try/hairloom_*.deb' >&2
+inside sh -c 'apt-get -o Dpkg::Use-Pty=0 install -y -qq --no-install-recommends /try/hairloom_*.deb' >&2
 echo "ok   the application installs"
 
 inside hairloom-cli create --mesh /usr/share/hairloom/samples/bust/bust.glb --scalp material:scalp --count 200 --length 0.2 \
@@ -45,12 +45,12 @@ for file in bin/hairloom-mesh-reader share/applications/hairloom.desktop share/m
 done
 echo "ok   desktop file, type, icon and manual pages are there"
 
-inside sh -c 'apt-get install -y -qq --no-install-recommends /try/hairloom-runtime-dev_*.deb cmake g++ make' >&2
+inside sh -c 'apt-get -o Dpkg::Use-Pty=0 install -y -qq --no-install-recommends /try/hairloom-runtime-dev_*.deb cmake g++ make' >&2
 inside sh -c 'cmake -S /try/player -B /try/build > /dev/null && cmake --build /try/build > /dev/null && /try/build/player /try/hair.hairrt --frames 30'
 echo "ok   samples/player builds by find_package(hairloom-runtime) and plays"
 inside sh -c 'cc -std=c99 -O2 -c /try/game.c -o /try/game.o $(pkg-config --cflags hairloom-runtime) &&
     c++ /try/game.o $(pkg-config --libs hairloom-runtime) -o /try/game && /try/game /try/hair.hairrt'
 echo "ok   the C99 program of docs/integrate.md builds by pkg-config and plays"
-inside apt-get remove -y -qq hairloom hairloom-runtime-dev >&2
+inside apt-get -o Dpkg::Use-Pty=0 remove -y -qq hairloom hairloom-runtime-dev >&2
 [ ! -e "$root/usr/bin/hairloom" ] && [ ! -e "$root/usr/include/hairloom" ]
 echo "ok   both leave nothing behind"
