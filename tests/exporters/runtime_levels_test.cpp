@@ -98,7 +98,7 @@ TEST_F(RuntimeLevels, CoarserOnesAreCheaperAndAsFarOffAsPredicted) {
 
 TEST_F(RuntimeLevels, SettingsOfAGameReachEachOne) {
     const std::pair<const char*, double> kSet[] = {
-        {"substeps", 6}, {"windSpeed", 4}, {"angularStiffness", 0.9}, {"strandModel", 1}};
+        {"substeps", 6}, {"windSpeed", 4}, {"airDrag", 8}, {"strandModel", 1}};
     for (const auto& [name, value] : kSet) {
         // As if it had been exported so.
         Groom groom = hair();
