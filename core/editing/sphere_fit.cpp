@@ -140,6 +140,16 @@ Ball refit(const Ball& ball, const Samples& samples, const std::vector<std::size
     return moved.centre.allFinite() && std::isfinite(moved.radius) ? moved : ball;
 }
 
+/// Whether the ball lies behind its samples: one before a hollow, behind an ear, say, fits it as closely from
+/// outside, and pushes hair away.
+bool liesInside(const Ball& ball, const Samples& samples, const std::vector<std::size_t>& owned) {
+    constexpr double kFacing = 0.3;  // mean cosine between the skin's normal and the ball's
+    double sum = 0;
+    for (const std::size_t i : owned)
+        sum += samples.normals[i].dot((samples.points[i] - ball.centre).normalized());
+    return sum > kFacing * static_cast<double>(owned.size());
+}
+
 struct Quality {
     double worst = 0;    ///< metres, distance of a sample from the union's surface
     std::size_t at = 0;  ///< the sample that lies outermost
@@ -175,7 +185,8 @@ std::vector<Ball> refine(std::vector<Ball> balls, const Samples& samples, double
         bool isReseeded = false;
         for (std::size_t b = 0; b < balls.size(); ++b) {
             if (owned[b].size() >= kFewest) {
-                balls[b] = refit(balls[b], samples, owned[b], largest);
+                const Ball fitted = refit(balls[b], samples, owned[b], largest);
+                if (liesInside(fitted, samples, owned[b])) balls[b] = fitted;
             } else if (!isReseeded) {
                 balls[b] = shrink(samples, widest, largest);
                 isReseeded = true;

@@ -46,6 +46,24 @@ TEST(SphereFit, FindsSeveralSpheres) {
     EXPECT_NEAR(radii[2], 0.1f, 1e-3f);
 }
 
+TEST(SphereFit, NoSphereLiesBeforeAHollow) {
+    // A bowl pressed into each side of a head.
+    PolygonSoup soup = test::icosphereSoup(5, 0.1f);
+    for (Vec3f& p : soup.positions) {
+        const float across = Vec2f(p.y(), p.z()).norm();
+        if (across < 0.06f) p.x() *= 0.75f + 4 * across * across / 0.06f;
+    }
+    const ScalpMesh mesh = test::meshOf(soup);
+    SphereFitOptions options;
+    for (const std::uint32_t count : {6u, 12u, 24u}) {
+        options.count = count;
+        const auto fit = fitSpheres(mesh, options);
+        ASSERT_TRUE(fit);
+        for (const CollisionSphere& sphere : fit->spheres)
+            EXPECT_LT(sphere.centre.norm(), 0.1f) << count << ": " << sphere.name;
+    }
+}
+
 TEST(SphereFit, MoreSpheresLeaveSmallerGaps) {
     // An ellipsoid, which no number of spheres covers exactly.
     PolygonSoup soup = test::icosphereSoup(4, 0.09f);
