@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/operations/length_constraint.h"
@@ -15,6 +17,7 @@ struct ShrinkwrapSettings {
     float variation = 0.5f;
     float clearance = 0.001f;
     std::uint64_t seed = 1;
+    std::uint32_t group = 0;
 };
 using S = ShrinkwrapSettings;
 
@@ -25,21 +28,50 @@ constexpr Field<S> kFields[] = {
     field<&S::variation>("variation", "", 0, 1, "random share by which the height of a strand may be lower"),
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "another seed varies the strands differently"),
+    field<&S::group>("group", "", 0, 65535,
+                     "draws to this group of the head's file, a cap or a helmet, by its number from 1; 0 to "
+                     "all of the head"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
+/// That group alone.
+Result<std::shared_ptr<const Skin>> skinOfGroup(const ScalpMesh& head, std::uint32_t number) {
+    const std::size_t count = head.triangleGroups().empty() ? 0 : head.groupNames().size();
+    if (number > count)
+        return fail(fmt::format("shrinkwrap: group {} of the head's file", number),
+                    fmt::format("expected 0 to {}", count));
+    PolygonSoup soup;
+    soup.positions.assign(head.positions().begin(), head.positions().end());
+    for (std::uint32_t face = 0; face < head.triangleCount(); ++face) {
+        if (head.triangleGroups()[face] != number - 1) continue;
+        const Triangle& corners = head.triangles()[face];
+        soup.corners.insert(soup.corners.end(), corners.begin(), corners.end());
+        soup.offsets.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    }
+    auto mesh = ScalpMesh::make(soup);
+    if (!mesh) return tl::unexpected(mesh.error());
+    return std::make_shared<const Skin>(std::make_shared<const ScalpMesh>(std::move(*mesh)));
+}
+
 Result<std::size_t> shrinkwrap(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("shrinkwrap", settings); !status) return tl::unexpected(status.error());
     if (!groom.scalp) return fail("shrinkwrap: the groom has no scalp", "bind it to one first");
+    std::shared_ptr<const Skin> group;
+    if (settings.group > 0) {
+        auto made = skinOfGroup(*groom.scalp, settings.group);
+        if (!made) return tl::unexpected(made.error());
+        group = std::move(*made);
+    }
     return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+        const Skin& onto = group ? *group : *strand.skin;
         const float height =
             settings.distance * (1 - settings.variation * strand.random(settings.seed).uniform());
         float arc = 0;
         for (std::size_t i = 1; i < strand.points.size(); ++i) {
             arc += strand.lengths[i - 1];
-            const SkinDistance skin = strand.skin->distanceAt(strand.points[i]);
+            const SkinDistance skin = onto.distanceAt(strand.points[i]);
             const float fade = 1 - smoothStep(0.5f * settings.reach, settings.reach, skin.distance);
             const float wanted = std::min(height, 0.5f * arc);
             strand.points[i] += settings.strength * fade * (wanted - skin.distance) * skin.outward;
@@ -51,7 +83,8 @@ Result<std::size_t> shrinkwrap(Groom& groom, const S& settings, const Region& re
 }  // namespace
 
 Operation shrinkwrapOperation() {
-    return operation<S, shrinkwrap>("shrinkwrap", 26, "draws strands to the skin of the head");
+    return operation<S, shrinkwrap>("shrinkwrap", 26,
+                                    "draws strands to the skin of the head, or to a group of its file");
 }
 
 }  // namespace hairloom

@@ -145,6 +145,41 @@ TEST(Shrinkwrap, DrawsHairToItsHeight) {
     EXPECT_NEAR(height / kStrands, 0.003, 0.0015);
 }
 
+TEST(Shrinkwrap, DrawsHairToAGroupOfTheHeadsFile) {
+    Groom groom = fallenHair(0.12f);
+    // Beside the head a wall that faces it, as the second group of the file.
+    const ScalpMesh& head = *groom.scalp;
+    constexpr float kWall = 0.2f;
+    PolygonSoup soup;
+    soup.positions.assign(head.positions().begin(), head.positions().end());
+    for (const Triangle& triangle : head.triangles()) {
+        soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
+        soup.offsets.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+        soup.faceGroups.push_back(0);
+    }
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (const auto& [y, z] : {std::pair(1.0f, -1.0f), {1.0f, 1.0f}, {2.4f, 1.0f}, {2.4f, -1.0f}})
+        soup.positions.emplace_back(kWall, y, z);
+    for (const std::uint32_t corner : {0u, 1u, 2u, 3u}) soup.corners.push_back(first + corner);
+    soup.offsets.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    soup.faceGroups.push_back(1);
+    soup.groupNames = {"head", "wall"};
+    groom.scalp = std::make_shared<const ScalpMesh>(ScalpMesh::make(soup).value());
+    const Groom before = groom;
+    run(groom,
+        R"({"op": "shrinkwrap", "strength": 1, "distance": 0.003, "variation": 0, "reach": 1, "group": 2})");
+    std::size_t nearer = 0;
+    for (std::size_t s = 0; s < kStrands; ++s)
+        nearer += groom.strand(s).back().x() > before.strand(s).back().x() + 0.005f ? 1 : 0;
+    EXPECT_GT(nearer, kStrands * 9 / 10);
+    for (std::size_t s = 0; s < kStrands; ++s) EXPECT_LT(groom.strand(s).back().x(), kWall + 0.001f);
+    const nlohmann::json third = {{"group", 3}};
+    JsonReader reader(third, "o.json");
+    const auto refused = std::ranges::find(operations(), "shrinkwrap", &Operation::name)->read(reader)(groom);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().expected, "expected 0 to 2");
+}
+
 TEST(Part, NoHairCrossesThePartingNearIt) {
     Groom groom = straightHair(sphereScalp(kHeadRadius, 4, kHeadCentre), kStrands, kPoints, 0.15f);
     // All hair leads to the left, across a parting that is to be.
