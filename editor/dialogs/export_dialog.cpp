@@ -16,6 +16,8 @@
 #include "core/scene/played_frames.h"
 #include "core/scene/web_page.h"
 #include "editor/fields/blocks.h"
+#include "editor/fields/error_text.h"
+#include "editor/fields/length_text.h"
 #include "importers/length_unit.h"
 
 namespace hairloom::editor {
@@ -57,10 +59,11 @@ const std::vector<Choice>& choices() {
 
 }  // namespace
 
-ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, const Player& player,
-                           QWidget* parent)
+ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences, Tasks& tasks,
+                           Messages& messages, const Player& player, QWidget* parent)
     : QDialog(parent),
       document_(document),
+      preferences_(preferences),
       tasks_(tasks),
       messages_(messages),
       player_(player),
@@ -220,7 +223,7 @@ void ExportDialog::exportTo(const QString& path) {
     if (choice.isPage && frames_->value() > 0)
         return messages_.warn(tr("A page plays the hair itself: set Frames to “at rest”"));
     auto motion = player_.makeMeasuredMotion();
-    if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
+    if (!motion) return messages_.warn(errorText(motion.error()));
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
     const auto count = static_cast<std::uint32_t>(frames_->value());
     write_->setEnabled(false);
@@ -271,8 +274,8 @@ QString ExportDialog::summary() const {
                         .arg(report_.points)
                         .arg(size);
     if (report_.maxErrorMm)
-        words +=
-            ' ' + tr("Farthest point of the file from the hair: %1 mm.").arg(*report_.maxErrorMm, 0, 'g', 3);
+        words += ' ' + tr("Farthest point of the file from the hair: %1.")
+                           .arg(lengthText(1e-3 * *report_.maxErrorMm, preferences_));
     return words;
 }
 

@@ -12,6 +12,7 @@
 #include <QTreeWidget>
 
 #include "editor/document/messages.h"
+#include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
 #include "editor/document/tasks.h"
 #include "editor/simulation/player.h"
@@ -23,8 +24,8 @@ class ExportDialog : public QDialog {
     Q_OBJECT
 
   public:
-    ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, const Player& player,
-                 QWidget* parent = nullptr);
+    ExportDialog(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
+                 const Player& player, QWidget* parent = nullptr);
 
     /// Writes to this file with the options that are set; the report follows when it is done.
     void exportTo(const QString& path);
@@ -38,6 +39,7 @@ class ExportDialog : public QDialog {
     void choosePath();
 
     QtDocument& document_;
+    const Preferences& preferences_;
     Tasks& tasks_;
     Messages& messages_;
     const Player& player_;

@@ -10,6 +10,7 @@
 
 #include "core/scene/open.h"
 #include "editor/fields/blocks.h"
+#include "editor/fields/error_text.h"
 #include "editor/fields/length_text.h"
 #include "editor/viewport/strand_preview.h"
 #include "importers/length_unit.h"
@@ -95,7 +96,7 @@ void HeadDialog::read() {
         tr("Reading %1").arg(QFileInfo(path_).fileName()),
         [path = path_.toStdString()](TaskControl&) -> Result<Read> {
             auto scene = importSceneLoud(path, {});
-            if (!scene) return Read{nullptr, QString::fromStdString(scene.error().message())};
+            if (!scene) return Read{nullptr, errorText(scene.error())};
             return Read{std::make_shared<ImportedScene>(std::move(*scene)), QString()};
         },
         [self = QPointer(this)](const Read& read) {
@@ -163,7 +164,7 @@ void HeadDialog::refresh() {
     auto part = partOfHead(scene_->mesh, options());
     open_->setEnabled(part.has_value());
     if (!part) {
-        summary_->setText(QString::fromStdString(part.error().message()));
+        summary_->setText(errorText(part.error()));
         return;
     }
     const auto scale = static_cast<float>(metresPerUnit());

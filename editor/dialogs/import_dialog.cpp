@@ -7,6 +7,7 @@
 #include <QPointer>
 
 #include "editor/fields/blocks.h"
+#include "editor/fields/error_text.h"
 #include "editor/viewport/strand_preview.h"
 #include "importers/length_unit.h"
 
@@ -79,7 +80,7 @@ void ImportDialog::read() {
             auto imported = importStrands(path.toStdString(), options);
             if (!imported) {
                 // Shown here instead of in the status line: options may mend it.
-                return std::pair(Groom(), QString::fromStdString(imported.error().message()));
+                return std::pair(Groom(), errorText(imported.error()));
             }
             QString text = QObject::tr("<p><b>%1</b></p><p>%L2 strands, %L3 points</p>")
                                .arg(QString::fromStdString(imported->format).toHtmlEscaped())

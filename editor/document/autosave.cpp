@@ -10,6 +10,7 @@
 #include <QUuid>
 
 #include "core/groom/file/project_file.h"
+#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 namespace {
@@ -73,9 +74,8 @@ void Autosave::saveNow() {
     description.setValue("name", document_.title());
     writer_ = std::thread([this, groom = document_.groom(), file = file_] {
         if (const auto saved = saveProject(groom, file.toStdString()); !saved) {
-            QMetaObject::invokeMethod(this, [this, words = QString::fromStdString(saved.error().message())] {
-                Q_EMIT failed(words);
-            });
+            QMetaObject::invokeMethod(this,
+                                      [this, words = errorText(saved.error())] { Q_EMIT failed(words); });
         }
     });
 }

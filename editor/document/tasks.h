@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/base/result.h"
+#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 
@@ -53,7 +54,7 @@ class Tasks : public QObject {
                 if (*result) {
                     done(std::move(**result));
                 } else {
-                    Q_EMIT tasks.failed(QString::fromStdString(result->error().message()));
+                    Q_EMIT tasks.failed(errorText(result->error()));
                 }
             });
         });

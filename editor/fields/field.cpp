@@ -9,6 +9,7 @@
 #include "core/editing/stack_commands.h"
 #include "core/operations/script.h"
 #include "core/operations/stack.h"
+#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 namespace {
@@ -55,7 +56,7 @@ struct OperatorAt {
             if (!changed) return nullptr;
             auto made = editing::setOperator(model, at.index, *changed, name);
             if (made) return std::move(*made);
-            at.failed(QString::fromStdString(made.error().message()));
+            at.failed(errorText(made.error()));
             return nullptr;
         };
         return field;
@@ -163,27 +164,19 @@ QString labelOf(const QString& name) {
 Shown shownAs(const QString& unit, double min, double max, DisplayUnit lengths) {
     Shown shown{1, unit, 2};
     if (unit == "m") {
-        if (max <= 0.006) {
-            shown = {1e6, QStringLiteral("µm"), 1};
-        } else if (max <= 0.11) {
-            shown = {1e3, QStringLiteral("mm"), 2};
-        } else {
-            switch (lengths) {
-                case DisplayUnit::Metre:
-                    shown = {1, QStringLiteral("m"), 4};
-                    break;
-                case DisplayUnit::Centimetre:
-                    shown = {100, QStringLiteral("cm"), 2};
-                    break;
-                case DisplayUnit::Millimetre:
-                    shown = {1000, QStringLiteral("mm"), 1};
-                    break;
-                case DisplayUnit::Inch:
-                    shown = {1 / 0.0254, QStringLiteral("in"), 3};
-                    break;
-            }
+        if (max <= 0.006) return {1e6, QStringLiteral("µm"), 1};
+        // Of what is small a tenth of a millimetre is to be seen.
+        const int finer = max <= 0.11 ? 1 : 0;
+        switch (lengths) {
+            case DisplayUnit::Metre:
+                return {1, QStringLiteral("m"), 4 + finer};
+            case DisplayUnit::Centimetre:
+                return {100, QStringLiteral("cm"), 2 + finer};
+            case DisplayUnit::Millimetre:
+                return {1000, QStringLiteral("mm"), 1 + finer};
+            case DisplayUnit::Inch:
+                return {1 / 0.0254, QStringLiteral("in"), 3 + finer};
         }
-        return shown;
     }
     const double range = max - min;
     if (range <= 0.5) {

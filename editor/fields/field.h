@@ -46,8 +46,8 @@ std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names)
 /// "Wind speed" from "windSpeed".
 QString labelOf(const QString& name);
 
-/// How a value is shown: times `factor`, in `unit`. Metres become what suits the range: micrometres,
-/// millimetres, or the unit of the preferences.
+/// How a value is shown: times `factor`, in `unit`. Metres become the unit of the preferences; those of
+/// fibres, which are far smaller, micrometres.
 struct Shown {
     double factor = 1;
     QString unit;

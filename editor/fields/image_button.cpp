@@ -3,6 +3,8 @@
 
 #include <QFileDialog>
 
+#include "editor/fields/error_text.h"
+
 namespace hairloom::editor {
 
 QPushButton* imageButton(const char* name, const QString& text, const QString& tip,
@@ -17,7 +19,7 @@ QPushButton* imageButton(const char* name, const QString& text, const QString& t
         if (path.isEmpty()) return;
         const auto image = MaskImage::read(path.toStdString());
         const Status taken = image ? take(*image) : tl::unexpected(image.error());
-        if (!taken) failed(QString::fromStdString(taken.error().message()));
+        if (!taken) failed(errorText(taken.error()));
     });
     return button;
 }

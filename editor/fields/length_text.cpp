@@ -5,10 +5,10 @@
 
 namespace hairloom::editor {
 
-QString lengthText(float metres, const Preferences& preferences) {
+QString lengthText(double metres, const Preferences& preferences) {
     constexpr double kAnyHead = 10;  // metres: large enough for the preferences to decide
     const Shown shown = shownAs("m", 0, kAnyHead, preferences.unit());
-    return QStringLiteral("%1 %2").arg(static_cast<double>(metres) * shown.factor, 0, 'g', 3).arg(shown.unit);
+    return QStringLiteral("%1 %2").arg(metres * shown.factor, 0, 'g', 3).arg(shown.unit);
 }
 
 }  // namespace hairloom::editor

@@ -8,6 +8,6 @@
 namespace hairloom::editor {
 
 /// A length in metres with three figures, in the unit of the preferences: "42.9 cm".
-QString lengthText(float metres, const Preferences& preferences);
+QString lengthText(double metres, const Preferences& preferences);
 
 }  // namespace hairloom::editor

@@ -3,6 +3,7 @@
 
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack.h"
+#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 
@@ -47,7 +48,7 @@ void MaskRamp::store(const runtime::Ramp& ramp) {
                             [&](const editing::Model& model) -> std::unique_ptr<editing::Command> {
                                 auto made = editing::setOperator(model, index_, changed, name);
                                 if (made) return std::move(*made);
-                                failed_(QString::fromStdString(made.error().message()));
+                                failed_(errorText(made.error()));
                                 return nullptr;
                             });
 }

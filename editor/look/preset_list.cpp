@@ -14,6 +14,7 @@
 #include "core/groom/file/settings_json.h"
 #include "core/scene/look_presets.h"
 #include "editor/fields/colour.h"
+#include "editor/fields/error_text.h"
 #include "editor/look/parts.h"
 #include "editor/look/tress.h"
 #include "editor/style/theme.h"
@@ -24,6 +25,7 @@ namespace {
 constexpr int kSide = 60;  // of a thumbnail, in pixels of the interface
 constexpr int kPicture = 2 * kSide;
 constexpr int kSoonMs = 700;
+constexpr const char* kPrefix = "look:";
 
 QString words(const std::string& text) {
     return QString::fromStdString(text);
@@ -80,12 +82,13 @@ class PresetList : public QWidget {
         connect(&soon_, &QTimer::timeout, this, &PresetList::askForPictures);
         // Not while the program starts or a document opens.
         connect(&viewport_, &Viewport::drawn, this, [this] {
-            if (!asked_ && isVisible()) soon_.start();
+            if (!shownWith_ && isVisible()) soon_.start();
         });
-        connect(&preferences_, &Preferences::changed, this, [this, theme = preferences_.theme()]() mutable {
-            if (theme == preferences_.theme()) return;
-            theme = preferences_.theme();
-            asked_ = false;
+        connect(&preferences_, &Preferences::changed, this, [this] {
+            if (!shownWith_ || *shownWith_ == preferences_.theme()) return;
+            shownWith_.reset();
+            for (std::size_t i = 0; i < looks_.size(); ++i) showSwatch(i);
+            soon_.start();
         });
         fill();
     }
@@ -109,10 +112,10 @@ class PresetList : public QWidget {
             if (auto material = loadLook(folderOfLooks(), name)) {
                 add({words(name), *material, nullptr}, tr("A look that you kept"));
             } else {
-                messages_.warn(words(material.error().message()));
+                messages_.warn(errorText(material.error()));
             }
         }
-        asked_ = false;
+        shownWith_.reset();
     }
 
     void add(Look look, const QString& tip) {
@@ -139,7 +142,7 @@ class PresetList : public QWidget {
         if (!taken || name.trimmed().isEmpty()) return;
         const auto& material = document_.groom().material;
         if (auto saved = saveLook(folderOfLooks(), name.trimmed().toStdString(), material); !saved) {
-            messages_.warn(words(saved.error().message()));
+            messages_.warn(errorText(saved.error()));
             return;
         }
         fill();
@@ -147,8 +150,8 @@ class PresetList : public QWidget {
     }
 
     /// Drawn once for a material and a theme, then kept on disk.
-    QString cacheFile(const HairMaterial& material) const {
-        QByteArray what = QByteArray::fromStdString(toJson(material).dump());
+    QString cacheFile(const Look& look) const {
+        QByteArray what = QByteArray::fromStdString(toJson(look.material).dump());
         what += preferences_.theme() == Theme::Dark ? "dark" : "light";
         const QByteArray hash = QCryptographicHash::hash(what, QCryptographicHash::Sha1).toHex();
         return QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/looks/" +
@@ -156,28 +159,36 @@ class PresetList : public QWidget {
     }
 
     void askForPictures() {
-        asked_ = true;
-        const Vec3f background = toLinear(palette().color(QPalette::Base));
+        shownWith_ = preferences_.theme();
+        const Vec3f background = toLinear(themeColours(preferences_.theme()).field);
         for (std::size_t i = 0; i < looks_.size(); ++i) {
-            const QPixmap kept(cacheFile(looks_[i].material));
+            const QString file = cacheFile(looks_[i]);
+            const QPixmap kept(file);
             if (!kept.isNull()) {
                 show(i, kept);
             } else {
-                viewport_.requestSidePicture("look:" + looks_[i].name,
+                viewport_.requestSidePicture(kPrefix + file,
                                              tressPicture(looks_[i].material, kPicture, background));
             }
         }
     }
 
+    /// One that was asked for before the theme changed is of no look any more.
     void takePicture(const QString& name, const QImage& picture) {
         for (std::size_t i = 0; i < looks_.size(); ++i) {
-            if (name != "look:" + looks_[i].name) continue;
-            const QString file = cacheFile(looks_[i].material);
+            const QString file = cacheFile(looks_[i]);
+            if (name != kPrefix + file) continue;
             QDir().mkpath(QFileInfo(file).path());
             // Only a cache: where it cannot be written, it is drawn again.
             static_cast<void>(picture.save(file));
             show(i, QPixmap::fromImage(picture));
         }
+    }
+
+    void showSwatch(std::size_t look) {
+        QListWidgetItem* const item = list_->item(static_cast<int>(look));
+        item->setIcon(QIcon(swatch(looks_[look].material)));
+        item->setData(Qt::UserRole, false);
     }
 
     void show(std::size_t look, const QPixmap& picture) {
@@ -193,7 +204,7 @@ class PresetList : public QWidget {
     QListWidget* list_;
     std::vector<Look> looks_;
     QTimer soon_;
-    bool asked_ = false;
+    std::optional<Theme> shownWith_;  ///< nothing: pictures are to be asked for
 };
 
 }  // namespace

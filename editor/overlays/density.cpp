@@ -59,9 +59,12 @@ void drawDensity(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode densityOverlay() {
-    return {"density", QT_TR_NOOP("Density"),
+    return {"density",
+            QT_TR_NOOP("Density"),
             QT_TR_NOOP("Roots by how many lie within 1 cm, and the density that was painted: red is dense"),
-            drawDensity, 90};
+            drawDensity,
+            90,
+            {"density_paint"}};
 }
 
 }  // namespace hairloom::editor

@@ -36,9 +36,12 @@ void drawMasks(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode masksOverlay() {
-    return {"masks", QT_TR_NOOP("Masks"),
+    return {"masks",
+            QT_TR_NOOP("Masks"),
             QT_TR_NOOP("Where operators act, as painted: masks 1 to 4 in red, green, blue and yellow"),
-            drawMasks, 105};
+            drawMasks,
+            105,
+            {"mask_paint"}};
 }
 
 }  // namespace hairloom::editor

@@ -26,7 +26,8 @@ struct OverlayMode {
     const char* title;
     const char* tip;
     void (*draw)(const OverlayView& view, Marks& marks);
-    int order = 100;  ///< in the list of the view panel
+    int order = 100;                  ///< in the menu
+    std::vector<QString> tools = {};  ///< ids of those that it comes with
 };
 
 /// In order of file name (hairloom_registry).

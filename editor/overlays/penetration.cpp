@@ -29,7 +29,7 @@ void drawPenetration(const OverlayView& view, Marks& marks) {
 
 OverlayMode penetrationOverlay() {
     return {"penetration", QT_TR_NOOP("Penetration"),
-            QT_TR_NOOP("Points inside a sphere: red by 2 mm and deeper"), drawPenetration, 80};
+            QT_TR_NOOP("Points inside a sphere: the redder the deeper"), drawPenetration, 80};
 }
 
 }  // namespace hairloom::editor

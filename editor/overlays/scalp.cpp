@@ -19,7 +19,12 @@ void drawScalp(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode scalpOverlay() {
-    return {"scalp", QT_TR_NOOP("Scalp"), QT_TR_NOOP("Tints the faces that carry hair"), drawScalp, 10};
+    return {"scalp",
+            QT_TR_NOOP("Scalp"),
+            QT_TR_NOOP("Tints the faces that carry hair"),
+            drawScalp,
+            10,
+            {"scalp_paint", "scalp_box", "scalp_lasso"}};
 }
 
 }  // namespace hairloom::editor

@@ -18,6 +18,8 @@
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/settings_json.h"
 #include "core/operations/resample.h"
+#include "editor/fields/error_text.h"
+#include "editor/fields/length_text.h"
 #include "editor/fields/number_box.h"
 #include "editor/panels/accuracy_grid.h"
 #include "editor/panels/accuracy_plot.h"
@@ -40,6 +42,7 @@ class AccuracyPanel : public QWidget {
   public:
     explicit AccuracyPanel(const PanelParts& parts)
         : document_(parts.document),
+          preferences_(parts.preferences),
           player_(parts.player),
           tasks_(parts.tasks),
           messages_(parts.messages),
@@ -188,16 +191,16 @@ class AccuracyPanel : public QWidget {
     QString numbers(std::size_t run) const {
         const WorkPrecisionRun& measured = measured_->runs[run];
         if (measured.diverged) return tr("diverges");
-        return tr("%1 ms, %2 px (%3 mm)")
+        return tr("%1 ms, %2 px (%3)")
             .arg(measured.milliseconds.median * timeScale(), 0, 'g', 3)
             .arg(measured.error.rmsMm * pixelsPerMm(), 0, 'g', 2)
-            .arg(measured.error.rmsMm, 0, 'g', 2);
+            .arg(lengthText(1e-3 * measured.error.rmsMm, preferences_));
     }
     QString setting(std::size_t run) const { return QString::fromStdString(describeRun(*measured_, run)); }
 
     void measure() {
         auto motion = player_.makeMeasuredMotion();
-        if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
+        if (!motion) return messages_.warn(errorText(motion.error()));
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
         const auto keep = [this, document = documents_, change = changes_](const WorkPrecision& result) {
@@ -286,7 +289,7 @@ class AccuracyPanel : public QWidget {
         if (!run || !best || *run == *best || measured_->runs[*run].diverged)
             return messages_.say(tr("Choose a setting that is not the most exact one"));
         auto motion = player_.makeMeasuredMotion();
-        if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
+        if (!motion) return messages_.warn(errorText(motion.error()));
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
         tasks_.run<std::vector<std::uint32_t>>(
@@ -321,7 +324,7 @@ class AccuracyPanel : public QWidget {
         if (points && run.values[*points] != maxPoints(groom)) {
             const ResampleSettings resampled{static_cast<std::uint32_t>(run.values[*points])};
             if (auto touched = resample(groom, resampled); !touched) {
-                messages_.warn(QString::fromStdString(touched.error().message()));
+                messages_.warn(errorText(touched.error()));
             } else {
                 const std::string record =
                     "[" + editing::recordOf("resample", {{"points", resampled.points}}) + ", " +
@@ -455,6 +458,7 @@ class AccuracyPanel : public QWidget {
     }
 
     QtDocument& document_;
+    const Preferences& preferences_;
     Player& player_;
     Tasks& tasks_;
     Messages& messages_;

@@ -10,6 +10,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/scene/held_cards.h"
 #include "editor/fields/blocks.h"
+#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 
@@ -159,7 +160,7 @@ void CardBox::perform(quint64 key, const QString& name, const std::vector<CardEd
     document_.performMerged(key, [&](const editing::Model& model) -> std::unique_ptr<editing::Command> {
         auto command = editing::setCardEdits(model, edits, name.toStdString());
         if (command) return std::move(*command);
-        messages_.warn(QString::fromStdString(command.error().message()));
+        messages_.warn(errorText(command.error()));
         return nullptr;
     });
 }

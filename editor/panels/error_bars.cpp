@@ -6,6 +6,7 @@
 #include <QToolTip>
 #include <algorithm>
 
+#include "editor/fields/length_text.h"
 #include "editor/style/theme.h"
 
 namespace hairloom::editor {
@@ -91,7 +92,8 @@ bool ErrorBars::event(QEvent* event) {
     const auto* help = static_cast<QHelpEvent*>(event);
     const Bar& bar = bars_[std::clamp(help->pos().y() / rowHeight(), 0, kBars - 1)];
     QToolTip::showText(help->globalPos(),
-                       tr("%1, %2 mm: %3").arg(bar.name).arg(bar.mm, 0, 'g', 3).arg(bar.meaning), this);
+                       tr("%1, %2: %3").arg(bar.name, lengthText(1e-3 * bar.mm, preferences_), bar.meaning),
+                       this);
     return true;
 }
 

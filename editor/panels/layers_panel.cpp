@@ -11,6 +11,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/groom/strand_subset.h"
+#include "editor/fields/error_text.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
@@ -77,7 +78,7 @@ class LayersPanel : public QWidget {
     }
 
     void perform(Result<std::unique_ptr<editing::Command>> command) {
-        if (!command) return messages_.warn(QString::fromStdString(command.error().message()));
+        if (!command) return messages_.warn(errorText(command.error()));
         document_.perform(std::move(*command));
     }
     void set(std::vector<Layer> changed) {

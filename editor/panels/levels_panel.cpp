@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "core/base/output_file.h"
+#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 namespace {
@@ -232,7 +233,7 @@ void LevelsPanel::exportTo(const QString& path) {
     if (!made_) return;
     const LevelFile& file = made_->file;
     if (auto written = writeFileAtomically(path.toStdString(), file.bytes); !written)
-        return messages_.warn(QString::fromStdString(written.error().message()));
+        return messages_.warn(errorText(written.error()));
     const QString size =
         locale().formattedDataSize(static_cast<qint64>(file.bytes.size()), 1, QLocale::DataSizeSIFormat);
     QString words = tr("%1 written: %2 levels, %3")

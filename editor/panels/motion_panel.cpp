@@ -6,6 +6,8 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "editor/fields/error_text.h"
+#include "editor/fields/length_text.h"
 #include "editor/panels/panel.h"
 #include "editor/style/icons.h"
 
@@ -14,8 +16,12 @@ namespace {
 
 class MotionPanel : public QWidget {
   public:
-    MotionPanel(Messages& messages, Player& player)
-        : messages_(messages), player_(player), motion_(new QComboBox), state_(new QLabel) {
+    MotionPanel(const Preferences& preferences, Messages& messages, Player& player)
+        : preferences_(preferences),
+          messages_(messages),
+          player_(player),
+          motion_(new QComboBox),
+          state_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -48,7 +54,7 @@ class MotionPanel : public QWidget {
         });
         connect(motion_, &QComboBox::activated, this, [this](int index) {
             if (auto set = player_.setMotion(motion_->itemData(index).toString()); !set) {
-                messages_.warn(QString::fromStdString(set.error().message()));
+                messages_.warn(errorText(set.error()));
             }
         });
         connect(&player_, &Player::motionsChanged, this, &MotionPanel::fill);
@@ -81,14 +87,16 @@ class MotionPanel : public QWidget {
                 .arg(what, value);
         };
         const SimulationStats& stats = frame->stats;
-        state_->setText("<table width='100%' cellspacing='0' cellpadding='0'>" +
-                        row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
-                        row(tr("Frame"), tr("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
-                        row(tr("Maximum stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
-                        row(tr("Deepest in a sphere"), tr("%1 mm").arg(stats.maxPenetrationMm, 0, 'f', 2)) +
-                        row(tr("Reset to rest"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
+        state_->setText(
+            "<table width='100%' cellspacing='0' cellpadding='0'>" +
+            row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
+            row(tr("Frame"), tr("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
+            row(tr("Maximum stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
+            row(tr("Deepest in a sphere"), lengthText(1e-3 * stats.maxPenetrationMm, preferences_)) +
+            row(tr("Reset to rest"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
     }
 
+    const Preferences& preferences_;
     Messages& messages_;
     Player& player_;
     QComboBox* motion_;
@@ -105,7 +113,7 @@ PanelInfo motionPanel() {
             70,
             true,
             [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column({new MotionPanel(parts.messages, parts.player)}));
+                return scrolled(column({new MotionPanel(parts.preferences, parts.messages, parts.player)}));
             }};
 }
 

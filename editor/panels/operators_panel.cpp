@@ -16,6 +16,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack_file.h"
+#include "editor/fields/error_text.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
 #include "editor/fields/mask_ramp.h"
@@ -157,7 +158,7 @@ class OperatorsPanel : public QWidget {
     /// Behind the chosen one.
     void insert(Result<std::vector<Operator>> added, const QString& name) {
         if (!added) {
-            messages_.warn(QString::fromStdString(added.error().message()));
+            messages_.warn(errorText(added.error()));
             return;
         }
         const std::size_t at = chosen() == kNone ? operators().size() : chosen() + 1;
@@ -209,7 +210,7 @@ class OperatorsPanel : public QWidget {
         std::error_code problem;
         std::filesystem::create_directories(folderOfStacks(), problem);
         const Status saved = file ? saveOperators(*file, kept) : tl::unexpected(file.error());
-        if (!saved) return messages_.warn(QString::fromStdString(saved.error().message()));
+        if (!saved) return messages_.warn(errorText(saved.error()));
         // The hair as it is when they are kept; a preset without its picture is one all the same.
         StrandPreview preview;
         preview.resize(preview.minimumSize());
@@ -256,7 +257,7 @@ class OperatorsPanel : public QWidget {
     /// `then` is chosen when it is done.
     void perform(editing::StackCommand command, std::size_t then) {
         if (!command) {
-            messages_.warn(QString::fromStdString(command.error().message()));
+            messages_.warn(errorText(command.error()));
             return;
         }
         document_.perform(std::move(*command));

@@ -15,6 +15,7 @@
 #include "editor/document/tasks.h"
 #include "editor/fields/blocks.h"
 #include "editor/simulation/player.h"
+#include "editor/style/actions.h"
 #include "editor/tools/tool_box.h"
 #include "editor/viewport/viewport.h"
 
@@ -30,6 +31,7 @@ struct PanelParts {
     Player& player;
     Viewport& viewport;
     ToolBox& tools;
+    Actions& actions;
 };
 
 struct PanelInfo {

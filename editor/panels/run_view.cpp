@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/panels/run_view.h"
 
+#include "editor/fields/error_text.h"
 #include "editor/overlays/overlay_mode.h"
 
 namespace hairloom::editor {
@@ -46,7 +47,7 @@ void RunView::show(std::shared_ptr<const WorkPrecision> measured, std::size_t ru
         return;
     }
     auto motion = player_.makeMeasuredMotion();
-    if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
+    if (!motion) return messages_.warn(errorText(motion.error()));
     player_.pause();
     measured_ = std::move(measured);
     run_ = run;

@@ -12,6 +12,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/surface_disc.h"
 #include "core/geometry/selection.h"
+#include "editor/fields/error_text.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
 #include "editor/panels/panel.h"
@@ -94,7 +95,7 @@ class ScalpPanel : public QWidget {
         if (!groom().scalp || expression.isEmpty()) return;
         auto faces = selectFaces(mesh(), expression.toStdString());
         if (!faces) {
-            messages_.warn(QString::fromStdString(faces.error().message()));
+            messages_.warn(errorText(faces.error()));
             return;
         }
         perform(*faces, expression);

@@ -12,6 +12,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
 #include "core/editing/sphere_fit.h"
+#include "editor/fields/length_text.h"
 #include "editor/fields/option_form.h"
 #include "editor/panels/panel.h"
 #include "editor/simulation/bones.h"
@@ -148,7 +149,8 @@ class SpheresPanel : public QWidget {
         list_->clear();
         for (const CollisionSphere& sphere : spheres()) {
             list_->addTopLevelItem(new QTreeWidgetItem(
-                {QString::fromStdString(sphere.name), tr("%1 mm").arg(sphere.radius * 1000, 0, 'f', 1),
+                {QString::fromStdString(sphere.name),
+                 lengthText(static_cast<double>(sphere.radius), preferences_),
                  sphere.bone.empty() ? QStringLiteral("–") : QString::fromStdString(sphere.bone)}));
         }
         if (!spheres().empty()) {
@@ -189,10 +191,11 @@ class SpheresPanel : public QWidget {
                 return fit;
             },
             [this](editing::SphereFit fit) {
-                fit_->setText(tr("Worst gap %1 mm, mean %2 mm; farthest bulge %3 mm")
-                                  .arg(fit.worstGap * 1000, 0, 'f', 1)
-                                  .arg(fit.meanGap * 1000, 0, 'f', 1)
-                                  .arg(fit.worstBulge * 1000, 0, 'f', 1));
+                const auto length = [this](float metres) {
+                    return lengthText(static_cast<double>(metres), preferences_);
+                };
+                fit_->setText(tr("Worst gap %1, mean %2; farthest bulge %3")
+                                  .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
                 document_.perform(
                     editing::setSpheres(document_.editing().model(), std::move(fit.spheres), "Fit spheres"));
             });

@@ -3,15 +3,17 @@
 #include <QCheckBox>
 #include <QFileDialog>
 #include <QFormLayout>
+#include <QMenu>
 #include <QPushButton>
+#include <QToolButton>
 #include <QVBoxLayout>
-#include <memory>
-#include <set>
+#include <algorithm>
 #include <utility>
 
 #include "editor/fields/number_box.h"
 #include "editor/overlays/overlay_mode.h"
 #include "editor/panels/panel.h"
+#include "editor/style/icons.h"
 
 namespace hairloom::editor {
 namespace {
@@ -24,31 +26,44 @@ QCheckBox* check(const QString& name, const QString& title, const QString& tip, 
     return box;
 }
 
-QWidget* makeParts(QtDocument& document, const Player& player, Viewport& viewport) {
+/// A button with the overlays as a menu, which says how many are chosen.
+QToolButton* overlayButton(const Actions& actions) {
+    auto* button = new QToolButton;
+    button->setObjectName("overlays");
+    button->setIcon(icon("overlay"));
+    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    button->setPopupMode(QToolButton::InstantPopup);
+    button->setToolTip(
+        QObject::tr("What is drawn over the picture: roots, guides, strain … Some come with their tools: "
+                    "density while it is painted, say"));
+    auto* menu = new QMenu(button);
+    menu->setToolTipsVisible(true);
+    button->setMenu(menu);
+    QList<QAction*> all;
+    for (const OverlayMode& mode : overlayModes()) all << &actions.get(QString("overlay.") + mode.id);
+    menu->addActions(all);
+    const auto say = [button, all] {
+        const auto chosen = std::ranges::count_if(all, [](const QAction* one) { return one->isChecked(); });
+        button->setText(chosen == 0 ? QObject::tr("Overlays") : QObject::tr("Overlays: %1").arg(chosen));
+    };
+    for (QAction* action : all) QObject::connect(action, &QAction::toggled, button, say);
+    say();
+    return button;
+}
+
+QWidget* makeParts(const Actions& actions, Viewport& viewport) {
     auto* widget = new QWidget;
-    auto* layout = new QVBoxLayout(widget);
+    auto* layout = new QHBoxLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(5);
+    layout->setSpacing(14);
     auto* hair = check("hair", QObject::tr("Hair"), QObject::tr("Shows the hair"), true);
     auto* head = check("head", QObject::tr("Head"), QObject::tr("Shows the head"), true);
     QObject::connect(hair, &QCheckBox::toggled, &viewport, &Viewport::setHairShown);
     QObject::connect(head, &QCheckBox::toggled, &viewport, &Viewport::setHeadShown);
     layout->addWidget(hair);
     layout->addWidget(head);
-    const auto shown = std::make_shared<std::set<const OverlayMode*>>();
-    for (const OverlayMode& mode : overlayModes()) {
-        auto* box = check(mode.id, QObject::tr(mode.title), QObject::tr(mode.tip), false);
-        layout->addWidget(box);
-        QObject::connect(box, &QCheckBox::toggled, &viewport, [&viewport, &mode, shown](bool on) {
-            on ? static_cast<void>(shown->insert(&mode)) : static_cast<void>(shown->erase(&mode));
-            viewport.redraw();
-        });
-    }
-    viewport.addMarks([&document, &player, &viewport, shown](Marks& marks) {
-        for (const OverlayMode& mode : overlayModes()) {
-            if (shown->contains(&mode)) mode.draw({document.groom(), viewport, player}, marks);
-        }
-    });
+    layout->addWidget(overlayButton(actions));
+    layout->addStretch(1);
     return widget;
 }
 
@@ -139,10 +154,10 @@ PanelInfo viewPanel() {
         30,
         true,
         [](const PanelParts& parts) -> QWidget* {
-            return scrolled(column(
-                {heading(QObject::tr("Show")), makeParts(parts.document, parts.player, parts.viewport),
-                 heading(QObject::tr("Light")), makeLight(parts.viewport),
-                 heading(QObject::tr("Reference picture")), makeReference(parts.viewport, parts.messages)}));
+            return scrolled(column({heading(QObject::tr("Show")), makeParts(parts.actions, parts.viewport),
+                                    heading(QObject::tr("Light")), makeLight(parts.viewport),
+                                    heading(QObject::tr("Reference picture")),
+                                    makeReference(parts.viewport, parts.messages)}));
         }};
 }
 

@@ -17,6 +17,7 @@
 #include "core/scene/open.h"
 #include "core/scene/sample.h"
 #include "editor/document/autosave.h"
+#include "editor/fields/length_text.h"
 #include "importers/mesh_format.h"
 
 namespace hairloom::editor {
@@ -25,6 +26,7 @@ struct DocumentFiles::Opened {
     Groom groom;
     std::shared_ptr<const Actor> actor;
     QString note;            ///< for the status line
+    float farthest = 0;      ///< metres between a root and the head that it was transferred to
     bool isUnclear = false;  ///< a head whose size, axis or groups look wrong
 };
 
@@ -215,10 +217,8 @@ void DocumentFiles::transferTo(const QString& path) {
             opened.groom = groom;
             const auto transfer = transferToFile(opened.groom, file);
             if (!transfer) return tl::unexpected(transfer.error());
-            const double farthest = 1e3 * static_cast<double>(*std::ranges::max_element(transfer->distances));
-            opened.note =
-                QObject::tr("the farthest root was %1 mm off the new head").arg(farthest, 0, 'f', 1);
-            if (transfer->baked) opened.note += QObject::tr("; operators are baked");
+            opened.farthest = *std::ranges::max_element(transfer->distances);
+            if (transfer->baked) opened.note = QObject::tr("; operators are baked");
             return opened;
         },
         [this, name, file, before = document_.groom()](Opened opened) {
@@ -229,7 +229,9 @@ void DocumentFiles::transferTo(const QString& path) {
             document_.perform(editing::replaceGroom(document_.editing().model(), std::move(opened.groom),
                                                     QObject::tr("Transfer to %1").arg(name).toStdString(),
                                                     transferRecord(file, 0)));
-            messages_.say(QObject::tr("On %1: %2").arg(name, opened.note));
+            messages_.say(
+                QObject::tr("On %1: the farthest root was %2 off the new head%3")
+                    .arg(name, lengthText(static_cast<double>(opened.farthest), preferences_), opened.note));
             preferences_.addRecentFile(QString::fromStdString(file));
         });
 }

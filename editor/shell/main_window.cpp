@@ -19,6 +19,7 @@
 #include "core/editing/document.h"
 #include "editor/dialogs/head_dialog.h"
 #include "editor/dialogs/import_dialog.h"
+#include "editor/fields/error_text.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/files.h"
 #include "editor/style/icons.h"
@@ -277,7 +278,7 @@ void MainWindow::chooseAndImport() {
 
 bool MainWindow::saveTo(const QString& path) {
     if (auto saved = document_.save(path); !saved) {
-        messages_.warn(QString::fromStdString(saved.error().message()));
+        messages_.warn(errorText(saved.error()));
         return false;
     }
     preferences_.addRecentFile(path);
@@ -304,7 +305,7 @@ bool MainWindow::saveScriptTo(const QString& path) {
     const Status saved =
         script ? writeFileAtomically(path.toStdString(), *script) : Status(tl::unexpected(script.error()));
     if (!saved) {
-        messages_.warn(tr("No script: %1").arg(QString::fromStdString(saved.error().message())));
+        messages_.warn(tr("No script: %1").arg(errorText(saved.error())));
         return false;
     }
     messages_.say(tr("%1: %Ln steps", nullptr, document_.doneSteps()).arg(QFileInfo(path).fileName()));

@@ -25,7 +25,7 @@ class MainWindow : public QMainWindow {
     ~MainWindow() override;
 
     PanelParts parts() {
-        return {document_, preferences_, prices_, tasks_, messages_, player_, *viewport_, tools_};
+        return {document_, preferences_, prices_, tasks_, messages_, player_, *viewport_, tools_, *actions_};
     }
     DocumentFiles& files() { return files_; }
     Actions& actions() { return *actions_; }
@@ -41,6 +41,8 @@ class MainWindow : public QMainWindow {
     /// Writes the steps since the document was opened as a script. False, with a word in the status line,
     /// where one cannot be in it or writing failed.
     bool saveScriptTo(const QString& path);
+    /// The overlays that are chosen, and those that come with the tool in hand.
+    void drawOverlays(Marks& marks) const;
     /// What to do about unsaved changes: answers without asking, for tests and scripts.
     enum class Unsaved { Ask, Save, Discard, Keep };
     void setUnsavedAnswer(Unsaved answer) { unsaved_ = answer; }
@@ -58,6 +60,7 @@ class MainWindow : public QMainWindow {
     void chooseGuidesByClustering();
     void fillGroupMenu();
     void addViewActions();
+    void addOverlayActions(QMenu& menu);
     void addPlayActions();
     void takeShape();
     void addToolActions();

@@ -13,6 +13,8 @@
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
+#include "editor/fields/error_text.h"
+#include "editor/overlays/overlay_mode.h"
 #include "editor/shell/main_window.h"
 #include "editor/style/icons.h"
 
@@ -96,7 +98,7 @@ void MainWindow::addFileActions() {
     add({"file.export", tr("&Export hair…"), "export",
          tr("Writes the hair for a game and reads it back to compare"), QKeySequence("Ctrl+E")},
         [this] {
-            ExportDialog dialog(document_, tasks_, messages_, player_, this);
+            ExportDialog dialog(document_, preferences_, tasks_, messages_, player_, this);
             dialog.exec();
         });
     menu->addSeparator();
@@ -186,6 +188,7 @@ void MainWindow::addViewActions() {
                              [] {});
     connect(&turntable, &QAction::toggled, viewport_, &Viewport::setTurntable);
     menu->addSeparator();
+    addOverlayActions(*menu);
     panelMenu_ = menu->addMenu(tr("&Panels"));
     add({"view.resetLayout",
          tr("Reset la&yout"),
@@ -199,6 +202,27 @@ void MainWindow::addViewActions() {
             Preferences& preferences = preferences_;
             preferences.setTheme(preferences.theme() == Theme::Dark ? Theme::Light : Theme::Dark);
         });
+}
+
+void MainWindow::addOverlayActions(QMenu& menu) {
+    QMenu* overlays = menu.addMenu(icon("overlay"), tr("Ov&erlays"));
+    overlays->setToolTipsVisible(true);
+    for (const OverlayMode& mode : overlayModes()) {
+        QAction& action =
+            actions_->add({QString("overlay.") + mode.id, tr(mode.title), "", tr(mode.tip), {}, true}, [] {});
+        connect(&action, &QAction::toggled, viewport_, [this] { viewport_->redraw(); });
+        overlays->addAction(&action);
+    }
+    viewport_->addMarks([this](Marks& marks) { drawOverlays(marks); });
+}
+
+void MainWindow::drawOverlays(Marks& marks) const {
+    const Tool* const tool = tools_.active();
+    for (const OverlayMode& mode : overlayModes()) {
+        const bool comes = tool && std::ranges::find(mode.tools, tool->info().id) != mode.tools.end();
+        if (comes || actions_->get(QString("overlay.") + mode.id).isChecked())
+            mode.draw({document_.groom(), *viewport_, player_}, marks);
+    }
 }
 
 void MainWindow::addPlayActions() {
@@ -244,7 +268,7 @@ void MainWindow::takeShape() {
         restPositions(document_.groom(), frame->pose->positions_ws, frame->pose->head);
     auto command = editing::takeShape(document_.editing().model(), shape, true);
     if (!command) {
-        messages_.warn(QString::fromStdString(command.error().message()));
+        messages_.warn(errorText(command.error()));
         return;
     }
     player_.reset();

@@ -11,6 +11,8 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/operations/guide_clusters.h"
+#include "editor/fields/error_text.h"
+#include "editor/fields/length_text.h"
 #include "editor/shell/main_window.h"
 
 namespace hairloom::editor {
@@ -41,17 +43,17 @@ void MainWindow::chooseGuidesByClustering() {
     const GuideClusters clusters = clusterGuides(groom, strands, settings);
     Groom guided = groom;
     if (auto chosen = chooseGuides(guided, settings); !chosen) {
-        messages_.warn(QString::fromStdString(chosen.error().message()));
+        messages_.warn(errorText(chosen.error()));
         return;
     }
     const std::string record = fmt::format(R"({{"op":"guides","count":{}}})", settings.count);
     document_.perform(editing::replaceGroom(document_.editing().model(), std::move(guided),
                                             tr("Guides by clustering").toStdString(), record));
-    messages_.say(tr("%1 guides stand for %2 strands, which are %3 mm from them on average, %4 mm at most")
+    messages_.say(tr("%1 guides stand for %2 strands, which are %3 from them on average, %4 at most")
                       .arg(clusters.guides.size())
                       .arg(strands.size())
-                      .arg(clusters.meanMm, 0, 'f', 1)
-                      .arg(clusters.maxMm, 0, 'f', 1));
+                      .arg(lengthText(1e-3 * clusters.meanMm, preferences_),
+                           lengthText(1e-3 * clusters.maxMm, preferences_)));
 }
 
 void MainWindow::addSelectActions() {

@@ -8,6 +8,7 @@
 
 #include "core/scene/sample.h"
 #include "editor/fields/blocks.h"
+#include "editor/fields/error_text.h"
 #include "editor/fields/field.h"
 #include "editor/shell/files.h"
 #include "editor/style/icons.h"
@@ -175,7 +176,7 @@ void StartPage::addLeftOver(const LeftOver& leftOver) {
     layout->addWidget(remove);
     connect(remove, &QPushButton::clicked, row, [row, label, leftOver] {
         if (const auto removed = removeLeftOver(leftOver); !removed)
-            label->setText(QString::fromStdString(removed.error().message()));
+            label->setText(errorText(removed.error()));
         else
             row->deleteLater();
     });

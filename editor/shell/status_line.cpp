@@ -32,6 +32,8 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     message_->setObjectName("message");
     message_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     message_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    progress_->setObjectName("progress");
+    progress_->setRange(0, 100);
     progress_->setFixedWidth(140);
     progress_->setTextVisible(false);
     cancel_->setIcon(icon("close"));
@@ -64,7 +66,6 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
         say(name + QChar(0x2026), false);
         fade_.stop();
         showWork();
-        progress_->show();
         cancel_->show();
         poll_.start();
     });
@@ -154,8 +155,9 @@ void StatusLine::showEngine() {
 }
 
 void StatusLine::showWork() {
+    // Work that does not say how far it is has its name and no bar.
     const float progress = tasks_.progress();
-    progress_->setRange(0, progress < 0 ? 0 : 100);
+    progress_->setVisible(progress >= 0);
     progress_->setValue(static_cast<int>(100 * progress));
 }
 

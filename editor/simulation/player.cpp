@@ -9,6 +9,7 @@
 #include "core/scene/motions.h"
 #include "core/simulation/clip_motion.h"
 #include "core/simulation/effect_switch.h"
+#include "editor/fields/error_text.h"
 #include "editor/simulation/live_engine.h"
 
 namespace hairloom::editor {
@@ -417,8 +418,7 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         playing.choice = {EngineKind::cpu, "the device failed: " + stepped.error().message()};
         WorkerRequests again = taken;
         again.regroomed = true;
-        Q_EMIT failed(tr("The GPU stopped simulating (%1); the CPU goes on")
-                          .arg(QString::fromStdString(stepped.error().message())));
+        Q_EMIT failed(tr("The GPU stopped simulating (%1); the CPU goes on").arg(errorText(stepped.error())));
         if (!prepare(playing, again)) return;
         stepped = playing.engine->step(kFrameTime, playing.time, {}, *pose, refused);
     }

@@ -85,6 +85,7 @@ ThemeColours themeColours(Theme theme) {
     const Tones& t = tones(theme);
     const bool dark = theme == Theme::Dark;
     return {QColor(dark ? "#2a2d32" : "#b9bec6"),
+            QColor(t.field),
             QColor(t.text),
             QColor(t.dim),
             QColor(t.accent),

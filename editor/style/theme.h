@@ -13,7 +13,7 @@ void applyTheme(QApplication& application, Theme theme);
 
 /// Colours that widgets which paint themselves need.
 struct ThemeColours {
-    QColor viewport, text, dimText, accent, good, caution, bad;
+    QColor viewport, field, text, dimText, accent, good, caution, bad;
 };
 ThemeColours themeColours(Theme theme);
 

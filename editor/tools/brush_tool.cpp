@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/editing/document.h"
+#include "editor/fields/error_text.h"
 #include "editor/fields/field.h"
 #include "editor/style/icons.h"
 
@@ -136,7 +137,7 @@ bool BrushTool::begin(const Pointer& pointer) {
     if (smooths && header.tool == brush_.name) header.settings.parameters["smooth"] = 1;
     if (pointer.modifiers & Qt::ControlModifier) header.settings.invert = !settings_.invert;
     if (auto begun = document_.editing().beginStroke(std::move(header)); !begun) {
-        messages_.warn(QString::fromStdString(begun.error().message()));
+        messages_.warn(errorText(begun.error()));
         return false;
     }
     return true;
@@ -147,7 +148,7 @@ bool BrushTool::putDown(const BrushPlace& place, double pressure) {
     const Vec3f direction = brush_.worksOnSkin ? Vec3f(Vec3f::Zero()) : place.direction_ss;
     const auto dab = editing::dabAt(settings_, place.position_ss, direction, static_cast<float>(pressure));
     if (auto done = document_.editing().dab(dab); !done) {
-        messages_.warn(QString::fromStdString(done.error().message()));
+        messages_.warn(errorText(done.error()));
         cancel();
         return false;
     }

@@ -8,6 +8,7 @@
 #include "core/editing/stack_commands.h"
 #include "core/geometry/curve.h"
 #include "core/operations/stack.h"
+#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 namespace {
@@ -124,7 +125,7 @@ void CurveTool::store(const std::vector<Vec3f>& points) {
     auto command = editing::setOperator(document_.editing().model(), shownIndex(), changed,
                                         tr("Draw curve").toStdString());
     if (!command) {
-        messages_.warn(QString::fromStdString(command.error().message()));
+        messages_.warn(errorText(command.error()));
         return;
     }
     document_.perform(std::move(*command));

@@ -9,6 +9,7 @@
 #include "core/editing/document.h"
 #include "core/editing/place.h"
 #include "core/editing/surface_disc.h"
+#include "editor/fields/error_text.h"
 #include "editor/fields/option_form.h"
 #include "editor/tools/surface_pick.h"
 #include "editor/tools/tool_maker.h"
@@ -119,7 +120,7 @@ class ReplaceTool : public Tool {
         editing::Document& document = document_.editing();
         auto command = editing::place(document.groom(), {region, reach_}, {document.skinField(), 0.001f});
         if (!command) {
-            messages_.warn(QString::fromStdString(command.error().message()));
+            messages_.warn(errorText(command.error()));
             return;
         }
         document_.perform(std::move(*command));

@@ -32,6 +32,7 @@ struct StrandMoves {
 };
 
 struct PictureRequest {
+    std::uint32_t document = 0;          ///< of which it is, as the viewport counts them
     std::shared_ptr<const Groom> groom;  ///< another pointer is another groom
     /// Since the last request with this groom, in all that are drawn of it; null: none.
     std::shared_ptr<const StrandMoves> moves;
@@ -57,9 +58,10 @@ struct PictureRequest {
 };
 
 struct PictureReport {
-    double milliseconds = 0;   ///< of this frame, everything included
-    std::uint64_t hairs = 0;   ///< drawn
-    std::uint32_t frames = 0;  ///< in the average
+    std::uint32_t document = 0;  ///< of the request
+    double milliseconds = 0;     ///< of this frame, everything included
+    std::uint64_t hairs = 0;     ///< drawn
+    std::uint32_t frames = 0;    ///< in the average
     bool moving = false;
     bool presented = false;  ///< shown by the device; else the picture comes along
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "editor/fields/error_text.h"
 #include "editor/viewport/native_window.h"
 #include "editor/viewport/render_work.h"
 
@@ -124,6 +125,11 @@ bool RenderThread::isIdle() const {
     return idle_ || ended_;
 }
 
+bool RenderThread::hasEnded() const {
+    const std::lock_guard lock(mutex_);
+    return ended_;
+}
+
 void RenderThread::setWindow(std::optional<gpu::NativeWindow> window) {
     std::unique_lock lock(mutex_);
     window_ = window;
@@ -146,9 +152,8 @@ void RenderThread::run() {
         }
         windowTaken_.notify_all();
         live_->close();
-        QMetaObject::invokeMethod(this, [this, problem = QString::fromStdString(device.error().message())] {
-            Q_EMIT deviceReady({}, false, problem);
-        });
+        QMetaObject::invokeMethod(
+            this, [this, problem = errorText(device.error())] { Q_EMIT deviceReady({}, false, problem); });
         return;
     }
     auto on = std::make_unique<DeviceWork>(std::move(*device));
@@ -180,7 +185,7 @@ void RenderThread::run() {
                 windowChanged_ = false;
                 lock.unlock();
                 windowTaken_.notify_all();
-                if (!taken) Q_EMIT windowRefused(QString::fromStdString(taken.error().message()));
+                if (!taken) Q_EMIT windowRefused(errorText(taken.error()));
                 continue;
             }
             request = std::exchange(next_, std::nullopt);
@@ -205,7 +210,7 @@ void RenderThread::run() {
         }
         on->work.forget();
         on->other.reset();
-        Q_EMIT failed(QString::fromStdString(ready.error().message()));
+        Q_EMIT failed(errorText(ready.error()));
         if (!on->isLost()) continue;
         // Another one, or the same begun anew; what was drawn is drawn again.
         auto another = gpu::createDevice();

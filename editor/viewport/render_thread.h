@@ -32,6 +32,8 @@ class RenderThread : public QObject {
     void postSide(const QString& name, PictureRequest request);
     /// Nothing is being drawn or waits to be, the average is complete.
     bool isIdle() const;
+    /// There is no device, and no picture will come.
+    bool hasEnded() const;
 
     /// Pictures go to this window from now on; to no window where it is empty. Waits until that is so: a
     /// window may be destroyed after it has been taken away.

@@ -337,6 +337,7 @@ Result<std::pair<QImage, PictureReport>> RenderWork::draw() {
         result.first = std::move(*image);
     }
     PictureReport& report = result.second;
+    report.document = last_->document;
     report.milliseconds = static_cast<double>(clock.nsecsElapsed()) * 1e-6;
     report.hairs = renderer_.strands();
     report.frames = renderer_.accumulated();

@@ -70,11 +70,14 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
                 const QByteArray wish = wishedSurface();
                 const bool byItself = (wantsWindow && wish.isEmpty()) || wish == "window" || wish == "apart";
                 presentsByItself_ = problem.isEmpty() && byItself;
+                headFirst_ = headFirst_ && problem.isEmpty();
                 chooseSurface();
                 Q_EMIT deviceReady(name, problem);
             });
     connect(&renderer_, &RenderThread::pictureReady, this,
             [this](const QImage& picture, const PictureReport& report) {
+                if (report.document != documents_) return;
+                if (std::exchange(headFirst_, false)) redraw();
                 if (!report.presented) {
                     picture_ = picture;
                     if (canvas_) canvas_->setPicture(picture);
@@ -88,6 +91,7 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
         Q_EMIT failed(problem);
     });
     connect(&renderer_, &RenderThread::failed, this, [this](const QString& problem) {
+        headFirst_ = false;
         handOverAll();
         Q_EMIT failed(problem);
     });
@@ -99,6 +103,10 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
     connect(&document_, &QtDocument::replaced, this, [this] {
         pose_.reset();
         framed_ = false;
+        ++documents_;
+        headFirst_ = !document_.isEmpty() && wishedSurface() != "none" && !renderer_.hasEnded();
+        picture_ = {};
+        if (canvas_) canvas_->setPicture({});
     });
     connect(&preferences_, &Preferences::changed, this, [this] {
         showOnCanvas();
@@ -184,7 +192,7 @@ QObject* Viewport::input() const {
 bool Viewport::waitForPicture(int milliseconds) {
     QElapsedTimer clock;
     clock.start();
-    while (settle_.isActive() || postSoon_.isActive() || !renderer_.isIdle()) {
+    while (settle_.isActive() || postSoon_.isActive() || headFirst_ || !renderer_.isIdle()) {
         QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
         if (clock.elapsed() > milliseconds) return false;
     }
@@ -344,8 +352,23 @@ std::shared_ptr<const StrandMoves> Viewport::movesSinceHandedOver() {
     return moves;
 }
 
+void Viewport::postHead() {
+    const Groom& groom = document_.groom();
+    auto bald = std::make_shared<Groom>();
+    bald->scalp = groom.scalp;
+    bald->scalpSelection = groom.scalpSelection;
+    bald->material = groom.material;
+    PictureRequest request;
+    request.groom = std::move(bald);
+    finishRequest(request);
+    request.moving = true;
+    renderer_.post(std::move(request));
+}
+
 void Viewport::post() {
     if (document_.isEmpty() || wishedSurface() == "none") return;
+    headFirst_ = headFirst_ && document_.groom().scalp && document_.groom().strandCount() > 0;
+    if (headFirst_) return postHead();
     const bool anew = !groom_;
     // The copy shares its arrays with the document.
     if (anew) groom_ = std::make_shared<const Groom>(document_.groom());
@@ -358,8 +381,25 @@ void Viewport::post() {
     request.groom = groom_;
     if (!anew) request.moves = movesSinceHandedOver();
     request.pose = pose_;
-    request.camera = camera_.camera();
     request.marks = marks.overlay();
+    finishRequest(request);
+    if (comparison_ && canvas_) {
+        if (!other_) {
+            Groom other = *groom_;
+            other.material = comparison_->material;
+            other.interpolation = comparison_->interpolation;
+            other_ = std::make_shared<const Groom>(std::move(other));
+        }
+        request.other = other_;
+        request.otherQuality = comparison_->quality;
+        request.split = split_;
+    }
+    renderer_.post(std::move(request));
+}
+
+void Viewport::finishRequest(PictureRequest& request) const {
+    request.document = documents_;
+    request.camera = camera_.camera();
     const qreal ratio = devicePixelRatioF();
     request.width = static_cast<std::uint32_t>(std::max(16.0, std::round(width() * ratio)));
     request.height = static_cast<std::uint32_t>(std::max(16.0, std::round(height() * ratio)));
@@ -373,18 +413,6 @@ void Viewport::post() {
     request.background = toLinear(themeColours(preferences_.theme()).viewport);
     request.quality = quality_;
     request.seeThrough = canvas_ && !reference_.isNull();
-    if (comparison_ && canvas_) {
-        if (!other_) {
-            Groom other = *groom_;
-            other.material = comparison_->material;
-            other.interpolation = comparison_->interpolation;
-            other_ = std::make_shared<const Groom>(std::move(other));
-        }
-        request.other = other_;
-        request.otherQuality = comparison_->quality;
-        request.split = split_;
-    }
-    renderer_.post(std::move(request));
 }
 
 void Viewport::resizeEvent(QResizeEvent* event) {

@@ -128,6 +128,9 @@ class Viewport : public QWidget {
     void showOnCanvas();
     void placeApart();
     void post();
+    /// The head of a document that has just been opened: its hair may take a while.
+    void postHead();
+    void finishRequest(PictureRequest& request) const;
     /// The next picture takes all of the groom.
     void handOverAll();
     void noteMoved(std::span<const std::uint32_t> strands);
@@ -178,6 +181,8 @@ class Viewport : public QWidget {
     QPointF last_px_;
     double pressure_ = 1;
     bool framed_ = false;
+    std::uint32_t documents_ = 0;  ///< opened so far
+    bool headFirst_ = false;       ///< nothing of this document was drawn yet
     mutable bool positionsWanted_ = false;
 };
 

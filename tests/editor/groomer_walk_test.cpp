@@ -163,7 +163,7 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
     EXPECT_TRUE(Autosave::recoveries().isEmpty());
 
     // Out.
-    ExportDialog out(document(), parts().tasks, parts().messages, parts().player);
+    ExportDialog out(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
     out.exportTo(inFolder("walk.tfx"));
     finishWork();
     EXPECT_EQ(out.report().strands, 200u);

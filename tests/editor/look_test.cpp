@@ -225,6 +225,31 @@ TEST_F(LookPictureTest, ThumbnailsAreDrawnWhenNothingElseIs) {
     EXPECT_GT(qGray(thumbnail.pixel(1, 32)), 150) << "beside it";
 }
 
+TEST_F(LookPictureTest, ThumbnailsAreOfTheTheme) {
+    window->panel("look")->raise();
+    auto* looks = find<QListWidget>("looks");
+    const auto isDrawn = [&](int i) { return looks->item(i)->data(Qt::UserRole).toBool(); };
+    const auto isLight = [&](int i) {
+        const QImage icon = looks->item(i)->icon().pixmap(60, 60).toImage();
+        return qGray(icon.pixel(1, icon.height() / 2)) > 128;
+    };
+    const auto drawn = [&] {
+        int count = 0;
+        for (int i = 0; i < looks->count(); ++i) count += isDrawn(i) ? 1 : 0;
+        return count;
+    };
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    for (const Theme theme : {Theme::Light, Theme::Dark}) {
+        parts().preferences.setTheme(theme);
+        EXPECT_EQ(drawn(), 0) << "none is left of the other theme";
+        EXPECT_TRUE(QTest::qWaitFor([&] { return drawn() > 0; }, 240'000));
+        for (int i = 0; i < looks->count(); ++i)
+            if (isDrawn(i)) {
+                EXPECT_EQ(isLight(i), theme == Theme::Light) << i;
+            }
+    }
+}
+
 TEST_F(LookTest, SettingsOfThePictureSayWhatTheyCost) {
     openFirstStrands(50);
     viewport().resize(64, 48);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pictures of docs/manual.md, from the window itself: docs/pictures/make_editor_pictures.sh runs it. Only
 // when HAIRLOOM_MANUAL names a folder, because full heads of hair take a software device minutes.
-#include <QCheckBox>
 #include <QComboBox>
 #include <QDir>
 #include <QListWidget>
@@ -64,8 +63,7 @@ class ManualTest : public WindowTest {
         return at(Vec3f(x, groom().scalp->bounds().max().y() - down, z));
     }
     void show(const char* overlay, bool on) {
-        auto* box = find<QCheckBox>(overlay);
-        if (box->isChecked() != on) box->click();
+        window->actions().get(QString("overlay.") + overlay).setChecked(on);
     }
 };
 
@@ -134,7 +132,8 @@ TEST_F(ManualTest, GroomingSpheresAndLook) {
     EXPECT_TRUE(QTest::qWaitFor(drawn, kPatience));
     shootWindow("look");
     find<QPushButton>("compareShow")->setChecked(false);
-    ExportDialog exporting(document(), parts().tasks, parts().messages, parts().player, window.get());
+    ExportDialog exporting(document(), parts().preferences, parts().tasks, parts().messages, parts().player,
+                           window.get());
     exporting.show();
     exporting.exportTo(inFolder("shoulder.tfx"));
     finishWork();

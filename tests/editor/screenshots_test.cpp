@@ -131,7 +131,8 @@ TEST_P(ScreenshotsTest, Dialogs) {
     for (const auto* button : buttons)
         EXPECT_EQ(button->isDefault(), button->text() == "Close") << button->text().toStdString();
     shortcuts.hide();
-    ExportDialog exporting(document(), parts().tasks, parts().messages, parts().player, window.get());
+    ExportDialog exporting(document(), parts().preferences, parts().tasks, parts().messages, parts().player,
+                           window.get());
     exporting.show();
     exporting.exportTo(inFolder("hair.tfx"));
     finishWork();

@@ -316,7 +316,7 @@ TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
 
 TEST_F(ShellTest, ExportIsReadBackAndReported) {
     openSampleHair("short");
-    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+    ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
     dialog.findChild<QComboBox*>("target")->setCurrentText("Yuksel .hair");
     dialog.exportTo(inFolder("hair.hair"));
     finishWork();
@@ -338,7 +338,7 @@ TEST_F(ShellTest, ExportIsReadBackAndReported) {
 TEST_F(ShellTest, CardsLeaveByTheSameDialogWithWhatEachLevelLoses) {
     openSampleHair("short");
     openFirstStrands(300);
-    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+    ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
     dialog.show();
     auto* cards = dialog.findChild<QSpinBox*>("cards");
     EXPECT_FALSE(cards->isVisible()) << "strands have none";
@@ -359,7 +359,7 @@ TEST_F(ShellTest, CardsLeaveByTheSameDialogWithWhatEachLevelLoses) {
 
 TEST_F(ShellTest, AnAssetForGamesIsExportedWithItsSize) {
     openSampleHair("short");
-    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+    ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
     dialog.findChild<QComboBox*>("target")->setCurrentText("Game by Hairloom's runtime");
     dialog.exportTo(inFolder("hair.hairrt"));
     finishWork();
@@ -382,7 +382,7 @@ TEST_F(ShellTest, APageForBrowsersIsExportedAtRest) {
         ASSERT_TRUE(file.open(QIODevice::WriteOnly) && file.write("player") > 0);
     }
     qputenv("HAIRLOOM_WEB", inFolder("player").toUtf8());
-    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+    ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
     dialog.findChild<QComboBox*>("target")->setCurrentText("Browser, a page that moves");
     auto* frames = dialog.findChild<QSpinBox*>("frames");
     frames->setValue(3);
@@ -403,7 +403,7 @@ TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) 
     openSampleHair("short");
     const std::size_t strands = groom().strandCount();
     {
-        ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+        ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
         dialog.exportTo(inFolder("hair.tfx"));
         finishWork();
     }
@@ -430,7 +430,7 @@ TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) 
 TEST_F(ShellTest, ASavedScriptRepeatsTheStepsOnTheHeadThatWasOpened) {
     openSampleHair("short");
     {
-        ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+        ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
         dialog.exportTo(inFolder("hair.tfx"));
         finishWork();
     }

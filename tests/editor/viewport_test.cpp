@@ -101,15 +101,15 @@ class PictureTest : public WindowTest {
         guides.interpolation.followPerGuide = 0;
         document().open(std::move(guides), {}, "guides");
     }
-    /// Each of the View panel's switches changes the picture.
+    /// Each of these overlays changes the picture.
     void expectDrawn(std::initializer_list<const char*> overlays) {
         ASSERT_TRUE(viewport().waitForPicture(60'000));
         const QImage without = viewport().picture();
         for (const char* name : overlays) {
-            find<QCheckBox>(name)->click();
+            trigger((std::string("overlay.") + name).c_str());
             ASSERT_TRUE(viewport().waitForPicture(60'000));
             EXPECT_NE(viewport().picture(), without) << name;
-            find<QCheckBox>(name)->click();
+            trigger((std::string("overlay.") + name).c_str());
         }
     }
 };
@@ -251,6 +251,23 @@ TEST_F(PictureTest, MarkersStandWhereTheCameraProjectsThem) {
             EXPECT_LT(off.manhattanLength(), 1.5) << "orthographic " << orthographic << ", point " << i;
         }
     }
+}
+
+TEST_F(PictureTest, OfANewDocumentTheHeadIsSeenAtOnceAndTheOldOneNoMore) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openBust();
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    std::vector<std::uint64_t> hairs;
+    QObject::connect(&viewport(), &Viewport::drawn, window.get(),
+                     [&](const PictureReport& report) { hairs.push_back(report.hairs); });
+    openGuides();
+    EXPECT_TRUE(viewport().picture().isNull());
+    const QImage shown = viewport().grab().toImage();
+    EXPECT_EQ(skinPixels(shown), 0) << "the bust is gone";
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_GT(hairs.size(), 1u);
+    EXPECT_EQ(hairs.front(), 0u);
+    EXPECT_EQ(hairs.back(), groom().strandCount());
 }
 
 TEST_F(PictureTest, OverlaysAreDrawn) {

@@ -103,7 +103,7 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     // Out, and back in again.
     ASSERT_TRUE(window->saveTo(inFolder("walk.hairloom")));
     const auto saved = hash();
-    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+    ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
     dialog.exportTo(inFolder("walk.tfx"));
     finishWork();
     EXPECT_EQ(dialog.report().strands, groom().strandCount());

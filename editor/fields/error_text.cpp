@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/fields/error_text.h"
+
+#include <QStringList>
+
+#include "editor/fields/field.h"
+
+namespace hairloom::editor {
+namespace {
+
+/// "Operators › 3 › root radius" from "/operators/2/rootRadius": people count from 1.
+QString inWords(const QString& pointer) {
+    QStringList parts;
+    for (QString part : pointer.split('/', Qt::SkipEmptyParts)) {
+        bool isNumber = false;
+        const int number = part.toInt(&isNumber);
+        part.replace("~1", "/").replace("~0", "~").replace('_', ' ');
+        parts << (isNumber ? QString::number(number + 1) : labelOf(part));
+        if (parts.size() > 1) parts.back() = parts.back().toLower();
+    }
+    return parts.join(QStringLiteral(" › "));
+}
+
+}  // namespace
+
+QString errorText(const Error& error) {
+    Error told = error;
+    const std::size_t end = told.problem.find(' ');
+    if (told.problem.starts_with('/') && end > 1) {
+        const QString words = inWords(QString::fromStdString(told.problem.substr(0, end)));
+        told.problem.replace(0, end, words.toStdString());
+    }
+    return QString::fromStdString(told.message());
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <QString>
+
+#include "core/base/result.h"
+
+namespace hairloom::editor {
+
+/// What an error says, with places in JSON in words: "Material › root radius is 99; expected …".
+QString errorText(const Error& error);
+
+}  // namespace hairloom::editor
