@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pictures of docs/manual.md, from the window itself: docs/pictures/make_editor_pictures.sh runs it. Only
 // when HAIRLOOM_MANUAL names a folder, because full heads of hair take a software device minutes.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDir>
 #include <QListWidget>
