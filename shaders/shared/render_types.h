@@ -49,7 +49,8 @@ struct CurvePoint {
     float opacity;  // 0...1
 };
 
-// A run of a strand's given segments that one tessellated ribbon covers; devices cut it into 64 pieces at most.
+// A run of a strand's given segments that one tessellated ribbon covers; devices cut it into 64 pieces at
+// most.
 #define HAIRLOOM_PATCH_SEGMENTS 21
 struct StrandPatch {
     uint strand;  // in its batch
