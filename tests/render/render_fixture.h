@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/accuracy/head_scene.h"
@@ -91,6 +92,18 @@ inline Vec3d meanColour(const LinearImage& image) {
     for (std::size_t i = 0; i < image.rgba.size(); i += 4)
         sum += Vec3f(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]).cast<double>();
     return sum / (static_cast<double>(image.rgba.size()) / 4);
+}
+
+/// Of the root mean square difference of their colours to 255, alpha left out.
+inline double decibels(const Image& a, const Image& b) {
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        if (i % 4 == 3) continue;
+        const double d = static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]);
+        sum += d * d;
+        ++count;
+    }
+    return 10 * std::log10(255 * 255 / std::max(sum / count, 1e-9));
 }
 
 inline double meanLuminance(const LinearImage& image) {

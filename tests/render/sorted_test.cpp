@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair blended as the nearest fragments of a pixel in their order, against closed forms and many passes.
-#include <algorithm>
-#include <numeric>
 
 #include "core/render/renderer.h"
 #include "tests/render/render_fixture.h"
@@ -28,17 +26,6 @@ class SortedTest : public RenderTest {
         return picture ? std::move(*picture) : Picture();
     }
 };
-
-double decibels(const Image& a, const Image& b) {
-    double sum = 0, count = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        if (i % 4 == 3) continue;
-        const double d = static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]);
-        sum += d * d;
-        ++count;
-    }
-    return 10 * std::log10(255 * 255 / std::max(sum / count, 1e-9));
-}
 
 /// Hairs across the view behind each other, each of its own colour, `cover` of a pixel wide, through pixels'
 /// middles.

@@ -44,17 +44,6 @@ class TemporalTest : public RenderTest {
     LinearImage linear_;
 };
 
-double decibels(const Image& a, const Image& b) {
-    double sum = 0, count = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        if (i % 4 == 3) continue;
-        const double d = static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]);
-        sum += d * d;
-        ++count;
-    }
-    return 10 * std::log10(255 * 255 / std::max(sum / count, 1e-9));
-}
-
 /// Hair that sways under a head that nods, while the camera goes around.
 struct Moving {
     TestHead rest{2500};
