@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/accuracy/certificate.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
@@ -48,11 +50,12 @@ std::size_t pointsInsideTheHead(const Groom& groom) {
 }
 
 TEST(SampleTest, GroomedSamplesKeepTheirStackMasksAndGradedHairline) {
-    for (const char* name : {"afro", "bob", "braid"}) {
+    for (const std::string& name : sampleNames(kSamples)) {
         const auto made = makeSample(kSamples, name);
         ASSERT_TRUE(made) << name << ": " << made.error().message();
         EXPECT_FALSE(hasErrors(validate(*made))) << name;
         EXPECT_GE(made->operators.size(), 7u) << name;
+        EXPECT_EQ(std::ranges::count(made->operators, "flyaways", &Operator::op), 1) << name;
         EXPECT_TRUE(made->strandAttributes.has("mask.1")) << name << ": its operators have painted masks";
         EXPECT_FALSE(made->scalpDensity.empty()) << name << ": sparse at the hairline";
         EXPECT_EQ(pointsInsideTheHead(*made), 0u) << name;
