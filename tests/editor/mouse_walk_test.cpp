@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the bare bust to an exported hairstyle with a fringe and a braid, with the mouse alone: every click
+// lands on what is seen there.
+#include <QApplication>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QDir>
+#include <QDockWidget>
+#include <QFileDialog>
+#include <QListWidget>
+#include <QMenuBar>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QStandardPaths>
+#include <QStyleOptionSlider>
+#include <QTabBar>
+#include <QTimer>
+#include <QToolButton>
+#include <QTreeWidget>
+#include <QWheelEvent>
+
+#include "core/groom/file/project_file.h"
+#include "core/groom/strand_subset.h"
+#include "core/operations/stack.h"
+#include "editor/dialogs/export_dialog.h"
+#include "editor/document/autosave.h"
+#include "editor/fields/number_box.h"
+#include "importers/strands.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class MouseWalkTest : public WindowTest {
+  protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        before_ = QDir::currentPath();
+        QDir::setCurrent(folder.path());  // where dialogs of files begin
+    }
+    void TearDown() override {
+        QDir::setCurrent(before_);
+        WindowTest::TearDown();
+    }
+
+    /// A click there, if that is what lies there: not behind another, not scrolled out of sight.
+    static void clickAt(QWidget& widget, const QPoint& at) {
+        QCoreApplication::processEvents();
+        QWidget* const top = widget.window();
+        const QPoint there = widget.mapTo(top, at);
+        QWidget* const seen = top->childAt(there);
+        EXPECT_TRUE(seen == &widget || widget.isAncestorOf(seen))
+            << widget.objectName().toStdString() << " is not seen at " << there.x() << ", " << there.y();
+        QTest::mouseClick(&widget, Qt::LeftButton, {}, at);
+        QCoreApplication::processEvents();
+    }
+    /// Turns the wheel over the bar of what the widget is scrolled in until it is seen.
+    static void scrollTo(QWidget& widget) {
+        QCoreApplication::processEvents();
+        for (QWidget* outer = widget.parentWidget(); outer; outer = outer->parentWidget()) {
+            auto* area = qobject_cast<QScrollArea*>(outer);
+            if (!area) continue;
+            QScrollBar* const bar = area->verticalScrollBar();
+            for (int turns = 0; turns < 200; ++turns) {
+                const QRect seen(widget.mapTo(area->viewport(), QPoint(0, 0)), widget.size());
+                if (area->viewport()->rect().contains(seen)) break;
+                turnWheel(*bar, seen.top() < 0 ? 1 : -1);
+            }
+        }
+    }
+    static void click(QWidget& widget) {
+        scrollTo(widget);
+        clickAt(widget, widget.rect().center());
+    }
+    void click(const char* button) { click(*find<QPushButton>(button)); }
+    void tool(const char* name) {
+        QAction& action = window->actions().get((std::string("tool.") + name).c_str());
+        for (auto* button : window->findChildren<QToolButton*>()) {
+            if (button->defaultAction() == &action && button->isVisible()) return click(*button);
+        }
+        ADD_FAILURE() << "no button of the tool " << name;
+    }
+    /// Brings a panel to the front by its tab.
+    QDockWidget& open(const char* panel) {
+        QDockWidget& dock = *window->panel(panel);
+        for (auto* bar : window->findChildren<QTabBar*>()) {
+            for (int i = 0; i < bar->count(); ++i) {
+                if (bar->isVisible() && bar->tabText(i) == dock.windowTitle())
+                    clickAt(*bar, bar->tabRect(i).center());
+            }
+        }
+        return dock;
+    }
+    static QString plain(QString text) { return text.remove('&'); }
+    static void choose(QMenu& menu, const QString& entry) {
+        for (QAction* action : menu.actions()) {
+            if (plain(action->text()) != entry) continue;
+            QTest::mouseClick(&menu, Qt::LeftButton, {}, menu.actionGeometry(action).center());
+            QCoreApplication::processEvents();
+            return;
+        }
+        menu.close();
+        ADD_FAILURE() << "no entry " << entry.toStdString();
+    }
+    void chooseInMenu(const QString& menu, const QString& entry) {
+        QMenuBar& bar = *window->menuBar();
+        for (QAction* action : bar.actions()) {
+            if (plain(action->text()) != menu) continue;
+            clickAt(bar, bar.actionGeometry(action).center());
+            return choose(*action->menu(), entry);
+        }
+        ADD_FAILURE() << "no menu " << menu.toStdString();
+    }
+    void addOperator(const QString& name) {
+        auto& add = *find<QPushButton>("operatorAdd");
+        scrollTo(add);
+        // The menu of a button waits for its choice.
+        QTimer::singleShot(50, &add, [&] { choose(*add.menu(), name); });
+        clickAt(add, add.rect().center());
+    }
+    void chooseOperator(int row) {
+        auto& list = *find<QListWidget>("operators");
+        scrollTo(list);
+        clickAt(*list.viewport(), list.visualItemRect(list.item(row)).center());
+        EXPECT_EQ(list.currentRow(), row);
+    }
+    static void turnWheel(QWidget& over, int ticks) {
+        const QPoint at = over.rect().center();
+        QWheelEvent wheel(at, over.mapToGlobal(at), {}, {0, 120 * ticks}, Qt::NoButton, {}, Qt::NoScrollPhase,
+                          false);
+        QCoreApplication::sendEvent(&over, &wheel);
+        QCoreApplication::processEvents();
+    }
+    /// Drags the handle of a slider until its box shows about that, and turns the wheel over it for the rest.
+    void slideTo(NumberBox& box, double value) {
+        scrollTo(box);
+        QSlider& slider = box.slider();
+        QStyleOptionSlider option;
+        option.initFrom(&slider);
+        option.orientation = Qt::Horizontal;
+        option.minimum = slider.minimum();
+        option.maximum = slider.maximum();
+        option.sliderPosition = slider.value();
+        const QRect handle =
+            slider.style()->subControlRect(QStyle::CC_Slider, &option, QStyle::SC_SliderHandle, &slider);
+        QPoint at = handle.center();
+        QTest::mousePress(&slider, Qt::LeftButton, {}, at);
+        const int step = box.value() > value ? -1 : 1;
+        while ((box.value() - value) * step < 0 && slider.rect().contains(at)) {
+            at.rx() += step;
+            QTest::mouseMove(&slider, at);
+            QCoreApplication::processEvents();
+        }
+        QTest::mouseRelease(&slider, Qt::LeftButton, {}, at);
+        QCoreApplication::processEvents();
+        const int back = box.value() > value ? -1 : 1;
+        for (int ticks = 0; ticks < 100 && (box.value() - value) * back < 0; ++ticks) turnWheel(slider, back);
+    }
+    /// Draws a curve of the chosen operator over these points of the world.
+    void drawCurve(std::initializer_list<Vec3f> points) {
+        click("curveDraw");
+        press(at(*points.begin()));
+        for (const Vec3f& point : points) moveTo(at(point));
+        release(at(*(points.end() - 1)));
+    }
+    /// Once a dialog of that kind asks, gives it to `answer`.
+    template <class Dialog>
+    void onceAsked(std::function<void(Dialog&)> answer) {
+        auto* timer = new QTimer(window.get());
+        QObject::connect(timer, &QTimer::timeout, window.get(), [timer, answer = std::move(answer)] {
+            auto* asks = qobject_cast<Dialog*>(QApplication::activeModalWidget());
+            if (!asks || !asks->isVisible()) return;
+            timer->stop();
+            timer->deleteLater();
+            answer(*asks);
+        });
+        timer->start(50);
+    }
+    /// The name that a dialog of files proposes is taken.
+    void onceAskedForAFileTakeIt() {
+        onceAsked<QFileDialog>([](QFileDialog& dialog) {
+            clickAt(*dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save), {8, 8});
+        });
+    }
+    Vec3f onHead(float x, float down, float z) const { return top + Vec3f(x, -down, z); }
+
+    Vec3f top = Vec3f::Zero();  ///< of the head
+
+  private:
+    QString before_;
+};
+
+TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
+    window->resize(1440, 900);
+    click("sample:");
+    finishWork();
+    ASSERT_TRUE(groom().scalp);
+    top = Vec3f(0, groom().scalp->bounds().max().y(), 0);
+
+    // The scalp of the file, and a hairline drawn a little higher.
+    open("scalp");
+    auto& groups = *find<QComboBox>("scalpGroup");
+    click(groups);
+    QAbstractItemView& names = *groups.view();
+    // The release of the click that opened the list is none in it.
+    QTest::qWait(2 * QApplication::doubleClickInterval());
+    const int scalp = groups.findData("material:scalp");
+    QTest::mouseClick(names.viewport(), Qt::LeftButton, {},
+                      names.visualRect(groups.model()->index(scalp, 0)).center());
+    QCoreApplication::processEvents();
+    ASSERT_FALSE(groom().scalpSelection.empty());
+    chooseInMenu("View", "From the front");
+    chooseInMenu("View", "Frame selection");
+    const std::size_t faces = groom().scalpSelection.size();
+    tool("scalp_paint");
+    for (auto* box : open("tool").findChildren<QCheckBox*>()) {
+        if (box->isVisible() && box->text() == "Invert") clickAt(*box, {8, box->height() / 2});
+    }
+    drag({at(onHead(-0.03f, 0.05f, 0.08f)), at(onHead(0, 0.05f, 0.085f)), at(onHead(0.03f, 0.05f, 0.08f))});
+    EXPECT_LT(groom().scalpSelection.size(), faces) << "the hairline is where the stroke was";
+    open("scalp");
+
+    // About two hundred guides.
+    slideTo(*find<NumberBox>("count"), 200);
+    slideTo(*find<NumberBox>("length"), 0.25);
+    slideTo(*find<NumberBox>("points"), 24);
+    EXPECT_NEAR(groom().placement.count, 200, 20);
+    EXPECT_NEAR(groom().placement.length, 0.25f, 0.01f);
+    EXPECT_NEAR(groom().placement.points, 24, 2);
+    click("place");
+    finishWork();
+    const std::size_t guides = groom().strandCount();
+    ASSERT_GT(guides, 150u) << window->statusLine().message().toStdString();
+
+    // Five operators, one with a parting that is drawn.
+    open("operators");
+    for (const char* name : {"Flow", "Part", "Clump", "Curl", "Collide"}) addOperator(name);
+    ASSERT_EQ(groom().operators.size(), 5u);
+    chooseOperator(1);
+    drawCurve({onHead(0.01f, 0.03f, 0.07f), onHead(0.01f, 0.015f, 0.05f), onHead(0.01f, 0.005f, 0.02f)});
+    EXPECT_GE(curveOf(groom().operators[1]).points.size(), 2u);
+
+    // Sculpted on top.
+    tool("comb");
+    drag({at(onHead(0.04f, 0.06f, 0.05f)), at(onHead(0.06f, 0.08f, 0.05f)), at(onHead(0.07f, 0.1f, 0.05f))});
+    ASSERT_EQ(groom().operators.size(), 6u);
+    EXPECT_EQ(groom().operators.back().op, "sculpt");
+
+    // A fringe of its own, and behind it a braid of the rest.
+    tool("select");
+    drag({at(onHead(-0.05f, 0.01f, 0.06f)), at(onHead(0.05f, 0.01f, 0.06f)), at(onHead(0.05f, 0.06f, 0.08f)),
+          at(onHead(-0.05f, 0.06f, 0.08f))});
+    open("layers");
+    click("layerAdd");
+    ASSERT_EQ(groom().layers.size(), 2u);
+    EXPECT_GT(strandsOfLayer(groom(), 1).size(), 0u);
+    chooseInMenu("Select", "None");
+    open("operators");
+    chooseOperator(5);
+    addOperator("Braid");
+    chooseInMenu("View", "From the back");
+    drawCurve({onHead(0, 0.12f, -0.1f), onHead(0, 0.17f, -0.1f), onHead(0, 0.22f, -0.1f)});
+    for (auto* fold : window->panel("operators")->findChildren<QToolButton*>()) {
+        if (fold->isVisible() && fold->text() == "Region") click(*fold);
+    }
+    auto* layer = window->panel("operators")->findChild<NumberBox*>("layer");
+    ASSERT_TRUE(layer);
+    scrollTo(*layer);
+    turnWheel(layer->spinBox(), 1);
+    EXPECT_GE(curveOf(groom().operators.back()).points.size(), 2u);
+    EXPECT_EQ(layer->value(), 1);
+    expectSound();
+
+    // It moves, and what it has become is its shape.
+    chooseInMenu("Simulation", "Play");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& frame = parts().player.frame();
+            return frame && frame->time > 0.2;
+        },
+        60'000));
+    const auto before = hash();
+    chooseInMenu("Simulation", "Take this shape");
+    EXPECT_NE(hash(), before) << window->statusLine().message().toStdString();
+
+    // Saved under the name that is proposed, changed, killed, recovered.
+    onceAskedForAFileTakeIt();
+    chooseInMenu("File", "Save");
+    EXPECT_FALSE(document().isModified()) << window->statusLine().message().toStdString();
+    EXPECT_TRUE(QFileInfo::exists(document().path()));
+    tool("length");
+    drag({at(onHead(0, 0.05f, -0.08f)), at(onHead(0.03f, 0.07f, -0.08f))});
+    const auto unsaved = hash();
+    ASSERT_TRUE(saveProject(groom(), (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) +
+                                      "/recovery/killed.hairloom")
+                                         .toStdString()));
+    chooseInMenu("File", "New");
+    click("recover");
+    finishWork();
+    EXPECT_EQ(hash(), unsaved);
+
+    // Out.
+    onceAsked<ExportDialog>([this](ExportDialog& dialog) {
+        onceAskedForAFileTakeIt();
+        auto* buttons = dialog.findChild<QDialogButtonBox*>();
+        for (QAbstractButton* button : buttons->buttons()) {
+            if (buttons->buttonRole(button) == QDialogButtonBox::AcceptRole)
+                clickAt(*button, button->rect().center());
+        }
+        finishWork();
+        EXPECT_EQ(dialog.report().strands, groom().strandCount());
+        clickAt(*buttons->button(QDialogButtonBox::Close), {8, 8});
+    });
+    chooseInMenu("File", "Export hair…");
+    const QStringList written = QDir(folder.path()).entryList({"*.tfx", "*.hair", "*.abc", "*.usd*"});
+    ASSERT_EQ(written.size(), 1) << "the first target's format";
+    const auto exported = importStrands(inFolder(written.front().toUtf8().constData()).toStdString());
+    ASSERT_TRUE(exported) << exported.error().message();
+    EXPECT_EQ(exported->groom.strandCount(), guides);
+}
+
+}  // namespace
+}  // namespace hairloom::editor
