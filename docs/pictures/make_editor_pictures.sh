@@ -3,5 +3,5 @@
 # Makes the pictures of docs/manual.md anew, from the window on a display of its own. Takes minutes without a GPU.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
-HAIRLOOM_MANUAL="$PWD/docs/pictures" xvfb-run -a -s "-screen 0 1600x1000x24 -noreset" \
-    build/release/bin/test_editor --gtest_filter='ManualTest.*'
+HAIRLOOM_VIEWPORT=readback HAIRLOOM_MANUAL="$PWD/docs/pictures" xvfb-run -a -s "-screen 0 1600x1000x24 -noreset" \
+    build/release/bin/test_editor --gtest_filter='ManualTest.*:GroomerWalkTest.*'

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a groomer does from a body of another program to a hairstyle that is exported; docs/manual.md tells it
-// as a walk.
+// as a walk, with pictures where docs/pictures/make_editor_pictures.sh runs it.
 #include <QComboBox>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QMenu>
+#include <QPainter>
 #include <QStandardPaths>
 #include <QToolButton>
 #include <QTreeWidget>
@@ -27,6 +28,43 @@ namespace {
 
 class GroomerWalkTest : public WindowTest {
   protected:
+    GroomerWalkTest() : WindowTest(isForManual()) {}
+    static bool isForManual() { return !qEnvironmentVariableIsEmpty("HAIRLOOM_MANUAL"); }
+
+    /// A picture of the manual: of this widget, or of the window with the head from that side.
+    void keep(QWidget& widget) {
+        if (isForManual()) stations_.push_back(widget.grab().toImage());
+    }
+    void keep(render::View side) {
+        if (!isForManual()) return;
+        const OrbitCamera before = viewport().camera();
+        viewport().look(side);
+        viewport().frameAll();
+        viewport().camera().zoom(1.2f);
+        viewport().redraw();
+        EXPECT_TRUE(viewport().waitForPicture(600'000));
+        keep(*window);
+        viewport().camera() = before;
+    }
+    /// All that were kept, two in a row.
+    void keepStations() {
+        if (!isForManual()) return;
+        constexpr int kWidth = 640, kHeight = 400, kGap = 8;
+        const int rows = (static_cast<int>(stations_.size()) + 1) / 2;
+        QImage all(2 * kWidth + kGap, rows * (kHeight + kGap) - kGap, QImage::Format_RGB32);
+        all.fill(QColor(0x20, 0x22, 0x26));
+        QPainter painter(&all);
+        int number = 0;
+        for (const QImage& station : stations_) {
+            const QImage small =
+                station.scaled(kWidth, kHeight, Qt::KeepAspectRatio, Qt::SmoothTransformation);
+            const QPoint corner(number % 2 * (kWidth + kGap), number / 2 * (kHeight + kGap));
+            painter.drawImage(corner + QPoint((kWidth - small.width()) / 2, (kHeight - small.height()) / 2),
+                              small);
+            ++number;
+        }
+        keepForManual(all, "walk");
+    }
     void click(const char* button) { find<QPushButton>(button)->click(); }
     void addOperator(const QString& name) {
         auto* list = find<QListWidget>("operators");
@@ -54,6 +92,9 @@ class GroomerWalkTest : public WindowTest {
     Vec3f onHead(float x, float down, float z) const { return top + Vec3f(x, -down, z); }
 
     Vec3f top = Vec3f::Zero();  ///< of the head
+
+  private:
+    QList<QImage> stations_;
 };
 
 TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
@@ -66,6 +107,7 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
     ASSERT_TRUE(dialog);
     finishWork();
     EXPECT_TRUE(dialog->findChild<QToolButton*>("headUnit:dm")->isChecked());
+    keep(*dialog);
     dialog->accept();
     finishWork();
     ASSERT_TRUE(groom().scalp);
@@ -96,6 +138,8 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
     finishWork();
     ASSERT_EQ(groom().strandCount(), 200u) << window->statusLine().message().toStdString();
     EXPECT_NEAR(groom().placement.length, 0.25f, 1e-4f);
+    find<NumberBox>("followPerGuide")->spinBox().setValue(10);
+    keep(render::View::ThreeQuarter);
 
     // Five operators, one with a parting that is drawn.
     for (const char* name : {"Flow", "Part", "Clump", "Curl", "Collide"}) addOperator(name);
@@ -112,6 +156,8 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
     drag({at(onHead(0.04f, 0.06f, 0.05f)), at(onHead(0.06f, 0.08f, 0.05f)), at(onHead(0.07f, 0.1f, 0.05f))});
     ASSERT_EQ(groom().operators.size(), 6u);
     EXPECT_EQ(groom().operators.back().op, "sculpt");
+    window->panel("operators")->raise();
+    keep(render::View::ThreeQuarter);
 
     // A fringe of its own, and behind it a braid of the rest.
     trigger("tool.select");
@@ -131,6 +177,8 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
     layer->spinBox().setValue(1);
     EXPECT_GE(curveOf(groom().operators.back()).points.size(), 2u);
     expectSound();
+    keep(render::View::Back);
+    keepStations();
 
     // It moves, and what it has become is its shape.
     trigger("play.toggle");

@@ -34,9 +34,7 @@ class ManualTest : public WindowTest {
     }
     void shoot(QWidget& widget, const QString& name) {
         QCoreApplication::processEvents();
-        const QImage picture = widget.grab().toImage();
-        const QString file = qEnvironmentVariable("HAIRLOOM_MANUAL") + "/editor-" + name + ".png";
-        EXPECT_TRUE(picture.convertToFormat(QImage::Format_RGB888).save(file)) << name.toStdString();
+        keepForManual(widget.grab().toImage(), name);
     }
     void shootWindow(const QString& name) {
         EXPECT_TRUE(viewport().waitForPicture(kPatience)) << name.toStdString();
@@ -108,7 +106,7 @@ TEST_F(ManualTest, GroomingSpheresAndLook) {
     shootWindow("grooming");
     trigger("tool.view");
     raise("operators");
-    find<QListWidget>("operators")->setCurrentRow(4);
+    find<QListWidget>("operators")->setCurrentRow(7);
     shootWindow("operators");
     raise("view");
     raise("spheres");

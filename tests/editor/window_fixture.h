@@ -143,6 +143,11 @@ class WindowTest : public testing::Test {
     QImage viewportOnScreen() {
         return onScreen().copy(QRect(viewport().mapToGlobal(QPoint(0, 0)), viewport().size()));
     }
+    /// Keeps a picture of docs/manual.md in the folder that HAIRLOOM_MANUAL names.
+    static void keepForManual(const QImage& picture, const QString& name) {
+        const QString file = qEnvironmentVariable("HAIRLOOM_MANUAL") + "/editor-" + name + ".png";
+        EXPECT_TRUE(picture.convertToFormat(QImage::Format_RGB888).save(file)) << name.toStdString();
+    }
     /// Pixels, every fourth each way, that are redder than blue.
     static int skinPixels(const QImage& picture) {
         int count = 0;
