@@ -127,7 +127,12 @@ TEST_F(ManualTest, GroomingSpheresAndLook) {
     ASSERT_TRUE(viewport().waitForPicture(kPatience));
     // Thumbnails come when nothing else is to be drawn.
     auto* looks = find<QListWidget>("looks");
-    const auto drawn = [&] { return looks->item(looks->count() - 1)->data(Qt::UserRole).toBool(); };
+    const auto drawn = [&] {
+        for (int i = 0; i < looks->count(); ++i) {
+            if (!looks->item(i)->data(Qt::UserRole).toBool()) return false;
+        }
+        return true;
+    };
     EXPECT_TRUE(QTest::qWaitFor(drawn, kPatience));
     shootWindow("look");
     find<QPushButton>("compareShow")->setChecked(false);
