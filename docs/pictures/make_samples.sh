@@ -24,7 +24,7 @@ done
 draw shoulder three-quarter 760x760 rest
 draw shoulder three-quarter 760x760 motion --record "$out/shoulder.frames" --frame 12
 
-convert "$out"/{short,shoulder,long}.png +append "$out/upper.png"
-convert "$out"/{bob,afro,braid}.png +append "$out/lower.png"
-convert "$out"/{upper,lower}.png -append -define png:compression-level=9 docs/pictures/samples.png
-convert "$out"/{rest,motion}.png +append -define png:compression-level=9 docs/pictures/shoulder.png
+convert "$out"/{short,shoulder,long}.png +append +repage "$out/upper.png"
+convert "$out"/{bob,afro,braid}.png +append +repage "$out/lower.png"
+convert "$out"/{upper,lower}.png -append +repage -colors 256 png8:docs/pictures/samples.png
+convert "$out"/{rest,motion}.png +append +repage -define png:compression-level=9 docs/pictures/shoulder.png
