@@ -182,6 +182,8 @@ TEST_F(ManualTest, Accuracy) {
     raise("accuracy");
     find<QPushButton>("accuracyMeasure")->click();
     finishWork();
+    // Of a document that was just opened the head is seen first.
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     find<NumberBox>("accuracyPixels")->spinBox().setValue(0.5);
     find<QPushButton>("accuracyShow")->click();
     finishWork();
