@@ -15,8 +15,8 @@
 #include "core/scene/hair_export.h"
 #include "core/scene/played_frames.h"
 #include "core/scene/web_page.h"
+#include "editor/document/words.h"
 #include "editor/fields/blocks.h"
-#include "editor/fields/error_text.h"
 #include "editor/fields/length_text.h"
 #include "importers/length_unit.h"
 

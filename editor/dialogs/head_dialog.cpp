@@ -9,8 +9,8 @@
 #include <algorithm>
 
 #include "core/scene/open.h"
+#include "editor/document/words.h"
 #include "editor/fields/blocks.h"
-#include "editor/fields/error_text.h"
 #include "editor/fields/length_text.h"
 #include "editor/viewport/strand_preview.h"
 #include "importers/length_unit.h"

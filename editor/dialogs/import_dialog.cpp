@@ -6,8 +6,8 @@
 #include <QHBoxLayout>
 #include <QPointer>
 
+#include "editor/document/words.h"
 #include "editor/fields/blocks.h"
-#include "editor/fields/error_text.h"
 #include "editor/viewport/strand_preview.h"
 #include "importers/length_unit.h"
 

@@ -10,7 +10,7 @@
 #include <QUuid>
 
 #include "core/groom/file/project_file.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 
 namespace hairloom::editor {
 namespace {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "core/base/result.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 
 namespace hairloom::editor {
 

@@ -5,9 +5,11 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QScrollArea>
+#include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace hairloom::editor {
@@ -95,6 +97,24 @@ void wrapRows(QTreeWidget& table) {
     if (table.property("wraps").toBool()) return;
     table.setProperty("wraps", true);
     QObject::connect(table.header(), &QHeaderView::sectionResized, &table, [&table] { wrapNow(table); });
+}
+
+std::function<void()> paced(QObject& owner, std::function<void()> act) {
+    auto* timer = new QTimer(&owner);
+    timer->setSingleShot(true);
+    timer->setInterval(200);
+    const auto waits = std::make_shared<bool>(false);
+    QObject::connect(timer, &QTimer::timeout, timer, [timer, waits, act] {
+        if (!std::exchange(*waits, false)) return;
+        act();
+        timer->start();
+    });
+    return [timer, waits, act = std::move(act)] {
+        *waits = timer->isActive();
+        if (*waits) return;
+        act();
+        timer->start();
+    };
 }
 
 QWidget* collapsible(const QString& title, QWidget* content, bool open) {

@@ -26,6 +26,9 @@ QWidget* column(std::initializer_list<QWidget*> rows);
 QWidget* stacked(std::initializer_list<QWidget*> rows);
 /// Rows become as high as their words need in columns as wide as they are now, and follow when those change.
 void wrapRows(QTreeWidget& table);
+/// Does `act` five times a second at most, the last call in any case: for numbers that change with each
+/// frame, which nobody reads faster. To be called while `owner` lives.
+std::function<void()> paced(QObject& owner, std::function<void()> act);
 /// Folds away under its heading; `open` at first.
 QWidget* collapsible(const QString& title, QWidget* content, bool open = true);
 

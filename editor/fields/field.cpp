@@ -9,7 +9,7 @@
 #include "core/editing/stack_commands.h"
 #include "core/operations/script.h"
 #include "core/operations/stack.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 
 namespace hairloom::editor {
 namespace {
@@ -146,19 +146,6 @@ std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names)
         picked.push_back(*found);
     }
     return picked;
-}
-
-QString labelOf(const QString& name) {
-    QString label;
-    for (const QChar letter : name) {
-        if (letter.isUpper() && !label.isEmpty()) label += ' ';
-        label += label.isEmpty() ? letter.toUpper() : letter.toLower();
-    }
-    // The unit stands beside the value.
-    for (const QLatin1String unit : {QLatin1String(" degrees"), QLatin1String(" per cm2")}) {
-        if (label.endsWith(unit)) label.chop(unit.size());
-    }
-    return label;
 }
 
 Shown shownAs(const QString& unit, double min, double max, DisplayUnit lengths) {

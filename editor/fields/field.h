@@ -43,9 +43,6 @@ std::vector<Field> operatorMaskFields(const Groom& groom, std::size_t index, con
 /// The fields of these names, in that order. Each name is one of `all`.
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names);
 
-/// "Wind speed" from "windSpeed".
-QString labelOf(const QString& name);
-
 /// How a value is shown: times `factor`, in `unit`. Metres become the unit of the preferences; those of
 /// fibres, which are far smaller, micrometres.
 struct Shown {

@@ -3,7 +3,7 @@
 
 #include <QFileDialog>
 
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 
 namespace hairloom::editor {
 

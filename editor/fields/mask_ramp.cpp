@@ -3,7 +3,7 @@
 
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 
 namespace hairloom::editor {
 

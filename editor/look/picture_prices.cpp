@@ -6,7 +6,7 @@
 
 #include "core/editing/document.h"
 #include "core/scene/picture_cost.h"
-#include "editor/fields/field.h"
+#include "editor/document/words.h"
 #include "editor/look/parts.h"
 
 namespace hairloom::editor {

@@ -18,7 +18,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/settings_json.h"
 #include "core/operations/resample.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/fields/length_text.h"
 #include "editor/fields/number_box.h"
 #include "editor/panels/accuracy_grid.h"

@@ -9,8 +9,8 @@
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/scene/held_cards.h"
+#include "editor/document/words.h"
 #include "editor/fields/blocks.h"
-#include "editor/fields/error_text.h"
 
 namespace hairloom::editor {
 

@@ -13,6 +13,8 @@
 #include "core/editing/settings_commands.h"
 #include "core/simulation/effect_switch.h"
 #include "editor/document/tasks.h"
+#include "editor/document/words.h"
+#include "editor/fields/blocks.h"
 #include "editor/fields/field.h"
 #include "editor/fields/number_box.h"
 #include "editor/panels/certificate_box.h"
@@ -56,9 +58,9 @@ class EffectsPanel : public QWidget {
         layout->addWidget(trial_);
         makeMeasure();
         makeTrial();
-        const auto refreshSeen = [this] {
+        const auto refreshSeen = paced(*this, [this] {
             if (isVisible()) refresh();
-        };
+        });
         connect(&player_, &Player::frameReady, this, refreshSeen);
         connect(&player_, &Player::planPreviewChanged, this, refreshSeen);
         connect(&player_, &Player::stateChanged, this, refreshSeen);

@@ -11,7 +11,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/groom/strand_subset.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {

@@ -11,7 +11,7 @@
 #include <memory>
 
 #include "core/base/output_file.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 
 namespace hairloom::editor {
 namespace {

@@ -6,7 +6,8 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
+#include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
 #include "editor/panels/panel.h"
 #include "editor/style/icons.h"
@@ -58,7 +59,7 @@ class MotionPanel : public QWidget {
             }
         });
         connect(&player_, &Player::motionsChanged, this, &MotionPanel::fill);
-        connect(&player_, &Player::frameReady, this, &MotionPanel::showState);
+        connect(&player_, &Player::frameReady, this, paced(*this, [this] { showState(); }));
         fill();
         showState();
     }

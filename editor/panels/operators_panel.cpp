@@ -16,7 +16,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack_file.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
 #include "editor/fields/mask_ramp.h"

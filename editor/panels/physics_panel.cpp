@@ -10,6 +10,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/scene/hair_preset.h"
 #include "core/simulation/sag.h"
+#include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/stiffness_curve.h"
 #include "editor/panels/panel.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/panels/run_view.h"
 
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/overlays/overlay_mode.h"
 
 namespace hairloom::editor {

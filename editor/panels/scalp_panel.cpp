@@ -12,7 +12,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/surface_disc.h"
 #include "core/geometry/selection.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
 #include "editor/panels/panel.h"

@@ -19,7 +19,7 @@
 #include "core/editing/document.h"
 #include "editor/dialogs/head_dialog.h"
 #include "editor/dialogs/import_dialog.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/files.h"
 #include "editor/style/icons.h"

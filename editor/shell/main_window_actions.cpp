@@ -13,7 +13,7 @@
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/overlays/overlay_mode.h"
 #include "editor/shell/main_window.h"
 #include "editor/style/icons.h"

@@ -11,7 +11,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/operations/guide_clusters.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/fields/length_text.h"
 #include "editor/shell/main_window.h"
 

@@ -7,8 +7,8 @@
 #include <QPushButton>
 
 #include "core/scene/sample.h"
+#include "editor/document/words.h"
 #include "editor/fields/blocks.h"
-#include "editor/fields/error_text.h"
 #include "editor/fields/field.h"
 #include "editor/shell/files.h"
 #include "editor/style/icons.h"

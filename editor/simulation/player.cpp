@@ -9,7 +9,7 @@
 #include "core/scene/motions.h"
 #include "core/simulation/clip_motion.h"
 #include "core/simulation/effect_switch.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/simulation/live_engine.h"
 
 namespace hairloom::editor {

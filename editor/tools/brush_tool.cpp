@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/editing/document.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/fields/field.h"
 #include "editor/style/icons.h"
 

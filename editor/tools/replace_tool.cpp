@@ -9,7 +9,7 @@
 #include "core/editing/document.h"
 #include "core/editing/place.h"
 #include "core/editing/surface_disc.h"
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/fields/option_form.h"
 #include "editor/tools/surface_pick.h"
 #include "editor/tools/tool_maker.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 #include "editor/viewport/native_window.h"
 #include "editor/viewport/render_work.h"
 

@@ -4,6 +4,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 
+#include "editor/document/words.h"
 #include "editor/fields/colour.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/number_box.h"

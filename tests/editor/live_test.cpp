@@ -195,10 +195,12 @@ TEST_F(LiveTest, MemoryStaysFlat) {
             return QTest::qWaitFor([&] { return pictures >= count; }, 240'000);
         };
         // Shaders of what is new are compiled at first.
-        ASSERT_TRUE(drawn(60));
+        ASSERT_TRUE(drawn(40));
         const double before = residentMegabytes();
-        ASSERT_TRUE(drawn(300));
-        EXPECT_LT(residentMegabytes() - before, 20) << "MB in 300 pictures";
+        const double begin = now();
+        // 300 frames of the hair: a software device draws three pictures a second meanwhile.
+        ASSERT_TRUE(drawn(100) && played(begin + 5));
+        EXPECT_LT(residentMegabytes() - before, 7) << "MB in 100 pictures";
         trigger("play.reset");
     }
 }

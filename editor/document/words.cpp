@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/fields/error_text.h"
+#include "editor/document/words.h"
 
 #include <QStringList>
-
-#include "editor/fields/field.h"
 
 namespace hairloom::editor {
 namespace {
@@ -22,6 +20,19 @@ QString inWords(const QString& pointer) {
 }
 
 }  // namespace
+
+QString labelOf(const QString& name) {
+    QString label;
+    for (const QChar letter : name) {
+        if (letter.isUpper() && !label.isEmpty()) label += ' ';
+        label += label.isEmpty() ? letter.toUpper() : letter.toLower();
+    }
+    // The unit stands beside the value.
+    for (const QLatin1String unit : {QLatin1String(" degrees"), QLatin1String(" per cm2")}) {
+        if (label.endsWith(unit)) label.chop(unit.size());
+    }
+    return label;
+}
 
 QString errorText(const Error& error) {
     Error told = error;

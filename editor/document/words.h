@@ -7,6 +7,8 @@
 
 namespace hairloom::editor {
 
+/// "Wind speed" from "windSpeed".
+QString labelOf(const QString& name);
 /// What an error says, with places in JSON in words: "Material › root radius is 99; expected …".
 QString errorText(const Error& error);
 
