@@ -247,6 +247,7 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
         takeMeanDyes(result.groups.back(), strands.pointDyes);
     }
     result.measureSpace(scene);
+    result.clumping = scene.clumping;
     return result;
 }
 

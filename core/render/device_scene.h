@@ -145,6 +145,7 @@ class DeviceScene {
     std::vector<MeshOnDevice> meshes;
     std::vector<StrandGroup> groups;
     std::vector<DrawBatch> batches;
+    Clumping clumping;
     /// With the radii of now.
     HairMeasure measure() const;
     /// What the hair of the first group lets through to the skin; prepareFibres() comes before.

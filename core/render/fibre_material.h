@@ -21,10 +21,6 @@ struct FibreMaterial {
     /// place.
     shading::MarschnerParameters marschner;
     shading::SadeghiParameters sadeghi;  ///< where it is
-    /// Fibres that stand in the light's way by those that lie there, over a beam of 5 mm: hair grows in
-    /// clumps. Traced Sintel strands have 0.81. 0…1. Shadow maps that resolve the clumps count for
-    /// themselves.
-    float clumping = 0.81f;
 
     bool operator==(const FibreMaterial&) const = default;
 };

@@ -37,7 +37,7 @@ shaders::float4 toFloat4(const Vec3d& v) {
 
 /// In single scattering what meets a fibre is lost.
 HairFlux fluxOf(const FibreMaterial& material, const shading::AverageScattering& across) {
-    HairFlux flux{Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero(), material.clumping, true};
+    HairFlux flux{Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero(), true};
     if (material.scattering == Scattering::single) return flux;
     flux.scattered = (across.forward + across.backward).cast<float>();
     flux.first = across.first.cast<float>();
@@ -65,7 +65,6 @@ shaders::FibreConstants constantsOf(const FibreMaterial& material, bool varies) 
     shaders::FibreConstants c{};
     c.minSpread = static_cast<float>(shading::kMinSpread);
     c.maxSpread = static_cast<float>(shading::kLargestSpread);
-    c.clumping = material.clumping;
     if (material.model == ShadingModel::marschner) {
         const auto& intensity = material.marschner.intensity;
         c.rIntensity = static_cast<float>(intensity[0]);

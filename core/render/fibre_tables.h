@@ -17,7 +17,6 @@ struct HairFlux {
     /// it takes. Linear RGB.
     Vec3f scattered = Vec3f::Constant(0.5f);
     Vec3f first = Vec3f::Zero(), second = Vec3f::Zero();
-    float clumping = 1;  ///< see FibreMaterial
     /// False for Kajiya-Kay; else what has met no fibre is known by itself, as shadow maps resolve it.
     bool ofFibres = false;
 };

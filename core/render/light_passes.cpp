@@ -60,7 +60,7 @@ void setUpLights(RendererState& state) {
     shade.scattered = toShader(flux.scattered, 0);
     shade.firstMoment = toShader(flux.first, 0);
     shade.secondMoment = toShader(flux.second, 0);
-    shade.clumping = flux.clumping;
+    shade.clumping = flux.ofFibres ? state.scene.clumping.widest() : 1;
     shade.ofFibres = flux.ofFibres ? 1 : 0;
     shade.lightCount = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);

@@ -9,6 +9,7 @@
 #include "core/base/math.h"
 #include "core/base/result.h"
 #include "core/render/camera.h"
+#include "core/render/clumping.h"
 #include "core/render/environment.h"
 #include "core/render/fibre_material.h"
 #include "core/render/light.h"
@@ -74,6 +75,8 @@ struct RenderStrands {
 struct RenderScene {
     std::vector<RenderMesh> meshes;
     std::vector<RenderStrands> strands;
+    Clumping
+        clumping;  ///< of all strands at rest, as measureClumping() finds it; by default of fibres at random
     Camera camera;
     std::vector<Light> lights;  ///< any number: cutLights()
     /// Light from around; by default that of a room under a clear sky.

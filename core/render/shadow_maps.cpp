@@ -12,14 +12,6 @@ namespace {
 
 using gpu::Binding;
 
-/// What FibreMaterial::clumping must grow by where the light's map has texels of so many metres. The Sintel
-/// strands let as much through as traced ones with 0.86 at 2.2 mm, 1.02 at 1.1 mm and about 1.45 at 0.28 mm;
-/// the 0.81 of a beam of 5 mm stands at two texels a beam.
-float resolvedClumps(float texel) {
-    constexpr float kBeam = 0.0025f, kEachHalving = 0.2f;
-    return std::clamp(kEachHalving * std::log2(kBeam / texel), -0.2f, 1.0f);
-}
-
 bool castsShadow(const RendererState& state, std::size_t light) {
     return state.options.shadows != Shadows::none && state.lights[light].castsShadow;
 }
@@ -244,7 +236,9 @@ shaders::LightConstants mapConstants(const RendererState& state, const ShadowAtl
     const float distance =
         view.eye_ws.w() > 0 ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
     const float texel = view.spread * distance / side;
-    c.resolvedClumping = resolvedClumps(texel);
+    if (atlas.shadows == Shadows::deepOpacity)
+        c.layers.w = std::min(state.scene.measure().diameter / texel, 1.0f);
+    c.stopping = state.scene.clumping.of(texel);
     c.texelSize = texel;
     c.headAbsorption = state.options.headAbsorption;
     return c;

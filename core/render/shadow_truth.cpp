@@ -11,7 +11,18 @@
 namespace hairloom::render {
 namespace {
 
-constexpr double kBias = 0.0007;  // metres, as the shading has it
+/// Metres in front of a fibre in which hair does not count, as the shading has it.
+double biasOf(const RenderStrands& strands, std::uint32_t point) {
+    return static_cast<double>(strands.radii[point]);
+}
+
+/// Unit, of the strand at one of its points.
+shaders::float4 directionAt(const RenderStrands& strands, std::uint32_t point) {
+    const auto after = std::ranges::upper_bound(strands.offsets, point);
+    const std::uint32_t a = point > *(after - 1) ? point - 1 : point,
+                        b = point + 1 < *after ? point + 1 : point;
+    return toShader(Vec3f(strands.positions_ws[b] - strands.positions_ws[a]).normalized(), 0);
+}
 
 /// Length of the part of a segment that lies inside a disc around the origin.
 double insideDisc(const Vec2d& a, const Vec2d& b, double radius) {
@@ -36,12 +47,12 @@ class Beam {
               (std::abs(toLight_.x()) < 0.9 ? Vec3d::UnitX() : Vec3d::UnitY()).cross(toLight_).normalized()),
           up_(toLight_.cross(right_)) {}
 
-    double fibresBefore(const Vec3d& p) const {
+    double fibresBefore(const Vec3d& p, double bias) const {
         double area = 0;
         for (std::size_t s = 0; s + 1 < strands_.offsets.size(); ++s) {
             for (std::uint32_t k = strands_.offsets[s]; k + 1 < strands_.offsets[s + 1]; ++k) {
                 area += shadeOf(strands_.positions_ws[k].cast<double>() - p,
-                                strands_.positions_ws[k + 1].cast<double>() - p) *
+                                strands_.positions_ws[k + 1].cast<double>() - p, bias) *
                         2 * static_cast<double>(strands_.radii[k]);
             }
         }
@@ -50,8 +61,8 @@ class Beam {
 
   private:
     /// Length of a segment in front of the point and within the beam, seen from the light.
-    double shadeOf(Vec3d a, Vec3d b) const {
-        const double da = a.dot(toLight_) - kBias, db = b.dot(toLight_) - kBias;
+    double shadeOf(Vec3d a, Vec3d b, double bias) const {
+        const double da = a.dot(toLight_) - bias, db = b.dot(toLight_) - bias;
         if (da <= 0 && db <= 0) return 0;
         if (da < 0) a += (b - a) * (-da / (db - da));
         if (db < 0) b += (a - b) * (-db / (da - db));
@@ -98,13 +109,15 @@ ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64
     Random random(seed);
     for (std::size_t i = 0; i < count; ++i) {
         const auto at = random.below(static_cast<std::uint32_t>(strands.positions_ws.size()));
-        result.cases.push_back({toShader(strands.positions_ws[at], static_cast<float>(kBias)), {0, 1, 0, 0}});
+        result.cases.push_back({toShader(strands.positions_ws[at], static_cast<float>(biasOf(strands, at))),
+                                directionAt(strands, at)});
     }
     result.counted.resize(count);
     parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const shaders::float4& p = result.cases[i].position_ws;
-            result.counted[i] = beam.fibresBefore(Vec3f(p.x, p.y, p.z).cast<double>());
+            result.counted[i] =
+                beam.fibresBefore(Vec3f(p.x, p.y, p.z).cast<double>(), static_cast<double>(p.w));
         }
     });
     return result;
@@ -128,13 +141,14 @@ Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const 
 }
 
 HeadCases castRays(const RenderScene& scene, std::size_t count, std::uint64_t seed) {
-    const std::span<const Vec3f> points = scene.strands.front().positions_ws;
+    const RenderStrands& strands = scene.strands.front();
+    const std::span<const Vec3f> points = strands.positions_ws;
     const Vec3d toLight = scene.lights.front().toLight_ws.cast<double>().normalized();
     HeadCases result;
     Random random(seed);
     for (std::size_t i = 0; i < count; ++i) {
         const auto at = random.below(static_cast<std::uint32_t>(points.size()));
-        result.cases.push_back({toShader(points[at], static_cast<float>(kBias)), {0, 1, 0, 0}});
+        result.cases.push_back({toShader(points[at], static_cast<float>(biasOf(strands, at))), {0, 1, 0, 0}});
     }
     result.visible.resize(count);
     parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {

@@ -253,6 +253,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) {
         if (scene.material_.look) scene.weights_ = weightsOfStrands(groom);
+        scene.clumping_ = render::measureClumping(scene.scene().strands);
         return scene;
     }
 
@@ -272,6 +273,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         scene.weights_ = std::move(*weights);
     }
     scene.makeFollowHairs({}, {});
+    scene.clumping_ = render::measureClumping(scene.scene().strands);
     return scene;
 }
 
@@ -334,6 +336,7 @@ render::RenderScene GroomScene::scene() const {
         scene.meshes.push_back(mesh);
     }
     if (posed_.strandCount() == 0) return scene;
+    scene.clumping = clumping_;
     render::RenderStrands strands;
     strands.material = material_;
     if (hairOffsets_.empty()) {

@@ -106,7 +106,8 @@ class GroomScene {
     std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
     render::StrandShading material_;
     StreakAndDyeWeights weights_;  ///< of what is drawn, where the material has a look
-    bool matte_ = false;           ///< the head, where a view says what it is
+    render::Clumping clumping_;
+    bool matte_ = false;  ///< the head, where a view says what it is
 };
 
 }  // namespace hairloom

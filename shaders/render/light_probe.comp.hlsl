@@ -13,11 +13,13 @@ void main(uint3 id : SV_DispatchThreadID) {
     gCases.GetDimensions(count, stride);
     if (id.x >= count) return;
     const LightCase c = gCases[id.x];
-    const Occlusion o = occlusion(gShade.lights[0], c.position_ws.xyz, c.position_ws.w, 0.002, gShade.lights[0].headAbsorption);
-    const SkyShares seen = unpackSky(skySeen(gShade, c.position_ws.xyz).whole);
+    const Occlusion o = occlusion(gShade.lights[0], c.position_ws.xyz, c.direction.xyz, c.position_ws.w, 0.002,
+                                    gShade.lights[0].headAbsorption);
+    const SkyShares seen = unpackSky(skySeen(c.position_ws.xyz, c.direction.xyz, c.position_ws.w).whole);
     LightAnswer answer;
     answer.onHair = float4(environmentOnHair(gShade, c.direction.xyz, openSky()), o.fibres);
     answer.onSkin = float4(environmentOnSkin(gShade, c.direction.xyz), o.visibility);
-    answer.sky = float4(seen.open, seen.blocked, 0, 0);
+    answer.sky =
+        float4(seen.open, seen.blocked, o.passed, 0);
     gResults[id.x] = answer;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HAIRLOOM_OPACITY_HLSLI
 #define HAIRLOOM_OPACITY_HLSLI
+#include "shaders/shared/render_types.h"
+
 // One whole fibre in a layer; 64 of them fill it.
 #define OPACITY_UNIT (1.0 / 64.0)
 // The same while fibres are being counted.
@@ -16,15 +18,35 @@ float4 unpackShares(uint2 packed) {
     return float4(packed.x & 0xffffu, packed.x >> 16u, packed.y & 0xffffu, packed.y >> 16u) / 65535.0;
 }
 
-// Fibres in front of what lies `behind` metres behind the first hair: the layers of a deep opacity map, which end at `ends`.
-float fibresInLayers(float4 layers, float3 ends, float behind) {
-    const float3 begins = float3(0, ends.xy);
-    return dot(layers.rgb, saturate((behind - begins) / (ends - begins))) / OPACITY_UNIT;
+// Fibres in front of a depth, as a texel of a deep opacity map tells; metres behind the near plane. The layers begin with the first
+// hair and end map.layers.xyz metres behind it, the last where all hair ends. The first fibre, map.layers.w of a texel, stands where
+// the first layer begins; the others are spread over theirs.
+float fibresInLayers(LightConstants map, float4 layers, float depth) {
+    const float first = (1.0 - layers.a) * map.depthRange;
+    const float behind = depth - first;
+    if (behind <= 0.0) return 0.0;
+    const float3 counts = layers.rgb / OPACITY_UNIT;
+    const float3 begins = float3(0, map.layers.xy);
+    const float last = max(min(map.layers.z, map.hairBegins + map.layers.z - first), 1.01 * map.layers.y);
+    const float3 parts = saturate((behind - begins) / (float3(map.layers.xy, last) - begins));
+    return dot(counts, parts) + min(counts.x, map.layers.w) * (1.0 - parts.x);
 }
 
 // Metres behind the near plane of a light's view; its range and near plane as in LightConstants.
 float metresBehindNear(float depthRange, float nearPlane, float depth) {
     const float farPlane = nearPlane + depthRange;
     return nearPlane > 0 ? nearPlane * farPlane / (farPlane - depth * depthRange) - nearPlane : depth * depthRange;
+}
+
+// By how many metres the depth of what runs along `along_ws` changes from texel to texel of a map, where it is at `uv` and `depth`:
+// texels beside it are compared with that, or a fibre that leans towards the light would shade itself. 0 where it has no direction.
+float2 depthSlope(LightConstants map, float3 position_ws, float3 along_ws, float2 uv, float depth) {
+    const float kStep = 0.001;     // metres
+    const float kSteepest = 4.0;  // metres a metre
+    const float4 clip = mul(map.clipFromWorld, float4(position_ws + kStep * along_ws, 1));
+    const float2 run = (float2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w) - uv) * map.tileSize;
+    const float rise = metresBehindNear(map.depthRange, map.nearPlane, clip.z / clip.w) - depth;
+    const float2 slope = run * (rise / max(dot(run, run), 1e-4));
+    return slope * min(1.0, kSteepest * map.texelSize / max(length(slope), 1e-12));
 }
 #endif

@@ -49,13 +49,13 @@ void main(uint3 id : SV_DispatchThreadID) {
     for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.headAbsorption);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, tangent, p.position_ws.w, 0.004, light.headAbsorption);
         const Occlusion shadow = shadowOf(light, o);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
-        float3 scattered = passedDirectly(light, shadow.fibres, gFibre.clumping) *
+        float3 scattered = shadow.passed *
                            fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
-        scattered += multipleScattering(gFibre, f, gFibre.clumping * shadow.fibres, gFibre.clumping * o.allFibres, tint,
+        scattered += multipleScattering(gFibre, f, gShade.clumping * shadow.fibres, gShade.clumping * o.allFibres, tint,
                                         absorption, gShade.ground.rgb * o.ground);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * shadow.visibility * scattered;

@@ -13,6 +13,7 @@ static const float kSkinPatch = 0.05;  // metres: radius of skin that is lit ali
 
 struct Occlusion {
     float fibres;      // crossed on the way to the light
+    float passed;      // share of the light that meets none of them: what single texels let through, for hair has gaps
     float allFibres;   // from the hair's lit side to its other, or to the head
     float visibility;  // 0 behind the head ... 1
     float ends;        // 1 where the light's way ends on the head
@@ -23,15 +24,9 @@ struct Occlusion {
 Occlusion shadowOf(LightConstants light, Occlusion o) {
     if (light.withoutShadows == 0.0) return o;
     o.fibres = 0.0;
+    o.passed = 1.0;
     o.visibility = 1.0;
     return o;
-}
-
-// What is left of light after so many fibres that a map counts. A beam of 5 mm crosses numbers of them that vary more than
-// by chance, for hair grows in clumps, and more of it passes than of their mean: `clumping` of them count. The finer the
-// texels, the more of this the map resolves itself, down to single fibres, which let nothing through at all.
-float passedDirectly(LightConstants light, float fibres, float clumping) {
-    return exp(-(clumping + light.resolvedClumping) * fibres);
 }
 
 // Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
@@ -48,7 +43,7 @@ float fibresAt(LightConstants light, uint texel, float depth, float bias) {
         const float4 part = saturate((depth - bias - light.hairBegins - begins) / (light.layers - begins));
         return dot(layers, part) / OPACITY_UNIT;
     }
-    return fibresInLayers(layers, light.layers.xyz, depth - bias - (1.0 - layers.a) * light.depthRange);
+    return fibresInLayers(light, layers, depth - bias);
 }
 
 // What the head leaves of the light at `behind` metres behind its first surface: all or nothing, or with `absorption` as
@@ -58,10 +53,13 @@ float throughHead(float behind, float absorption) {
     return behind < 0.0 ? 1.0 : 0.0;
 }
 
-// Biases: metres towards the light, so that a surface does not shadow itself. `headAbsorption`: see throughHead().
-Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, float headBias, float headAbsorption) {
+// Biases: metres towards the light, so that a surface does not shadow itself. `along_ws`: of a fibre there, or 0.
+// `headAbsorption`: see throughHead().
+Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, float hairBias, float headBias,
+                    float headAbsorption) {
     Occlusion result;
     result.fibres = 0;
+    result.passed = 1;
     result.allFibres = 0;
     result.visibility = 1;
     result.ends = 0;
@@ -79,9 +77,12 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     const int2 base = int2(floor(place));
     const float2 f = place - float2(base);
     const float depth = metresBehindNear(light.depthRange, light.nearPlane, clip.z / clip.w);
+    const float2 slope = depthSlope(light, position_ws, along_ws, uv, depth);
+    const float ownBias = hairBias + 0.5 * (abs(slope.x) + abs(slope.y));
     const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
     const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
     float fibres = 0;
+    float passed = 0;
     float visible = 0;
     float all = 0;
     float ends = 0;
@@ -95,7 +96,10 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
             const float w = wx[x] * wy[y];
             const float headDepth = metresBehindNear(light.depthRange, light.nearPlane, head ? gHeadDepth.Load(where) : 1.0);
             if (hair) {
-                fibres += w * fibresAt(light, texel, depth, hairBias);
+                const float2 beside = float2(base + int2(x, y)) + 0.5 - uv * light.tileSize;
+                const float crossed = fibresAt(light, texel, depth + dot(beside, slope), ownBias);
+                fibres += w * crossed;
+                passed += w * exp(-light.stopping * crossed);
                 all += w * fibresAt(light, texel, headDepth, 0);
             }
             if (head) {
@@ -107,6 +111,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
         }
     }
     result.fibres = fibres;
+    result.passed = hair ? passed : 1.0;
     result.allFibres = max(all, fibres);
     result.visibility = head ? visible : 1.0;
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.

@@ -15,12 +15,12 @@ FibreMoments hairOverSkin(ShadeConstants shade) {
 
 // The share of light that reaches the skin through so many fibres, with what the skin sends back into the hair and the
 // hair returns once more.
-float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, float3 albedo) {
-    const float counted = shade.clumping * fibres;
+float3 throughHair(ShadeConstants shade, Occlusion hair, float3 albedo) {
+    const float counted = shade.clumping * hair.fibres;
     if (shade.ofFibres == 0) return exp(-shade.scattered.rgb * counted);
     const LayerLight below = lightInLayer(hairOverSkin(shade), counted, counted, albedo);
     const float3 all = below.onward + below.fluence / 3.14159265 + 0.5 * below.flux;
-    return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.clumping);
+    return max(all - exp(-counted), 0.0) + hair.passed;
 }
 
 // Light from around that hair and head let through, weighted by the cosine; with what hair over the skin sends back to it.
@@ -41,8 +41,8 @@ float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3
         const float nl = dot(normal, d);
         if (nl <= 0.0) continue;
         const float lift = map.texelSize;
-        const SkyRay ray = skyRay(map, position_ws + normal * lift, -lift * nl, lift);
-        const float3 through = exp(-(shade.clumping + map.resolvedClumping) * ray.before * stopping);
+        const SkyRay ray = skyRay(map, position_ws + normal * lift, 0.0, -lift * nl, lift);
+        const float3 through = exp(-map.stopping * ray.before * stopping);
         const float3 light = nl * environmentFrom(shade, d);
         all += light;
         passed += light * ray.open * through;
@@ -66,7 +66,7 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         // Lifted, so that the head does not shadow itself; hair counts down to the skin.
         const float lift = 0.002;
         const Occlusion shadow =
-            shadowOf(light, occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002, 0.0));
+            shadowOf(light, occlusion(light, position_ws + normal * lift, 0.0, -lift * saturate(nl), 0.002, 0.0));
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
         const float3 wrap = mesh.wrap * float3(1, 0.5, 0.35);
         const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));
@@ -77,7 +77,7 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
         const float lit = lerp(0.0, shadow.visibility, saturate(nl * 8.0 + 0.6));
         colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *
-                  (lit * throughHair(shade, light, shadow.fibres, albedo));
+                  (lit * throughHair(shade, shadow, albedo));
     }
     if (hasEnvironment(shade)) colour += albedo * skyOnSkin(shade, position_ws, normal, albedo);
     return colour;

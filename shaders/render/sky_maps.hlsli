@@ -4,7 +4,6 @@
 #ifndef HAIRLOOM_SKY_MAPS_HLSLI
 #define HAIRLOOM_SKY_MAPS_HLSLI
 #include "shaders/render/opacity.hlsli"
-#include "shaders/shared/render_types.h"
 
 cbuffer SkyMaps : register(b3) { SkyConstants gSkyMaps; };
 Texture2D<float> gSkyHead : register(t18);
@@ -26,8 +25,8 @@ float openBehind(float behind) {
     return 1.0 - smoothstep(0.0, kSoft, behind);
 }
 
-// Biases in metres, as occlusion() has them.
-SkyRay skyRay(LightConstants map, float3 position_ws, float hairBias, float headBias) {
+// As occlusion() has them.
+SkyRay skyRay(LightConstants map, float3 position_ws, float3 along_ws, float hairBias, float headBias) {
     SkyRay ray;
     ray.open = 1;
     ray.before = 0;
@@ -35,7 +34,8 @@ SkyRay skyRay(LightConstants map, float3 position_ws, float hairBias, float head
     ray.ends = 0;
     const float4 clip = mul(map.clipFromWorld, float4(position_ws, 1));
     const float size = map.tileSize;
-    const float2 place = float2(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * size - 0.5;
+    const float2 uv = float2(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y);
+    const float2 place = uv * size - 0.5;
     // Towards the edge of what the map shows the sky opens.
     const float2 inside = min(place, size - 1.0 - place);
     const float known = saturate(0.25 * min(inside.x, inside.y));
@@ -43,6 +43,8 @@ SkyRay skyRay(LightConstants map, float3 position_ws, float hairBias, float head
     const int2 base = int2(floor(place));
     const float2 f = place - float2(base);
     const float depth = metresBehindNear(map.depthRange, map.nearPlane, clip.z);
+    const float2 slope = depthSlope(map, position_ws, along_ws, uv, depth);
+    const float ownBias = hairBias + 0.5 * (abs(slope.x) + abs(slope.y));
     const bool hair = map.shadows > 0.0;
     const bool head = map.headCasts > 0.0;
     float open = 0;
@@ -57,9 +59,8 @@ SkyRay skyRay(LightConstants map, float3 position_ws, float hairBias, float head
             if (hair) {
                 const uint texel = 2u * (uint(at.y) * uint(map.atlasWidth) + uint(column));
                 const float4 layers = unpackShares(uint2(gSkyLayers[texel], gSkyLayers[texel + 1u]));
-                const float first = (1.0 - layers.a) * map.depthRange;
-                ray.before += w * fibresInLayers(layers, map.layers.xyz, depth - hairBias - first);
-                all += w * fibresInLayers(layers, map.layers.xyz, headDepth - first);
+                ray.before += w * fibresInLayers(map, layers, depth + dot(float2(at) - place, slope) - ownBias);
+                all += w * fibresInLayers(map, layers, headDepth);
             }
             const float ends = headDepth < map.depthRange ? 1.0 : 0.0;
             open += w * lerp(1.0, openBehind(depth - headDepth - headBias), ends);
@@ -141,16 +142,15 @@ SkySeen seenAt(StructuredBuffer<SkyPoint> points, StrandHeader strand, uint plac
     return seen;
 }
 
-// What a place in hair sees.
-SkyPoint skySeen(ShadeConstants shade, float3 position_ws) {
+// What a place in a fibre sees, without so many metres of hair around it.
+SkyPoint skySeen(float3 position_ws, float3 along_ws, float bias) {
     SkyShares whole = noShares();
     SkyShares halved = noShares();
     for (uint i = 0; i < HAIRLOOM_SKY_MAPS; ++i) {
         const LightConstants map = gSkyMaps.maps[i];
-        const SkyRay ray = skyRay(map, position_ws, 0.0007, 0.002 + 2.0 * map.texelSize);
-        const float stopping = shade.clumping + map.resolvedClumping;
-        addRay(whole, ray, map.toLight_ws.xyz, stopping);
-        addRay(halved, ray, map.toLight_ws.xyz, 0.5 * stopping);
+        const SkyRay ray = skyRay(map, position_ws, along_ws, bias, 0.002 + 2.0 * map.texelSize);
+        addRay(whole, ray, map.toLight_ws.xyz, map.stopping);
+        addRay(halved, ray, map.toLight_ws.xyz, 0.5 * map.stopping);
     }
     SkyPoint seen;
     seen.whole = packSky(whole);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of the sky and of the head the points of strands see. Neither lights nor the camera change it.
+#include "shaders/render/curve.hlsli"
 #include "shaders/render/sky_maps.hlsli"
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -13,7 +14,8 @@ void main(uint3 id : SV_DispatchThreadID) {
     const StrandHeader strand = gStrands[id.x];
     const uint curve = strand.segmentsBefore * gShade.subdivisions + id.x;
     for (uint i = id.y; i < strand.pointCount; i += HAIRLOOM_SKY_THREADS_OF_STRAND) {
-        const float3 position_ws = gCurve[curve + i * gShade.subdivisions].position_ws.xyz;
-        gSeen[strand.segmentsBefore + id.x + i] = skySeen(gShade, position_ws);
+        const CurvePoint p = gCurve[curve + i * gShade.subdivisions];
+        gSeen[strand.segmentsBefore + id.x + i] =
+            skySeen(p.position_ws.xyz, unpackUnit(p.tangentXy), p.position_ws.w);
     }
 }

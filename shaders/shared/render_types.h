@@ -119,12 +119,13 @@ struct LightConstants {
     float shadows;      // HAIRLOOM_SHADOWS_*
     float nearPlane;    // of a perspective view, metres; 0 for an orthographic one
     float hairBegins;   // metres behind the near plane
-    float4 layers;      // ends of the opacity layers in metres behind the first hair, or behind where hair
-                        // begins; absorption: x: fibres a metre, y: most fibres
-    float resolvedClumping;  // by how much more fibres stop light than over a beam of 5 mm
-    float texelSize;         // metres
-    float headAbsorption;    // of hair behind the head, 1/m; 0: a test of depth
-    float withoutShadows;    // 1: shadows of the light itself are left out
+    float4 layers;      // ends of the opacity layers in metres behind the first hair (w: the part of a texel
+                    // that a fibre covers), or behind where hair begins; absorption: x: fibres a metre, y:
+                    // most fibres
+    float stopping;        // exp(-stopping n) of the light passes n fibres that a texel counts
+    float texelSize;       // metres
+    float headAbsorption;  // of hair behind the head, 1/m; 0: a test of depth
+    float withoutShadows;  // 1: shadows of the light itself are left out
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.
@@ -183,13 +184,13 @@ struct FibreConstants {
     float rIntensity;
     float ttIntensity;
     float trtIntensity;
-    float clumping;  // fibres in the way by those that are counted, for hair grows in clumps
-    float4 r;        // Sadeghi's: colour times intensity, linear RGB
+    float unused0;
+    float4 r;  // Sadeghi's: colour times intensity, linear RGB
     float4 tt;
     float4 trt;
     float minSpread;  // width of the table of wide lobes, radians
     float maxSpread;
-    float unused0, unused1;
+    float unused1, unused2;
 };
 
 // Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look
@@ -370,7 +371,8 @@ struct LightCase {
 struct LightAnswer {
     float4 onHair;  // light from around for a fibre; w: fibres in front of it
     float4 onSkin;  // light from around for a surface; w: what the head lets through
-    float4 sky;     // x: share of all directions that sees the sky, y: that sees the head
+    float4 sky;     // x: share of all directions that sees the sky, y: that sees the head; z: what hair lets
+                    // through
 };
 
 // One case for the shader's Kajiya-Kay, as tests feed it.

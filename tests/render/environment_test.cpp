@@ -144,7 +144,6 @@ class HairUnderSky : public RenderTest {
         material.fibre.model = ShadingModel::marschner;
         material.fibre.scattering = scattering;
         material.fibre.marschner = marschner;
-        material.fibre.clumping = 1;
         scene.environment = environment;
         scene.background = Vec3f::Zero();
         scene.camera.eye_ws = eye_ws;

@@ -318,8 +318,10 @@ TEST_F(RendererTest, PositionsOnTheDeviceGiveTheSamePicture) {
         const auto buffer = device->createBuffer(desc, std::as_bytes(std::span(content))).value();
         Renderer renderer(*device);
         RenderScene elsewhere = scene;
-        const std::vector<Vec3f> zeros(head.strands.positions.size(), Vec3f::Zero());
-        elsewhere.strands[0].positions_ws = zeros;
+        // As long and as thick there, which is measured where hair is set.
+        std::vector<Vec3f> mirrored = head.strands.positions;
+        for (Vec3f& p : mirrored) p.x() = -p.x();
+        elsewhere.strands[0].positions_ws = mirrored;
         ASSERT_TRUE(renderer.setScene(elsewhere));
         Box3f bounds;
         for (const Vec3f& p : head.strands.positions) bounds.extend(p);

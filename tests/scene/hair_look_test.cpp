@@ -32,6 +32,27 @@ Groom plainGroom() {
     return groom;
 }
 
+TEST(HairLook, ClumpingIsMeasuredOfTheHairAtRest) {
+    // Wisps of eight, a millimetre wide.
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> points;
+    for (std::uint32_t i = 0; i < 800; ++i) {
+        const auto wisp = static_cast<float>(i / 8), hair = static_cast<float>(i % 8);
+        const Vec3f root(0.01f * std::fmod(wisp, 10.0f) + 0.0001f * hair, 0, 0.01f * std::floor(wisp / 10));
+        points.insert(points.end(), {root, root + Vec3f(0, 0.1f, 0)});
+        offsets.push_back(2 * (i + 1));
+    }
+    const Groom groom = makeGroom(offsets, points);
+    auto scene = GroomScene::make(groom, kMarschner, {});
+    ASSERT_TRUE(scene);
+    const render::Clumping rest = render::measureClumping(scene->scene().strands);
+    EXPECT_LT(rest.widest(), 0.9f);
+    EXPECT_EQ(scene->scene().clumping.values, rest.values);
+    for (Vec3f& p : points) p *= 2;
+    scene->pose(points, {}, {});
+    EXPECT_EQ(scene->scene().clumping.values, rest.values);
+}
+
 TEST(HairLook, EvenHairHasNone) {
     const Groom plain = plainGroom();
     EXPECT_FALSE(strandShading(plain, kKajiya).look);
