@@ -37,7 +37,7 @@ void addPictureAccuracyOptions(CLI::App& job, PictureAccuracyOptions& options) {
     const auto add = [&](const char* name, auto& value, const char* does) {
         return job.add_option(name, value, does)->needs(picture);
     };
-    add("--shading", options.shading, "Shading model of the picture")
+    add("--shading", options.shading, "Shading model of the picture; without it the project's")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
     add("--size", options.size, "Pixels WxH of the picture; 640x640 where neither this nor the view says");
     add("--passes", options.frames, "Frames that are averaged in the pictures that are compared")
@@ -56,7 +56,7 @@ Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std:
         if (!read) return tl::unexpected(read.error());
         measuring.view = std::move(*read);
     }
-    measuring.view.fibre.model = kShadingModels.at(options.shading);
+    if (!options.shading.empty()) measuring.view.fibre.model = kShadingModels.at(options.shading);
     std::pair<std::uint32_t, std::uint32_t> size = measuring.view.size.value_or(std::pair(640u, 640u));
     if (!options.size.empty()) {
         const auto parsed = parseSize(options.size);

@@ -13,7 +13,7 @@ namespace hairloom::cli {
 
 struct PictureAccuracyOptions {
     bool wanted = false;  ///< --picture
-    std::string shading = "kajiya";
+    std::string shading;
     std::string size;  ///< WxH; empty: the view's, else 640x640
     std::uint32_t frames = 8;
     std::optional<std::size_t> hairs;     ///< 0: all; else as the device suits

@@ -34,7 +34,7 @@ struct RenderJobOptions {
     std::string camera = "three-quarter";
     std::string view;
     std::string material;
-    std::string shading = "kajiya";
+    std::string shading;
     std::string scatter = "dual";
     std::string shadow = "dom";
     std::uint32_t shadowLights = render::RenderOptions().shadowLights;
@@ -312,7 +312,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (!read) return tl::unexpected(read.error());
         view = std::move(*read);
     }
-    view.fibre.model = kShadingModels.at(options.shading);
+    if (!options.shading.empty()) view.fibre.model = kShadingModels.at(options.shading);
     view.fibre.scattering = options.scatter == "dual" ? render::Scattering::dual : render::Scattering::single;
     const auto how = pictureOptions(options, view);
     if (!how) return tl::unexpected(how.error());
@@ -380,7 +380,7 @@ JobRun declare(CLI::App& job) {
         ->allow_extra_args(false);
     job.add_option("--material", options->material,
                    "Sample material (fire, tentacles, …) or JSON file of material fields to apply");
-    job.add_option("--shading", options->shading, "Shading model")
+    job.add_option("--shading", options->shading, "Shading model; without it the project's")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
     job.add_option(
            "--scatter", options->scatter,

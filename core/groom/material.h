@@ -8,6 +8,13 @@
 
 namespace hairloom {
 
+/// How light scatters in a fibre. All have the controls below that they know.
+enum class ShadingModel : std::uint32_t {
+    kajiya,     ///< two highlights of a thread (Kajiya and Kay 1989)
+    marschner,  ///< a fibre of glass with pigment (Marschner et al. 2003)
+    sadeghi,    ///< Marschner's lobes as controls of their own (Sadeghi et al. 2010)
+};
+
 /// What the fibres of Marschner and Sadeghi absorb by.
 enum class ColourSource : std::uint32_t {
     melanin,  ///< the pigment
@@ -22,6 +29,7 @@ enum class EnergyRule : std::uint32_t {
 
 /// Units, ranges and meanings stand in fieldsOf() (core/groom/file/fields.h).
 struct HairMaterial {
+    ShadingModel shadingModel = ShadingModel::kajiya;
     float rootRadius = 0.00004f;
     float tipScale = 0.4f;
     Vec3f rootColour = Vec3f(0.16f, 0.08f, 0.04f);

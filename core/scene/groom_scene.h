@@ -17,8 +17,8 @@ namespace hairloom {
 
 /// How a view sees light in fibres; what it does not say comes from the groom.
 struct FibreView {
-    render::ShadingModel model = render::ShadingModel::kajiya;  ///< the caller's, not the file's
-    render::Scattering scattering = render::Scattering::dual;   ///< also
+    std::optional<render::ShadingModel> model;
+    render::Scattering scattering = render::Scattering::dual;  ///< the caller's, not the groom's
     std::optional<double> ior;
     std::optional<Vec3d> absorption;  ///< RGB per fibre radius
     std::optional<shading::Melanin> melanin;

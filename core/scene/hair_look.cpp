@@ -138,15 +138,16 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
     shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
                        shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
     const LobeControls controls(authored);
-    if (view.model == render::ShadingModel::marschner) controls.applyTo(m);
+    const render::ShadingModel model = shadingModel(authored, view);
+    if (model == render::ShadingModel::marschner) controls.applyTo(m);
     if (view.width) m.width = *view.width;
     if (view.tilt) m.tilt = *view.tilt;
 
     render::FibreMaterial fibre;
-    fibre.model = view.model;
+    fibre.model = model;
     fibre.scattering = view.scattering;
-    if (view.model == render::ShadingModel::marschner) fibre.marschner = m;
-    if (view.model == render::ShadingModel::sadeghi) {
+    if (model == render::ShadingModel::marschner) fibre.marschner = m;
+    if (model == render::ShadingModel::sadeghi) {
         fibre.sadeghi = sadeghiLike(shading::Marschner(m));
         controls.applyTo(fibre.sadeghi);
         paintLobes(authored, fibre.sadeghi);
@@ -180,6 +181,13 @@ float maskOf(std::span<const float> mask, std::size_t strand) {
 
 }  // namespace
 
+render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view) {
+    static_assert(static_cast<int>(ShadingModel::marschner) ==
+                      static_cast<int>(render::ShadingModel::marschner) &&
+                  static_cast<int>(ShadingModel::sadeghi) == static_cast<int>(render::ShadingModel::sadeghi));
+    return view.model.value_or(static_cast<render::ShadingModel>(authored.shadingModel));
+}
+
 render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
     const HairMaterial& authored = groom.material;
     render::StrandShading material;
@@ -205,7 +213,8 @@ render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
                                .cast<float>();
     material.tubes = authored.tubes;
     material.bounded = authored.energy == EnergyRule::bounded;
-    const bool isKajiya = view.fibre.model == render::ShadingModel::kajiya || authored.tubes;
+    const render::ShadingModel model = material.fibre.model;
+    const bool isKajiya = model == render::ShadingModel::kajiya || authored.tubes;
     if (!isKajiya && view.fibre.saysColour()) {
         material.variation = 0;
         return material;
@@ -216,8 +225,7 @@ render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
     finishLook(authored, look);
     material.look = look;
     // The tables hold all absorptions: none has to be baked again when a colour moves.
-    if (view.fibre.model == render::ShadingModel::marschner)
-        material.fibre.marschner.azimuthal.absorption.setZero();
+    if (model == render::ShadingModel::marschner) material.fibre.marschner.azimuthal.absorption.setZero();
     return material;
 }
 

@@ -23,6 +23,9 @@ namespace hairloom {
 /// colour, random pigment or light of its own.
 render::StrandShading strandShading(const Groom& groom, const ViewFile& view);
 
+/// The view's, or else the groom's.
+render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view);
+
 /// Of the groom's own strands, by their roots at rest and the attributes `dye`.
 StreakAndDyeWeights weightsOfStrands(const Groom& groom);
 /// Of follow hairs: by their own roots at rest, and the dye of the guides around them. Errors: hairs that

@@ -14,6 +14,7 @@
 #include "core/render/flip.h"
 #include "core/render/picture.h"
 #include "core/render/renderer.h"
+#include "core/scene/hair_look.h"
 
 namespace hairloom {
 namespace {
@@ -153,7 +154,7 @@ class Measuring {
         const auto samples = render::chooseSamples(now.picture, device_.info());
         if (!samples) return tl::unexpected(samples.error());
         now.picture.samples = *samples;
-        const bool scatters = view_.fibre.model != render::ShadingModel::kajiya;
+        const bool scatters = shadingModel(groom_.material, view_.fibre) != render::ShadingModel::kajiya;
         const Candidates candidates(now, mostSamples(), scatters);
         total_ = 2 + candidates.list().size();
         auto exact = draw(exactSettings(now));

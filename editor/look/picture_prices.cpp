@@ -59,7 +59,6 @@ class PicturePrices : public QWidget {
         const QSizeF size_px = viewport_.viewSize_px();
         PictureCostOptions options;
         options.view.camera = viewport_.camera().camera();
-        options.view.fibre.model = quality.model;
         options.view.fibre.scattering = quality.scattering;
         options.picture.exposure = viewport_.exposure();
         tasks_.run<PictureCost>(

@@ -84,11 +84,15 @@ class PresetList : public QWidget {
         connect(&viewport_, &Viewport::drawn, this, [this] {
             if (!shownWith_ && isVisible()) soon_.start();
         });
-        connect(&preferences_, &Preferences::changed, this, [this] {
-            if (!shownWith_ || *shownWith_ == preferences_.theme()) return;
+        const auto askAnew = [this] {
+            if (!shownWith_ || *shownWith_ == drawnWith()) return;
             shownWith_.reset();
             for (std::size_t i = 0; i < looks_.size(); ++i) showSwatch(i);
             soon_.start();
+        };
+        connect(&preferences_, &Preferences::changed, this, askAnew);
+        connect(&document_, &QtDocument::changed, this, [askAnew](editing::Part parts) {
+            if (contains(parts, editing::Part::Material)) askAnew();
         });
         fill();
     }
@@ -149,9 +153,20 @@ class PresetList : public QWidget {
         askForPictures();
     }
 
+    /// What all thumbnails depend on: the theme, and the model that draws those of looks that have none.
+    std::pair<Theme, ShadingModel> drawnWith() const {
+        return {preferences_.theme(), document_.groom().material.shadingModel};
+    }
+    /// As it would look on the hair.
+    HairMaterial materialOf(const Look& look) const {
+        HairMaterial material = look.material;
+        if (look.preset) material.shadingModel = document_.groom().material.shadingModel;
+        return material;
+    }
+
     /// Drawn once for a material and a theme, then kept on disk.
     QString cacheFile(const Look& look) const {
-        QByteArray what = QByteArray::fromStdString(toJson(look.material).dump());
+        QByteArray what = QByteArray::fromStdString(toJson(materialOf(look)).dump());
         what += preferences_.theme() == Theme::Dark ? "dark" : "light";
         const QByteArray hash = QCryptographicHash::hash(what, QCryptographicHash::Sha1).toHex();
         return QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/looks/" +
@@ -159,7 +174,7 @@ class PresetList : public QWidget {
     }
 
     void askForPictures() {
-        shownWith_ = preferences_.theme();
+        shownWith_ = drawnWith();
         const Vec3f background = toLinear(themeColours(preferences_.theme()).field);
         for (std::size_t i = 0; i < looks_.size(); ++i) {
             const QString file = cacheFile(looks_[i]);
@@ -168,7 +183,7 @@ class PresetList : public QWidget {
                 show(i, kept);
             } else {
                 viewport_.requestSidePicture(kPrefix + file,
-                                             tressPicture(looks_[i].material, kPicture, background));
+                                             tressPicture(materialOf(looks_[i]), kPicture, background));
             }
         }
     }
@@ -204,7 +219,7 @@ class PresetList : public QWidget {
     QListWidget* list_;
     std::vector<Look> looks_;
     QTimer soon_;
-    std::optional<Theme> shownWith_;  ///< nothing: pictures are to be asked for
+    std::optional<std::pair<Theme, ShadingModel>> shownWith_;  ///< nothing: pictures are to be asked for
 };
 
 }  // namespace

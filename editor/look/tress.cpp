@@ -52,7 +52,6 @@ PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px,
     request.camera.verticalFov = 8.5f;
     request.width = request.height = side_px;
     request.background = background;
-    request.quality.model = render::ShadingModel::marschner;
     request.quality.frames = 4;
     return request;
 }

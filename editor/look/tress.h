@@ -7,7 +7,7 @@
 
 namespace hairloom::editor {
 
-/// A wavy lock with that material by Marschner's model, `side_px` pixels square.
+/// A wavy lock with that material, `side_px` pixels square.
 PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px, const Vec3f& background);
 
 }  // namespace hairloom::editor

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the hair looks: presets, the shading model with the controls that it has, colour by pigment or by
 // picker, how finely it is drawn, and the hairs between the guides.
-#include <QComboBox>
 #include <QPushButton>
-#include <QSettings>
 #include <QVBoxLayout>
 #include <algorithm>
 
@@ -17,7 +15,7 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr const char* kModelKey = "look/shadingModel";
+constexpr const char* kModel = "shadingModel";
 constexpr unsigned kKajiya = 1, kMarschner = 2, kSadeghi = 4;
 constexpr unsigned kFibres = kMarschner | kSadeghi;
 constexpr unsigned kAll = kKajiya | kFibres;
@@ -90,15 +88,13 @@ class LookPanel : public QWidget {
           prices_(parts.prices),
           messages_(parts.messages),
           viewport_(parts.viewport),
-          model_(new QComboBox),
           layout_(new QVBoxLayout(this)) {
         layout_->setContentsMargins(0, 0, 0, 0);
         layout_->setSpacing(8);
         layout_->addWidget(
             collapsible(tr("Presets"), makePresetList(document_, preferences_, messages_, viewport_)));
         layout_->addWidget(collapsible(tr("Compare"), makeCompareBar(document_, viewport_)));
-        layout_->addWidget(heading(tr("Shading model")));
-        makeModels();
+        layout_->addWidget(form(pick(materialFields(), {kModel})));
         makeGroups();
         layout_->addWidget(
             collapsible(tr("Edges and shadows"),
@@ -106,35 +102,15 @@ class LookPanel : public QWidget {
                                 makePicturePrices(document_, parts.tasks, viewport_, parts.prices)}),
                         false));
         layout_->addWidget(collapsible(tr("Hairs between the guides"), form(followHairFields()), false));
-        connect(&viewport_, &Viewport::lookChanged, this, &LookPanel::refresh);
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
+            if (contains(changed, editing::Part::Material)) refresh();
+        });
         refresh();
     }
 
   private:
     FieldForm* form(const std::vector<Field>& fields) {
         return new FieldForm(document_, preferences_, fields, &prices_);
-    }
-
-    void makeModels() {
-        model_->setObjectName("shadingModel");
-        model_->addItems({tr("Kajiya-Kay"), tr("Marschner"), tr("Sadeghi")});
-        model_->setItemData(0, tr("Two highlights of a thread: fast, and easy to push around"),
-                            Qt::ToolTipRole);
-        model_->setItemData(1, tr("Light in a fibre of glass with pigment, as measured: natural hair"),
-                            Qt::ToolTipRole);
-        model_->setItemData(2, tr("Marschner's lobes as separate controls for an artist"), Qt::ToolTipRole);
-        model_->setToolTip(tr("How light scatters in a fibre; each model keeps its own controls"));
-        connect(model_, &QComboBox::activated, this, [this](int index) {
-            PictureQuality quality = viewport_.quality();
-            quality.model = static_cast<render::ShadingModel>(index);
-            viewport_.setQuality(quality);
-            QSettings().setValue(kModelKey, index);
-        });
-        PictureQuality quality = viewport_.quality();
-        quality.model = static_cast<render::ShadingModel>(
-            std::clamp(QSettings().value(kModelKey, 0).toInt(), 0, model_->count() - 1));
-        viewport_.setQuality(quality);
-        layout_->addWidget(model_);
     }
 
     void makeGroups() {
@@ -150,7 +126,8 @@ class LookPanel : public QWidget {
         std::vector<Field> others;
         for (const Field& field : fields) {
             const auto has = [&](const Group& group) { return group.fields.contains(field.name); };
-            if (std::ranges::none_of(groups(), has)) others.push_back(field);
+            if (QLatin1String(field.name) != QLatin1String(kModel) && std::ranges::none_of(groups(), has))
+                others.push_back(field);
         }
         if (!others.empty()) layout_->addWidget(collapsible(tr("More"), form(others), false));
     }
@@ -176,8 +153,7 @@ class LookPanel : public QWidget {
     }
 
     void refresh() {
-        const auto model = static_cast<unsigned>(viewport_.quality().model);
-        model_->setCurrentIndex(static_cast<int>(model));
+        const auto model = static_cast<unsigned>(document_.groom().material.shadingModel);
         for (const auto& [group, models] : shownFor_) group->setVisible((models >> model) & 1u);
     }
 
@@ -186,7 +162,6 @@ class LookPanel : public QWidget {
     const Prices& prices_;
     Messages& messages_;
     Viewport& viewport_;
-    QComboBox* model_;
     QVBoxLayout* layout_;
     std::vector<std::pair<QWidget*, unsigned>> shownFor_;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// How the viewport draws: by which model, and how finely. Not part of the document, whose material serves all
-// models.
+// How finely the viewport draws. Not part of the document.
 
 #include "core/render/fibre_material.h"
 #include "core/render/options.h"
@@ -9,7 +8,6 @@
 namespace hairloom::editor {
 
 struct PictureQuality {
-    render::ShadingModel model = render::ShadingModel::kajiya;
     /// A pixel and frame, as render::RenderOptions; more than the device has: its most.
     std::uint32_t samples = 4;
     std::uint32_t frames = 8;  ///< averaged when the picture is still, 1…256

@@ -67,7 +67,6 @@ bool samePoints(const Groom& a, const Groom& b) {
 
 ViewFile viewOf(const PictureRequest& request) {
     ViewFile view;
-    view.fibre.model = request.quality.model;
     view.fibre.scattering = request.quality.scattering;
     return view;
 }
@@ -182,9 +181,7 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         return replaceScene(request, draft);
     }
     if (followed && request.moves) return replaceScene(request, draft);
-    const bool sameModel = request.quality.model == last_->quality.model &&
-                           request.quality.scattering == last_->quality.scattering;
-    if (!sameGroom || !sameModel) {
+    if (!sameGroom || request.quality.scattering != last_->quality.scattering) {
         if (!scene_->setMaterial(draft ? draftMaterial(now) : now.material, viewOf(request)))
             return replaceScene(request, draft);
         if (auto set = showMaterial(request); !set) return set;

@@ -37,13 +37,21 @@ TEST_F(LookTest, EachModelShowsItsOwnControls) {
     EXPECT_TRUE(offers("specular"));
     EXPECT_FALSE(offers("indexOfRefraction"));
     chooseModel(1);
-    EXPECT_EQ(viewport().quality().model, render::ShadingModel::marschner);
+    EXPECT_EQ(groom().material.shadingModel, ShadingModel::marschner);
     EXPECT_FALSE(offers("specular"));
     EXPECT_TRUE(offers("indexOfRefraction"));
     chooseModel(2);
     EXPECT_TRUE(offers("indexOfRefraction"));
-    EXPECT_EQ(hash(), before) << "the material serves all models";
-    EXPECT_EQ(QSettings().value("look/shadingModel").toInt(), 2) << "kept for the next time";
+    EXPECT_EQ(document().stepCount(), 2);
+    ASSERT_TRUE(window->saveTo(inFolder("sadeghi.hairloom")));
+    document().undo();
+    document().undo();
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(offers("specular"));
+    files().open(inFolder("sadeghi.hairloom"));
+    finishWork();
+    EXPECT_EQ(groom().material.shadingModel, ShadingModel::sadeghi) << "it belongs to the file";
+    EXPECT_TRUE(offers("glintIntensity"));
 }
 
 TEST_F(LookTest, APresetGivesItsPigmentAndColours) {

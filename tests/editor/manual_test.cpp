@@ -120,9 +120,8 @@ TEST_F(ManualTest, GroomingSpheresAndLook) {
     applyLook(lookPresets()[4], auburn.material);
     change("Look", auburn);
     find<QPushButton>("compareKeep")->click();
-    PictureQuality fibres = viewport().quality();
-    fibres.model = render::ShadingModel::marschner;
-    viewport().setQuality(fibres);
+    auburn.material.shadingModel = ShadingModel::marschner;
+    change("Model", auburn);
     find<QPushButton>("compareShow")->setChecked(true);
     ASSERT_TRUE(viewport().waitForPicture(kPatience));
     // Thumbnails come when nothing else is to be drawn.

@@ -10,12 +10,14 @@ using M = HairMaterial;
 using I = InterpolationSettings;
 using P = PlacementSettings;
 
+constexpr const char* kShadingModels[] = {"kajiya", "marschner", "sadeghi"};
 constexpr const char* kColourSources[] = {"melanin", "colours"};
 constexpr const char* kEnergyRules[] = {"bounded", "published"};
 constexpr const char* kPlacementMethods[] = {"random", "poissonDisk"};
 
 // clang-format off
 constexpr Field<M> kMaterialFields[] = {
+    choiceField<&M::shadingModel>("shadingModel", "how light scatters in a fibre: kajiya, two highlights of a thread, fast; marschner, glass with pigment, as measured; sadeghi, its lobes as controls of their own", kShadingModels),
     field<&M::rootRadius>("rootRadius", "m", 5e-6, 0.05, "half the fibre's diameter at the root; a hair has 25e-6 to 60e-6"),
     field<&M::tipScale>("tipScale", "", 0, 1, "radius at the tip over radius at the root: lower is more pointed"),
     colourField<&M::rootColour>("rootColour", "linear red, green and blue at the root"),
