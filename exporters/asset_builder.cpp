@@ -135,11 +135,11 @@ void AssetBuilder::finishSetting(asset::Setting setting) {
 }
 
 void AssetBuilder::addBytes(std::string_view kind, std::span<const std::byte> bytes, std::size_t recordBytes,
-                            std::size_t count) {
+                            std::size_t count, std::uint16_t flags) {
     Part part;
     std::copy_n(kind.begin(), 4, part.section.kind.begin());
     part.section.recordBytes = static_cast<std::uint16_t>(recordBytes);
-    part.section.flags = 0;
+    part.section.flags = flags;
     part.section.bytes = bytes.size();
     part.section.count = static_cast<std::uint32_t>(count);
     part.section.checksum = asset::checksum(bytes);

@@ -29,10 +29,10 @@ Result<AssetStrands> encodeStrands(std::span<const std::uint32_t> offsets, std::
 
 class AssetBuilder {
   public:
-    /// A section of these records; none where there are no records.
+    /// A section of these records; none where there are no records. `flags`: 0, or asset::kRequired.
     template <class Record>
-    void add(std::string_view kind, std::span<const Record> records) {
-        if (!records.empty()) addBytes(kind, std::as_bytes(records), sizeof(Record), records.size());
+    void add(std::string_view kind, std::span<const Record> records, std::uint16_t flags = 0) {
+        if (!records.empty()) addBytes(kind, std::as_bytes(records), sizeof(Record), records.size(), flags);
     }
     asset::Text text(std::string_view words);
 
@@ -66,7 +66,7 @@ class AssetBuilder {
 
   private:
     void addBytes(std::string_view kind, std::span<const std::byte> bytes, std::size_t recordBytes,
-                  std::size_t count);
+                  std::size_t count, std::uint16_t flags);
     asset::Setting startSetting(std::string_view group, const runtime::FieldInfo& field);
     void finishSetting(asset::Setting setting);
 

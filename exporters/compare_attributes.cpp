@@ -96,7 +96,7 @@ void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportR
     if (groom.interpolation.followPerGuide > 0 && !(carried && same(groom.interpolation, read.interpolation)))
         leave(fmt::format("{} follow hairs of each strand", groom.interpolation.followPerGuide),
               "export the hairs instead of the guides, or interpolate in the other program");
-    if (groom.layers.size() > 1)
+    if (groom.layers.size() > 1 && !(carried && read.layers.size() == groom.layers.size()))
         leave(fmt::format("{} layers", groom.layers.size()), "export them one by one, or keep the project");
     if (!groom.spheres.empty() && !(carried && read.spheres.size() == groom.spheres.size()))
         leave(fmt::format("{} collision spheres", groom.spheres.size()),

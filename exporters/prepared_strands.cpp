@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
+#include "core/groom/strand_subset.h"
 #include "exporters/compare_attributes.h"
 
 namespace hairloom {
@@ -70,7 +71,7 @@ struct Tally {
 class Preparer {
   public:
     Preparer(const Groom& groom, const StrandExportOptions& options, std::uint32_t target)
-        : groom_(groom), options_(options), target_(target) {
+        : groom_(groom), options_(options), target_(target), layers_(layersOfStrands(groom)) {
         radii_ = perPoint<float>(attribute::kRadius);
         transparency_ = perPoint<float>(attribute::kTransparency);
         colours_ = perPoint<Vec3f>(attribute::kPointColour);
@@ -109,7 +110,7 @@ class Preparer {
             for (const Vec3f& point : points) addPosition(point);
         }
         const std::size_t first = groom_.offsets[strand];
-        addThickness(points, first, count);
+        addThickness(strand, points, first, count);
         append(result_.transparency, transparency_, points, first, count);
         append(result_.colours, colours_, points, first, count);
         result_.sources.push_back(static_cast<std::uint32_t>(strand));
@@ -139,10 +140,13 @@ class Preparer {
 
     void addPosition(const Vec3f& position) { result_.positions.push_back(toFile(position, options_)); }
 
-    void addThickness(std::span<const Vec3f> points, std::size_t first, std::size_t count) {
+    void addThickness(std::size_t strand, std::span<const Vec3f> points, std::size_t first,
+                      std::size_t count) {
         const std::size_t before = result_.thickness.size();
-        if (radii_.empty()) {
-            const auto radii = materialRadii(groom_.material, count);
+        const std::size_t layer = layers_[strand];
+        const bool own = layer < groom_.layers.size() && groom_.layers[layer].material;
+        if (radii_.empty() || own) {
+            const auto radii = materialRadii(groom_.materialOf(layer), count);
             result_.thickness.insert(result_.thickness.end(), radii.begin(), radii.end());
         } else {
             append(result_.thickness, radii_, points, first, count);
@@ -201,6 +205,7 @@ class Preparer {
     const Groom& groom_;
     const StrandExportOptions& options_;
     std::uint32_t target_;
+    std::vector<std::uint32_t> layers_;
     std::span<const float> radii_;
     std::span<const float> transparency_;
     std::span<const Vec3f> colours_;

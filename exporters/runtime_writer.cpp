@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/groom/file/fields.h"
+#include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 #include "exporters/asset_scalp.h"
 #include "exporters/prepared_strands.h"
@@ -39,6 +40,7 @@ std::vector<std::uint16_t> ownRadii(const Groom& groom, const PreparedStrands& s
 struct FollowSections {
     std::optional<FollowBindings> bindings;
     std::vector<asset::Guide> guides;
+    std::vector<std::uint16_t> hairs;  ///< of each guide, where they have not all as many
     std::vector<asset::GuideTriangle> triangles;
     std::vector<std::int8_t> shifts;
     std::vector<asset::FarRootShift> farShifts;
@@ -104,13 +106,18 @@ Result<FollowSections> followSections(const Groom& groom, const PreparedStrands&
     }
     for (std::size_t t = 0; t < bindings.triangles.size(); ++t)
         sections.triangles.push_back({bindings.triangles[t], bindings.areas[t]});
+    const std::uint32_t most = *std::ranges::max_element(bindings.hairs);
+    if (std::ranges::any_of(bindings.hairs, [&](std::uint32_t hairs) { return hairs != most; })) {
+        for (const std::uint32_t hairs : bindings.hairs)
+            sections.hairs.push_back(static_cast<std::uint16_t>(hairs));
+    }
     const PartingSettings parting;
     std::uint32_t points = 0;
     for (const asset::Guide& guide : sections.guides)
         points = std::max(points, strands.offsets[guide.strand + 1] - strands.offsets[guide.strand]);
     const float step = addShifts(bindings, sections);
     sections.recipe = {settings.seed,
-                       settings.followPerGuide,
+                       most,
                        points,
                        settings.wispRadiusRoot,
                        settings.wispRadiusTip,
@@ -194,6 +201,21 @@ Status addFindings(const Groom& groom, const FollowSections& follow, const runti
     return {};
 }
 
+void addLayers(const Groom& groom, const PreparedStrands& strands, AssetBuilder& builder) {
+    if (groom.layers.size() < 2) return;
+    std::vector<asset::Layer> layers;
+    for (const Layer& layer : groom.layers) {
+        layers.push_back({builder.text(layer.name), layer.density, layer.material ? 1u : 0u});
+        if (layer.material) builder.addSettings(fmt::format("layer{}", layers.size()), *layer.material);
+    }
+    const std::vector<std::uint32_t> all = layersOfStrands(groom);
+    std::vector<std::uint16_t> ofStrands;
+    for (const std::uint32_t source : strands.sources)
+        ofStrands.push_back(static_cast<std::uint16_t>(all[source]));
+    builder.add<asset::Layer>(asset::kLayers, layers);
+    builder.add<std::uint16_t>(asset::kStrandLayers, ofStrands);
+}
+
 Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& strands,
                                           const FollowSections& follow,
                                           const std::optional<SafeLimits>& safeLimits) {
@@ -212,11 +234,13 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     if (follow.bindings) {
         builder.add<asset::Recipe>(asset::kRecipe, std::span(&follow.recipe, 1));
         builder.add<asset::Guide>(asset::kGuides, follow.guides);
+        builder.add<std::uint16_t>(asset::kGuideHairs, follow.hairs, asset::kRequired);
         builder.add<asset::GuideTriangle>(asset::kGuideTriangles, follow.triangles);
         builder.add<std::int8_t>(asset::kRootShifts, follow.shifts);
         builder.add<asset::FarRootShift>(asset::kFarRootShifts, follow.farShifts);
     }
     builder.add<std::uint16_t>(asset::kRadii, ownRadii(groom, strands));
+    addLayers(groom, strands, builder);
     builder.addSettings("simulation", groom.simulation);
     builder.addSettings("material", groom.material);
     builder.addSettings("interpolation", groom.interpolation);
@@ -249,18 +273,18 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
 }  // namespace
 
 StrandWriter runtimeWriter() {
-    return {
-        "runtime",
-        "Hairloom runtime asset .hairrt",
-        "root bindings, the head's bones, spheres, settings, material and how follow hairs come from guides",
-        "512 points a strand",
-        {{"game",
-          "Game by Hairloom's runtime",
-          ".hairrt, metres, Y up; played by the library in runtime/",
-          {}}},
-        writeRuntime,
-        "hairrt",
-        true};
+    return {"runtime",
+            "Hairloom runtime asset .hairrt",
+            "root bindings, the head's bones, spheres, settings, layers, materials and how follow hairs come "
+            "from guides",
+            "512 points a strand",
+            {{"game",
+              "Game by Hairloom's runtime",
+              ".hairrt, metres, Y up; played by the library in runtime/",
+              {}}},
+            writeRuntime,
+            "hairrt",
+            true};
 }
 
 }  // namespace hairloom

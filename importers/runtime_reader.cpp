@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runtime assets, read as games read them: by runtime/.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -43,6 +45,15 @@ std::shared_ptr<const Groom> readAuthored(const runtime::Asset& from) {
     authored->simulation = from.simulation();
     readSettings(from, "material", authored->material);
     readSettings(from, "interpolation", authored->interpolation);
+    if (!from.layers.empty()) authored->layers.clear();
+    for (const asset::Layer& layer : from.layers) {
+        Layer& read = authored->layers.emplace_back();
+        read.name = from.text(layer.name);
+        read.density = std::min(layer.density, kMaxLayerDensity);
+        if (layer.ownMaterial == 0) continue;
+        read.material.emplace();
+        readSettings(from, fmt::format("layer{}", authored->layers.size()), *read.material);
+    }
     for (const asset::Sphere& sphere : from.spheres) {
         CollisionSphere read;
         read.name = from.text(sphere.name);
@@ -52,6 +63,15 @@ std::shared_ptr<const Groom> readAuthored(const runtime::Asset& from) {
         authored->spheres.push_back(std::move(read));
     }
     return authored;
+}
+
+void readLayers(const runtime::Asset& from, RawStrands& raw) {
+    if (from.strandLayers.empty()) return;
+    RawAttribute layers;
+    layers.name = attribute::kLayer;
+    layers.type = RawAttribute::Type::Index;
+    layers.whole.assign(from.strandLayers.begin(), from.strandLayers.end());
+    raw.attributes.push_back(std::move(layers));
 }
 
 /// Marks where some strands are guides and others not.
@@ -95,6 +115,7 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
     raw.statedMetresPerUnit = 1.0f;
     raw.statedUp = UpAxis::Y;
     raw.authored = readAuthored(from);
+    readLayers(from, raw);
     readGuides(from, raw);
     return raw;
 }

@@ -237,9 +237,10 @@ bool isAsMeantHere(const RawAttribute& attribute) {
     if (attribute.name == attribute::kTransparency || attribute.name == attribute::kDye)
         return isNumber && attribute.components == 1;
     if (attribute.name == attribute::kStrandColour) return isNumber && attribute.components == 3;
-    // Groups, guides and ids have been given their types by adoptAttributes().
-    const bool adopted = attribute.name == attribute::kGroup || attribute.name == attribute::kGuide ||
-                         attribute.name == attribute::kStrandId;
+    // Groups, guides and ids have been given their types by adoptAttributes(), layers by the one format that
+    // has them.
+    const bool adopted = attribute.name == attribute::kLayer || attribute.name == attribute::kGroup ||
+                         attribute.name == attribute::kGuide || attribute.name == attribute::kStrandId;
     return adopted &&
            (attribute.type == RawAttribute::Type::Index || attribute.type == RawAttribute::Type::Flag);
 }
@@ -302,6 +303,7 @@ void takeSettings(const Groom& authored, ImportedStrands& result) {
     result.groom.material = authored.material;
     result.groom.interpolation = authored.interpolation;
     result.groom.spheres = authored.spheres;
+    result.groom.layers = authored.layers;
 }
 
 /// Attribute values that no consumer could use become the nearest that they can.

@@ -3,6 +3,7 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "core/groom/file/json_reader.h"
 #include "core/groom/strand_subset.h"
 #include "core/operations/stack.h"
 
@@ -31,6 +32,8 @@ Result<Report> layers(const std::string& input) {
                                           {"name", groom->layers[layer].name},
                                           {"visible", groom->layers[layer].visible},
                                           {"locked", groom->layers[layer].locked},
+                                          {"density", readableDecimal(groom->layers[layer].density)},
+                                          {"own_material", groom->layers[layer].material.has_value()},
                                           {"strands", strands.size()},
                                           {"points", points},
                                           {"operators", operatorsOf(*groom, layer + 1)}});

@@ -32,28 +32,37 @@ struct SetOptions {
 
 /// "simulation.windSpeed=4" into {"simulation": {"windSpeed": 4}}. A value that is no JSON is text.
 Status addAssignment(const std::string& assignment, nlohmann::json& document) {
-    const std::size_t dot = assignment.find('.');
     const std::size_t equals = assignment.find('=');
-    if (dot == std::string::npos || equals == std::string::npos || dot > equals) {
+    const std::string path = assignment.substr(0, equals);
+    if (equals == std::string::npos || path.find('.') == std::string::npos)
         return fail(fmt::format("'{}' sets nothing", assignment), "expected SECTION.FIELD=VALUE");
+    nlohmann::json* at = &document;
+    std::size_t begin = 0;
+    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
+        at = &(*at)[path.substr(begin, dot - begin)];
+        begin = dot + 1;
+        if (!at->is_null() && !at->is_object())
+            return fail(fmt::format("'{}' is within what another sets", assignment), "expected one of them");
     }
     const std::string text = assignment.substr(equals + 1);
     nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
     if (value.is_discarded()) value = text;
-    document[assignment.substr(0, dot)][assignment.substr(dot + 1, equals - dot - 1)] = std::move(value);
+    (*at)[path.substr(begin)] = std::move(value);
     return {};
 }
 
-std::size_t membersIn(const nlohmann::json& document) {
+/// Fields in sections; null, which takes a material away, is one.
+std::size_t fieldsIn(const nlohmann::json& document) {
+    if (!document.is_object()) return 1;
     std::size_t count = 0;
-    for (const auto& section : document) count += section.size();
+    for (const auto& member : document) count += fieldsIn(member);
     return count;
 }
 
 /// Sections that are absent keep their values. Returns the number of fields that were given.
 Result<std::size_t> apply(const nlohmann::json& document, const std::string& source, Groom& groom) {
     if (auto status = applySettings(document, source, groom); !status) return tl::unexpected(status.error());
-    return membersIn(document);
+    return fieldsIn(document);
 }
 
 std::vector<std::string> presetNames() {
@@ -130,7 +139,8 @@ JobRun declare(CLI::App& job) {
                                  "Show every field with unit, range, default and meaning, and the presets");
     auto* input = job.add_option("groom", options->input, "Groom to change")->excludes(listing);
     job.add_option("fields", options->assignments,
-                   "SECTION.FIELD=VALUE; sections: simulation, material, interpolation");
+                   "SECTION.FIELD=VALUE; sections: simulation, material, interpolation; of a layer "
+                   "layers.NAME.density=VALUE, layers.NAME.material.FIELD=VALUE, layers.NAME.material=null");
     job.add_option(
            "--preset", options->preset,
            "Measured hair to take stiffness, thickness and colour from; fields and --from come after it")

@@ -14,6 +14,7 @@
 #include "core/editing/stack_commands.h"
 #include "core/editing/take_shape.h"
 #include "core/groom/file/card_edits_json.h"
+#include "core/groom/file/layers_json.h"
 #include "core/groom/file/settings_json.h"
 #include "core/operations/mask.h"
 #include "core/operations/stack.h"
@@ -52,13 +53,8 @@ MakeCommand readCards(JsonReader& reader) {
     };
 }
 
-MakeCommand readLayers(JsonReader& reader) {
-    std::vector<Layer> layers;
-    for (JsonReader& entry : reader.objects("layers")) {
-        layers.push_back({entry.string("name"), entry.boolean("visible"), entry.boolean("locked")});
-        entry.finish();
-    }
-    return [layers](const Document& document) -> CommandResult {
+MakeCommand readLayerList(JsonReader& reader) {
+    return [layers = readLayers(reader)](const Document& document) -> CommandResult {
         if (layers.size() < document.groom().layers.size())
             return fail(fmt::format("{} layers", layers.size()), "as many as there are, or more");
         return setLayers(document.model(), layers);
@@ -218,7 +214,7 @@ constexpr RecordedOperation kOperations[] = {
     {"interpolation", readSettingsStep<InterpolationSettings, setInterpolation>},
     {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
     {"spheres", readSpheres},
-    {"layers", readLayers},
+    {"layers", readLayerList},
     {"card_edits", readCards},
     {"move_to_layer", readMoveToLayer},
     {"remove_layer", readRemoveLayer},

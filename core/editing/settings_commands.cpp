@@ -9,6 +9,7 @@
 
 #include "core/editing/records.h"
 #include "core/groom/file/card_edits_json.h"
+#include "core/groom/file/layers_json.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/groom_hash.h"
 
@@ -51,21 +52,10 @@ std::string settingsRecord(std::string_view op, const S& settings) {
     return recordOf(op, {{"settings", toJson(settings)}});
 }
 
-nlohmann::ordered_json layersToJson(const std::vector<Layer>& layers) {
-    auto list = nlohmann::ordered_json::array();
-    for (const Layer& layer : layers)
-        list.push_back({{"name", layer.name}, {"visible", layer.visible}, {"locked", layer.locked}});
-    return list;
-}
-
 /// Settings and spheres differ where their text does; it holds every bit of them.
 template <class S>
 bool differs(const S& a, const S& b) {
     return toJson(a) != toJson(b);
-}
-
-bool differs(const std::vector<Layer>& a, const std::vector<Layer>& b) {
-    return layersToJson(a) != layersToJson(b);
 }
 
 bool sharesAll(const AttributeSet& a, const AttributeSet& b) {
@@ -192,16 +182,20 @@ std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSph
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers) {
     const std::vector<Layer>& now = model.groom.layers;
     assert(layers.size() >= now.size());
-    const bool isSame =
-        std::equal(now.begin(), now.end(), layers.begin(), layers.end(), [](const Layer& a, const Layer& b) {
-            return a.name == b.name && a.visible == b.visible && a.locked == b.locked;
-        });
-    if (isSame) return nullptr;
+    if (!differs(now, layers)) return nullptr;
+    // Other looks of the same layers move nothing.
+    bool looksAlone = layers.size() == now.size();
+    for (std::size_t i = 0; i < now.size() && looksAlone; ++i) {
+        Layer alike = layers[i];
+        alike.material = now[i].material;
+        looksAlone = !differs(std::vector{now[i]}, std::vector{alike});
+    }
+    const Part part = looksAlone ? Part::Material : Part::Layers;
     const std::size_t bytes = layers.size() * sizeof(Layer);
-    std::string record = recordOf("layers", {{"layers", layersToJson(layers)}});
+    std::string record = recordOf("layers", {{"layers", toJson(layers)}});
     return valueCommand<std::vector<Layer>>(
-        "Layers", Part::Layers, [](Model& m) -> std::vector<Layer>& { return m.groom.layers; },
-        std::move(layers), std::move(record), bytes);
+        "Layers", part, [](Model& m) -> std::vector<Layer>& { return m.groom.layers; }, std::move(layers),
+        std::move(record), bytes);
 }
 
 Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<CardEdit> edits,

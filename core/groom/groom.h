@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,12 +28,15 @@ struct CollisionSphere {
     std::string bone;              ///< bone it moves with; empty: with the scalp as a rigid whole
 };
 
-/// Strands that are shown, locked and edited together.
+/// Strands that are shown, locked, coloured and edited together.
 struct Layer {
     std::string name = "Hair";
     bool visible = true;
     bool locked = false;
+    float density = 1;                     ///< 0 … kMaxLayerDensity, times followPerGuide for its guides
+    std::optional<HairMaterial> material;  ///< in place of the groom's, and of what points say of thickness
 };
+inline constexpr float kMaxLayerDensity = 4;
 
 /// How follow hairs come from guides (thesis §4.2). fieldsOf() describes the members.
 struct InterpolationSettings {
@@ -91,6 +95,12 @@ struct Groom {
     std::span<const Vec3f> positions() const { return pointAttributes.view<Vec3f>(attribute::kPosition); }
     std::span<const Vec3f> strand(std::size_t index) const {
         return positions().subspan(offsets[index], offsets[index + 1] - offsets[index]);
+    }
+
+    /// What the strands of a layer look like.
+    const HairMaterial& materialOf(std::size_t layer) const {
+        const bool own = layer < layers.size() && layers[layer].material;
+        return own ? *layers[layer].material : material;
     }
 
     /// Strands whose guide flag is set; all of them where there are no flags.

@@ -59,7 +59,9 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     hasher.number(groom.layers.size());
     for (const Layer& layer : groom.layers) {
         hasher.text(layer.name);
-        hasher.number((layer.visible ? 1u : 0u) | (layer.locked ? 2u : 0u));
+        hasher.number((layer.visible ? 1u : 0u) | (layer.locked ? 2u : 0u) | (layer.material ? 4u : 0u));
+        hasher.real(static_cast<double>(layer.density));
+        if (layer.material) hashFields(hasher, *layer.material);
     }
     hasher.number(groom.operators.size());
     for (const Operator& one : groom.operators) {

@@ -46,6 +46,13 @@ void findSettings(const Groom& groom, std::vector<Finding>& findings) {
         }
     };
     report("material", fieldsOutOfRange(groom.material));
+    for (const Layer& layer : groom.layers) {
+        const std::string which = "layer " + layer.name;
+        if (layer.material) report(which, fieldsOutOfRange(*layer.material));
+        if (withinRange(static_cast<double>(layer.density), 0, static_cast<double>(kMaxLayerDensity)))
+            continue;
+        report(which, {fmt::format("its density is {}; expected 0 to {}", layer.density, kMaxLayerDensity)});
+    }
     report("interpolation", fieldsOutOfRange(groom.interpolation));
     report("placement", fieldsOutOfRange(groom.placement));
     report("simulation", runtime::validate(groom.simulation));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
 #include "core/interpolation/follow_hairs.h"
@@ -51,6 +52,26 @@ Result<std::vector<std::uint32_t>> findGuides(const Groom& groom) {
     if (guides.empty())
         return fail("the groom has no guides", "expected at least one strand flagged as guide");
     return guides;
+}
+
+/// A density that asks for a part of a hair gives one to that share of the guides, by chance.
+std::vector<std::uint32_t> hairsOfGuides(const Groom& groom, const InterpolationSettings& settings,
+                                         const std::vector<std::uint32_t>& guideStrands) {
+    constexpr std::uint64_t kStream = 0xde5;
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    const auto ids = groom.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
+    std::vector<std::uint32_t> hairs;
+    hairs.reserve(guideStrands.size());
+    for (const std::uint32_t strand : guideStrands) {
+        const std::uint32_t layer = strand < layers.size() ? layers[strand] : 0;
+        const float density = layer < groom.layers.size() ? groom.layers[layer].density : 1.0f;
+        const double wanted = double{density} * settings.followPerGuide;
+        const std::uint32_t id = strand < ids.size() ? ids[strand] : strand;
+        Random random(settings.seed, (kStream << 32u) | id);
+        const double rounded = std::floor(wanted + double{random.uniform()});
+        hairs.push_back(std::min(static_cast<std::uint32_t>(rounded), kMaxFollowPerGuide));
+    }
+    return hairs;
 }
 
 /// Root triangles whose corners count guides.
@@ -147,7 +168,7 @@ class Binder {
         host.parallelFor = parallelFor;
         const runtime::DrawnHairs drawn = runtime::drawFollowHairs(
             {settings_.seed,
-             bindings_.followPerGuide,
+             bindings_.hairs,
              settings_.blend,
              {parting_.beginAngleDegrees, parting_.endAngleDegrees, parting_.beginSpread, parting_.endSpread},
              bindings_.ids,
@@ -212,7 +233,7 @@ Result<FollowBindings> bindFollowHairs(const Groom& groom, const InterpolationSe
     if (!guides) return tl::unexpected(guides.error());
     FollowBindings bindings;
     bindings.guideStrands = std::move(*guides);
-    bindings.followPerGuide = settings.followPerGuide;
+    bindings.hairs = hairsOfGuides(groom, settings, bindings.guideStrands);
     for (const std::uint32_t strand : bindings.guideStrands) {
         bindings.pointsPerHair =
             std::max(bindings.pointsPerHair, groom.offsets[strand + 1] - groom.offsets[strand]);

@@ -2,6 +2,7 @@
 #include <cassert>
 
 #include "core/base/parallel.h"
+#include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 
 namespace hairloom {
@@ -76,6 +77,14 @@ Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings
     baked.scalpExpression = groom.scalpExpression;
     baked.characterFile = groom.characterFile;
     if (!bindings.roots.empty()) baked.setRootBindings(bindings.roots);
+    baked.layers = groom.layers;
+    if (groom.layers.size() > 1) {
+        const std::vector<std::uint32_t> ofStrands = layersOfStrands(groom);
+        std::vector<std::uint32_t> layers(hairs);
+        for (std::size_t hair = 0; hair < hairs; ++hair)
+            layers[hair] = ofStrands[bindings.guideStrands[bindings.guides[hair][0]]];
+        baked.strandAttributes.set(attribute::kLayer, std::move(layers));
+    }
     return baked;
 }
 

@@ -24,11 +24,11 @@ struct PartingSettings {
     float endSpread = 1.1f;    ///< > begin
 };
 
-/// Which guides each follow hair takes part of, and how. Hair h of guide g is g · followPerGuide + h; arrays
-/// per hair are in this order. `guides` index the guides of this binding, not the strands of the groom.
+/// Which guides each follow hair takes part of, and how. Arrays per hair are guide after guide. `guides`
+/// index the guides of this binding, not the strands of the groom.
 struct FollowBindings {
     std::uint32_t pointsPerHair = 0;          ///< of every guide and every follow hair
-    std::uint32_t followPerGuide = 0;         ///< hairs of each guide
+    std::vector<std::uint32_t> hairs;         ///< of each guide: how many follow it
     std::vector<std::uint32_t> guideStrands;  ///< strand of the groom of each guide
     std::vector<std::uint32_t> ids;           ///< of each guide: what its hairs are drawn by
     std::vector<Triangle> triangles;          ///< of guides: where hairs are drawn from
@@ -50,10 +50,11 @@ struct FollowBindings {
     std::size_t hairCount() const { return guides.size(); }
 };
 
-/// Guides are the strands flagged as such, or all. Hairs are random, by the seed, the guide's id and their
-/// number alone. Where the groom has no scalp, hairs are rooted in the planes of their guides' roots. Root
-/// triangles are the groom's where they join guides only; otherwise the guides are triangulated anew. Errors:
-/// no guides, a guide of fewer than two points, settings out of range.
+/// Guides are the strands flagged as such, or all; the density of a guide's layer multiplies its hairs. Hairs
+/// are random, by the seed, the guide's id and their number alone. Where the groom has no scalp, hairs are
+/// rooted in the planes of their guides' roots. Root triangles are the groom's where they join guides only;
+/// otherwise the guides are triangulated anew. Errors: no guides, a guide of fewer than two points, settings
+/// out of range.
 Result<FollowBindings> bindFollowHairs(const Groom& groom, const InterpolationSettings& settings,
                                        const PartingSettings& parting = {});
 

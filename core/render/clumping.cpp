@@ -54,11 +54,18 @@ std::array<Vec2f, kRays> raysOfBeam() {
     return rays;
 }
 
-float radiusAt(const RenderStrands& strands, std::uint32_t first, std::uint32_t last, std::uint32_t p) {
-    if (!strands.radii.empty()) return strands.radii[p];
+/// Of strand `s`; null: it is not drawn.
+const StrandShading* shadingOf(const RenderStrands& strands, std::size_t s) {
+    const std::uint32_t material = strands.materials.empty() ? 0 : strands.materials[s];
+    if (material == kNotDrawn) return nullptr;
+    return material == 0 ? &strands.material : &strands.others[material - 1];
+}
+
+float radiusAt(const RenderStrands& strands, const StrandShading& material, std::uint32_t first,
+               std::uint32_t last, std::uint32_t p) {
+    if (!strands.radii.empty() && &material == &strands.material) return strands.radii[p];
     const float along = static_cast<float>(p - first) / static_cast<float>(std::max(last - first - 1, 1u));
-    const StrandShading& m = strands.material;
-    return m.radius * (1 + (m.tipScale - 1) * along * along);
+    return material.radius * (1 + (material.tipScale - 1) * along * along);
 }
 
 /// Places along the hair at random, in the order of the first coordinate.
@@ -115,11 +122,12 @@ void look(std::span<const RenderStrands> strands, std::size_t part, const Frame&
         const std::size_t count = group.offsets.empty() ? 0 : group.offsets.size() - 1;
         for (std::size_t s = count * part / kParts; s < count * (part + 1) / kParts; ++s) {
             const std::uint32_t first = group.offsets[s], last = group.offsets[s + 1];
-            if (last - first < 2) continue;
+            const StrandShading* material = shadingOf(group, s);
+            if (last - first < 2 || material == nullptr) continue;
             Vec3f a = frame.seen(group.positions_ws[first]);
             for (std::uint32_t p = first + 1; p < last; ++p) {
                 const Vec3f b = frame.seen(group.positions_ws[p]);
-                const float radius = radiusAt(group, first, last, p - 1);
+                const float radius = radiusAt(group, *material, first, last, p - 1);
                 const float reach = kReach + radius;
                 const float begin = std::min(a.x(), b.x()) - reach, end = std::max(a.x(), b.x()) + reach;
                 auto it =

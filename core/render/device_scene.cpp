@@ -96,11 +96,12 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     return result;
 }
 
-/// Strands first…last - 1 of a group that have segments, in an order of chance.
+/// Strands first…last - 1 of a group that are drawn and have segments, in an order of chance.
 std::vector<std::size_t> drawingOrder(const RenderStrands& strands, std::size_t first, std::size_t last) {
     std::vector<std::size_t> order;
     for (std::size_t i = first; i < last; ++i) {
-        if (strands.offsets[i + 1] - strands.offsets[i] >= 2) order.push_back(i);
+        const bool drawn = strands.materials.empty() || strands.materials[i] != kNotDrawn;
+        if (drawn && strands.offsets[i + 1] - strands.offsets[i] >= 2) order.push_back(i);
     }
     Random random(2, first);
     for (std::size_t i = order.size(); i > 1; --i) {
@@ -111,16 +112,12 @@ std::vector<std::size_t> drawingOrder(const RenderStrands& strands, std::size_t 
 
 constexpr std::size_t kSomeStrands = 64;  // a batch
 
-/// Strands first…last - 1 of a group.
-Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_t group, std::size_t first,
-                   std::size_t last, std::vector<StrandGroup>& groups, std::vector<DrawBatch>& batches) {
-    DrawBatch batch;
-    batch.group = group;
-    batch.firstPoint = strands.offsets[first];
-    batch.pointCount = strands.offsets[last] - strands.offsets[first];
+/// Of strands in a part of a group, and the batch's segments.
+std::vector<shaders::StrandHeader> headersOf(const RenderStrands& strands, std::span<const std::size_t> order,
+                                             std::size_t first, DrawBatch& batch) {
     batch.segmentsBefore = {0};
     std::vector<shaders::StrandHeader> headers;
-    for (const std::size_t i : drawingOrder(strands, first, last)) {
+    for (const std::size_t i : order) {
         shaders::StrandHeader header;
         header.firstPoint = strands.offsets[i] - strands.offsets[first];
         header.pointCount = strands.offsets[i + 1] - strands.offsets[i];
@@ -134,28 +131,59 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
         headers.push_back(header);
         batch.segmentsBefore.push_back(header.segmentsBefore + header.pointCount - 1);
     }
-    if (headers.empty()) return {};
-    const std::size_t some = std::min(headers.size(), kSomeStrands);
-    auto& someStrands = groups[group].someStrands;
-    for (std::size_t i = 0; i < some; ++i) {
-        someStrands.push_back(headers[i]);
-        someStrands.back().firstPoint += static_cast<std::uint32_t>(batch.firstPoint);
-    }
+    return headers;
+}
+
+void uploadPoints(gpu::Device& device, const RenderStrands& strands, DrawBatch& batch, Gather& gather) {
     const std::vector<float> none(1, 0.0f);
     const auto radii = strands.radii.empty() ? std::span<const float>(none)
                                              : strands.radii.subspan(batch.firstPoint, batch.pointCount);
     const auto dyes = strands.pointDyes.empty()
                           ? std::span<const float>(none)
                           : strands.pointDyes.subspan(batch.firstPoint, batch.pointCount);
-    Gather gather;
-    gather(batch.headers, structured(device, "strands", sizeof(shaders::StrandHeader), bytes(headers)));
     gather(batch.positions,
            structured(device, "strand points", 4,
                       std::as_bytes(strands.positions_ws.subspan(batch.firstPoint, batch.pointCount))));
     gather(batch.radii, structured(device, "strand radii", 4, std::as_bytes(radii)));
     gather(batch.pointDyes, structured(device, "strand dyes", 4, std::as_bytes(dyes)));
-    if (!gather.status()) return gather.status();
-    batches.push_back(std::move(batch));
+}
+
+/// Strands first…last - 1 of a group: a batch for each of their materials.
+Status uploadBatches(gpu::Device& device, const RenderStrands& strands, std::size_t group, std::size_t first,
+                     std::size_t last, std::vector<StrandGroup>& groups, std::vector<DrawBatch>& batches) {
+    std::vector<MaterialOnDevice>& materials = groups[group].materials;
+    std::vector<std::vector<std::size_t>> orders(materials.size());
+    for (const std::size_t i : drawingOrder(strands, first, last))
+        orders[strands.materials.empty() ? 0 : strands.materials[i]].push_back(i);
+    bool shares = false;
+    for (std::size_t material = 0; material < orders.size(); ++material) {
+        if (orders[material].empty()) continue;
+        DrawBatch batch;
+        batch.group = group;
+        batch.material = material;
+        batch.firstPoint = strands.offsets[first];
+        batch.pointCount = strands.offsets[last] - strands.offsets[first];
+        const std::vector<shaders::StrandHeader> headers = headersOf(strands, orders[material], first, batch);
+        const std::size_t some = std::min(headers.size(), kSomeStrands);
+        auto& someStrands = materials[material].someStrands;
+        for (std::size_t i = 0; i < some; ++i) {
+            someStrands.push_back(headers[i]);
+            someStrands.back().firstPoint += static_cast<std::uint32_t>(batch.firstPoint);
+        }
+        Gather gather;
+        gather(batch.headers, structured(device, "strands", sizeof(shaders::StrandHeader), bytes(headers)));
+        if (shares) {
+            batch.sharesPoints = true;
+            batch.positions = batches.back().positions;
+            batch.radii = batches.back().radii;
+            batch.pointDyes = batches.back().pointDyes;
+        } else {
+            uploadPoints(device, strands, batch, gather);
+        }
+        if (!gather.status()) return gather.status();
+        batches.push_back(std::move(batch));
+        shares = true;
+    }
     return {};
 }
 
@@ -171,22 +199,24 @@ Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::siz
                         fmt::format("at most {}", maximum));
         }
         if (strands.offsets[i + 1] - strands.offsets[first] > maximum) {
-            if (auto status = uploadBatch(device, strands, group, first, i, groups, batches); !status) {
+            if (auto status = uploadBatches(device, strands, group, first, i, groups, batches); !status) {
                 return status;
             }
             first = i;
         }
     }
-    return count > first ? uploadBatch(device, strands, group, first, count, groups, batches) : Status{};
+    return count > first ? uploadBatches(device, strands, group, first, count, groups, batches) : Status{};
 }
 
 void takeMeanDyes(StrandGroup& group, std::span<const float> pointDyes) {
-    group.someDyes.assign(group.someStrands.size(), 1.0f);
-    for (std::size_t i = 0; i < group.someStrands.size() && !pointDyes.empty(); ++i) {
-        const shaders::StrandHeader& strand = group.someStrands[i];
-        float sum = 0;
-        for (const float dye : pointDyes.subspan(strand.firstPoint, strand.pointCount)) sum += dye;
-        group.someDyes[i] = sum / static_cast<float>(strand.pointCount);
+    for (MaterialOnDevice& material : group.materials) {
+        material.someDyes.assign(material.someStrands.size(), 1.0f);
+        for (std::size_t i = 0; i < material.someStrands.size() && !pointDyes.empty(); ++i) {
+            const shaders::StrandHeader& strand = material.someStrands[i];
+            float sum = 0;
+            for (const float dye : pointDyes.subspan(strand.firstPoint, strand.pointCount)) sum += dye;
+            material.someDyes[i] = sum / static_cast<float>(strand.pointCount);
+        }
     }
 }
 
@@ -206,9 +236,10 @@ void takeSample(StrandGroup& group, std::span<const Vec3f> positions_ws) {
                            [&](std::uint32_t i) { return positions_ws[i]; });
 }
 
-bool needsFibre(const StrandGroup& group) {
-    return !group.material.tubes &&
-           !(group.hasFibre && group.fibre.isFor(group.material.fibre, group.material.look.has_value()));
+bool needsFibre(const MaterialOnDevice& material) {
+    const StrandShading& shading = material.shading;
+    return !shading.tubes &&
+           !(material.hasFibre && material.fibre.isFor(shading.fibre, shading.look.has_value()));
 }
 
 }  // namespace
@@ -232,7 +263,10 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
     for (std::size_t i = 0; i < scene.strands.size(); ++i) {
         const RenderStrands& strands = scene.strands[i];
         StrandGroup group;
-        group.material = strands.material;
+        group.materials.resize(1 + strands.others.size());
+        group.materials[0].shading = strands.material;
+        for (std::size_t m = 0; m < strands.others.size(); ++m)
+            group.materials[m + 1].shading = strands.others[m];
         group.strandCount = strands.offsets.empty() ? 0 : strands.offsets.size() - 1;
         group.pointCount = strands.positions_ws.size();
         group.hasRadii = !strands.radii.empty();
@@ -344,33 +378,38 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
 
 Result<bool> DeviceScene::prepareFibres(gpu::Device& device, bool behind) {
     bool areNew = false;
-    const auto use = [&](StrandGroup& group, FibreTables tables) -> Status {
+    const auto use = [&](MaterialOnDevice& material, FibreTables tables) -> Status {
         if (auto status = tables.upload(device); !status) return status;
-        group.fibre = std::move(tables);
-        group.hasFibre = areNew = true;
+        material.fibre = std::move(tables);
+        material.hasFibre = areNew = true;
         return {};
     };
-    for (StrandGroup& group : groups) {
-        auto baked = group.bake.take();
-        if (!needsFibre(group)) continue;
+    const auto prepare = [&](MaterialOnDevice& material) -> Status {
+        const StrandShading& shading = material.shading;
+        auto baked = material.bake.take();
+        if (!needsFibre(material)) return {};
         // While a control moves these are of a moment ago, and nearer to what is wished than older ones.
-        if (baked && baked->hasShaderFor(group.material)) {
-            if (auto status = use(group, std::move(*baked)); !status) return tl::unexpected(status.error());
-            if (!needsFibre(group)) continue;
+        if (baked && baked->hasShaderFor(shading)) {
+            if (auto status = use(material, std::move(*baked)); !status) return status;
+            if (!needsFibre(material)) return {};
         }
-        if (behind && group.hasFibre && group.fibre.hasShaderFor(group.material)) {
-            if (!group.bake.isRunning())
-                group.bake.start(group.material.fibre, group.material.look.has_value());
-            continue;
+        if (behind && material.hasFibre && material.fibre.hasShaderFor(shading)) {
+            if (!material.bake.isRunning()) material.bake.start(shading.fibre, shading.look.has_value());
+            return {};
         }
-        auto status = use(group, FibreTables::bake(group.material.fibre, group.material.look.has_value()));
-        if (!status) return tl::unexpected(status.error());
+        return use(material, FibreTables::bake(shading.fibre, shading.look.has_value()));
+    };
+    for (StrandGroup& group : groups) {
+        for (MaterialOnDevice& material : group.materials) {
+            if (auto status = prepare(material); !status) return tl::unexpected(status.error());
+        }
     }
     return areNew;
 }
 
 bool DeviceScene::awaitsFibres() const {
-    return std::ranges::any_of(groups, needsFibre);
+    return std::ranges::any_of(
+        groups, [](const StrandGroup& group) { return std::ranges::any_of(group.materials, needsFibre); });
 }
 
 void DeviceScene::recordUploads(gpu::CommandList& list) {
@@ -381,6 +420,7 @@ void DeviceScene::recordUploads(gpu::CommandList& list) {
         mesh.positions_ws.clear();
     }
     for (const DrawBatch& batch : batches) {
+        if (batch.sharesPoints) continue;
         const StrandGroup& group = groups[batch.group];
         const auto update = [&](const gpu::BufferPtr& buffer, auto all) {
             if (all.empty()) return;
@@ -426,6 +466,13 @@ std::vector<Vec3f> DeviceScene::sample() const {
             points.push_back(group.bounds_ws.corner(static_cast<Box3f::CornerType>(i)));
     }
     return points;
+}
+
+bool DeviceScene::hasTubes() const {
+    return std::ranges::any_of(groups, [](const StrandGroup& group) {
+        return std::ranges::any_of(group.materials,
+                                   [](const MaterialOnDevice& m) { return m.shading.tubes; });
+    });
 }
 
 std::uint32_t DeviceScene::strandsBefore(std::size_t group) const {

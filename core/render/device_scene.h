@@ -24,9 +24,12 @@ struct HairDetail {
     float widening() const;
 };
 
-/// A part of a group of strands that fits the device's buffers.
+/// Strands of one material in a part of a group that fits the device's buffers.
 struct DrawBatch {
-    std::size_t group = 0;       ///< of RenderScene::strands
+    std::size_t group = 0;     ///< of RenderScene::strands
+    std::size_t material = 0;  ///< of its group's
+    /// It has the points of the batch before it, of which that one draws strands of another material.
+    bool sharesPoints = false;
     std::size_t firstPoint = 0;  ///< in the group's arrays
     std::size_t pointCount = 0;
     std::vector<std::uint32_t>
@@ -53,12 +56,23 @@ struct DrawBatch {
     }
 };
 
-/// Strands of one material.
-struct StrandGroup {
-    StrandShading material;
-    FibreTables fibre;  ///< of the material, once they were asked for
+struct MaterialOnDevice {
+    StrandShading shading;
+    FibreTables fibre;  ///< once they were asked for
     bool hasFibre = false;
-    FibreBake bake;               ///< of tables that shall take their place
+    FibreBake bake;     ///< of tables that shall take their place
+    double length = 0;  ///< metres of its strands together, where they stood when they were set
+    std::vector<shaders::StrandHeader>
+        someStrands;              ///< by chance, for means of the look; points of the group
+    std::vector<float> someDyes;  ///< of these, mean of what their points have of the dye
+};
+
+struct StrandGroup {
+    StrandGroup() = default;
+    StrandGroup(StrandGroup&&) = default;  // a bake that runs has no copy
+    StrandGroup& operator=(StrandGroup&&) = default;
+
+    std::vector<MaterialOnDevice> materials;
     std::size_t strandCount = 0;  ///< also those too short to be drawn
     std::size_t pointCount = 0;
     bool hasRadii = false;
@@ -70,12 +84,10 @@ struct StrandGroup {
     Box3f bounds_ws;
     double length = 0;  ///< metres of all strands together, where they stood when they were set
     std::size_t segments = 0;
-    double ownRadius = 0;                ///< metres, mean along the strands, where points have their own
+    double ownRadius =
+        0;  ///< metres, mean along the strands of the first material, where points have their own
     std::vector<Vec3f> sample_ws;        ///< points that lights are fitted to
     std::vector<std::uint32_t> sampled;  ///< their places among the group's points
-    std::vector<shaders::StrandHeader>
-        someStrands;              ///< by chance, for means of the look; points of the group
-    std::vector<float> someDyes;  ///< of these, mean of what their points have of the dye
 };
 
 /// How hair fills space, measured where the strands stood when they were set.
@@ -138,6 +150,10 @@ class DeviceScene {
     Box3f meshBounds() const;
     Box3f hairBounds() const;
     std::uint64_t triangles() const;
+    const MaterialOnDevice& materialOf(const DrawBatch& batch) const {
+        return groups[batch.group].materials[batch.material];
+    }
+    bool hasTubes() const;
     std::uint32_t strandsBefore(std::size_t group) const;  ///< in all groups before that one
     std::vector<Vec3f> sample()
         const;  ///< of the points of all hair; corners of its bounds where only those are known
@@ -148,7 +164,8 @@ class DeviceScene {
     Clumping clumping;
     /// With the radii of now.
     HairMeasure measure() const;
-    /// What the hair of the first group lets through to the skin; prepareFibres() comes before.
+    /// What the hair of the first group lets through to the skin, by the material that has most of it;
+    /// prepareFibres() comes before.
     HairFlux flux() const;
 
   private:

@@ -22,23 +22,23 @@ std::size_t countDistinct(std::vector<std::uint64_t> cells) {
 }
 
 /// At places along some strands, for what they let through.
-std::vector<Vec3d> absorptionsOf(const StrandGroup& group) {
+std::vector<Vec3d> absorptionsOf(const MaterialOnDevice& material) {
     constexpr int kPlaces = 6;
     std::vector<Vec3d> absorptions;
-    if (!group.material.look) return absorptions;
-    const auto count = static_cast<double>(group.someStrands.size());
-    for (std::size_t s = 0; s < group.someStrands.size(); ++s) {
-        const shaders::StrandHeader& strand = group.someStrands[s];
+    if (!material.shading.look) return absorptions;
+    const auto count = static_cast<double>(material.someStrands.size());
+    for (std::size_t s = 0; s < material.someStrands.size(); ++s) {
+        const shaders::StrandHeader& strand = material.someStrands[s];
         const Vec3d own = Vec3f(strand.albedo.x, strand.albedo.y, strand.albedo.z).cast<double>();
         for (int i = 0; i < kPlaces; ++i) {
             // Strands stand in an order of chance: even steps of the random number are its spread.
             const double random = (static_cast<double>(s) + 0.5) / count;
-            absorptions.push_back(shading::lookAt(*group.material.look,
-                                                  {.along = (i + 0.5) / kPlaces,
-                                                   .random = random,
-                                                   .streak = static_cast<double>(strand.streak),
-                                                   .dye = static_cast<double>(strand.dye * group.someDyes[s]),
-                                                   .ownColour = strand.albedo.w > 0 ? &own : nullptr}));
+            absorptions.push_back(shading::lookAt(
+                *material.shading.look, {.along = (i + 0.5) / kPlaces,
+                                         .random = random,
+                                         .streak = static_cast<double>(strand.streak),
+                                         .dye = static_cast<double>(strand.dye * material.someDyes[s]),
+                                         .ownColour = strand.albedo.w > 0 ? &own : nullptr}));
         }
     }
     return absorptions;
@@ -63,20 +63,24 @@ void DeviceScene::measureSpace(const RenderScene& scene) {
         const RenderStrands& strands = scene.strands[g];
         StrandGroup& group = groups[g];
         for (std::size_t i = 0; i + 1 < strands.offsets.size(); ++i) {
+            const std::uint32_t material = strands.materials.empty() ? 0 : strands.materials[i];
+            if (material == kNotDrawn) continue;
+            double& length = group.materials[material].length;
             for (std::uint32_t p = strands.offsets[i] + 1; p < strands.offsets[i + 1]; ++p) {
                 const Vec3f& a = strands.positions_ws[p - 1];
                 const Vec3f& b = strands.positions_ws[p];
                 const double step = static_cast<double>((b - a).norm());
                 group.length += step;
+                length += step;
                 ++group.segments;
-                if (group.hasRadii) {
+                if (group.hasRadii && material == 0) {
                     group.ownRadius +=
                         step * static_cast<double>(0.5f * (strands.radii[p - 1] + strands.radii[p]));
                 }
                 cells.push_back(cellOf(0.5f * (a + b), kCell));
             }
         }
-        if (group.length > 0) group.ownRadius /= group.length;
+        if (group.materials[0].length > 0) group.ownRadius /= group.materials[0].length;
     }
     const double cell = static_cast<double>(kCell);
     for (const unsigned axis : {0u, 21u, 42u}) {
@@ -89,19 +93,22 @@ void DeviceScene::measureSpace(const RenderScene& scene) {
 
 HairFlux DeviceScene::flux() const {
     if (groups.empty()) return {};
-    const StrandGroup& group = groups.front();
-    return group.fibre.flux(absorptionsOf(group));
+    const auto& material = *std::ranges::max_element(groups.front().materials, {}, &MaterialOnDevice::length);
+    return material.fibre.flux(absorptionsOf(material));
 }
 
 HairMeasure DeviceScene::measure() const {
     double length = 0, surface = 0;
     std::size_t segments = 0;
     for (const StrandGroup& group : groups) {
-        // The profile of shaders/curve.comp.hlsl has this mean.
-        const double authored =
-            static_cast<double>(group.material.radius * (2 + group.material.tipScale) / 3);
         length += group.length;
-        surface += group.length * 2 * (group.hasRadii ? group.ownRadius : authored);
+        for (const MaterialOnDevice& material : group.materials) {
+            // The profile of shaders/curve.comp.hlsl has this mean.
+            const double authored =
+                static_cast<double>(material.shading.radius * (2 + material.shading.tipScale) / 3);
+            const bool own = group.hasRadii && &material == &group.materials[0];
+            surface += material.length * 2 * (own ? group.ownRadius : authored);
+        }
         segments += group.segments;
     }
     HairMeasure result;

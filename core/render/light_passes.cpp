@@ -16,7 +16,7 @@ using gpu::Binding;
 shaders::CurveConstants curveConstants(const RendererState& state, const DrawBatch& batch) {
     const StrandGroup& group = state.scene.groups[batch.group];
     const bool own = group.devicePositions == nullptr;
-    const StrandShading& material = group.material;
+    const StrandShading& material = state.scene.materialOf(batch).shading;
     shaders::CurveConstants c{};
     c.strandCount = batch.strandCount(state.detail);
     c.subdivisions = state.detail.subdivisions;
@@ -25,7 +25,7 @@ shaders::CurveConstants curveConstants(const RendererState& state, const DrawBat
     c.rootRadius = material.radius;
     c.tipScale = material.tipScale;
     c.radiusVariation = material.radiusVariation;
-    c.hasRadii = group.hasRadii ? 1 : 0;
+    c.hasRadii = group.hasRadii && batch.material == 0 ? 1 : 0;
     c.fullShare = 0.9f * state.detail.share;
     c.goneShare = 1.1f * state.detail.share;
     c.strandShare = 1 / static_cast<float>(batch.strandCount());
@@ -154,7 +154,7 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
 
 void dispatchCurvePoints(gpu::CommandList& list, const RendererState& state, const DrawBatch& batch,
                          shaders::ShadeConstants constants, const gpu::BufferPtr& target) {
-    const StrandShading& material = state.scene.groups[batch.group].material;
+    const StrandShading& material = state.scene.materialOf(batch).shading;
     if (material.look) {
         list.setConstants(2, gpu::bytesOf(lookConstants(*material.look)));
         bind(list, {Binding::read(2, batch.pointDyes)});
@@ -175,11 +175,12 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::shade), {}, {}});
     bindShadows(list, state);
     for (const DrawBatch& batch : state.scene.batches) {
-        const StrandGroup& group = state.scene.groups[batch.group];
-        const char* const tube = group.material.look ? "hair_albedo_look.comp" : "hair_albedo.comp";
-        list.setPipeline(state.pipelines.compute(group.material.tubes ? tube : group.fibre.shader()));
-        if (!group.material.tubes) group.fibre.bind(list);
-        dispatchCurvePoints(list, state, batch, shadeConstants(state, group.material), state.colourOf(batch));
+        const MaterialOnDevice& material = state.scene.materialOf(batch);
+        const StrandShading& shading = material.shading;
+        const char* const tube = shading.look ? "hair_albedo_look.comp" : "hair_albedo.comp";
+        list.setPipeline(state.pipelines.compute(shading.tubes ? tube : material.fibre.shader()));
+        if (!shading.tubes) material.fibre.bind(list);
+        dispatchCurvePoints(list, state, batch, shadeConstants(state, shading), state.colourOf(batch));
     }
     list.endPass();
 }

@@ -106,7 +106,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
     constants.deviation = kDeviation;
     constants.subdivisions = state.detail.subdivisions;
     for (const DrawBatch& batch : state.scene.batches) {
-        if (state.scene.groups[batch.group].material.tubes) continue;
+        if (state.scene.materialOf(batch).shading.tubes) continue;
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
                     Binding::read(2, batch.headers), Binding::read(3, batch.patches)});
         const std::uint32_t count = batch.patchesBefore[batch.strandCount(state.detail)];
@@ -119,6 +119,14 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
     }
 }
 
+/// As strips of the curves' points.
+void drawStrips(gpu::CommandList& list, const RendererState& state, const DrawBatch& batch) {
+    const std::uint32_t subdivisions = state.detail.subdivisions;
+    bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
+    list.setIndexBuffer(batch.indices.at(subdivisions));
+    list.drawIndexed(batch.indexCount(batch.strandCount(state.detail), subdivisions));
+}
+
 void drawHair(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
               std::uint32_t number) {
     list.setPipeline(state.pipelines.graphics(strandPipeline(state)));
@@ -126,16 +134,16 @@ void drawHair(gpu::CommandList& list, RendererState& state, const Mat4f& clipFro
     if (state.options.ribbons == Ribbons::tessellated) {
         drawPatches(list, state);
     } else {
-        drawStrips(list, state, false);
+        for (const DrawBatch& batch : state.scene.batches) {
+            if (!state.scene.materialOf(batch).shading.tubes) drawStrips(list, state, batch);
+        }
     }
 }
 
 /// Strands that are round and have skin: opaque, and never thinner than a pixel.
 void drawTubes(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
                std::uint32_t number) {
-    const auto tubes = std::ranges::find_if(state.scene.groups,
-                                            [](const StrandGroup& group) { return group.material.tubes; });
-    if (tubes == state.scene.groups.end()) return;
+    if (!state.scene.hasTubes()) return;
     list.setPipeline(state.pipelines.graphics({.vertex = "tube.vert",
                                                .pixel = "tube.frag",
                                                .topology = gpu::Topology::TriangleStrip,
@@ -145,8 +153,12 @@ void drawTubes(gpu::CommandList& list, RendererState& state, const Mat4f& clipFr
                                                .samples = state.samples}));
     bindShadows(list, state);
     list.setConstants(0, gpu::bytesOf(viewConstants(state, clipFromWorld, number)));
-    list.setConstants(1, gpu::bytesOf(shadeConstants(state, tubes->material)));
-    drawStrips(list, state, true);
+    for (const DrawBatch& batch : state.scene.batches) {
+        const StrandShading& material = state.scene.materialOf(batch).shading;
+        if (!material.tubes) continue;
+        list.setConstants(1, gpu::bytesOf(shadeConstants(state, material)));
+        drawStrips(list, state, batch);
+    }
 }
 
 void drawHeads(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld) {
@@ -241,16 +253,6 @@ void bindShadows(gpu::CommandList& list, const RendererState& state) {
                 Binding::read(18, state.orPlaceholder(TargetId::skyHead)),
                 Binding::read(19, state.orPlaceholder(BufferId::skyLayers))});
     list.setConstants(3, gpu::bytesOf(state.sky));
-}
-
-void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes) {
-    const std::uint32_t subdivisions = state.detail.subdivisions;
-    for (const DrawBatch& batch : state.scene.batches) {
-        if (tubes && *tubes != state.scene.groups[batch.group].material.tubes) continue;
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
-        list.setIndexBuffer(batch.indices.at(subdivisions));
-        list.drawIndexed(batch.indexCount(batch.strandCount(state.detail), subdivisions));
-    }
 }
 
 void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte) {

@@ -121,8 +121,6 @@ void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::Text
 
 /// All triangles, or only those of matte meshes or the others, with whatever pipeline is set.
 void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte = {});
-/// All strands that are drawn, or only those of tubes or the others, as strips of the curves' points.
-void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes = {});
 /// All strands, or a share of them by chance, by the kernel that is set, whose other registers are bound:
 /// `raster` says where to.
 void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster,

@@ -145,15 +145,23 @@ Status Renderer::setPointDyes(std::size_t group, std::span<const float> dyes) {
     return {};
 }
 
-Status Renderer::setMaterial(std::size_t group, const StrandShading& material) {
+Status Renderer::setMaterial(std::size_t group, const StrandShading& material,
+                             std::span<const StrandShading> others) {
     auto& groups = parts_->state.scene.groups;
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
-    const StrandShading& before = groups[group].material;
-    const bool sameShape = before.radius == material.radius && before.tipScale == material.tipScale &&
-                           before.radiusVariation == material.radiusVariation &&
-                           before.rootOpacity == material.rootOpacity &&
-                           before.tipOpacity == material.tipOpacity;
-    groups[group].material = material;
+    std::vector<MaterialOnDevice>& materials = groups[group].materials;
+    if (others.size() + 1 != materials.size())
+        return fail(fmt::format("{} materials for strands", others.size() + 1),
+                    fmt::format("{}, as they have", materials.size()));
+    bool sameShape = true;
+    const auto set = [&](StrandShading& before, const StrandShading& now) {
+        sameShape = sameShape && before.radius == now.radius && before.tipScale == now.tipScale &&
+                    before.radiusVariation == now.radiusVariation && before.rootOpacity == now.rootOpacity &&
+                    before.tipOpacity == now.tipOpacity;
+        before = now;
+    };
+    set(materials[0].shading, material);
+    for (std::size_t i = 0; i < others.size(); ++i) set(materials[i + 1].shading, others[i]);
     parts_->changes.add(sameShape ? Changes::looks() : Changes::geometry());
     return {};
 }
@@ -218,10 +226,13 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     facts.environment = !state.environment.dark();
     facts.overlay = state.overlay.needsDepth();
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
-    facts.look = std::ranges::any_of(
-        state.scene.groups, [](const StrandGroup& group) { return group.material.look.has_value(); });
     facts.presents = presents;
-    for (const StrandGroup& group : state.scene.groups) facts.tableBytes += group.fibre.bytes();
+    for (const StrandGroup& group : state.scene.groups) {
+        for (const MaterialOnDevice& material : group.materials) {
+            facts.look = facts.look || material.shading.look.has_value();
+            facts.tableBytes += material.fibre.bytes();
+        }
+    }
     return facts;
 }
 
@@ -262,9 +273,7 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     const auto samples = chooseSamples(options, device.info());
     if (!samples) return tl::unexpected(samples.error());
     // Round strands are shaded a pixel at a time, which kernels do not do.
-    const bool tubes = std::ranges::any_of(state.scene.groups,
-                                           [](const StrandGroup& group) { return group.material.tubes; });
-    const RenderOptions resolved = chooseWays(options, *samples, !tubes, device.info());
+    const RenderOptions resolved = chooseWays(options, *samples, !state.scene.hasTubes(), device.info());
     changes.add(compare(state.options, resolved));
     if (newLights || resolved.shadowLights != state.options.shadowLights ||
         resolved.shadowResolution != state.options.shadowResolution) {

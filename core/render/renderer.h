@@ -54,7 +54,9 @@ class Renderer {
                               const Box3f& bounds_ws, std::span<const Vec3f> sample_ws = {});
     /// One share of the dye a point, where RenderStrands::pointDyes had some.
     Status setPointDyes(std::size_t group, std::span<const float> dyes);
-    Status setMaterial(std::size_t group, const StrandShading& material);
+    /// `others`: as many as RenderStrands::others had.
+    Status setMaterial(std::size_t group, const StrandShading& material,
+                       std::span<const StrandShading> others = {});
     /// `cut`: it has not moved there, and velocities tell nothing of it.
     Status setCamera(const Camera& camera, bool cut = false);
     Status setLights(std::span<const Light> lights);

@@ -38,6 +38,14 @@ Status checkStrands(const RenderStrands& strands) {
     if (!strands.colours.empty() && strands.colours.size() != count) {
         return fail(fmt::format("{} strands with {} colours", count, strands.colours.size()));
     }
+    if (!strands.materials.empty() && strands.materials.size() != count) {
+        return fail(fmt::format("{} strands with {} materials", count, strands.materials.size()));
+    }
+    for (std::size_t i = 0; i < strands.materials.size(); ++i) {
+        if (strands.materials[i] <= strands.others.size() || strands.materials[i] == kNotDrawn) continue;
+        return fail(fmt::format("strand {} has the material {} of {}", i, strands.materials[i],
+                                strands.others.size() + 1));
+    }
     for (const std::span<const float> shares : {strands.streaks, strands.dyes}) {
         if (!shares.empty() && shares.size() != count) {
             return fail(fmt::format("{} strands with {} shares of streaks or dye", count, shares.size()));

@@ -59,17 +59,22 @@ struct StrandShading {
     std::optional<shading::StrandLook> look;
 };
 
-/// Strands of one material. Strand i has the points offsets[i] … offsets[i + 1] - 1, root first.
+inline constexpr std::uint32_t kNotDrawn = 0xffffffff;
+
+/// Strand i has the points offsets[i] … offsets[i + 1] - 1, root first.
 struct RenderStrands {
     std::span<const std::uint32_t>
         offsets;  ///< strands + 1, ascending; strands of fewer than 2 points are left out
     std::span<const Vec3f> positions_ws;
-    std::span<const float> radii;      ///< metres, one a point; empty: from the material
+    std::span<const float> radii;      ///< metres, one a point, of strands with `material`; empty: from it
     std::span<const Vec3f> colours;    ///< albedo, one a strand; empty: from the material
     std::span<const float> streaks;    ///< 0…1, one a strand, for the look; empty: none is in a streak
     std::span<const float> dyes;       ///< 0…1, one a strand, for the look; empty: none is dyed
     std::span<const float> pointDyes;  ///< 0…1, one a point, shares of that; empty: 1 everywhere
     StrandShading material;
+    std::vector<StrandShading> others;  ///< what some strands have in its place
+    /// One a strand: 0 for `material`, n for the n-th of `others`, kNotDrawn; empty: all have `material`.
+    std::span<const std::uint32_t> materials;
 };
 
 struct RenderScene {

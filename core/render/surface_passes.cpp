@@ -33,7 +33,7 @@ shaders::RasterConstants everyPixel(const RendererState& state) {
 
 void recordAlbedo(gpu::CommandList& list, RendererState& state) {
     for (const DrawBatch& batch : state.scene.batches) {
-        const StrandShading& material = state.scene.groups[batch.group].material;
+        const StrandShading& material = state.scene.materialOf(batch).shading;
         list.setPipeline(
             state.pipelines.compute(material.look ? "hair_albedo_look.comp" : "hair_albedo.comp"));
         auto constants = shadeConstants(state, material);

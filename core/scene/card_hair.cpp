@@ -18,13 +18,21 @@ double randomOf(std::size_t strand, std::uint64_t purpose) {
     return static_cast<double>(Random(purpose, strand).uniform());
 }
 
-/// Colours along a strand of the material.
+/// Null where the strand is not drawn.
+const render::StrandShading* materialOf(const render::RenderStrands& strands, std::size_t strand) {
+    const std::uint32_t which = strands.materials.empty() ? 0 : strands.materials[strand];
+    if (which == render::kNotDrawn) return nullptr;
+    return which == 0 ? &strands.material : &strands.others[which - 1];
+}
+
+/// Colours along a strand of its material.
 class Painter {
   public:
-    explicit Painter(const render::RenderStrands& strands) : strands_(strands) {}
+    Painter(const render::RenderStrands& strands, const render::StrandShading& material)
+        : strands_(strands), material_(material) {}
 
     Vec3f at(std::size_t strand, std::size_t point, float along) const {
-        const render::StrandShading& m = strands_.material;
+        const render::StrandShading& m = material_;
         const Vec3f own = strands_.colours.empty() ? m.albedo : strands_.colours[strand];
         Vec3f colour = own * (m.rootBrightness + along * (m.tipBrightness - m.rootBrightness));
         if (m.look) {
@@ -44,6 +52,7 @@ class Painter {
 
   private:
     const render::RenderStrands& strands_;
+    const render::StrandShading& material_;
 };
 
 void addStrand(const render::RenderStrands& strands, std::size_t s, cards::Hair& hair) {
@@ -51,14 +60,15 @@ void addStrand(const render::RenderStrands& strands, std::size_t s, cards::Hair&
     if (count < 2) return;
     const auto points = strands.positions_ws.subspan(first, count);
     if (!(polylineLength(points) > 0)) return;
-    if (!strands.radii.empty() && !(strands.radii[first] > 0)) return;  // hidden
-    const Painter painter(strands);
-    const render::StrandShading& m = strands.material;
+    const render::StrandShading* const material = materialOf(strands, s);
+    if (!material) return;
+    const Painter painter(strands, *material);
+    const render::StrandShading& m = *material;
     for (std::size_t i = 0; i < count; ++i) {
         const float along = static_cast<float>(i) / static_cast<float>(count - 1);
         hair.positions_ws.push_back(points[i]);
-        hair.radii.push_back(strands.radii.empty() ? m.radius * (1 + along * (m.tipScale - 1))
-                                                   : strands.radii[first + i]);
+        const bool own = !strands.radii.empty() && material == &strands.material;
+        hair.radii.push_back(own ? strands.radii[first + i] : m.radius * (1 + along * (m.tipScale - 1)));
         hair.albedo.push_back(painter.at(s, first + i, along));
     }
     hair.offsets.push_back(static_cast<std::uint32_t>(hair.positions_ws.size()));

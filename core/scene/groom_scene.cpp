@@ -156,28 +156,6 @@ std::vector<Vec3f> headColours(const Groom& groom, const std::optional<Vec3f>& a
     return albedo;
 }
 
-/// Radii with none for strands that are hidden or on a layer that is; empty where all strands are shown.
-std::vector<float> radiiOfShown(const Groom& groom, const HairMaterial& material) {
-    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
-    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
-    const auto isHidden = [&](std::size_t strand) {
-        if (strand < hidden.size() && hidden[strand] != 0) return true;
-        const std::uint32_t layer = strand < layers.size() ? layers[strand] : 0;
-        return layer < groom.layers.size() && !groom.layers[layer].visible;
-    };
-    const auto authored = groom.pointAttributes.view<float>(attribute::kRadius);
-    std::vector<float> radii;
-    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
-        if (!isHidden(s)) continue;
-        if (radii.empty()) {
-            radii.assign(authored.begin(), authored.end());
-            radii.resize(groom.pointCount(), material.rootRadius);
-        }
-        std::fill(radii.begin() + groom.offsets[s], radii.begin() + groom.offsets[s + 1], 0.0f);
-    }
-    return radii;
-}
-
 /// The same strands are in streaks and dyed, as strands and not the material say.
 bool hasSameStreaksAndDye(const HairMaterial& a, const HairMaterial& b) {
     return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
@@ -232,13 +210,12 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
                                     const std::vector<std::string>& hiddenGroups) {
     GroomScene scene;
     scene.rest_ = scene.posed_ = groom;
-    scene.material_ = strandShading(groom, view);
+    scene.materials_ = strandMaterials(groom, view);
     // The view's radius goes before the points' own.
     if (view.rootRadius || view.tipScale) {
         scene.rest_.pointAttributes.erase(attribute::kRadius);
         scene.posed_.pointAttributes.erase(attribute::kRadius);
     }
-    scene.radii_ = radiiOfShown(scene.rest_, groom.material);
     scene.matte_ = view.headAlbedo.has_value();
     if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
     if (groom.scalp) {
@@ -252,7 +229,8 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         }
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) {
-        if (scene.material_.look) scene.weights_ = weightsOfStrands(groom);
+        scene.materials_.ofStrands = materialsOfStrands(groom);
+        if (scene.materials_.hasLook()) scene.weights_ = weightsOfStrands(groom);
         scene.clumping_ = render::measureClumping(scene.scene().strands);
         return scene;
     }
@@ -267,7 +245,8 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
     if (!made.hairs) return fail(made.error);
     scene.followHairs_ = std::move(made.hairs);
     scene.bindings_ = std::move(*bindings);
-    if (scene.material_.look) {
+    scene.materials_.ofStrands = materialsOfFollowHairs(groom, *scene.bindings_);
+    if (scene.materials_.hasLook()) {
         auto weights = weightsOfFollowHairs(groom, *scene.bindings_);
         if (!weights) return tl::unexpected(weights.error());
         scene.weights_ = std::move(*weights);
@@ -288,12 +267,20 @@ void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<c
     hairloom::moveStrands(posed_, strands, points_ws);
 }
 
-bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {
-    const HairMaterial& before = rest_.material;
+bool GroomScene::setMaterials(const Groom& groom, const ViewFile& view) {
+    const HairMaterial &authored = groom.material, &before = rest_.material;
     if (authored.rootColour != before.rootColour || !hasSameStreaksAndDye(authored, before)) return false;
-    if (!radii_.empty() && authored.rootRadius != before.rootRadius) return false;
+    const bool sameOwners =
+        std::ranges::equal(groom.layers, rest_.layers, [](const Layer& a, const Layer& b) {
+            return a.material.has_value() == b.material.has_value() &&
+                   (!a.material || hasSameStreaksAndDye(*a.material, *b.material));
+        });
+    if (!sameOwners) return false;
     rest_.material = authored;
-    material_ = strandShading(rest_, view);
+    rest_.layers = groom.layers;
+    StrandMaterials now = strandMaterials(rest_, view);
+    now.ofStrands = std::move(materials_.ofStrands);
+    materials_ = std::move(now);
     return true;
 }
 
@@ -338,11 +325,13 @@ render::RenderScene GroomScene::scene() const {
     if (posed_.strandCount() == 0) return scene;
     scene.clumping = clumping_;
     render::RenderStrands strands;
-    strands.material = material_;
+    strands.material = materials_.material;
+    strands.others = materials_.others;
+    strands.materials = materials_.ofStrands;
     if (hairOffsets_.empty()) {
         strands.offsets = posed_.offsets.view();
         strands.positions_ws = posed_.positions();
-        strands.radii = radii_.empty() ? posed_.pointAttributes.view<float>(attribute::kRadius) : radii_;
+        strands.radii = posed_.pointAttributes.view<float>(attribute::kRadius);
         strands.colours = posed_.strandAttributes.view<Vec3f>(attribute::kStrandColour);
     } else {
         strands.offsets = hairOffsets_;

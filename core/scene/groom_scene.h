@@ -47,6 +47,15 @@ struct ViewFile {
 };
 Result<ViewFile> readViewFile(const std::string& path);
 
+/// The hairstyle's material, and those of layers that have one of their own.
+struct StrandMaterials {
+    render::StrandShading material;
+    std::vector<render::StrandShading> others;
+    std::vector<std::uint32_t> ofStrands;  ///< that are drawn, as RenderStrands::materials; empty: `material`
+
+    bool hasLook() const;
+};
+
 /// What of streaks and dye each strand that is drawn has, 0…1; empty: nothing.
 struct StreakAndDyeWeights {
     std::vector<float> streaks;
@@ -70,9 +79,10 @@ class GroomScene {
     /// are follow hairs, which are bound to guides at rest: these take make() anew.
     void moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws);
 
-    /// Another look of the same strands. False, and nothing changed, where it takes make() anew: colours that
-    /// stand in the head, thickness that stands in points, the share of streaks and dye that each strand has.
-    bool setMaterial(const HairMaterial& authored, const ViewFile& view);
+    /// The materials of another version of the same strands on the same layers. False, and nothing changed,
+    /// where it takes make() anew: colours that stand in the head, the share of streaks and dye that each strand
+    /// has, a layer that gets or loses a material of its own.
+    bool setMaterials(const Groom& groom, const ViewFile& view);
 
     /// The painted dye of another version of the same strands. False where it takes make() anew: nothing was
     /// painted before or is now.
@@ -103,8 +113,7 @@ class GroomScene {
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;
-    std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
-    render::StrandShading material_;
+    StrandMaterials materials_;
     StreakAndDyeWeights weights_;  ///< of what is drawn, where the material has a look
     render::Clumping clumping_;
     bool matte_ = false;  ///< the head, where a view says what it is

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/strand_subset.h"
 #include "core/groom/streaks.h"
 
 namespace hairloom {
@@ -179,17 +180,45 @@ float maskOf(std::span<const float> mask, std::size_t strand) {
     return mask.empty() ? 1.0f : mask[strand];
 }
 
-}  // namespace
-
-render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view) {
-    static_assert(static_cast<int>(ShadingModel::marschner) ==
-                      static_cast<int>(render::ShadingModel::marschner) &&
-                  static_cast<int>(ShadingModel::sadeghi) == static_cast<int>(render::ShadingModel::sadeghi));
-    return view.model.value_or(static_cast<render::ShadingModel>(authored.shadingModel));
+/// As RenderStrands::materials counts them.
+std::vector<const HairMaterial*> authoredMaterials(const Groom& groom) {
+    std::vector<const HairMaterial*> materials{&groom.material};
+    for (const Layer& layer : groom.layers) {
+        if (layer.material) materials.push_back(&*layer.material);
+    }
+    return materials;
 }
 
-render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
-    const HairMaterial& authored = groom.material;
+/// Which material each strand that is drawn has.
+struct Owners {
+    std::vector<const HairMaterial*> materials;
+    std::vector<std::uint32_t> ofStrands;  ///< empty: all have the first
+
+    const HairMaterial& of(std::size_t strand) const {
+        const std::uint32_t which = ofStrands.empty() ? 0 : ofStrands[strand];
+        return *materials[which == render::kNotDrawn ? 0 : which];
+    }
+    bool hasStreaks() const {
+        return std::ranges::any_of(materials, [](const auto* m) { return m->streakShare > 0; });
+    }
+    bool isDyed() const {
+        return std::ranges::any_of(materials, [](const auto* m) { return m->dyeStrength > 0; });
+    }
+    std::vector<float> streaks(std::span<const Vec3f> roots) const {
+        if (ofStrands.empty()) return streakWeights(*materials.front(), roots);
+        std::vector<float> weights(roots.size());
+        for (std::size_t m = 0; m < materials.size(); ++m) {
+            const std::vector<float> own = streakWeights(*materials[m], roots);
+            for (std::size_t s = 0; s < own.size(); ++s) {
+                if (ofStrands[s] == m) weights[s] = own[s];
+            }
+        }
+        return weights;
+    }
+};
+
+/// `ownColours`: strands have colours of their own.
+render::StrandShading strandShading(const HairMaterial& authored, const ViewFile& view, bool ownColours) {
     render::StrandShading material;
     material.albedo = authored.tipColour;
     material.rootBrightness = material.tipBrightness = 1;
@@ -221,7 +250,7 @@ render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
     }
     shading::StrandLook look =
         isKajiya ? colourLook(authored) : absorptionLook(authored, roughnessOf(authored, view.fibre));
-    if (isEven(authored, look, groom.strandAttributes.has(attribute::kStrandColour))) return material;
+    if (isEven(authored, look, ownColours)) return material;
     finishLook(authored, look);
     material.look = look;
     // The tables hold all absorptions: none has to be baked again when a colour moves.
@@ -229,35 +258,85 @@ render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
     return material;
 }
 
-StreakAndDyeWeights weightsOfStrands(const Groom& groom) {
-    StreakAndDyeWeights weights;
-    const HairMaterial& material = groom.material;
-    if (material.streakShare > 0) weights.streaks = streakWeights(material, rootsOf(groom));
-    if (material.dyeStrength <= 0) return weights;
-    if (isPainted(groom)) {
-        weights.pointDyes = pointDyes(groom);
-        weights.dyes.assign(groom.strandCount(), material.dyeStrength);
-        return weights;
+}  // namespace
+
+render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view) {
+    static_assert(static_cast<int>(ShadingModel::marschner) ==
+                      static_cast<int>(render::ShadingModel::marschner) &&
+                  static_cast<int>(ShadingModel::sadeghi) == static_cast<int>(render::ShadingModel::sadeghi));
+    return view.model.value_or(static_cast<render::ShadingModel>(authored.shadingModel));
+}
+
+bool StrandMaterials::hasLook() const {
+    return material.look ||
+           std::ranges::any_of(others, [](const auto& other) { return other.look.has_value(); });
+}
+
+StrandMaterials strandMaterials(const Groom& groom, const ViewFile& view) {
+    const bool ownColours = groom.strandAttributes.has(attribute::kStrandColour);
+    StrandMaterials materials{strandShading(groom.material, view, ownColours), {}, {}};
+    for (const Layer& layer : groom.layers) {
+        if (layer.material) materials.others.push_back(strandShading(*layer.material, view, ownColours));
     }
-    const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
+    return materials;
+}
+
+std::vector<std::uint32_t> materialsOfStrands(const Groom& groom) {
+    std::vector<std::uint32_t> ofLayers;
+    std::uint32_t own = 0;
+    for (const Layer& layer : groom.layers) {
+        if (layer.material) ++own;
+        ofLayers.push_back(!layer.visible ? render::kNotDrawn : layer.material ? own : 0);
+    }
+    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
+    const auto isHidden = [&](std::size_t strand) { return strand < hidden.size() && hidden[strand] != 0; };
+    std::vector<std::uint32_t> materials = layersOfStrands(groom);
+    bool allAlike = true;
+    for (std::size_t s = 0; s < materials.size(); ++s) {
+        const std::uint32_t layer = materials[s];
+        materials[s] = isHidden(s) ? render::kNotDrawn : layer < ofLayers.size() ? ofLayers[layer] : 0;
+        allAlike = allAlike && materials[s] == 0;
+    }
+    return allAlike ? std::vector<std::uint32_t>() : materials;
+}
+
+std::vector<std::uint32_t> materialsOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    const std::vector<std::uint32_t> strands = materialsOfStrands(groom);
+    if (strands.empty()) return {};
+    std::vector<std::uint32_t> materials(bindings.hairCount());
+    for (std::size_t hair = 0; hair < materials.size(); ++hair)
+        materials[hair] = strands[bindings.guideStrands[bindings.guides[hair][0]]];
+    return materials;
+}
+
+StreakAndDyeWeights weightsOfStrands(const Groom& groom) {
+    const Owners owners{authoredMaterials(groom), materialsOfStrands(groom)};
+    StreakAndDyeWeights weights;
+    if (owners.hasStreaks()) weights.streaks = owners.streaks(rootsOf(groom));
+    if (!owners.isDyed()) return weights;
+    if (isPainted(groom)) weights.pointDyes = pointDyes(groom);
+    const auto mask =
+        isPainted(groom) ? std::span<const float>() : groom.strandAttributes.view<float>(attribute::kDye);
     weights.dyes.resize(groom.strandCount());
     for (std::size_t s = 0; s < weights.dyes.size(); ++s)
-        weights.dyes[s] = material.dyeStrength * maskOf(mask, s);
+        weights.dyes[s] = owners.of(s).dyeStrength * maskOf(mask, s);
     return weights;
 }
 
 Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    const Owners owners{authoredMaterials(groom), materialsOfFollowHairs(groom, bindings)};
     StreakAndDyeWeights weights;
-    const HairMaterial& material = groom.material;
-    if (material.streakShare > 0) {
+    if (owners.hasStreaks()) {
         const auto rest = bakeFollowHairs(groom, bindings);
         if (!rest) return tl::unexpected(rest.error());
-        weights.streaks = streakWeights(material, rootsOf(*rest));
+        weights.streaks = owners.streaks(rootsOf(*rest));
     }
-    if (material.dyeStrength <= 0) return weights;
+    if (!owners.isDyed()) return weights;
     if (isPainted(groom)) {
         weights.pointDyes = pointDyesOfFollowHairs(groom, bindings);
-        weights.dyes.assign(bindings.hairCount(), material.dyeStrength);
+        weights.dyes.resize(bindings.hairCount());
+        for (std::size_t hair = 0; hair < weights.dyes.size(); ++hair)
+            weights.dyes[hair] = owners.of(hair).dyeStrength;
         return weights;
     }
     const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
@@ -268,7 +347,7 @@ Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const Follo
             const std::uint32_t strand = bindings.guideStrands[bindings.guides[hair][k]];
             sum += bindings.rootWeights[hair][static_cast<int>(k)] * maskOf(mask, strand);
         }
-        weights.dyes[hair] = material.dyeStrength * std::clamp(sum, 0.0f, 1.0f);
+        weights.dyes[hair] = owners.of(hair).dyeStrength * std::clamp(sum, 0.0f, 1.0f);
     }
     return weights;
 }

@@ -21,15 +21,21 @@ namespace hairloom {
 ///
 /// Hair is uneven where it has other colours or pigment at the tip, streaks, dye, strands of their own
 /// colour, random pigment or light of its own.
-render::StrandShading strandShading(const Groom& groom, const ViewFile& view);
+///
+/// `ofStrands` is left empty.
+StrandMaterials strandMaterials(const Groom& groom, const ViewFile& view);
+/// Which of them each strand has; those that are hidden or on a layer that is are not drawn.
+std::vector<std::uint32_t> materialsOfStrands(const Groom& groom);
+/// Of follow hairs: that of their own guide.
+std::vector<std::uint32_t> materialsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 
 /// The view's, or else the groom's.
 render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view);
 
-/// Of the groom's own strands, by their roots at rest and the attributes `dye`.
+/// Of the groom's own strands, by their materials, their roots at rest and the attributes `dye`.
 StreakAndDyeWeights weightsOfStrands(const Groom& groom);
-/// Of follow hairs: by their own roots at rest, and the dye of the guides around them. Errors: hairs that
-/// cannot be evaluated.
+/// Of follow hairs: by the material of their own guide, their own roots at rest, and the dye of the guides
+/// around them. Errors: hairs that cannot be evaluated.
 Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 /// The painted dye of the guides around each point of a follow hair; empty where none was painted.
 std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);

@@ -95,11 +95,41 @@ Result<std::vector<CollisionSphere>> readSpheres(const std::string& path) {
     return spheres;
 }
 
+namespace {
+
+void readLayerSettings(JsonReader reader, const nlohmann::json& named, Groom& groom) {
+    for (const std::string& name : reader.keys()) {
+        JsonReader entry = reader.object(name);
+        if (!reader.ok()) return;
+        std::size_t found = 0;
+        for (Layer& layer : groom.layers) {
+            if (layer.name != name) continue;
+            ++found;
+            if (entry.has("density"))
+                layer.density =
+                    static_cast<float>(entry.number("density", 0, static_cast<double>(kMaxLayerDensity)));
+            if (!entry.has("material")) continue;
+            if (named.at(name).at("material").is_null()) {
+                layer.material.reset();
+                continue;
+            }
+            HairMaterial material = layer.material.value_or(groom.material);
+            readSettings(entry.object("material"), material);
+            layer.material = material;
+        }
+        if (found == 0) reader.complain(name, "is no layer", "expected one that `layers` shows");
+        entry.finish();
+    }
+}
+
+}  // namespace
+
 Status applySettings(const nlohmann::json& document, const std::string& source, Groom& groom) {
     JsonReader reader(document, source);
     if (reader.has("simulation")) readSettings(reader.object("simulation"), groom.simulation);
     if (reader.has("material")) readSettings(reader.object("material"), groom.material);
     if (reader.has("interpolation")) readSettings(reader.object("interpolation"), groom.interpolation);
+    if (reader.has("layers")) readLayerSettings(reader.object("layers"), document.at("layers"), groom);
     reader.finish();
     return reader.status();
 }

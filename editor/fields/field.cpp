@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/editing/settings_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/operations/script.h"
 #include "core/operations/stack.h"
@@ -14,23 +15,39 @@
 namespace hairloom::editor {
 namespace {
 
-template <class S>
-std::vector<Field> fieldsIn(S Groom::*section, editing::Part part) {
+/// `edit` gives null where there is nothing to change.
+template <class S, class Read, class Edit>
+std::vector<Field> fieldsIn(Read read, Edit edit, editing::Part part) {
     std::vector<Field> fields;
     for (const runtime::Field<S>& described : fieldsOf(S{})) {
         if (described.components() == 0) continue;
         Field field{described, labelOf(described.name), {}, part, {}, {}, {}};
         for (std::uint32_t c = 0; c < field.components(); ++c)
             field.defaultValue[c] = defaultValue(described, c);
-        field.value = [&described, section](const Groom& groom, std::uint32_t component) {
-            return fieldValue(groom.*section, described, component);
+        field.value = [&described, read](const Groom& groom, std::uint32_t component) {
+            return fieldValue(read(groom), described, component);
         };
-        field.set = [&described, section](Groom& groom, double value, std::uint32_t component) {
-            return setFieldValue(groom.*section, described, value, component);
+        field.set = [&described, edit](Groom& groom, double value, std::uint32_t component) {
+            S* const settings = edit(groom);
+            return settings && setFieldValue(*settings, described, value, component);
         };
         fields.push_back(std::move(field));
     }
     return fields;
+}
+
+template <class S>
+std::vector<Field> fieldsIn(S Groom::*section, editing::Part part) {
+    return fieldsIn<S>([section](const Groom& groom) -> const S& { return groom.*section; },
+                       [section](Groom& groom) { return &(groom.*section); }, part);
+}
+
+constexpr FieldInfo kDensity{
+    "layerDensity",   "", 0, kMaxLayerDensity, "times the follow hairs of each guide on the layer",
+    FieldKind::Float, {}};
+
+std::unique_ptr<editing::Command> setLayersOf(const editing::Model& model, const Groom& groom) {
+    return editing::setLayers(model, groom.layers);
 }
 
 constexpr FieldInfo kWeight{"weight",         "", 0, 1, "share of what the operator does to strands",
@@ -135,6 +152,32 @@ std::vector<Field> followHairFields() {
 
 std::vector<Field> placementFields() {
     return fieldsIn(&Groom::placement, editing::Part::Placement);
+}
+
+Field layerDensityField(std::size_t index) {
+    Field field{kDensity, QObject::tr("Density"), {1, 0, 0}, editing::Part::Layers, {}, {}, setLayersOf};
+    field.value = [index](const Groom& groom, std::uint32_t) {
+        return index < groom.layers.size() ? static_cast<double>(groom.layers[index].density) : 1;
+    };
+    field.set = [index](Groom& groom, double value, std::uint32_t) {
+        if (index >= groom.layers.size() || !kDensity.holds(value)) return false;
+        groom.layers[index].density = static_cast<float>(value);
+        return true;
+    };
+    return field;
+}
+
+std::vector<Field> layerMaterialFields(std::size_t index) {
+    std::vector<Field> fields = fieldsIn<HairMaterial>(
+        [index](const Groom& groom) -> const HairMaterial& { return groom.materialOf(index); },
+        [index](Groom& groom) -> HairMaterial* {
+            if (index >= groom.layers.size()) return nullptr;
+            groom.layers[index].material = groom.materialOf(index);
+            return &*groom.layers[index].material;
+        },
+        editing::Part::Layers | editing::Part::Material);
+    for (Field& field : fields) field.step = setLayersOf;
+    return fields;
 }
 
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names) {

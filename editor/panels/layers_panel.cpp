@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layers: what is shown, locked, operated on and exported together.
+// Layers: what is shown, locked, coloured, operated on and exported together.
+#include <QCheckBox>
 #include <QHeaderView>
 #include <QPushButton>
 #include <QTreeWidget>
@@ -12,6 +13,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/groom/strand_subset.h"
 #include "editor/document/words.h"
+#include "editor/fields/field_form.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
@@ -21,8 +23,12 @@ enum Column { kName, kVisible, kLocked, kStrands };
 
 class LayersPanel : public QWidget {
   public:
-    LayersPanel(QtDocument& document, Messages& messages)
-        : document_(document), messages_(messages), list_(new QTreeWidget) {
+    LayersPanel(QtDocument& document, const Preferences& preferences, Messages& messages)
+        : document_(document),
+          preferences_(preferences),
+          messages_(messages),
+          list_(new QTreeWidget),
+          ownMaterial_(new QCheckBox(tr("Material of its own"))) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -41,12 +47,21 @@ class LayersPanel : public QWidget {
         second->addWidget(pushButton("layerSelect", tr("Select strands"),
                                      tr("Selects the strands of the layer"), [this] { select(); }));
         second->addWidget(
-            pushButton("layerMove", tr("Move selected here"), tr("Puts the selected strands on the layer"),
+            pushButton("layerMove", tr("Move here"), tr("Puts the selected strands on the layer"),
                        [this] { perform(editing::moveToLayer(model(), selected(), chosen())); }));
         layout->addLayout(second);
+        ownMaterial_->setObjectName("layerOwnMaterial");
+        ownMaterial_->setToolTip(
+            tr("Colour, thickness and light of the layer's hair apart from those of the hairstyle"));
+        connect(ownMaterial_, &QCheckBox::clicked, this, &LayersPanel::giveMaterial);
+        settings_ = new QVBoxLayout;
+        layout->addLayout(settings_);
+        connect(list_, &QTreeWidget::currentItemChanged, this, [this] { showSettings(); });
+        connect(&document_, &QtDocument::replaced, this, [this] { shown_.reset(); });
         connect(list_, &QTreeWidget::itemChanged, this, &LayersPanel::takeChange);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
-            if (contains(parts, editing::Part::Layers | editing::Part::Strands | editing::Part::StrandFlags))
+            if (contains(parts, editing::Part::Layers | editing::Part::Material | editing::Part::Strands |
+                                    editing::Part::StrandFlags))
                 refresh();
         });
         refresh();
@@ -77,6 +92,54 @@ class LayersPanel : public QWidget {
                "change it; the region of an operator can name a layer."));
     }
 
+    void giveMaterial(bool own) {
+        std::vector<Layer> changed = layers();
+        std::optional<HairMaterial>& material = changed[chosen()].material;
+        material.reset();
+        if (own) material = document_.groom().material;
+        set(std::move(changed));
+    }
+
+    /// New controls only where another layer is chosen, or its material comes or goes, so that a slider
+    /// outlives its own drag.
+    void showSettings() {
+        const std::uint32_t layer = chosen();
+        const bool own = layers()[layer].material.has_value();
+        ownMaterial_->setChecked(own);
+        if (shown_ == std::pair(layer, own)) return;
+        shown_ = {layer, own};
+        ownMaterial_->setParent(this);
+        while (QLayoutItem* item = settings_->takeAt(0)) {
+            if (QWidget* form = item->widget(); form && form != ownMaterial_) {
+                form->setParent(nullptr);  // gone at once; one of its controls may be what is talking
+                form->deleteLater();
+            }
+            delete item;
+        }
+        settings_->addWidget(new FieldForm(document_, preferences_, {layerDensityField(layer)}));
+        settings_->addWidget(ownMaterial_);
+        if (!own) return;
+        const QStringList most{"shadingModel",
+                               "rootColour",
+                               "tipColour",
+                               "colourVariation",
+                               "colourSource",
+                               "eumelanin",
+                               "rootRadius",
+                               "tipScale",
+                               "specular",
+                               "shininess",
+                               "longitudinalRoughness",
+                               "azimuthalRoughness"};
+        std::vector<Field> others;
+        for (const Field& field : layerMaterialFields(layer)) {
+            if (!most.contains(QLatin1String(field.name))) others.push_back(field);
+        }
+        settings_->addWidget(new FieldForm(document_, preferences_, pick(layerMaterialFields(layer), most)));
+        settings_->addWidget(
+            collapsible(tr("More of the material"), new FieldForm(document_, preferences_, others), false));
+    }
+
     void perform(Result<std::unique_ptr<editing::Command>> command) {
         if (!command) return messages_.warn(errorText(command.error()));
         document_.perform(std::move(*command));
@@ -95,7 +158,7 @@ class LayersPanel : public QWidget {
 
     void add() {
         std::vector<Layer> changed = layers();
-        changed.push_back({freeName().toStdString(), true, false});
+        changed.emplace_back().name = freeName().toStdString();
         const std::vector<std::uint32_t> moving = selected();
         set(changed);
         const auto last = static_cast<std::uint32_t>(changed.size() - 1);
@@ -149,6 +212,7 @@ class LayersPanel : public QWidget {
             item.setText(kStrands, QStringLiteral("%L1").arg(strands));
         }
         if (list_->currentItem() == nullptr) list_->setCurrentItem(list_->topLevelItem(0));
+        showSettings();
         find<QPushButton>("layerRemove")->setEnabled(layers().size() > 1);
         find<QPushButton>("layerMove")->setEnabled(!selected().empty());
     }
@@ -158,8 +222,12 @@ class LayersPanel : public QWidget {
     }
 
     QtDocument& document_;
+    const Preferences& preferences_;
     Messages& messages_;
     QTreeWidget* list_;
+    QCheckBox* ownMaterial_;
+    QVBoxLayout* settings_ = nullptr;
+    std::optional<std::pair<std::uint32_t, bool>> shown_;  ///< layer, and whether it has its own material
 };
 
 }  // namespace
@@ -172,7 +240,7 @@ PanelInfo layersPanel() {
             28,
             true,
             [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column({new LayersPanel(parts.document, parts.messages)}));
+                return scrolled(column({new LayersPanel(parts.document, parts.preferences, parts.messages)}));
             }};
 }
 

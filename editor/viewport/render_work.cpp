@@ -53,7 +53,9 @@ bool sameStrands(const Groom& a, const Groom& b) {
             return mayDiffer ? y.has(entry.first) : versionOf(entry.second) == y.version(entry.first);
         });
     };
-    const auto sameLayer = [](const Layer& x, const Layer& y) { return x.visible == y.visible; };
+    const auto sameLayer = [](const Layer& x, const Layer& y) {
+        return x.visible == y.visible && x.density == y.density;
+    };
     return a.offsets.version() == b.offsets.version() &&
            same(a.pointAttributes, b.pointAttributes, {attribute::kPosition, attribute::kPointDye}) &&
            same(a.strandAttributes, b.strandAttributes, {}) && a.scalp == b.scalp &&
@@ -79,10 +81,11 @@ float draftRadius(float radius, const Groom& groom) {
     return std::max(radius, std::min(all, kWidest));
 }
 
-HairMaterial draftMaterial(const Groom& groom) {
-    HairMaterial material = groom.material;
-    material.rootRadius = draftRadius(material.rootRadius, groom);
-    return material;
+void widenMaterials(Groom& groom) {
+    groom.material.rootRadius = draftRadius(groom.material.rootRadius, groom);
+    for (Layer& layer : groom.layers) {
+        if (layer.material) layer.material->rootRadius = draftRadius(layer.material->rootRadius, groom);
+    }
 }
 
 /// Guides alone.
@@ -91,7 +94,7 @@ Groom draftOf(Groom groom) {
         for (float& radius : groom.pointAttributes.edit<float>(attribute::kRadius))
             radius = draftRadius(radius, groom);
     }
-    groom.material = draftMaterial(groom);
+    widenMaterials(groom);
     groom.interpolation.followPerGuide = 0;
     return groom;
 }
@@ -182,8 +185,9 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     }
     if (followed && request.moves) return replaceScene(request, draft);
     if (!sameGroom || request.quality.scattering != last_->quality.scattering) {
-        if (!scene_->setMaterial(draft ? draftMaterial(now) : now.material, viewOf(request)))
-            return replaceScene(request, draft);
+        Groom looks = now;
+        if (draft) widenMaterials(looks);
+        if (!scene_->setMaterials(looks, viewOf(request))) return replaceScene(request, draft);
         if (auto set = showMaterial(request); !set) return set;
     }
     const bool sameDye = now.pointAttributes.version(attribute::kPointDye) ==
@@ -259,7 +263,8 @@ Status RenderWork::moveStrands(const PictureRequest& request, const StrandMoves&
 Status RenderWork::showMaterial(const PictureRequest& request) {
     const render::RenderScene shown = scene_->scene();
     if (!request.showHair || shown.strands.empty()) return {};
-    return renderer_.setMaterial(0, shown.strands.front().material);
+    const render::RenderStrands& strands = shown.strands.front();
+    return renderer_.setMaterial(0, strands.material, strands.others);
 }
 
 Status RenderWork::showDye(const PictureRequest& request) {

@@ -128,9 +128,11 @@ std::optional<AssetError> Asset::takeSection(const Section& section) {
         take(section, kRoots, roots, problem) || take(section, kScalpVertices, scalpVertices, problem) ||
         take(section, kScalpTriangles, scalpTriangles, problem) || take(section, kBones, bones, problem) ||
         take(section, kSpheres, spheres, problem) || take(section, kRecipe, recipe, problem) ||
-        take(section, kGuides, guides, problem) || take(section, kGuideTriangles, guideTriangles, problem) ||
+        take(section, kGuides, guides, problem) || take(section, kGuideHairs, guideHairs, problem) ||
+        take(section, kGuideTriangles, guideTriangles, problem) ||
         take(section, kRootShifts, rootShifts, problem) ||
         take(section, kFarRootShifts, farRootShifts, problem) || take(section, kRadii, radii, problem) ||
+        take(section, kLayers, layers, problem) || take(section, kStrandLayers, strandLayers, problem) ||
         take(section, kSettings, settings, problem) || take(section, kValues, values, problem) ||
         take(section, kText, texts, problem);
     if (!problem.empty()) return wrong(problem);

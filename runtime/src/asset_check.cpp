@@ -42,7 +42,7 @@ constexpr float kLargestArea = 1e12f;
 
 Problem Asset::checkContent() const {
     for (const auto& check : {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp,
-                              &Asset::checkFollowHairs, &Asset::checkSettings}) {
+                              &Asset::checkFollowHairs, &Asset::checkLayers, &Asset::checkSettings}) {
         if (Problem problem = (this->*check)()) return problem;
     }
     return std::nullopt;
@@ -138,6 +138,23 @@ Problem Asset::checkScalp() const {
     return std::nullopt;
 }
 
+Problem Asset::checkLayers() const {
+    for (const Layer& layer : layers) {
+        if (!inside(layer.name, texts) || !(layer.density >= 0 && layer.density <= kFarthest) ||
+            layer.ownMaterial > 1)
+            return damaged(placeOf(&layer), "a layer without name or density");
+    }
+    if (!strandLayers.empty() && strandLayers.size() != strands.size())
+        return damaged(placeOf(strandLayers.data()),
+                       number(strandLayers.size()) + " layers of " + number(strands.size()) + " strands");
+    for (const std::uint16_t& layer : strandLayers) {
+        if (layer >= layers.size())
+            return damaged(placeOf(&layer),
+                           "a strand on layer " + number(layer) + " of " + number(layers.size()));
+    }
+    return std::nullopt;
+}
+
 Problem Asset::checkFollowHairs() const {
     if (recipe.empty()) return std::nullopt;
     const Recipe& r = recipe[0];
@@ -165,7 +182,15 @@ Problem Asset::checkFollowHairs() const {
         if (!known || !(triangle.area >= 0 && triangle.area <= kLargestArea))
             return damaged(placeOf(&triangle), "a triangle of guides that there are not, or without area");
     }
-    const std::uint64_t hairs = std::uint64_t{r.hairsPerGuide} * guides.size();
+    if (!guideHairs.empty() && guideHairs.size() != guides.size())
+        return damaged(placeOf(guideHairs.data()), number(guideHairs.size()) + " numbers of hairs for " +
+                                                       number(guides.size()) + " guides");
+    std::uint64_t hairs = 0;
+    for (std::size_t guide = 0; guide < guides.size(); ++guide) {
+        if (hairsOf(guide) > r.hairsPerGuide)
+            return damaged(placeOf(&guideHairs[guide]), "more hairs of a guide than any has");
+        hairs += hairsOf(guide);
+    }
     if (hairs * r.pointsPerHair > kMaxAssetPoints)
         return wrong("of " + number(hairs) + " hairs; that is too many");
     if (!rootShifts.empty() && rootShifts.size() != hairs)

@@ -2,6 +2,7 @@
 // What an asset's records stand for: strands, settings, follow hairs.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "hairloom/asset.h"
 #include "hairloom/follow_recipe.h"
@@ -74,7 +75,13 @@ Float3 Asset::boundsMax_ss() const {
 }
 
 std::uint32_t Asset::hairCount() const {
-    return recipe.empty() ? 0 : recipe[0].hairsPerGuide * static_cast<std::uint32_t>(guides.size());
+    if (recipe.empty()) return 0;
+    if (guideHairs.empty()) return recipe[0].hairsPerGuide * static_cast<std::uint32_t>(guides.size());
+    return std::accumulate(guideHairs.begin(), guideHairs.end(), 0u);
+}
+
+std::uint32_t Asset::hairsOf(std::size_t guide) const {
+    return guideHairs.empty() ? recipe[0].hairsPerGuide : guideHairs[guide];
 }
 
 Asset::Strands Asset::strandsAtRest() const {
@@ -157,6 +164,8 @@ FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) co
         const Float3 normal = toFloat3(guide.normal), axis = toFloat3(guide.axis);
         planes[guide.strand] = {axis, cross(normal, axis), normal};
     }
+    std::vector<std::uint32_t> hairs(guides.size());
+    for (std::size_t guide = 0; guide < hairs.size(); ++guide) hairs[guide] = hairsOf(guide);
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<float> areas;
     for (const GuideTriangle& triangle : guideTriangles) {
@@ -164,7 +173,7 @@ FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) co
         areas.push_back(triangle.area);
     }
     DrawnHairs drawn = drawFollowHairs({r.seed,
-                                        r.hairsPerGuide,
+                                        hairs,
                                         r.blend,
                                         {r.beginAngle, r.endAngle, r.beginSpread, r.endSpread},
                                         ids,

@@ -166,6 +166,20 @@ void forPieces(const Host& host, std::size_t count, std::size_t grain, const Bod
     }
 }
 
+/// As evaluateSome() takes them.
+bool areGroups(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> taken,
+               std::size_t hairs) {
+    if (groups.empty() || groups.size() != taken.size() || groups.front() != 0 || taken.front() != 0 ||
+        groups.back() != hairs)
+        return false;
+    for (std::size_t g = 0; g + 1 < groups.size(); ++g) {
+        if (groups[g] > groups[g + 1] || taken[g] > taken[g + 1] ||
+            taken[g + 1] - taken[g] > groups[g + 1] - groups[g])
+            return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples) {
@@ -289,20 +303,20 @@ std::size_t FollowHairs::bytesFor(std::size_t guides, std::size_t hairs, std::ui
 }
 
 bool FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host) {
-    const std::uint32_t all = hairCount();
-    return evaluateSome(guides, std::max(all, 1u), all, hairs_ws, host);
+    const std::uint32_t all[] = {0, hairCount()};
+    return evaluateSome(guides, all, all, hairs_ws, host);
 }
 
-bool FollowHairs::evaluateSome(const GuideMotion& guides, std::uint32_t group, std::uint32_t taken,
-                               std::span<Float3> hairs_ws, const Host& host) {
+bool FollowHairs::evaluateSome(const GuideMotion& guides, std::span<const std::uint32_t> groups,
+                               std::span<const std::uint32_t> taken, std::span<Float3> hairs_ws,
+                               const Host& host) {
     Impl& impl = *impl_;
     const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
-    if (group == 0 || impl.hairs.size() % group != 0 || taken > group) return false;
-    const std::size_t groups = impl.hairs.size() / group;
+    if (!areGroups(groups, taken, impl.hairs.size())) return false;
     if (guides.positions_ws.size() != impl.guideOffsets.back() ||
         !fits(guides.velocities_ws.size(), guides.positions_ws.size()) ||
         !fits(guides.rootRotations_ws.size(), impl.guideCount()) ||
-        hairs_ws.size() != groups * taken * impl.points)
+        hairs_ws.size() != std::size_t{taken.back()} * impl.points)
         return false;
     const GuideRows rows{impl.points,           impl.rowFloats,    impl.radii.data(), guides.wispSpread,
                          impl.positions.data(), impl.wisps.data(), impl.frames.data()};
@@ -314,13 +328,13 @@ bool FollowHairs::evaluateSome(const GuideMotion& guides, std::uint32_t group, s
     const auto sum = [&](std::size_t first, std::size_t count, std::size_t to) {
         followKernels().sumRows(rows, hairs.subspan(first, count), out + to * impl.points * 3);
     };
-    if (taken == group) {
+    if (taken.back() == hairs.size()) {
         forPieces(host, hairs.size(), kHairsPerJob,
                   [&](std::size_t begin, std::size_t end) { sum(begin, end - begin, begin); });
         return true;
     }
-    forPieces(host, groups, kGuidesPerJob, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end; ++g) sum(g * group, taken, g * taken);
+    forPieces(host, groups.size() - 1, kGuidesPerJob, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) sum(groups[g], taken[g + 1] - taken[g], taken[g]);
     });
     return true;
 }

@@ -97,9 +97,8 @@ Float3 keepPartings(const FollowRecipe& recipe, const std::array<std::uint32_t, 
 }
 
 void drawHair(const FollowRecipe& recipe, const Fans& fans, std::uint32_t guide, std::uint32_t number,
-              DrawnHairs& hairs) {
+              std::size_t hair, DrawnHairs& hairs) {
     Random random(recipe.seed, (std::uint64_t{recipe.ids[guide]} << 16u) | number);
-    const std::size_t hair = std::size_t{guide} * recipe.hairsPerGuide + number;
     hairs.wispOffsets[hair] = drawInDisc(random);
     const std::uint32_t chosen = fans.draw(guide, random.uniform());
     const Float3 barycentric = drawOwnThird(random);
@@ -118,7 +117,11 @@ void drawHair(const FollowRecipe& recipe, const Fans& fans, std::uint32_t guide,
 }  // namespace
 
 DrawnHairs drawFollowHairs(const FollowRecipe& recipe, const Host& host) {
-    const std::size_t guides = recipe.ids.size(), count = guides * recipe.hairsPerGuide;
+    const std::size_t guides = recipe.ids.size();
+    std::vector<std::size_t> firstHairs(guides + 1);
+    for (std::size_t guide = 0; guide < guides; ++guide)
+        firstHairs[guide + 1] = firstHairs[guide] + recipe.hairs[guide];
+    const std::size_t count = firstHairs.back();
     DrawnHairs hairs;
     hairs.guides.resize(count);
     hairs.weights.resize(count);
@@ -129,8 +132,9 @@ DrawnHairs drawFollowHairs(const FollowRecipe& recipe, const Host& host) {
     const Fans fans(recipe);
     const auto draw = [&](std::size_t begin, std::size_t end) {
         for (std::size_t guide = begin; guide < end; ++guide) {
-            for (std::uint32_t number = 0; number < recipe.hairsPerGuide; ++number)
-                drawHair(recipe, fans, static_cast<std::uint32_t>(guide), number, hairs);
+            for (std::uint32_t number = 0; number < recipe.hairs[guide]; ++number)
+                drawHair(recipe, fans, static_cast<std::uint32_t>(guide), number, firstHairs[guide] + number,
+                         hairs);
         }
     };
     if (host.parallelFor)

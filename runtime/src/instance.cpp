@@ -59,6 +59,20 @@ float numberWithin(const Asset& asset, std::string_view name, double min, double
     return static_cast<float>(value >= min && value <= max ? value : usual);
 }
 
+/// Radii at root and tip that a group of settings says, or `usual`.
+std::array<float, 2> radiiOf(const Asset& asset, const std::string& group, std::array<float, 2> usual) {
+    const double root{usual[0]}, tip{usual[1]};
+    const float radius = numberWithin(asset, group + ".rootRadius", 5e-6, 0.05, root);
+    return {radius, radius * numberWithin(asset, group + ".tipScale", 0, 1, tip / root)};
+}
+
+/// Whether some layers have materials of their own.
+bool hasMaterials(const Asset& asset) {
+    return !asset.strandLayers.empty() &&
+           std::any_of(asset.layers.begin(), asset.layers.end(),
+                       [](const asset::Layer& layer) { return layer.ownMaterial != 0; });
+}
+
 std::size_t bytesOf(const Engine& engine) {
     std::size_t bytes = engine.baseBytes();
     for (std::uint32_t effect = 0; effect < kEffectCount; ++effect)
@@ -105,7 +119,7 @@ std::map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset) {
 std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread) {
     const std::size_t strands = asset.strandCount(), points = asset.pointCount();
     std::size_t bytes = 2 * points * sizeof(Float3) + 2 * strands * sizeof(RootFrame) +
-                        (strands + 2) * sizeof(std::uint32_t) + sizeof(LevelSet);
+                        (strands + asset.guides.size() + 3) * sizeof(std::uint32_t) + sizeof(LevelSet);
     for (std::uint32_t level = 1; level < HL_LEVEL_RIGID; ++level) {
         std::map<std::uint32_t, std::size_t> strandsOf;
         const std::uint32_t guides = guidesOfLevel(level, asset.strandCount());
@@ -140,6 +154,8 @@ InstanceMemory instanceMemory(const Asset& asset) {
     const std::uint32_t pointsPerHair = asset.recipe[0].pointsPerHair;
     return {guides,
             FollowHairs::bytesFor(strands, hairs, pointsPerHair) +
+                (asset.guides.size() + 1) * sizeof(std::uint32_t) +
+                (hasMaterials(asset) ? asset.guides.size() * 2 * sizeof(float) : 0) +
                 ownBytes(strands, points, hairs * pointsPerHair) - ownBytes(strands, points, 0),
             levels, thread};
 }
@@ -157,13 +173,24 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     instance.positions_.resize(strands.positions_ss.size());
     for (const std::uint16_t radius : asset.radii)
         instance.radii_.own.push_back(static_cast<float>(radius) * asset::kRadiusStep);
-    instance.radii_.root = numberWithin(asset, "material.rootRadius", 5e-6, 0.05, 4e-5);
-    instance.radii_.tip = instance.radii_.root * numberWithin(asset, "material.tipScale", 0, 1, 0.4);
+    const std::array<float, 2> usual = radiiOf(asset, "material", {4e-5f, 1.6e-5f});
+    instance.radii_.root = usual[0];
+    instance.radii_.tip = usual[1];
     if (wantsHairs && asset.hairCount() > 0) {
         FollowHairs::Result hairs = asset.followHairs(strands, instance.host_);
         if (!hairs.hairs) return {std::nullopt, std::move(hairs.error)};
         instance.hairs_ = std::move(hairs.hairs);
-        instance.hairGroups_ = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(asset.guides.size()));
+        instance.hairGroups_.push_back(0);
+        for (std::size_t guide = 0; guide < asset.guides.size(); ++guide)
+            instance.hairGroups_.push_back(instance.hairGroups_.back() + asset.hairsOf(guide));
+        if (hasMaterials(asset)) {
+            for (const asset::Guide& guide : asset.guides) {
+                const std::uint32_t layer = asset.strandLayers[guide.strand];
+                const bool own = asset.layers[layer].ownMaterial != 0;
+                instance.radii_.ofHairs.push_back(
+                    own ? radiiOf(asset, "layer" + std::to_string(layer + 1), usual) : usual);
+            }
+        }
         instance.velocities_.resize(instance.positions_.size());
         instance.hairPositions_.resize(std::size_t{instance.hairs_->hairCount()} *
                                        instance.hairs_->pointsPerHair());
@@ -348,25 +375,32 @@ Outcome Instance::readGuides(const hl_out& positions, const hl_out& tangents, co
 Outcome Instance::readHairs(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
     if (!hairs_)
         return Refusal{HL_BAD_VALUE, "the instance was made without follow hairs, or the asset has none"};
-    const std::uint32_t hairs = hairsRead(), group = hairsOfGuide();
+    const std::uint32_t hairs = hairsRead();
     const std::size_t count = hairs_->pointsPerHair(), points = hairs * count;
     if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
     if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
     if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
     showPositions();
     showVelocities();
-    hairs_->evaluateSome({positions_, velocities_, turns_}, group, hairs / hairGroups_,
+    const std::vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
+    hairs_->evaluateSome({positions_, velocities_, turns_}, hairGroups_, taken,
                          std::span(hairPositions_).first(points), host_);
     // Fewer hairs cover what all did.
     const float wider = static_cast<float>(hairs_->hairCount()) / static_cast<float>(hairs);
+    const auto radiiOfHair = [&](std::size_t hair) -> std::array<float, 2> {
+        if (radii_.ofHairs.empty()) return {radii_.root, radii_.tip};
+        const auto next = std::upper_bound(taken.begin(), taken.end(), hair);
+        return radii_.ofHairs[static_cast<std::size_t>(next - taken.begin() - 1)];
+    };
     const auto write = [&](std::size_t begin, std::size_t end) {
         for (std::size_t hair = begin; hair < end; ++hair) {
+            const auto [root, tip] = radiiOfHair(hair);
             const auto strand = std::span<const Float3>(hairPositions_).subspan(hair * count, count);
             for (std::size_t p = 0; p < count; ++p) {
                 const std::size_t at = hair * count + p;
                 if (positions.data) store(positions, at, strand[p]);
                 if (tangents.data) store(tangents, at, tangentAt(strand, p));
-                if (radii.data) store(radii, at, between(radii_.root, radii_.tip, p, count) * wider);
+                if (radii.data) store(radii, at, between(root, tip, p, count) * wider);
             }
         }
     };
@@ -399,6 +433,7 @@ hl_instance_info Instance::describe() const {
     info.left_spheres = report.rejectedSpheres;
     info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() + (hairs_ ? hairs_->bytes() : 0) +
                  ownBytes(roots_.size(), positions_.size(), hairPositions_.size()) +
+                 hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
                  spheres_.size() * sizeof(Sphere) + bytesOfLevels();
     return info;

@@ -2,6 +2,7 @@
 #pragma once
 // One character's hair as an asset has it: what hl_instance is.
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -63,7 +64,8 @@ class Instance {
     /// How thick a strand is: by its points, or from root to tip.
     struct Radii {
         float root, tip;
-        std::vector<float> own;  // of each point, or none
+        std::vector<float> own;                     // of each point, or none
+        std::vector<std::array<float, 2>> ofHairs;  // root and tip of each guide's, or none: as above
     };
     Instance(Engine engine, RootPoses poses, Host host)
         : engine_(std::move(engine)), poses_(std::move(poses)), host_(std::move(host)) {}
@@ -73,7 +75,7 @@ class Instance {
         std::shared_ptr<const LevelSet> set;
         std::vector<Engine> engines;  ///< of levels 1 …, before the rigid one
         std::uint32_t level = 0;
-        std::uint32_t hairsPerGuide = 0;  ///< that are read
+        std::vector<std::uint32_t> taken;  ///< of the hairs that are read, as FollowHairs::evaluateSome()
         /// Where roots were last, all finite, and what they were measured from; none before the first step.
         std::vector<RootFrame> placed;
         std::optional<std::array<double, 3>> origin;
@@ -97,7 +99,7 @@ class Instance {
     const Engine* engineOfLevel() const { return const_cast<Instance*>(this)->engineOfLevel(); }
     std::size_t bytesOfLevels() const;
     std::uint32_t hairsRead() const;
-    std::uint32_t hairsOfGuide() const { return hairs_ ? hairs_->hairCount() / hairGroups_ : 0; }
+    void takeHairs(float share);
     /// Fill positions_ and velocities_.
     void showPositions();
     void showVelocities();
@@ -111,7 +113,7 @@ class Instance {
 
     Engine engine_;
     std::optional<FollowHairs> hairs_;
-    std::uint32_t hairGroups_ = 1;  // guides that have hairs
+    std::vector<std::uint32_t> hairGroups_;  // hairs before each guide's, then all
     std::optional<Levels> levels_;
     RootPoses poses_;
     Host host_;

@@ -73,7 +73,7 @@ void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
     levels_->simulatedRoots.resize(guides);
     levels_->simulated.resize(points);
     levels_->moved.resize(points);
-    levels_->hairsPerGuide = hairsOfGuide();
+    takeHairs(1);
     levels_->set = set;
     resetLevel();
     measureLevels(asset, *set);
@@ -273,9 +273,7 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
         return Refusal{HL_BAD_VALUE,
                        "hair_share is " + std::to_string(hairShare) + "; expected above 0 to 1"};
     Levels& levels = *levels_;
-    const auto all = static_cast<float>(hairsOfGuide());
-    levels.hairsPerGuide =
-        static_cast<std::uint32_t>(std::max(std::min(all, 1.0f), std::ceil(all * hairShare)));
+    takeHairs(hairShare);
     if (number == levels.level) return std::nullopt;
     showPositions();
     showVelocities();
@@ -356,7 +354,17 @@ float Instance::predictedMilliseconds(std::uint32_t number, float hairShare) con
 
 std::uint32_t Instance::hairsRead() const {
     if (!hairs_) return 0;
-    return levels_ ? levels_->hairsPerGuide * hairGroups_ : hairs_->hairCount();
+    return levels_ ? levels_->taken.back() : hairs_->hairCount();
+}
+
+/// Of each guide at least one, where it has any.
+void Instance::takeHairs(float share) {
+    levels_->taken.assign(hairGroups_.size(), 0);
+    for (std::size_t g = 0; g + 1 < hairGroups_.size(); ++g) {
+        const auto all = static_cast<float>(hairGroups_[g + 1] - hairGroups_[g]);
+        levels_->taken[g + 1] = levels_->taken[g] + static_cast<std::uint32_t>(std::max(
+                                                        std::min(all, 1.0f), std::ceil(all * share)));
+    }
 }
 
 std::uint64_t Instance::hash() const {
@@ -374,7 +382,7 @@ std::uint64_t Instance::hash() const {
 std::size_t Instance::bytesOfLevels() const {
     if (!levels_) return 0;
     const Levels& levels = *levels_;
-    std::size_t bytes = levels.set->bytes() + sizeof(LevelSet) +
+    std::size_t bytes = levels.set->bytes() + sizeof(LevelSet) + levels.taken.size() * sizeof(std::uint32_t) +
                         (levels.placed.size() + levels.simulatedRoots.size()) * sizeof(RootFrame) +
                         (levels.fade.size() + levels.simulated.size() + levels.moved.size()) * sizeof(Float3);
     for (const Engine& engine : levels.engines) {

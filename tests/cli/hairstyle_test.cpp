@@ -136,6 +136,8 @@ TEST_F(Hairstyle, LayersAreMadeByScriptsShownAndExportedAlone) {
     EXPECT_EQ(layers[1]["name"], "Fringe");
     EXPECT_EQ(layers[1]["strands"], 20);
     EXPECT_EQ(layers[1]["points"], 20 * 12);
+    EXPECT_EQ(layers[1]["density"], 1);
+    EXPECT_EQ(layers[1]["own_material"], false);
     EXPECT_EQ(layers[0]["operators"], nlohmann::json({1}));
     EXPECT_EQ(layers[1]["operators"], nlohmann::json({0, 1}));
     EXPECT_EQ(runJson("stack hair.hairloom --layer Hair")["operators"].size(), 1u);
@@ -144,6 +146,29 @@ TEST_F(Hairstyle, LayersAreMadeByScriptsShownAndExportedAlone) {
     EXPECT_EQ(runJson("import a.obj -o back.hairloom")["strands"], 300);
     EXPECT_THAT(run("export hair.hairloom --layers Beard --format hair -o b.hair").errors,
                 HasSubstr("no layer is called 'Beard'; expected some of Hair, Fringe"));
+
+    EXPECT_EQ(runJson("set hair.hairloom interpolation.followPerGuide=8 layers.Fringe.density=0.5 "
+                      "layers.Fringe.material.rootColour=[0.9,0.1,0.1] layers.Fringe.material.specular=1 "
+                      "-o red.hairloom")["changed"],
+              4);
+    const auto red = runJson("layers red.hairloom")["layers"];
+    EXPECT_EQ(red[1]["density"], 0.5);
+    EXPECT_EQ(red[1]["own_material"], true);
+    EXPECT_EQ(red[0]["own_material"], false);
+    const auto hairs = runJson("export red.hairloom --what hairs --format abc -o red.abc");
+    EXPECT_EQ(hairs["strands"], 280 * 8 + 20 * 4);
+    EXPECT_EQ(runJson("export red.hairloom --format runtime -o red.hairrt")["strands"], 300);
+    runJson("import red.hairrt -o red_back.hairloom");
+    EXPECT_EQ(runJson("layers red_back.hairloom")["layers"][1]["own_material"], true);
+    runJson("set red.hairloom layers.Fringe.material=null -o plain.hairloom");
+    EXPECT_EQ(runJson("layers plain.hairloom")["layers"][1]["own_material"], false);
+    EXPECT_THAT(run("set red.hairloom layers.Beard.density=1 -o b.hairloom").errors,
+                HasSubstr("/layers/Beard is no layer"));
+    EXPECT_THAT(run("set red.hairloom layers.Fringe.density=9 -o b.hairloom").errors,
+                HasSubstr("/layers/Fringe/density is 9"));
+    EXPECT_THAT(run("set red.hairloom layers.Fringe=1 -o b.hairloom").errors, HasSubstr("/layers/Fringe"));
+    EXPECT_THAT(run("set red.hairloom layers.Fringe.colour=1 -o b.hairloom").errors,
+                HasSubstr("colour is not known"));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST_P(EveryBrush, LeavesFrozenHiddenLockedAndUnselectedStrandsAlone) {
         selected[s] = s % 5 != 2;
         layers[s] = s % 5 == 3;
     }
-    groom.layers = {{"Open", true, false}, {"Locked", true, true}};
+    groom.layers = {{"Open", true, false, 1, {}}, {"Locked", true, true, 1, {}}};
     groom.strandAttributes.set(attribute::kFrozen, frozen);
     groom.strandAttributes.set(attribute::kHidden, hidden);
     groom.strandAttributes.set(attribute::kSelected, selected);

@@ -114,7 +114,7 @@ std::vector<Action> actions() {
              [](const Model& m, Random& r) {
                  std::vector<Layer> layers = m.groom.layers;
                  layers[0].locked = r.below(8) == 0;
-                 if (layers.size() < 5) layers.push_back({"More", true, false});
+                 if (layers.size() < 5) layers.push_back({"More", true, false, 1, {}});
                  return setLayers(m, std::move(layers));
              }},
             {"SetCardEdits",

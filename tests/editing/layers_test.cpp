@@ -20,7 +20,7 @@ struct Layers : testing::Test {
     Layers() {
         for (const char* const name : {"Fringe", "Flyaways"}) {
             std::vector<Layer> layers = groom().layers;
-            layers.push_back({name, true, false});
+            layers.push_back({name, true, false, 1, {}});
             document.perform(setLayers(document.model(), layers));
         }
         for (std::uint32_t s = 0; s < groom().strandCount(); s += 3) fringe.push_back(s);

@@ -237,7 +237,7 @@ std::unique_ptr<Command> anySettingsCommand(const Model& model, Random& random) 
             std::vector<Layer> layers = groom.layers;
             layers[0].locked = random.below(8) == 0;
             layers.back().visible = random.below(4) != 0;
-            if (layers.size() < 5) layers.push_back({"More", true, false});
+            if (layers.size() < 5) layers.push_back({"More", true, false, 1, {}});
             return setLayers(model, std::move(layers));
         }
     }

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Layers panel as a groomer uses it: a fringe on a layer of its own, soloed, locked, renamed, and undone.
+#include <QCheckBox>
+#include <QDoubleSpinBox>
 #include <QPushButton>
 #include <QTreeWidget>
 
 #include "core/editing/selection_commands.h"
 #include "core/groom/strand_subset.h"
+#include "editor/fields/field.h"
+#include "editor/fields/number_box.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -77,6 +81,51 @@ TEST_F(LayersTest, StrandsAreSelectedByLayerAndComeBackWhenItGoes) {
     click("layerRemove");
     EXPECT_EQ(list().topLevelItemCount(), 1);
     expectSound();
+}
+
+TEST_F(LayersTest, ALayerHasItsOwnDensityAndMaterial) {
+    select(40);
+    click("layerAdd");
+    const auto before = hash();
+    auto& density = *find<NumberBox>("layerDensity");
+    auto& spin = *density.findChild<QDoubleSpinBox*>();
+    spin.setValue(0.5);
+    EXPECT_EQ(groom().layers[1].density, 0.5f);
+    EXPECT_EQ(groom().layers[0].density, 1);
+    auto& own = *find<QCheckBox>("layerOwnMaterial");
+    QWidget& panel = *window->panel("layers");
+    EXPECT_FALSE(panel.findChild<QWidget*>("rootColour"));
+    own.click();
+    ASSERT_TRUE(groom().layers[1].material);
+    EXPECT_EQ(groom().layers[1].material->rootColour, groom().material.rootColour)
+        << "it begins as the hairstyle's";
+    auto* shininess = panel.findChild<NumberBox*>("shininess");
+    ASSERT_TRUE(shininess);
+    const float ofHair = groom().material.shininess;
+    shininess->findChild<QDoubleSpinBox*>()->setValue(150);
+    EXPECT_EQ(groom().layers[1].material->shininess, 150);
+    EXPECT_EQ(groom().material.shininess, ofHair);
+    for (const auto& field : layerMaterialFields(1))
+        EXPECT_TRUE(panel.findChild<QWidget*>(field.name)) << field.name << " is offered";
+    ASSERT_TRUE(window->saveTo(inFolder("fringe.hairloom")));
+    list().setCurrentItem(&row(0));
+    EXPECT_FALSE(own.isChecked());
+    EXPECT_FALSE(panel.findChild<QWidget*>("shininess"));
+    list().setCurrentItem(&row(1));
+    own.click();
+    EXPECT_FALSE(groom().layers[1].material);
+    document().undo();
+    EXPECT_TRUE(groom().layers[1].material);
+    EXPECT_TRUE(own.isChecked());
+    expectSound();
+    while (hash() != before && document().editing().canUndo()) document().undo();
+    EXPECT_EQ(hash(), before);
+    EXPECT_FALSE(own.isChecked());
+    files().open(inFolder("fringe.hairloom"));
+    finishWork();
+    ASSERT_EQ(groom().layers.size(), 2u);
+    EXPECT_EQ(groom().layers[1].density, 0.5f);
+    EXPECT_EQ(groom().layers[1].material->shininess, 150);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/base/parallel.h"
 #include "core/groom/file/fields.h"
@@ -147,6 +148,70 @@ TEST_F(RuntimeAsset, ResampledStrandsSayHowFarTheirHairsAreOff) {
     ASSERT_NE(compared, report->attributes.end());
     EXPECT_GT(compared->maxError, 0.0);
     EXPECT_LT(compared->maxError, 0.0003);
+}
+
+TEST_F(RuntimeAsset, CarriesLayersTheirDensityAndMaterials) {
+    Groom groom = wholeGroom();
+    HairMaterial ofFringe = otherThanDefault<HairMaterial>();
+    ofFringe.rootRadius = 0.0002f;
+    groom.layers = {{"Base", true, false, 1, {}}, {"Fringe \"β\"", true, false, 1.5f, ofFringe}};
+    std::vector<std::uint32_t> layers(groom.strandCount(), 0);
+    layers[1] = layers[2] = 1;
+    groom.strandAttributes.set(attribute::kLayer, layers);
+    ExportReport report;
+    const auto bytes = written(groom, &report);
+    const auto opened = Asset::open(bytes);
+    ASSERT_TRUE(opened.asset);
+    ASSERT_FALSE(opened.asset->check());
+    const auto shown = bakeFollowHairs(groom, bindFollowHairs(groom, groom.interpolation).value()).value();
+    EXPECT_EQ(shown.strandCount(), 6 * groom.strandCount() + 2 * 3);
+    EXPECT_EQ(opened.asset->hairCount(), shown.strandCount());
+    const auto compared =
+        std::ranges::find(report.attributes, "follow hairs at rest", &ComparedAttribute::name);
+    ASSERT_NE(compared, report.attributes.end());
+    EXPECT_LT(compared->maxError, 0.0003);
+    const auto back = importStrands(folder / "a.hairrt");
+    ASSERT_TRUE(back) << back.error().message();
+    ASSERT_EQ(back->groom.layers.size(), 2u);
+    EXPECT_EQ(back->groom.layers[1].name, "Fringe \"β\"");
+    EXPECT_EQ(back->groom.layers[1].density, 1.5f);
+    EXPECT_FALSE(back->groom.layers[0].material);
+    ASSERT_TRUE(back->groom.layers[1].material);
+    expectSame(*back->groom.layers[1].material, ofFringe);
+    const auto ofStrands = back->groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    EXPECT_TRUE(std::ranges::equal(ofStrands, layers));
+    for (const LeftBehind& left : report.leftBehind)
+        EXPECT_THAT(left.what, testing::Not(HasSubstr("layers")));
+    // Thickness of the layer's material stands in the points.
+    const float thick = ofFringe.rootRadius;
+    const auto radii = back->groom.pointAttributes.view<float>(attribute::kRadius);
+    ASSERT_FALSE(radii.empty());
+    EXPECT_NEAR(radii[groom.offsets[1]], thick, 0x1p-24f);
+    EXPECT_NEAR(radii[groom.offsets[0]], groom.material.rootRadius, 0x1p-24f);
+}
+
+TEST_F(RuntimeAsset, LayersThatAreNotThereAreRefused) {
+    Groom groom = wholeGroom();
+    groom.layers = {{"Base", true, false, 1, {}}, {"Fringe", true, false, 0.5f, {}}};
+    std::vector<std::uint32_t> layers(groom.strandCount(), 0);
+    layers[1] = 1;
+    groom.strandAttributes.set(attribute::kLayer, layers);
+    const auto bytes = written(groom);
+    const auto damaged = [&](std::string_view kind, std::size_t byte, std::uint16_t value) {
+        auto changed = bytes;
+        const auto opened = Asset::open(changed);
+        for (const auto& section : opened.asset->sections()) {
+            if (section.kind == kind)
+                std::memcpy(changed.data() + section.offset + byte, &value, sizeof value);
+        }
+        const auto again = Asset::open(changed);
+        const auto problem = again.asset->checkContent();
+        return problem ? problem->words : "";
+    };
+    EXPECT_EQ(damaged("SLYR", 0, 1), "");
+    EXPECT_THAT(damaged("SLYR", 2, 2), HasSubstr("layer 2 of 2"));
+    EXPECT_THAT(damaged("GHRS", 2, 7), HasSubstr("more hairs of a guide"));
+    EXPECT_THAT(damaged("LAYR", 2, 0xffff), HasSubstr("layer without name"));
 }
 
 TEST_F(RuntimeAsset, SomeStrandsAloneMayBeGuides) {

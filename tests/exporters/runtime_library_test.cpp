@@ -244,6 +244,46 @@ TEST_F(RuntimeLibrary, StepsAndReadOutAskForNoMemoryAndWhatIsHeldWasSaidBefore) 
     }
 }
 
+TEST_F(RuntimeLibrary, HairsAreAsDenseAndThickAsTheirLayerSays) {
+    Groom groom = hairOfADome();
+    groom.interpolation.followPerGuide = 8;
+    HairMaterial thick = groom.material;
+    thick.rootRadius = 3 * groom.material.rootRadius;
+    thick.tipScale = 0.5f;
+    groom.layers = {{"Base", true, false, 1, {}}, {"Brows", true, false, 0.5f, thick}};
+    std::vector<std::uint32_t> layers(groom.strandCount(), 0);
+    layers[2] = 1;
+    groom.strandAttributes.set(attribute::kLayer, layers);
+    const std::size_t guides = groom.strandCount();
+    for (const std::uint32_t levels : {0, HL_LEVELS + 0}) {
+        Instance hair;
+        ASSERT_TRUE(hair.make(opened(groom), HL_HAIRS | levels));
+        Frame frame;
+        ASSERT_TRUE(hair.step(frame));
+        for (const float share : {1.0f, 0.25f}) {
+            if (levels == 0 && share < 1) continue;
+            if (levels != 0) {
+                ASSERT_TRUE(hair.setLevel(HL_LEVEL_FINEST, share));
+            }
+            const hl_instance_info info = hair.describe();
+            const std::size_t base = share < 1 ? 2 : 8, brows = share < 1 ? 1 : 4;
+            ASSERT_EQ(info.hairs, (guides - 1) * base + brows);
+            std::vector<float> positions, radii(std::size_t{info.hairs} * info.points_per_hair);
+            ASSERT_TRUE(hair.readHairs(positions));
+            const hl_out out{radii.data(), radii.size() * sizeof(float), sizeof(float)};
+            ASSERT_EQ(hl_instance_read_hairs(hair.get(), {}, {}, out, nullptr), HL_OK);
+            const auto all = static_cast<float>((guides - 1) * 8 + 4);
+            const float wider = all / static_cast<float>(info.hairs);
+            const std::size_t first = 2 * base * info.points_per_hair;
+            const std::size_t next = first + brows * info.points_per_hair;
+            EXPECT_FLOAT_EQ(radii[first], wider * thick.rootRadius);
+            EXPECT_FLOAT_EQ(radii[next - 1], wider * thick.rootRadius * 0.5f);
+            EXPECT_FLOAT_EQ(radii[first - info.points_per_hair], wider * groom.material.rootRadius);
+            EXPECT_FLOAT_EQ(radii[next], wider * groom.material.rootRadius);
+        }
+    }
+}
+
 TEST_F(RuntimeLibrary, CopiesRunOnWithTheSameBits) {
     const Asset asset = opened(hairOfADome());
     auto first = std::make_unique<Instance>();

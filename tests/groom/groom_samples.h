@@ -121,10 +121,14 @@ inline Groom fullGroom() {
     groom.strandAttributes.set(attribute::kFrozen, std::vector<std::uint8_t>{0, 1, 0, 0, 0});
     groom.strandAttributes.set(attribute::kRootUv, std::vector<Vec2f>(5, Vec2f(0.25f, 0.5f)));
     groom.strandAttributes.set("signed", std::vector<std::int32_t>{-1, 2, -3, 4, -5});
-    groom.layers = {{"Top", true, false}, {"Fringe \"β\"", false, true}};
+    HairMaterial ofFringe;
+    ofFringe.shadingModel = ShadingModel::sadeghi;
+    ofFringe.rootColour = Vec3f(0.6f, 0.4f, 0.125f);
+    groom.layers = {{"Top", true, false, 1, {}}, {"Fringe \"β\"", false, true, 0.3f, ofFringe}};
     groom.groupNames = {"front", "back"};
     groom.spheres = {{"head", Vec3f(0, 1.6f, 0), 0.095f, "Head"},
                      {"neck", Vec3f(0.01f, 1.45f, 0), 0.06f, ""}};
+    groom.material.shadingModel = ShadingModel::marschner;
     groom.material.rootRadius = 0.00003f;
     groom.material.tipColour = Vec3f(0.1f, 0.7f, 0.3f);
     groom.simulation.substeps = 11;

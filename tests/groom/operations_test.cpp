@@ -174,7 +174,7 @@ TEST_P(EveryOperation, LeavesFrozenAndLockedStrandsAlone) {
     }
     before.strandAttributes.set(attribute::kFrozen, frozen);
     before.strandAttributes.set(attribute::kLayer, layers);
-    before.layers = {{"Free", true, false}, {"Locked", true, true}};
+    before.layers = {{"Free", true, false, 1, {}}, {"Locked", true, true, 1, {}}};
     Groom after = before;
     ASSERT_TRUE(GetParam().run(after, {}));
     for (std::size_t s = 0; s < kStrands; ++s) {

@@ -254,6 +254,24 @@ struct Forger {
     std::filesystem::path path;
 };
 
+TEST(Project, OfBeforeThereWereMaterialsOfLayersIsReadAsItWasMeant) {
+    const TemporaryFolder folder;
+    Forger older(folder);
+    older.head["material"].erase("shadingModel");
+    for (Json& layer : older.head["layers"]) {
+        layer.erase("density");
+        layer.erase("material");
+    }
+    ASSERT_EQ(older.error(), "it was loaded");
+    const auto loaded = loadProject(older.path);
+    EXPECT_EQ(loaded->material.shadingModel, ShadingModel::kajiya);
+    for (const Layer& layer : loaded->layers) {
+        EXPECT_EQ(layer.density, 1);
+        EXPECT_FALSE(layer.material);
+    }
+    EXPECT_EQ(&loaded->materialOf(1), &loaded->material);
+}
+
 TEST(HostileProject, UnchangedItLoads) {
     const TemporaryFolder folder;
     EXPECT_EQ(Forger(folder).error(), "it was loaded");
@@ -280,6 +298,11 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h["layers"] = Json::array(); }, "/layers is empty"},
         {[](Json& h) { h["layers"][1]["name"] = 3; }, "/layers/1/name is 3"},
         {[](Json& h) { h["layers"][0]["colour"] = 3; }, "/layers/0/colour is not known"},
+        {[](Json& h) { h["layers"][1]["density"] = 4.5; },
+         "/layers/1/density is 4.5; expected a number from 0 to 4"},
+        {[](Json& h) { h["layers"][1]["material"] = 2; }, "/layers/1/material"},
+        {[](Json& h) { h["layers"][1]["material"]["specular"] = 7; }, "/layers/1/material/specular is 7"},
+        {[](Json& h) { h["material"]["shadingModel"] = "phong"; }, "/material/shadingModel is \"phong\""},
         {[](Json& h) { h["future"] = 1; }, "/future is not known to this program"},
         {[](Json& h) { h["material"]["specular"] = 7; },
          "/material/specular is 7; expected a number from 0 to 2"},

@@ -371,6 +371,45 @@ TEST(FollowHairs, HairsOfAGuideDoNotChangeWhenAnotherGuideGoes) {
         EXPECT_EQ(fewer->wispOffsets[h], all->wispOffsets[h + 5]);
 }
 
+TEST(FollowHairs, LayersHaveTheirOwnDensity) {
+    Groom groom = field(5, bent);
+    groom.layers = {
+        {"Base", true, false, 1, {}}, {"Fringe", true, false, 0.5f, {}}, {"Bald", true, false, 0, {}}};
+    std::vector<std::uint32_t> layers(16, 0);
+    layers[3] = layers[4] = 1;
+    layers[5] = 2;
+    groom.strandAttributes.set(attribute::kLayer, layers);
+    const auto all = bindFollowHairs(field(5, bent), settingsWith(0.5f, 8));
+    const auto some = bindFollowHairs(groom, settingsWith(0.5f, 8));
+    ASSERT_TRUE(all && some);
+    EXPECT_EQ(some->hairCount(), 13 * 8u + 2 * 4u);
+    std::size_t hair = 0;
+    for (std::size_t guide = 0; guide < 16; ++guide) {
+        const std::uint32_t expected = layers[guide] == 0 ? 8 : layers[guide] == 1 ? 4 : 0;
+        EXPECT_EQ(some->hairs[guide], expected);
+        for (std::uint32_t number = 0; number < expected; ++number, ++hair) {
+            EXPECT_EQ(some->guides[hair], all->guides[8 * guide + number]) << "the same hair as without";
+            EXPECT_EQ(some->wispOffsets[hair], all->wispOffsets[8 * guide + number]);
+        }
+    }
+    const auto baked = bakeFollowHairs(groom, *some);
+    ASSERT_TRUE(baked);
+    const auto ofHairs = baked->strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    EXPECT_EQ(std::count(ofHairs.begin(), ofHairs.end(), 1u), 8);
+}
+
+TEST(FollowHairs, PartsOfAHairAreLeftToChance) {
+    Groom groom = scenes::guidesOnGrid({40, 40, 4, kSpacing, 0.1f}, bent);
+    groom.layers[0].density = 0.3f;
+    const auto bindings = bindFollowHairs(groom, settingsWith(0, 1));
+    ASSERT_TRUE(bindings);
+    // Three standard deviations of 1,600 draws.
+    EXPECT_NEAR(static_cast<double>(bindings->hairCount()), 480, 55);
+    EXPECT_EQ(bindFollowHairs(groom, settingsWith(0, 1))->hairs, bindings->hairs);
+    groom.layers[0].density = 0;
+    EXPECT_EQ(bindFollowHairs(groom, settingsWith(0, 1))->hairCount(), 0u);
+}
+
 TEST(FollowHairs, BakesIntoABoundGroom) {
     const Groom groom = field(6, bent);
     const auto bindings = bindFollowHairs(groom, settingsWith(0.5f, 7));

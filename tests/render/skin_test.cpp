@@ -62,7 +62,7 @@ class SkinUnderHair : public RenderTest {
         return plate();
     }
 
-    /// As strandShading() has it: the fibre itself takes nothing.
+    /// As strandMaterials() has it: the fibre itself takes nothing.
     Vec3d lookPlate(ShadingModel model, const Vec3d& absorption, const Vec3d& streak) {
         wear(model, model == ShadingModel::marschner ? Vec3d::Zero() : absorption);
         shading::StrandLook look;

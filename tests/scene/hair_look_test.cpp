@@ -55,15 +55,15 @@ TEST(HairLook, ClumpingIsMeasuredOfTheHairAtRest) {
 
 TEST(HairLook, EvenHairHasNone) {
     const Groom plain = plainGroom();
-    EXPECT_FALSE(strandShading(plain, kKajiya).look);
-    EXPECT_FALSE(strandShading(plain, kMarschner).look);
+    EXPECT_FALSE(strandMaterials(plain, kKajiya).material.look);
+    EXPECT_FALSE(strandMaterials(plain, kMarschner).material.look);
     // Colours are nothing to fibres that take melanin.
     Groom coloured = plain;
     coloured.material.tipColour = Vec3f(0.5f, 0.1f, 0.9f);
-    EXPECT_TRUE(strandShading(coloured, kKajiya).look);
-    EXPECT_FALSE(strandShading(coloured, kMarschner).look);
+    EXPECT_TRUE(strandMaterials(coloured, kKajiya).material.look);
+    EXPECT_FALSE(strandMaterials(coloured, kMarschner).material.look);
     coloured.material.colourSource = ColourSource::colours;
-    const auto dyed = strandShading(coloured, kMarschner).look;
+    const auto dyed = strandMaterials(coloured, kMarschner).material.look;
     ASSERT_TRUE(dyed);
     EXPECT_TRUE(dyed->tip.isApprox(
         shading::absorptionOfColour(coloured.material.tipColour.cast<double>(),
@@ -80,22 +80,63 @@ TEST(HairLook, EachFeatureAsksForOne) {
     for (std::size_t i = 0; i < features.size(); ++i) {
         Groom groom = plainGroom();
         features[i](groom);
-        EXPECT_TRUE(strandShading(groom, kKajiya).look) << i;
-        EXPECT_TRUE(strandShading(groom, kMarschner).look) << i;
+        EXPECT_TRUE(strandMaterials(groom, kKajiya).material.look) << i;
+        EXPECT_TRUE(strandMaterials(groom, kMarschner).material.look) << i;
     }
     Groom bleached = plainGroom();
     bleached.material.tipMelanin = 0.25f;
-    EXPECT_FALSE(strandShading(bleached, kKajiya).look);
-    const auto look = strandShading(bleached, kMarschner).look;
+    EXPECT_FALSE(strandMaterials(bleached, kKajiya).material.look);
+    const auto look = strandMaterials(bleached, kMarschner).material.look;
     ASSERT_TRUE(look);
     EXPECT_TRUE(look->tip.isApprox(0.25 * look->root));
     Groom own = plainGroom();
     own.strandAttributes.set(attribute::kStrandColour, std::vector<Vec3f>(2, Vec3f(1, 0, 0)));
-    EXPECT_TRUE(strandShading(own, kMarschner).look);
+    EXPECT_TRUE(strandMaterials(own, kMarschner).material.look);
     // A view that says what colour hair has means all of it.
     ViewFile view = kMarschner;
     view.fibre.melanin = shading::Melanin{0.3, 0};
-    EXPECT_FALSE(strandShading(bleached, view).look);
+    EXPECT_FALSE(strandMaterials(bleached, view).material.look);
+}
+
+TEST(HairLook, LayersHaveMaterialsOfTheirOwnAndHiddenOnesAreNotDrawn) {
+    auto groom = makeSample(kSamples, "short");
+    ASSERT_TRUE(groom) << groom.error().message();
+    EXPECT_TRUE(materialsOfStrands(*groom).empty()) << "all have the one";
+    groom->layers = {{"Base", true, false, 1, {}},
+                     {"Fringe", true, false, 1, groom->material},
+                     {"Hidden", false, false, 1, {}},
+                     {"Brows", true, false, 2, groom->material}};
+    groom->layers[1].material->rootRadius = 0.0001f;
+    groom->layers[3].material->dyeStrength = 0.5f;
+    groom->layers[3].material->streakShare = 0.4f;
+    std::vector<std::uint32_t> layers(groom->strandCount());
+    for (std::uint32_t s = 0; s < layers.size(); ++s) layers[s] = s % 4;
+    groom->strandAttributes.set(attribute::kLayer, layers);
+    std::vector<std::uint8_t> hidden(groom->strandCount(), 0);
+    hidden[5] = 1;
+    groom->strandAttributes.set(attribute::kHidden, hidden);
+    const StrandMaterials made = strandMaterials(*groom, kKajiya);
+    ASSERT_EQ(made.others.size(), 2u);
+    EXPECT_EQ(made.others[0].radius, 0.0001f);
+    const auto ofStrands = materialsOfStrands(*groom);
+    const std::uint32_t expected[] = {0, 1, render::kNotDrawn, 2};
+    for (std::size_t s = 0; s < 40; ++s)
+        EXPECT_EQ(ofStrands[s], s == 5 ? render::kNotDrawn : expected[s % 4]);
+    groom->interpolation.followPerGuide = 2;
+    const auto bindings = bindFollowHairs(*groom, groom->interpolation);
+    ASSERT_TRUE(bindings);
+    const auto ofHairs = materialsOfFollowHairs(*groom, *bindings);
+    ASSERT_EQ(ofHairs.size(), bindings->hairCount());
+    const auto weights = weightsOfFollowHairs(*groom, *bindings);
+    ASSERT_TRUE(weights);
+    bool streaked = false;
+    for (std::size_t h = 0; h < ofHairs.size(); ++h) {
+        EXPECT_EQ(ofHairs[h], ofStrands[bindings->guideStrands[bindings->guides[h][0]]]);
+        ASSERT_EQ(weights->dyes[h], ofHairs[h] == 2 ? 0.5f : 0.0f);
+        ASSERT_TRUE(ofHairs[h] == 2 || weights->streaks[h] == 0);
+        streaked = streaked || weights->streaks[h] > 0;
+    }
+    EXPECT_TRUE(streaked);
 }
 
 TEST(HairLook, DyeComesFromTheMaskAndFollowHairsShareIt) {

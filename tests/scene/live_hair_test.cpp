@@ -103,6 +103,35 @@ TEST_F(LiveHairTest, BothEnginesMoveAndDrawAlike) {
     }
 }
 
+TEST_F(LiveHairTest, BothEnginesDrawLayersAsDenseAndInTheColoursTheyHave) {
+    Groom groom = smallHead();
+    HairMaterial red = groom.material;
+    red.rootColour = red.tipColour = Vec3f(0.9f, 0.02f, 0.02f);
+    HairMaterial pale = groom.material;
+    pale.shadingModel = ShadingModel::marschner;
+    pale.eumelanin = 0.1f;
+    groom.layers = {{"Base", true, false, 1, {}},
+                    {"Red", true, false, 2, red},
+                    {"Pale", true, false, 0.5f, pale},
+                    {"Hidden", false, false, 1, {}}};
+    std::vector<std::uint32_t> layers(groom.strandCount());
+    for (std::uint32_t s = 0; s < layers.size(); ++s) layers[s] = s % 4;
+    groom.strandAttributes.set(attribute::kLayer, layers);
+    const auto motion = makeRigidMotion("nod", groom).value();
+    const auto cpu = stageOf(groom, *motion, EngineKind::cpu);
+    const auto gpu = stageOf(groom, *motion, EngineKind::gpu);
+    play(*cpu, 12);
+    play(*gpu, 12);
+    const auto drawn = pictureOf(*cpu);
+    const auto flip = render::flipDifference(drawn, pictureOf(*gpu));
+    ASSERT_TRUE(flip);
+    EXPECT_LT(flip->mean, 0.02);
+    for (Layer& layer : groom.layers) layer.material.reset();
+    const auto plain = stageOf(groom, *motion, EngineKind::cpu);
+    play(*plain, 12);
+    EXPECT_GT(render::flipDifference(drawn, pictureOf(*plain))->mean, 0.03) << "the colours are seen";
+}
+
 TEST_F(LiveHairTest, AnotherEngineGoesOnWithoutAStep) {
     for (const auto model : {runtime::StrandModel::springs, runtime::StrandModel::rods}) {
         Groom groom = smallHead();

@@ -8,6 +8,7 @@
 #include "core/groom/file/archive.h"
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/json_reader.h"
+#include "core/groom/file/layers_json.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/project_sections.h"
@@ -16,15 +17,6 @@
 
 namespace hairloom {
 namespace {
-
-void readLayers(JsonReader& head, Groom& groom) {
-    groom.layers.clear();
-    for (JsonReader& entry : head.objects("layers")) {
-        groom.layers.push_back({entry.string("name"), entry.boolean("visible"), entry.boolean("locked")});
-        entry.finish();
-    }
-    if (groom.layers.empty()) head.complain("layers", "is empty", "expected at least one layer");
-}
 
 constexpr std::uint64_t kFirstWithPlacement = 2;  ///< version that has density and placement
 constexpr std::uint64_t kFirstWithOperators = 6;
@@ -42,7 +34,8 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     head.object("arrays");
     constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
     const Counts counts{version, head.count("strands", 0, kMax), head.count("points", 0, kMax)};
-    readLayers(head, groom);
+    groom.layers = readLayers(head);
+    if (groom.layers.empty()) head.complain("layers", "is empty", "expected at least one layer");
     if (version >= kFirstWithOperators) groom.operators = readOperatorList(head, readOperatorShape);
     groom.groupNames = head.strings("groups");
     for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));

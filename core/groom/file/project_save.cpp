@@ -6,6 +6,7 @@
 #include "core/groom/file/archive.h"
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/json_reader.h"
+#include "core/groom/file/layers_json.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/project_sections.h"
@@ -16,14 +17,6 @@ namespace hairloom {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json layersToJson(const Groom& groom) {
-    Json list = Json::array();
-    for (const Layer& layer : groom.layers) {
-        list.push_back({{"name", layer.name}, {"visible", layer.visible}, {"locked", layer.locked}});
-    }
-    return list;
-}
 
 Json scalpToJson(const ScalpMesh& scalp) {
     Json repairs = Json::array();
@@ -38,7 +31,7 @@ Json headOf(const Groom& groom) {
     Json head;
     head["strands"] = groom.strandCount();
     head["points"] = groom.pointCount();
-    head["layers"] = layersToJson(groom);
+    head["layers"] = toJson(groom.layers);
     head["operators"] = toJson(groom.operators);
     head["groups"] = groom.groupNames;
     head["spheres"] = toJson(groom.spheres);

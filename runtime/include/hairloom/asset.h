@@ -53,6 +53,7 @@ class Asset {
     std::uint32_t strandCount() const { return static_cast<std::uint32_t>(strands.size()); }
     std::uint32_t pointCount() const { return header().points; }
     std::uint32_t hairCount() const;
+    std::uint32_t hairsOf(std::size_t guide) const;
 
     // All that follows is to be called only where checkContent() finds nothing wrong.
 
@@ -89,10 +90,13 @@ class Asset {
     std::span<const asset::Sphere> spheres;
     std::span<const asset::Recipe> recipe;  ///< one or none
     std::span<const asset::Guide> guides;
+    std::span<const std::uint16_t> guideHairs;  ///< of each guide, or none: all have those of the recipe
     std::span<const asset::GuideTriangle> guideTriangles;
     std::span<const std::int8_t> rootShifts;  ///< one of each follow hair, or none
     std::span<const asset::FarRootShift> farRootShifts;
     std::span<const std::uint16_t> radii;  ///< one of each point, or none: as the material says
+    std::span<const asset::Layer> layers;
+    std::span<const std::uint16_t> strandLayers;  ///< one of each strand, or none: the first
     std::span<const asset::Setting> settings;
     std::span<const double> values;
     std::span<const char> texts;
@@ -108,6 +112,7 @@ class Asset {
     std::optional<AssetError> checkStrands() const;
     std::optional<AssetError> checkPoints() const;  ///< after checkStrands()
     std::optional<AssetError> checkScalp() const;
+    std::optional<AssetError> checkLayers() const;
     std::optional<AssetError> checkFollowHairs() const;
     std::optional<AssetError> checkSettings() const;
 

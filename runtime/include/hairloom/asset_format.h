@@ -50,9 +50,10 @@ static_assert(sizeof(Section) == 32);
 
 inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots = "ROOT",
                                   kScalpVertices = "SVTX", kScalpTriangles = "STRI", kBones = "BONE",
-                                  kSpheres = "SPHR", kRecipe = "FLLW", kGuides = "GUID",
+                                  kSpheres = "SPHR", kRecipe = "FLLW", kGuides = "GUID", kGuideHairs = "GHRS",
                                   kGuideTriangles = "GTRI", kRootShifts = "SHFT", kFarRootShifts = "SHFX",
-                                  kRadii = "RADI", kSettings = "SETT", kValues = "VALS", kText = "TEXT";
+                                  kRadii = "RADI", kLayers = "LAYR", kStrandLayers = "SLYR",
+                                  kSettings = "SETT", kValues = "VALS", kText = "TEXT";
 
 /// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
 inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;
@@ -125,6 +126,14 @@ struct Guide {
     std::array<float, 3> normal, axis;  ///< of the scalp at the root, of unit length and perpendicular
 };
 static_assert(sizeof(Guide) == 32);
+
+/// Strands that belong together.
+struct Layer {
+    Text name;
+    float density;              ///< by which the hairs of its guides were multiplied
+    std::uint32_t ownMaterial;  ///< 1: its material is the settings "layerN.…", N counting from 1
+};
+static_assert(sizeof(Layer) == 16);
 
 struct GuideTriangle {
     std::array<std::uint32_t, 3> guides;

@@ -91,10 +91,11 @@ class FollowHairs {
     /// the hairs that take part of the guide not finite, and no other; a root that is not finite, the hairs
     /// that take part of the root. Not to be called on one object from two threads at a time.
     bool evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host = {});
-    /// The same of the first `taken` of every `group` hairs alone, in their order; `group` divides
-    /// hairCount().
-    bool evaluateSome(const GuideMotion& guides, std::uint32_t group, std::uint32_t taken,
-                      std::span<Float3> hairs_ws, const Host& host = {});
+    /// The same of some hairs alone, in their order. Group g has the hairs groups[g] … groups[g + 1] - 1, of
+    /// which the first taken[g + 1] - taken[g] are wanted; both begin at 0, and all hairs are in a group.
+    bool evaluateSome(const GuideMotion& guides, std::span<const std::uint32_t> groups,
+                      std::span<const std::uint32_t> taken, std::span<Float3> hairs_ws,
+                      const Host& host = {});
 
   private:
     struct Impl;

@@ -23,8 +23,8 @@ struct PartingLimits {
 
 struct FollowRecipe {
     std::uint64_t seed = 1;
-    std::uint32_t hairsPerGuide = 0;
-    float blend = 0;  ///< 0 wisp … 1 root triangle
+    std::span<const std::uint32_t> hairs;  ///< of each guide
+    float blend = 0;                       ///< 0 wisp … 1 root triangle
     PartingLimits parting{};
     std::span<const std::uint32_t> ids;  ///< of each guide: its hairs stay the same while others come and go
     std::span<const Float3> roots_ss, tips_ss;                ///< of each guide
@@ -33,7 +33,7 @@ struct FollowRecipe {
     std::span<const float> areas;                             ///< of each triangle, in any unit
 };
 
-/// As FollowView has them. Hair h of guide g is g · hairsPerGuide + h.
+/// As FollowView has them: all of the first guide, then all of the next.
 struct DrawnHairs {
     std::vector<std::array<std::uint32_t, 3>> guides;
     std::vector<Float3> weights, rootWeights;
