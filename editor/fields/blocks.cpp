@@ -42,13 +42,19 @@ QPushButton* acceptOrCancel(QDialog& dialog, QLayout& layout, const QString& tex
     return accept;
 }
 
+namespace {
+
+/// Two columns of them leave room for the view in a window of 856 pixels.
+constexpr int kNarrowPanel_px = 252;
+
+}  // namespace
+
 QWidget* scrolled(QWidget* content) {
     auto* area = new QScrollArea;
     area->setWidgetResizable(true);
     area->setFrameShape(QFrame::NoFrame);
-    area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     area->setWidget(content);
-    area->setMinimumWidth(content->minimumSizeHint().width() + 12);
+    area->setMinimumWidth(std::min(content->minimumSizeHint().width() + 12, kNarrowPanel_px));
     return area;
 }
 
@@ -64,7 +70,7 @@ QWidget* stacked(std::initializer_list<QWidget*> rows) {
 QWidget* column(std::initializer_list<QWidget*> rows) {
     auto* widget = new QWidget;
     auto* layout = new QVBoxLayout(widget);
-    layout->setContentsMargins(12, 8, 12, 12);
+    layout->setContentsMargins(10, 8, 10, 12);
     layout->setSpacing(8);
     for (QWidget* row : rows) layout->addWidget(row);
     layout->addStretch(1);

@@ -26,10 +26,11 @@ FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::
       fields_(std::move(fields)),
       grid_(new QGridLayout(this)) {
     grid_->setContentsMargins(0, 0, 0, 0);
-    grid_->setHorizontalSpacing(8);
+    grid_->setHorizontalSpacing(6);
     grid_->setVerticalSpacing(5);
-    grid_->setColumnStretch(1, 1);
-    grid_->setColumnMinimumWidth(0, 116);
+    grid_->setColumnStretch(1, 3);
+    grid_->setColumnMinimumWidth(0, 80);
+    grid_->setColumnStretch(0, 2);
     for (const Field& field : fields_) {
         shown_ = shown_ | field.part;
         addRow(field);
@@ -63,6 +64,7 @@ void FieldForm::addRow(const Field& field) {
     }
     control->setObjectName(field.name);
     auto* label = new QLabel(field.label);
+    label->setWordWrap(true);
     label->setBuddy(control);
     auto* defaultValue = new QToolButton;
     defaultValue->setObjectName("default");
@@ -75,9 +77,15 @@ void FieldForm::addRow(const Field& field) {
         begin();
         for (std::uint32_t c = 0; c < field.components(); ++c) store(field, field.defaultValue[c], c);
     });
-    const int row = grid_->rowCount();
-    grid_->addWidget(label, row, 0);
-    grid_->addWidget(control, row, 1);
+    const int row = grid_->rowCount() + (field.kind == FieldKind::Vector ? 1 : 0);
+    if (field.kind == FieldKind::Vector) {
+        // Three numbers beside each other need the whole width.
+        grid_->addWidget(label, row - 1, 0, 1, 2);
+        grid_->addWidget(control, row, 0, 1, 2);
+    } else {
+        grid_->addWidget(label, row, 0);
+        grid_->addWidget(control, row, 1);
+    }
     grid_->addWidget(defaultValue, row, 2);
     if (prices_) grid_->addWidget(new PriceTag(*prices_, preferences_, field.name), row + 1, 1, 1, 2);
     refreshers_.push_back([this, &field, label, control, defaultValue] {
@@ -117,6 +125,8 @@ QWidget* FieldForm::makeGroundTruth(const Field& field) {
 QWidget* FieldForm::makeChoice(const Field& field) {
     auto* box = new QComboBox;
     box->addItems(field.choiceLabels());
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(10);
     connect(box, &QComboBox::activated, this, [this, &field](int index) {
         begin();
         store(field, index);
@@ -142,6 +152,7 @@ QWidget* FieldForm::makeVector(const Field& field) {
         box->setSingleStep(anywhere ? 0.005 : (field.max - field.min) / 200);
         box->setKeyboardTracking(false);
         box->setPrefix(QStringLiteral("XYZ").mid(static_cast<int>(c), 1) + ' ');
+        box->setButtonSymbols(QAbstractSpinBox::NoButtons);
         box->setMinimumWidth(60);
         layout->addWidget(box, 1);
         connect(box, &QDoubleSpinBox::valueChanged, this, [this, &field, c](double value) {

@@ -37,9 +37,9 @@ NumberBox::NumberBox(double min, double max, bool whole, QWidget* parent)
     layout->addWidget(slider_, 1);
     layout->addWidget(spin_);
     slider_->setRange(0, kSteps);
-    slider_->setMinimumWidth(48);
+    slider_->setMinimumWidth(24);
     slider_->setFocusPolicy(Qt::ClickFocus);
-    spin_->setFixedWidth(92);
+    spin_->setFixedWidth(86);
     spin_->setKeyboardTracking(false);
     spin_->setAlignment(Qt::AlignRight);
     setFocusProxy(spin_);

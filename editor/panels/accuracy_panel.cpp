@@ -103,10 +103,8 @@ class AccuracyPanel : public QWidget {
         connect(beside_, &QComboBox::currentIndexChanged, this, [this] { choose(by_); });
         layout->addWidget(chosenWords_);
         layout->addWidget(parts_);
-        auto* row = new QHBoxLayout;
-        row->addWidget(show_, 1);
-        row->addWidget(beside_, 1);
-        layout->addLayout(row);
+        layout->addWidget(show_);
+        layout->addWidget(beside_);
         layout->addWidget(adopt_);
         worst_->setObjectName("accuracyWorst");
         worst_->setToolTip(

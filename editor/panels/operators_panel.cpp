@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stack of operators: a list in the order in which they act, and the settings of the one that is chosen.
 #include <QClipboard>
+#include <QGridLayout>
 #include <QGuiApplication>
 #include <QInputDialog>
 #include <QLabel>
@@ -27,8 +28,6 @@
 namespace hairloom::editor {
 namespace {
 
-/// What the widest settings need, of vectors: the view must not jump when an operator is chosen.
-constexpr int kWidth_px = 344;
 constexpr int kThumbnail_px = 64;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
@@ -43,7 +42,6 @@ class OperatorsPanel : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
-        setMinimumWidth(kWidth_px);
         auto* first = new QHBoxLayout;
         first->addWidget(makeAddButton());
         first->addWidget(pushButton("operatorBake", tr("Bake"),
@@ -56,8 +54,7 @@ class OperatorsPanel : public QWidget {
             tr("What makes the hair out of its base shape, from the first on; unchecked ones do "
                "nothing. Brush strokes go to a sculpt at the end."));
         layout->addWidget(list_);
-        layout->addLayout(makeEditButtons());
-        layout->addLayout(makeKeepButtons());
+        layout->addLayout(makeButtons());
         settings_ = new QVBoxLayout;
         layout->addLayout(settings_);
         layout->addStretch(1);
@@ -103,39 +100,46 @@ class OperatorsPanel : public QWidget {
         return add;
     }
 
-    QLayout* makeEditButtons() {
-        auto* row = new QHBoxLayout;
-        row->addWidget(
-            pushButton("operatorUp", tr("Earlier"), tr("Lets it act before the one above it"), [this] {
-                if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
-            }));
-        row->addWidget(
-            pushButton("operatorDown", tr("Later"), tr("Lets it act after the one below it"), [this] {
-                if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
-            }));
-        row->addWidget(
-            pushButton("operatorCopy", tr("Duplicate"), tr("Adds the same again behind it"), [this] {
-                if (chosen() != kNone) perform(editing::copyOperator(model(), chosen()), chosen() + 1);
-            }));
-        row->addWidget(pushButton("operatorRemove", tr("Remove"), tr("Takes the operator away"), [this] {
-            if (chosen() != kNone) perform(editing::removeOperator(model(), chosen()), chosen());
-        }));
-        return row;
+    QLayout* makeButtons() {
+        QWidget* const buttons[] = {
+            pushButton("operatorUp", tr("Earlier"), tr("Lets it act before the one above it"),
+                       [this] {
+                           if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
+                       }),
+            pushButton("operatorDown", tr("Later"), tr("Lets it act after the one below it"),
+                       [this] {
+                           if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
+                       }),
+            pushButton("operatorRemove", tr("Remove"), tr("Takes the operator away"),
+                       [this] {
+                           if (chosen() != kNone)
+                               perform(editing::removeOperator(model(), chosen()), chosen());
+                       }),
+            pushButton("operatorSolo", tr("Solo"), tr("Lets it act alone; again: all of them"),
+                       [this] {
+                           if (chosen() != kNone) perform(editing::soloOperator(model(), chosen()), chosen());
+                       }),
+            pushButton("operatorCopy", tr("Duplicate"), tr("Adds the same again behind it"),
+                       [this] {
+                           if (chosen() != kNone)
+                               perform(editing::copyOperator(model(), chosen()), chosen() + 1);
+                       }),
+            makePresetsButton(),
+            pushButton("operatorClip", tr("Copy"),
+                       tr("Puts the operator on the clipboard, for another project"),
+                       [this] {
+                           if (chosen() != kNone) copy();
+                       }),
+            pushButton("operatorPaste", tr("Paste"),
+                       tr("Adds what is on the clipboard behind the chosen one"), [this] { paste(); })};
+        auto* grid = new QGridLayout;
+        constexpr int kColumns = 3;
+        for (int i = 0; i < static_cast<int>(std::size(buttons)); ++i)
+            grid->addWidget(buttons[i], i / kColumns, i % kColumns);
+        return grid;
     }
 
-    QLayout* makeKeepButtons() {
-        auto* row = new QHBoxLayout;
-        row->addWidget(
-            pushButton("operatorSolo", tr("Solo"), tr("Lets it act alone; again: all of them"), [this] {
-                if (chosen() != kNone) perform(editing::soloOperator(model(), chosen()), chosen());
-            }));
-        row->addWidget(pushButton("operatorClip", tr("Copy"),
-                                  tr("Puts the operator on the clipboard, for another project"), [this] {
-                                      if (chosen() != kNone) copy();
-                                  }));
-        row->addWidget(pushButton("operatorPaste", tr("Paste"),
-                                  tr("Adds what is on the clipboard behind the chosen one"),
-                                  [this] { paste(); }));
+    QWidget* makePresetsButton() {
         auto* presets = new QPushButton(tr("Presets"));
         presets->setObjectName("operatorPresets");
         presets->setToolTip(tr("Stacks that you kept, for all projects"));
@@ -143,8 +147,7 @@ class OperatorsPanel : public QWidget {
         connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillPresets(*menu); });
         fillPresets(*menu);
         presets->setMenu(menu);
-        row->addWidget(presets);
-        return row;
+        return presets;
     }
 
     void copy() {

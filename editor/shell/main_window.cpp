@@ -14,6 +14,7 @@
 #include <QSettings>
 #include <QToolBar>
 #include <QToolButton>
+#include <algorithm>
 
 #include "core/base/file.h"
 #include "core/editing/document.h"
@@ -28,7 +29,9 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr int kLayoutVersion = 1;
+constexpr int kLayoutVersion = 2;
+/// What the view has in a window of 1366 pixels, and what is wished of the two columns of panels beside it.
+constexpr int kView_px = 700, kNarrowColumn_px = 280, kWideColumn_px = 360;
 constexpr const char* kGeometry = "window/geometry";
 constexpr const char* kLayout = "window/layout";
 
@@ -84,8 +87,8 @@ MainWindow::MainWindow()
     setStatusBar(status_);
     pages_->addWidget(start_);
     pages_->addWidget(viewport_);
-    // What stands beside it fits into 1280 pixels, then.
-    pages_->setMinimumSize(320, 240);
+    // What stands beside it fits into 856 pixels, then.
+    pages_->setMinimumSize(240, 180);
     setCentralWidget(pages_);
 
     addFileActions();
@@ -170,7 +173,15 @@ void MainWindow::makePanels() {
         seen.insert(info.area);
         panel(info.id)->raise();
     }
-    resizeDocks({panel("look")}, {360}, Qt::Horizontal);
+    sizeColumns();
+}
+
+/// Panels get what the view leaves of the window.
+void MainWindow::sizeColumns() {
+    constexpr int kTabs_px = 28;            // along the right side, which count as the column's
+    constexpr int kBeside = 76 + kTabs_px;  // with the tools, and what parts all these
+    const int width_px = std::clamp((width() - kView_px - kBeside) / 2, kNarrowColumn_px, kWideColumn_px);
+    resizeDocks({panel("tool"), panel("look")}, {width_px, width_px + kTabs_px}, Qt::Horizontal);
 }
 
 void MainWindow::makeBars() {
@@ -198,11 +209,12 @@ void MainWindow::makeBars() {
 void MainWindow::restoreLayout() {
     const QSettings settings;
     restoreGeometry(settings.value(kGeometry).toByteArray());
-    restoreState(settings.value(kLayout).toByteArray(), kLayoutVersion);
+    if (!restoreState(settings.value(kLayout).toByteArray(), kLayoutVersion)) sizeColumns();
 }
 
 void MainWindow::resetLayout() {
     restoreState(firstLayout_, kLayoutVersion);
+    sizeColumns();
 }
 
 void MainWindow::showTitle() {

@@ -66,6 +66,7 @@ class MainWindow : public QMainWindow {
     void addToolActions();
     void addHelpActions();
     void makePanels();
+    void sizeColumns();
     void makeBars();
     void fillRecentMenu();
     void restoreLayout();

@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QLocale>
 #include <QPushButton>
+#include <QScrollArea>
 
 #include "core/scene/sample.h"
 #include "editor/document/words.h"
@@ -49,7 +50,17 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
       recoveries_(new QVBoxLayout) {
     setProperty("role", "page");
     setAttribute(Qt::WA_StyledBackground);
-    auto* outer = new QHBoxLayout(this);
+    // In a narrow view it scrolls.
+    auto* area = new QScrollArea;
+    area->setWidgetResizable(true);
+    area->setFrameShape(QFrame::NoFrame);
+    auto* whole = new QVBoxLayout(this);
+    whole->setContentsMargins(0, 0, 0, 0);
+    whole->addWidget(area);
+    auto* sheet = new QWidget;
+    sheet->setProperty("role", "page");
+    area->setWidget(sheet);
+    auto* outer = new QHBoxLayout(sheet);
     outer->addStretch(1);
     auto* page = new QVBoxLayout;
     page->setSpacing(10);

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of every panel and dialog in both themes, for people to look at: build/…/screenshots. What can be
 // checked without eyes is: nothing is clipped.
-#include <QAbstractButton>
-#include <QComboBox>
 #include <QDir>
-#include <QLabel>
-#include <QLineEdit>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QToolButton>
 
 #include "editor/dialogs/export_dialog.h"
@@ -15,6 +10,7 @@
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
 #include "editor/panels/panel.h"
+#include "tests/editor/nothing_clipped.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -38,40 +34,6 @@ class ScreenshotsTest : public WindowTest, public testing::WithParamInterface<Th
         const QString file = QStringLiteral("%1/%2-%3.png").arg(HAIRLOOM_SCREENSHOTS, name, theme);
         EXPECT_TRUE(widget.grab().save(file)) << file.toStdString();
         expectNothingClipped(widget, name);
-    }
-    /// Labels that do not wrap, words on buttons and in boxes, and what scrolls have room.
-    static void expectNothingClipped(QWidget& widget, const QString& name) {
-        const auto expectRoom = [&](int room, int needed, const QString& what) {
-            EXPECT_GE(room, needed) << name.toStdString() << ": " << what.toStdString();
-        };
-        const auto forAll = [&]<class Widget>(auto look) {
-            for (auto* child : widget.findChildren<Widget*>()) {
-                if (child->isVisibleTo(&widget)) look(*child);
-            }
-        };
-        forAll.operator()<QLabel>([&](const QLabel& label) {
-            if (label.wordWrap() || label.text().isEmpty()) return;
-            if (label.objectName() == "message") return;  // elides: the tooltip has it all
-            expectRoom(label.width(), label.sizeHint().width(), label.text());
-        });
-        forAll.operator()<QAbstractButton>([&](const QAbstractButton& button) {
-            const auto* tool = qobject_cast<const QToolButton*>(&button);
-            if (button.text().isEmpty() || (tool && tool->toolButtonStyle() == Qt::ToolButtonIconOnly))
-                return;
-            expectRoom(button.width(), button.fontMetrics().horizontalAdvance(button.text()), button.text());
-        });
-        forAll.operator()<QComboBox>([&](const QComboBox& box) {
-            constexpr int kArrow = 20;
-            expectRoom(box.width() - kArrow, box.fontMetrics().horizontalAdvance(box.currentText()),
-                       box.currentText());
-        });
-        forAll.operator()<QLineEdit>([&](const QLineEdit& edit) {
-            expectRoom(edit.width(), edit.fontMetrics().horizontalAdvance(edit.text()), edit.text());
-        });
-        forAll.operator()<QScrollArea>([&](const QScrollArea& area) {
-            if (area.horizontalScrollBarPolicy() != Qt::ScrollBarAlwaysOff) return;
-            expectRoom(area.viewport()->width(), area.widget()->width(), "what scrolls");
-        });
     }
 };
 

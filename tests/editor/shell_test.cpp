@@ -2,6 +2,7 @@
 // Opening, saving, leaving, recovering, preferences, shortcuts.
 #include <QComboBox>
 #include <QDir>
+#include <QDockWidget>
 #include <QDropEvent>
 #include <QFile>
 #include <QFileInfo>
@@ -27,35 +28,66 @@
 #include "editor/panels/panel.h"
 #include "editor/shell/start_page.h"
 #include "importers/strands.h"
+#include "tests/editor/nothing_clipped.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
 namespace {
 
-class ShellTest : public WindowTest {};
+class ShellTest : public WindowTest {
+  protected:
+    bool isShown(const QWidget& widget, const QRect& part) {
+        return widget.isVisible() &&
+               window->rect().contains(QRect(widget.mapTo(window.get(), part.topLeft()), part.size()));
+    }
+    void expectToolsShown() {
+        for (QToolBar* bar : window->findChildren<QToolBar*>()) {
+            for (QAction* action : bar->actions()) {
+                const QWidget* button = bar->widgetForAction(action);
+                EXPECT_TRUE(isShown(*button, button->rect())) << action->text().toStdString();
+            }
+        }
+        std::size_t tools = 0;
+        for (const QToolButton* button : find<QToolBar>("bar:tools")->findChildren<QToolButton*>()) {
+            if (!button->defaultAction()) continue;
+            ++tools;
+            EXPECT_TRUE(isShown(*button, button->rect())) << button->toolTip().toStdString();
+        }
+        EXPECT_EQ(tools, parts().tools.all().size() + 1) << "and the one that moves the view";
+    }
+};
+
+TEST_F(ShellTest, TheViewHas700PixelsAt1366By768AndNoControlIsClipped) {
+    openBust();
+    window->resize(1366, 768);
+    trigger("view.resetLayout");
+    QCoreApplication::processEvents();
+    EXPECT_EQ(window->size(), QSize(1366, 768));
+    EXPECT_GE(viewport().width(), 700);
+    for (const PanelInfo& info : panels()) {
+        QDockWidget* const panel = window->panel(info.id);
+        panel->show();
+        panel->raise();
+        QCoreApplication::processEvents();
+        expectNothingClipped(*panel, info.id);
+    }
+    EXPECT_GE(viewport().width(), 700) << "whichever panel is in front";
+}
+
+TEST_F(ShellTest, EveryToolCanBeReachedIn856Pixels) {
+    openBust();
+    window->resize(856, 640);
+    QCoreApplication::processEvents();
+    EXPECT_EQ(window->width(), 856);
+    EXPECT_GE(viewport().width(), 240);
+    expectToolsShown();
+}
 
 TEST_F(ShellTest, EveryToolAndPanelCanBeReachedAt1280By800) {
     window->resize(1280, 800);
     QCoreApplication::processEvents();
     EXPECT_EQ(window->size(), QSize(1280, 800)) << "nothing asks for more";
-    const QRect shown = window->rect();
-    const auto isShown = [&](const QWidget& widget, const QRect& part) {
-        return widget.isVisible() &&
-               shown.contains(QRect(widget.mapTo(window.get(), part.topLeft()), part.size()));
-    };
-    for (QToolBar* bar : window->findChildren<QToolBar*>()) {
-        for (QAction* action : bar->actions()) {
-            const QWidget* button = bar->widgetForAction(action);
-            EXPECT_TRUE(isShown(*button, button->rect())) << action->text().toStdString();
-        }
-    }
-    std::size_t tools = 0;
-    for (const QToolButton* button : find<QToolBar>("bar:tools")->findChildren<QToolButton*>()) {
-        if (!button->defaultAction()) continue;
-        ++tools;
-        EXPECT_TRUE(isShown(*button, button->rect())) << button->toolTip().toStdString();
-    }
-    EXPECT_EQ(tools, parts().tools.all().size() + 1) << "and the one that moves the view";
+    expectToolsShown();
     for (QTabBar* tabs : window->findChildren<QTabBar*>()) {
         for (int tab = 0; tab < tabs->count() && tabs->isVisible(); ++tab) {
             EXPECT_TRUE(isShown(*tabs, tabs->tabRect(tab))) << tabs->tabText(tab).toStdString();
