@@ -80,8 +80,8 @@ class GroomScene {
     void moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws);
 
     /// The materials of another version of the same strands on the same layers. False, and nothing changed,
-    /// where it takes make() anew: colours that stand in the head, the share of streaks and dye that each strand
-    /// has, a layer that gets or loses a material of its own.
+    /// where it takes make() anew: colours that stand in the head, the share of streaks and dye that each
+    /// strand has, a layer that gets or loses a material of its own.
     bool setMaterials(const Groom& groom, const ViewFile& view);
 
     /// The painted dye of another version of the same strands. False where it takes make() anew: nothing was

@@ -123,7 +123,8 @@ TEST_F(EffectsTest, BarsShowWhatAFrameTakesAgainstTheBudget) {
     EXPECT_NEAR(sum, frame, 0.01 * frame) << "the effects share the frame";
     auto* budget = find<NumberBox>("effectsBudget");
     budget->spinBox().setValue(2);
-    const double share = frame / 2;
+    // Of the frames that were told of last.
+    const double share = milliseconds("frame").toDouble() / 2;
     EXPECT_TRUE(row("frame")->text(3).startsWith(QString::number(100 * share, 'f', 0)))
         << row("frame")->text(3).toStdString();
 }

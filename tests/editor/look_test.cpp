@@ -51,7 +51,7 @@ TEST_F(LookTest, EachModelShowsItsOwnControls) {
     files().open(inFolder("sadeghi.hairloom"));
     finishWork();
     EXPECT_EQ(groom().material.shadingModel, ShadingModel::sadeghi) << "it belongs to the file";
-    EXPECT_TRUE(offers("glintIntensity"));
+    EXPECT_TRUE(offers("indexOfRefraction"));
 }
 
 TEST_F(LookTest, APresetGivesItsPigmentAndColours) {

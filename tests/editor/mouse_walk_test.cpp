@@ -226,7 +226,7 @@ TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
     slideTo(*find<NumberBox>("length"), 0.25);
     slideTo(*find<NumberBox>("points"), 24);
     EXPECT_NEAR(groom().placement.count, 200, 20);
-    EXPECT_NEAR(groom().placement.length, 0.25f, 0.01f);
+    EXPECT_NEAR(groom().placement.length, 0.25f, 0.03f) << "a pixel of the slider is up to 2 cm";
     EXPECT_NEAR(groom().placement.points, 24, 2);
     click("place");
     finishWork();
