@@ -12,10 +12,11 @@ namespace hairloom::render {
 namespace {
 
 constexpr std::size_t kWidthCount = Clumping::kWidths.size();
-constexpr std::uint32_t kRays = 48;            // a beam
-constexpr std::size_t kDirections = 8;         // a power of two
-constexpr std::size_t kPoints = 192;           // of the hair, in all directions
-constexpr std::size_t kParts = 16;             // of the strands, that are looked at side by side
+constexpr std::uint32_t kRays = 48;     // a beam
+constexpr std::size_t kDirections = 8;  // a power of two
+constexpr std::size_t kPoints = 192;    // of the hair, in all directions
+constexpr std::size_t kParts = 16;      // of the strands, that are looked at side by side
+const float kGoldenAngle = kPi * (3 - std::sqrt(5.0f));
 constexpr std::size_t kMaxVisits = 2'000'000;  // of segments; more hair is seen from fewer sides
 
 /// A point of the hair and what lies between it and a light far away.
@@ -34,7 +35,7 @@ struct Frame {
 /// Evenly around a sphere (the golden angle).
 Frame frameOf(std::size_t i) {
     const float z = 1 - (2 * static_cast<float>(i) + 1) / static_cast<float>(kDirections);
-    const float angle = static_cast<float>(i) * kPi * (3 - std::sqrt(5.0f));
+    const float angle = static_cast<float>(i) * kGoldenAngle;
     const float radius = std::sqrt(1 - z * z);
     Frame frame;
     frame.towards = {radius * std::cos(angle), z, radius * std::sin(angle)};
@@ -48,7 +49,7 @@ std::array<Vec2f, kRays> raysOfBeam() {
     std::array<Vec2f, kRays> rays;
     for (std::uint32_t i = 0; i < kRays; ++i) {
         const float radius = 0.5f * std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(kRays));
-        const float angle = static_cast<float>(i) * kPi * (3 - std::sqrt(5.0f));
+        const float angle = static_cast<float>(i) * kGoldenAngle;
         rays[i] = {radius * std::cos(angle), radius * std::sin(angle)};
     }
     return rays;
@@ -195,15 +196,15 @@ Clumping measureClumping(std::span<const RenderStrands> strands) {
     if (points == 0) return {};
     std::size_t directions = kDirections;
     while (directions > 1 && directions * points > kMaxVisits) directions /= 2;
-    std::vector<std::vector<Beams>> seen(directions * kParts);
+    std::vector<Frame> frames;
+    std::vector<std::vector<Beams>> seen;
+    for (std::size_t i = 0; i < kDirections; i += kDirections / directions) {
+        frames.push_back(frameOf(i));
+        Random random(i);
+        seen.insert(seen.end(), kParts, chooseBeams(strands, frames.back(), kPoints / directions, random));
+    }
     parallelFor(seen.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t direction = i / kParts * (kDirections / directions);
-            const Frame frame = frameOf(direction);
-            Random random(direction);
-            seen[i] = chooseBeams(strands, frame, kPoints / directions, random);
-            look(strands, i % kParts, frame, seen[i]);
-        }
+        for (std::size_t i = begin; i < end; ++i) look(strands, i % kParts, frames[i / kParts], seen[i]);
     });
     std::vector<Beams> beams;
     for (std::size_t i = 0; i < seen.size(); ++i) {
