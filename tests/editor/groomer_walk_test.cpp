@@ -182,12 +182,7 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
 
     // It moves, and what it has become is its shape.
     trigger("play.toggle");
-    ASSERT_TRUE(QTest::qWaitFor(
-        [this] {
-            const auto& frame = parts().player.frame();
-            return frame && frame->time > 0.2;
-        },
-        60'000));
+    ASSERT_TRUE(played(0.2));
     const auto before = hash();
     trigger("play.take");
     EXPECT_NE(hash(), before) << window->statusLine().message().toStdString();

@@ -27,14 +27,6 @@ class LiveTest : public WindowTest {
         document().open(small, {}, "small");
     }
     void simulateOn(SimulateOn where) { parts().preferences.setSimulateOn(where); }
-    bool played(double seconds) {
-        return QTest::qWaitFor(
-            [&] {
-                const auto& frame = parts().player.frame();
-                return frame && frame->time > seconds;
-            },
-            60'000);
-    }
     double now() { return parts().player.frame() ? parts().player.frame()->time : 0; }
     EngineKind engine() { return parts().player.engine()->kind; }
 };

@@ -274,12 +274,7 @@ TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
 
     // It moves, and what it has become is its shape.
     chooseInMenu("Simulation", "Play");
-    ASSERT_TRUE(QTest::qWaitFor(
-        [this] {
-            const auto& frame = parts().player.frame();
-            return frame && frame->time > 0.2;
-        },
-        60'000));
+    ASSERT_TRUE(played(0.2));
     const auto before = hash();
     chooseInMenu("Simulation", "Take this shape");
     EXPECT_NE(hash(), before) << window->statusLine().message().toStdString();

@@ -143,6 +143,15 @@ class WindowTest : public testing::Test {
     QImage viewportOnScreen() {
         return onScreen().copy(QRect(viewport().mapToGlobal(QPoint(0, 0)), viewport().size()));
     }
+    /// Waits until the hair has played to that time.
+    bool played(double seconds) {
+        return QTest::qWaitFor(
+            [&] {
+                const auto& frame = parts().player.frame();
+                return frame && frame->time > seconds;
+            },
+            60'000);
+    }
     /// Keeps a picture of docs/manual.md in the folder that HAIRLOOM_MANUAL names.
     static void keepForManual(const QImage& picture, const QString& name) {
         const QString file = qEnvironmentVariable("HAIRLOOM_MANUAL") + "/editor-" + name + ".png";
