@@ -5,6 +5,7 @@
 #include <QDir>
 #include <QLabel>
 #include <algorithm>
+#include <array>
 
 #include "core/gpu/validation.h"
 #include "editor/simulation/player.h"
@@ -182,17 +183,23 @@ TEST_F(LiveTest, MemoryStaysFlat) {
         simulateOn(where);
         ASSERT_TRUE(parts().player.setMotion("nod"));
         trigger("play.toggle");
-        const auto drawn = [&](int count) {
+        // Both count, as slow as a loaded machine with a software device may be.
+        const auto goesOn = [&](int count, double seconds) {
             pictures = 0;
-            return QTest::qWaitFor([&] { return pictures >= count; }, 240'000);
+            const double begin = now();
+            return QTest::qWaitFor([&] { return pictures >= count && now() > begin + seconds; }, 280'000);
         };
         // Shaders of what is new are compiled at first.
-        ASSERT_TRUE(drawn(60));
-        const double before = residentMegabytes();
-        const double begin = now();
-        // 300 frames of the hair: a software device draws three pictures a second meanwhile.
-        ASSERT_TRUE(drawn(100) && played(begin + 5));
-        EXPECT_LT(residentMegabytes() - before, 10) << "MB in 100 pictures";
+        ASSERT_TRUE(goesOn(30, 0.5));
+        // What leaks grows in each hundred frames of the hair; what a driver's threads take on the way does
+        // not.
+        std::array<double, 3> grown_MB{};
+        for (double& grown : grown_MB) {
+            const double before = residentMegabytes();
+            ASSERT_TRUE(goesOn(30, 100.0 / 60));
+            grown = residentMegabytes() - before;
+        }
+        EXPECT_LT(*std::ranges::min_element(grown_MB), 3);
         trigger("play.reset");
     }
 }

@@ -14,7 +14,7 @@ namespace hairloom::golden {
 
 /// Mean FLIP that nobody sees in pictures of this size, and that another version of a driver or compiler
 /// stays below; a light that is missing, another shadow or another model are far above (tests).
-inline constexpr double kTolerance = 0.01;
+inline constexpr double kTolerance = 0.008;
 inline constexpr std::uint32_t kSize = 160;  ///< pixels along a side
 
 struct Case {
