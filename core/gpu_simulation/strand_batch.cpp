@@ -24,8 +24,8 @@ constexpr std::size_t kMaxExact = 3;
 constexpr std::uint32_t kMinShared = 4;
 /// Four threads sample the wind.
 constexpr std::uint32_t kMinInLanes = 4, kMinInPairs = 2 * kMinInLanes;
-/// Blocks of strands from which on a thread for each strand is faster: docs/gpu-simulation.md, "What is
-/// measured".
+/// Blocks of strands from which on a thread for each strand is faster: docs/gpu-simulation.md, "What it
+/// costs".
 constexpr std::size_t kMaxBlocksInLanes = 100'000 / kBlockLanes;
 /// Blocks of strands up to which lanes have a point each, and not two: as measured there.
 constexpr std::size_t kMaxBlocksOfOne = 4'000 / kBlockLanes;
