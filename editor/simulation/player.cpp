@@ -425,7 +425,11 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
     if (!stepped) refused = stepped;
     if (!refused) refuse(refused.error());
     auto frame = std::make_shared<PlayedFrame>();
-    frame->before = std::exchange(playing.before, pose);
+    // An engine that has just begun may have no positions yet, and the hair other points than before.
+    if (const auto last = std::exchange(playing.before, pose);
+        last && last->positions_ws.size() == pose->positions_ws.size()) {
+        frame->before = last;
+    }
     frame->pose = std::move(pose);
     frame->time = playing.time;
     const double clock =

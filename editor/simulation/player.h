@@ -24,7 +24,7 @@ namespace hairloom::editor {
 /// A frame that was simulated.
 struct PlayedFrame {
     std::shared_ptr<const HairPose> pose;
-    std::shared_ptr<const HairPose> before;  ///< the frame before; null for the first
+    std::shared_ptr<const HairPose> before;  ///< the frame before, with as many positions; or null
     double time = 0;                         ///< seconds since the start
     double milliseconds = 0;                 ///< of the step, where it runs
     SimulationStats stats;

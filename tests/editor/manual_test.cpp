@@ -27,6 +27,7 @@ class ManualTest : public WindowTest {
         qputenv("HAIRLOOM_VIEWPORT", "readback");
         WindowTest::SetUp();
         window->resize(1280, 800);
+        trigger("view.resetLayout");
         ASSERT_TRUE(QDir().mkpath(qEnvironmentVariable("HAIRLOOM_MANUAL")));
     }
     void TearDown() override {

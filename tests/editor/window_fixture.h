@@ -150,7 +150,7 @@ class WindowTest : public testing::Test {
                 const auto& frame = parts().player.frame();
                 return frame && frame->time > seconds;
             },
-            60'000);
+            240'000);
     }
     /// Keeps a picture of docs/manual.md in the folder that HAIRLOOM_MANUAL names.
     static void keepForManual(const QImage& picture, const QString& name) {
