@@ -202,7 +202,8 @@ Status addFindings(const Groom& groom, const FollowSections& follow, const runti
 }
 
 void addLayers(const Groom& groom, const PreparedStrands& strands, AssetBuilder& builder) {
-    if (groom.layers.size() < 2) return;
+    const bool plain = groom.layers.size() == 1 && groom.layers[0].density == 1 && !groom.layers[0].material;
+    if (groom.layers.empty() || plain) return;
     std::vector<asset::Layer> layers;
     for (const Layer& layer : groom.layers) {
         layers.push_back({builder.text(layer.name), layer.density, layer.material ? 1u : 0u});

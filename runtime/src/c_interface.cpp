@@ -145,6 +145,41 @@ hl_code hl_asset_scalp_sources(const hl_asset* opened, uint32_t* vertices, size_
     return say(error, HL_OK, HL_NO_PLACE, "");
 }
 
+hl_code hl_asset_layer(const hl_asset* opened, uint32_t layer, hl_layer* out, hl_error* error) {
+    if (!opened || !out) return nullRefused(error, "no asset or no place for the layer");
+    return guarded(error, [&] {
+        const Asset& asset = assetOf(opened);
+        if (layer >= asset.layerCount())
+            return say(error, HL_BAD_VALUE, HL_NO_PLACE,
+                       "layer " + std::to_string(layer) + " of " + std::to_string(asset.layerCount()));
+        if (const auto problem = asset.checkContent()) return say(error, *problem);
+        *out = {"", 0, 1, 0};
+        if (!asset.layers.empty()) {
+            const asset::Layer& record = asset.layers[layer];
+            const std::string_view name = asset.text(record.name);
+            *out = {name.data(), name.size(), record.density, record.ownMaterial};
+        }
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_asset_layers(const hl_asset* opened, uint32_t* layers, uint32_t* of_guides, size_t count,
+                        hl_error* error) {
+    if (!opened || !layers || (!of_guides && count > 0))
+        return nullRefused(error, "no asset or no place for layers");
+    return guarded(error, [&] {
+        const Asset& asset = assetOf(opened);
+        if (of_guides && count != asset.strandCount())
+            return say(
+                error, HL_WRONG_SIZE, HL_NO_PLACE,
+                "room for " + std::to_string(count) + " guides of " + std::to_string(asset.strandCount()));
+        if (const auto problem = asset.checkContent()) return say(error, *problem);
+        *layers = asset.layerCount();
+        for (std::size_t guide = 0; guide < count; ++guide) of_guides[guide] = asset.layerOf(guide);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
 hl_code hl_asset_numbers(const hl_asset* opened, const char* name, double* values, size_t count,
                          size_t* written, hl_error* error) {
     if (!opened || !name || !written || (!values && count > 0))

@@ -68,8 +68,7 @@ std::array<float, 2> radiiOf(const Asset& asset, const std::string& group, std::
 
 /// Whether some layers have materials of their own.
 bool hasMaterials(const Asset& asset) {
-    return !asset.strandLayers.empty() &&
-           std::any_of(asset.layers.begin(), asset.layers.end(),
+    return std::any_of(asset.layers.begin(), asset.layers.end(),
                        [](const asset::Layer& layer) { return layer.ownMaterial != 0; });
 }
 
@@ -185,7 +184,7 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
             instance.hairGroups_.push_back(instance.hairGroups_.back() + asset.hairsOf(guide));
         if (hasMaterials(asset)) {
             for (const asset::Guide& guide : asset.guides) {
-                const std::uint32_t layer = asset.strandLayers[guide.strand];
+                const std::uint32_t layer = asset.layerOf(guide.strand);
                 const bool own = asset.layers[layer].ownMaterial != 0;
                 instance.radii_.ofHairs.push_back(
                     own ? radiiOf(asset, "layer" + std::to_string(layer + 1), usual) : usual);

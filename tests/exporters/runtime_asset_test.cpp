@@ -10,6 +10,7 @@
 #include "core/groom/file/fields.h"
 #include "core/interpolation/follow_hairs.h"
 #include "hairloom/engine.h"
+#include "hairloom/hairloom.hpp"
 #include "tests/exporters/asset_bytes.h"
 #include "tests/exporters/asset_samples.h"
 #include "tests/support/source_dir.h"
@@ -182,12 +183,64 @@ TEST_F(RuntimeAsset, CarriesLayersTheirDensityAndMaterials) {
     EXPECT_TRUE(std::ranges::equal(ofStrands, layers));
     for (const LeftBehind& left : report.leftBehind)
         EXPECT_THAT(left.what, testing::Not(HasSubstr("layers")));
+    // A game asks for them.
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> ofGuides(layers.size(), 9);
+    ASSERT_EQ(hl_asset_layers(asset.get(), &count, ofGuides.data(), ofGuides.size(), nullptr), HL_OK);
+    EXPECT_EQ(count, 2u);
+    EXPECT_EQ(ofGuides, layers);
+    EXPECT_EQ(hl_asset_layers(asset.get(), &count, ofGuides.data(), 1, nullptr), HL_WRONG_SIZE);
+    hl_layer fringe{};
+    ASSERT_EQ(hl_asset_layer(asset.get(), 1, &fringe, nullptr), HL_OK);
+    EXPECT_EQ(std::string(fringe.name, fringe.name_bytes), "Fringe \"β\"");
+    EXPECT_EQ(fringe.density, 1.5f);
+    EXPECT_EQ(fringe.own_material, 1u);
+    EXPECT_FLOAT_EQ(static_cast<float>(asset.number("layer2.rootRadius", 0)), ofFringe.rootRadius);
+    EXPECT_EQ(hl_asset_layer(asset.get(), 2, &fringe, nullptr), HL_BAD_VALUE);
     // Thickness of the layer's material stands in the points.
     const float thick = ofFringe.rootRadius;
     const auto radii = back->groom.pointAttributes.view<float>(attribute::kRadius);
     ASSERT_FALSE(radii.empty());
     EXPECT_NEAR(radii[groom.offsets[1]], thick, 0x1p-24f);
     EXPECT_NEAR(radii[groom.offsets[0]], groom.material.rootRadius, 0x1p-24f);
+}
+
+TEST_F(RuntimeAsset, AHairstyleOfOneLayerHasItsDensityAndMaterial) {
+    Groom groom = wholeGroom();
+    std::uint32_t count = 0;
+    hl_layer layer{};
+    const auto open = [&](game::Asset& asset, const auto& bytes) {
+        return asset.open(bytes.data(), bytes.size()) &&
+               hl_asset_layers(asset.get(), &count, nullptr, 0, nullptr) == HL_OK &&
+               hl_asset_layer(asset.get(), 0, &layer, nullptr) == HL_OK;
+    };
+    game::Asset plain, own;
+    const auto ofPlain = written(groom);
+    ASSERT_TRUE(open(plain, ofPlain));
+    EXPECT_EQ(count, 1u);
+    EXPECT_EQ(layer.name_bytes, 0u);
+    EXPECT_EQ(layer.density, 1.0f);
+    EXPECT_EQ(layer.own_material, 0u);
+    HairMaterial thick = groom.material;
+    thick.rootRadius = 0.0003f;
+    groom.layers = {{"Base", true, false, 0.5f, thick}};
+    const auto ofOwn = written(groom);
+    ASSERT_TRUE(open(own, ofOwn));
+    EXPECT_EQ(count, 1u);
+    EXPECT_EQ(std::string(layer.name, layer.name_bytes), "Base");
+    EXPECT_EQ(layer.density, 0.5f);
+    EXPECT_EQ(layer.own_material, 1u);
+    EXPECT_LT(own.describe().hairs, plain.describe().hairs);
+    // Thickness is read from the instance, too.
+    game::Instance hair;
+    ASSERT_TRUE(hair.make(own, HL_HAIRS));
+    std::vector<float> radii(std::size_t{hair.describe().hairs} * hair.describe().points_per_hair);
+    ASSERT_EQ(
+        hl_instance_read_hairs(hair.get(), game::kNothing, game::kNothing, game::tight(radii, 1), nullptr),
+        HL_OK);
+    EXPECT_FLOAT_EQ(radii.front(), thick.rootRadius);
 }
 
 TEST_F(RuntimeAsset, LayersThatAreNotThereAreRefused) {

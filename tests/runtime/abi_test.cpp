@@ -50,6 +50,10 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_bone, name_bytes, 8, 8),
         MEMBER(hl_bone, index, 16, 4),
         MEMBER(hl_bone, inverse_bind, 20, 48),
+        MEMBER(hl_layer, name, 0, 8),
+        MEMBER(hl_layer, name_bytes, 8, 8),
+        MEMBER(hl_layer, density, 16, 4),
+        MEMBER(hl_layer, own_material, 20, 4),
         MEMBER(hl_jobs, user, 0, 8),
         MEMBER(hl_jobs, parallel_for, 8, 8),
         MEMBER(hl_frame, size, 0, 8),
@@ -111,6 +115,7 @@ TEST(Abi, StructsLieAsTheyDid) {
     EXPECT_EQ(sizeof(hl_asset), 320u);
     EXPECT_EQ(sizeof(hl_asset_info), 88u);
     EXPECT_EQ(sizeof(hl_bone), 72u);
+    EXPECT_EQ(sizeof(hl_layer), 24u);
     EXPECT_EQ(sizeof(hl_jobs), 16u);
     EXPECT_EQ(sizeof(hl_frame), 128u);
     EXPECT_EQ(sizeof(hl_instance_info), 40u);
@@ -148,6 +153,8 @@ TEST(Abi, FunctionsTakeWhatTheyTook) {
     EXPECT_TRUE((isA<hl_code(Asset, hl_asset_info*, hl_error*)>(&hl_asset_describe)));
     EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, hl_bone*, hl_error*)>(&hl_asset_bone)));
     EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t*, size_t, hl_error*)>(&hl_asset_scalp_sources)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, hl_layer*, hl_error*)>(&hl_asset_layer)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t*, std::uint32_t*, size_t, hl_error*)>(&hl_asset_layers)));
     EXPECT_TRUE((isA<hl_code(Asset, const char*, double*, size_t, size_t*, hl_error*)>(&hl_asset_numbers)));
     EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, const hl_jobs*, Hair*, hl_error*)>(&hl_instance_make)));
     EXPECT_TRUE((isA<hl_code(ConstHair, Hair*, hl_error*)>(&hl_instance_copy)));

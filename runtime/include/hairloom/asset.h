@@ -54,8 +54,17 @@ class Asset {
     std::uint32_t pointCount() const { return header().points; }
     std::uint32_t hairCount() const;
     std::uint32_t hairsOf(std::size_t guide) const;
+    /// One where none is named.
+    std::uint32_t layerCount() const {
+        return layers.empty() ? 1 : static_cast<std::uint32_t>(layers.size());
+    }
 
     // All that follows is to be called only where checkContent() finds nothing wrong.
+
+    /// In `layers`; 0 where none is named.
+    std::uint32_t layerOf(std::size_t strand) const {
+        return strandLayers.empty() ? 0 : strandLayers[strand];
+    }
 
     struct Strands {
         std::vector<std::uint32_t> offsets;

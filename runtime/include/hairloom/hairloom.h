@@ -73,6 +73,19 @@ typedef struct hl_bone {
 hl_code hl_asset_bone(const hl_asset* asset, uint32_t bone, hl_bone* out, hl_error* error);
 /* The vertex of the head's file of each scalp vertex. */
 hl_code hl_asset_scalp_sources(const hl_asset* asset, uint32_t* vertices, size_t count, hl_error* error);
+typedef struct hl_layer {
+    const char* name; /* UTF-8, does not end in 0; empty where the hairstyle names no layers */
+    size_t name_bytes;
+    float density;         /* that the number of follow hairs of its guides was multiplied with */
+    uint32_t own_material; /* 1: its settings are "layerN.rootColour" and so on, N = layer + 1; 0: the
+                              hairstyle's, "material.rootColour" */
+} hl_layer;
+/* `layer` from 0. */
+hl_code hl_asset_layer(const hl_asset* asset, uint32_t layer, hl_layer* out, hl_error* error);
+/* How many layers there are, one at least, and of each guide its layer. `of_guides` may be null, with a count
+ * of 0. Follow hairs are on the layer of their guide. */
+hl_code hl_asset_layers(const hl_asset* asset, uint32_t* layers, uint32_t* of_guides, size_t count,
+                        hl_error* error);
 /* Numbers of a setting: "simulation.windSpeed", "material.rootColour". `written` says how many there are,
  * also where `count` is too small. Choices have none. */
 hl_code hl_asset_numbers(const hl_asset* asset, const char* name, double* values, size_t count,
