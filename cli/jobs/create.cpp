@@ -4,10 +4,12 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
+#include "cli/sphere_report.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/stopwatch.h"
+#include "core/editing/sphere_parts.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
@@ -31,7 +33,8 @@ struct CreateOptions {
     std::uint64_t seed = 0;
     std::string unit;
     std::string up = "y";
-    std::vector<std::string> leaveOut;
+    std::vector<std::string> leaveOut, collideWith;
+    std::uint32_t colliderSpheres = HeadImportOptions().colliderSpheres;
     std::string mask;
     std::string output;
 };
@@ -73,11 +76,12 @@ Result<std::vector<float>> imageMask(const std::string& path, const ScalpMesh& m
 
 Result<Report> create(const CreateOptions& options) {
     const Stopwatch watch;
-    HeadImportOptions head{0, options.up == "z", options.leaveOut};
-    if (!options.unit.empty()) head.metresPerUnit = static_cast<float>(metresPerUnit(options.unit));
-    auto scene = importHead(options.mesh, head);
-    if (!scene) return tl::unexpected(scene.error());
-    const auto mesh = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
+    HeadImportOptions wanted{0, options.up == "z", options.leaveOut, options.collideWith,
+                             options.colliderSpheres};
+    if (!options.unit.empty()) wanted.metresPerUnit = static_cast<float>(metresPerUnit(options.unit));
+    auto head = importHead(options.mesh, wanted);
+    if (!head) return tl::unexpected(head.error());
+    const auto mesh = std::make_shared<const ScalpMesh>(std::move(head->scene.mesh));
     auto faces = selectFaces(*mesh, options.scalp);
     if (!faces) return tl::unexpected(faces.error());
     const double areaCm2 = selectionArea(*mesh, *faces) * 1e4;
@@ -94,8 +98,9 @@ Result<Report> create(const CreateOptions& options) {
     auto groom = growStraight(mesh, std::move(*faces), placement->roots, options.length, options.points);
     if (!groom) return tl::unexpected(groom.error());
     groom->scalpExpression = options.scalp;
-    // Skeleton and clips fit no other mesh.
-    if (head.keepsMesh()) groom->characterFile = options.mesh;
+    groom->spheres = head->colliders.spheres;
+    // Skeleton and clips fit no head that was turned.
+    if (!wanted.zUp) groom->characterFile = options.mesh;
     if (!options.unit.empty()) groom->characterMetresPerUnit = metresPerUnit(options.unit);
     groom->interpolation.seed = options.seed;
     groom->placement = settingsOf(options, placement->roots.size());
@@ -111,6 +116,8 @@ Result<Report> create(const CreateOptions& options) {
     report["relative_radius"] = relativeRadius(apart, placement->roots.size(), maskedM2);
     report["triangles"] = groom->triangulation.triangles.size();
     report["alone"] = groom->triangulation.alone.size();
+    report["spheres"] = groom->spheres.size();
+    if (!groom->spheres.empty()) addFit(report, head->colliders);
     report["repairs"] = Report::array();
     for (const MeshRepair& repair : mesh->repairs()) {
         report["repairs"].push_back(Report{{"what", repair.what}, {"count", repair.count}});
@@ -150,6 +157,15 @@ JobRun declare(CLI::App& job) {
                    "Groups of the mesh to do without, as helpers and joints: NAME or BEGINNING*, with commas "
                    "between")
         ->delimiter(',');
+    auto* collide =
+        job.add_option("--collide-with", options->collideWith,
+                       "Groups likewise, named there or not, that are no part of the head, but that hair "
+                       "collides with: collision spheres are fitted to them")
+            ->delimiter(',');
+    job.add_option("--collide-spheres", options->colliderSpheres,
+                   "Number of these spheres, shared by area; each group has one at least and 64 at most")
+        ->check(CLI::Range(1u, editing::kMaxPartSpheres))
+        ->needs(collide);
     job.add_option("-o,--output", options->output, "Project to write")->required();
     job.final_callback([count, density] {
         if (count->count() + density->count() == 0) throw CLI::RequiredError("--count or --density");

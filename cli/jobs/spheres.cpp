@@ -4,8 +4,9 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
+#include "cli/sphere_report.h"
 #include "core/base/content_kind.h"
-#include "core/editing/sphere_fit.h"
+#include "core/editing/sphere_parts.h"
 #include "core/groom/file/project_file.h"
 
 namespace hairloom::cli {
@@ -30,10 +31,7 @@ Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOpt
     if (options.near > 0) wanted.region = editing::facesNearHair(groom, static_cast<float>(options.near));
     auto fit = editing::fitSpheres(*groom.scalp, wanted);
     if (!fit) return tl::unexpected(inFile(fit.error(), options.input));
-    constexpr double kMm = 1000;
-    report["worst_gap_mm"] = kMm * static_cast<double>(fit->worstGap);
-    report["mean_gap_mm"] = kMm * static_cast<double>(fit->meanGap);
-    report["worst_bulge_mm"] = kMm * static_cast<double>(fit->worstBulge);
+    addFit(report, *fit);
     return std::move(fit->spheres);
 }
 
@@ -43,7 +41,10 @@ Result<Report> placeSpheres(const SpheresOptions& options) {
     Report report;
     const auto spheres = options.fit > 0 ? fitted(*groom, options, report) : readSpheres(options.from);
     if (!spheres) return tl::unexpected(spheres.error());
-    if (options.replace) groom->spheres.clear();
+    if (options.replace) {
+        groom->spheres =
+            options.fit > 0 ? editing::spheresOfParts(groom->spheres) : std::vector<CollisionSphere>{};
+    }
     groom->spheres.insert(groom->spheres.end(), spheres->begin(), spheres->end());
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
     report["added"] = spheres->size();
@@ -64,7 +65,8 @@ JobRun declare(CLI::App& job) {
     job.add_option("--near", options->near, "fit: how far from hair skin matters, metres; 0: all of it")
         ->check(CLI::Range(0.0, 10.0));
     job.add_option("--seed", options->seed, "fit: of the places where the skin is looked at");
-    job.add_flag("--replace", options->replace, "Remove the spheres that are there");
+    job.add_flag("--replace", options->replace,
+                 "Remove the spheres that are there; fit: but those of groups to collide with (create)");
     job.add_option("-o,--output", options->output, "Project to write")->required();
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}}, [&] { return placeSpheres(*options); });

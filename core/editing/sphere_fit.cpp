@@ -14,15 +14,17 @@
 
 #include "core/base/parallel.h"
 #include "core/editing/root_grid.h"
+#include "core/editing/sphere_commands.h"
 #include "core/geometry/placement.h"
+#include "core/geometry/selection.h"
 
 namespace hairloom::editing {
 namespace {
 
 constexpr std::size_t kSamples = 4000;
+constexpr double kSamplesPerM2 = 2e7;  // of small regions: one in 0.2 mm
 constexpr std::size_t kSeeds = 1000;
 constexpr int kRounds = 60;
-constexpr std::uint32_t kMaxSpheres = 64;
 
 struct Ball {
     Vec3d centre;
@@ -208,10 +210,12 @@ FaceSet facesOf(const ScalpMesh& mesh, const FaceSet& region) {
 }
 
 Result<Samples> sample(const ScalpMesh& mesh, const SphereFitOptions& options) {
+    const FaceSet faces = facesOf(mesh, options.region);
     PlacementRequest request;
-    request.count = kSamples;
+    request.count = static_cast<std::size_t>(
+        std::clamp(kSamplesPerM2 * selectionArea(mesh, faces), 1.0, static_cast<double>(kSamples)));
     request.seed = options.seed;
-    const auto placed = placeRandom(mesh, facesOf(mesh, options.region), request);
+    const auto placed = placeRandom(mesh, faces, request);
     if (!placed) return tl::unexpected(placed.error());
     Samples samples;
     for (const SurfacePoint& point : placed->roots) {
@@ -226,13 +230,13 @@ Result<Samples> sample(const ScalpMesh& mesh, const SphereFitOptions& options) {
 Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& options) {
     if (options.count < 1 || options.count > kMaxSpheres)
         return fail(fmt::format("{} spheres", options.count), fmt::format("1 to {}", kMaxSpheres));
-    if (!(options.largestRadius > 0.001f && options.largestRadius <= 10))
+    if (!(options.largestRadius >= kSmallestSphere && options.largestRadius <= kLargestSphere))
         return fail(fmt::format("a largest radius of {} m", options.largestRadius), "0.001 to 10 m");
     const auto samples = sample(mesh, options);
     if (!samples) return tl::unexpected(samples.error());
     const auto largest = static_cast<double>(options.largestRadius);
-    std::vector<Ball> candidates(kSeeds);
-    parallelFor(kSeeds, 8, [&](std::size_t begin, std::size_t end) {
+    std::vector<Ball> candidates(std::min(kSeeds, samples->points.size()));
+    parallelFor(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) candidates[i] = shrink(*samples, i, largest);
     });
     std::vector<CollisionSphere> spheres;

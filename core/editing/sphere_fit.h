@@ -9,8 +9,10 @@
 
 namespace hairloom::editing {
 
+inline constexpr std::uint32_t kMaxSpheres = 64;  ///< of one fit
+
 struct SphereFitOptions {
-    std::uint32_t count = 12;    ///< spheres, 1 … 64
+    std::uint32_t count = 12;    ///< spheres, 1 … kMaxSpheres
     FaceSet region;              ///< ascending; the skin that is to be covered. Empty: all of the mesh
     float largestRadius = 0.2f;  ///< metres
     std::uint64_t seed = 1;

@@ -2,9 +2,12 @@
 #pragma once
 // A head as it is taken out of a file: its unit, which axis is up, and which groups stay.
 
+#include <atomic>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/editing/sphere_fit.h"
 #include "importers/scene.h"
 
 namespace hairloom {
@@ -12,11 +15,14 @@ namespace hairloom {
 struct HeadImportOptions {
     float metresPerUnit = 0;  ///< of a file that states none; 0: metres
     bool zUp = false;         ///< the file's Z axis becomes Y
-    std::vector<std::string>
-        leaveOut;  ///< groups, NAME or BEGINNING*; nothing collides with them or shows them
+    /// Groups, NAME or BEGINNING*, that are not shown and carry no hair.
+    std::vector<std::string> leaveOut;
+    /// Groups likewise, named among those above or not, that spheres are fitted to.
+    std::vector<std::string> collideWith;
+    std::uint32_t colliderSpheres = 12;  ///< for all of them, 1 … editing::kMaxPartSpheres
 
-    /// The mesh stays as the file has it, so that its skeleton and clips fit.
-    bool keepsMesh() const { return !zUp && leaveOut.empty(); }
+    /// The mesh stays as the file has it.
+    bool keepsMesh() const { return !zUp && leaveOut.empty() && collideWith.empty(); }
 };
 
 /// What the size, shape and names in a file tell about it.
@@ -34,8 +40,22 @@ HeadGuess guessHead(const ImportedScene& scene);
 /// there, nothing left.
 Result<ScalpMesh> partOfHead(const ScalpMesh& mesh, const HeadImportOptions& options);
 
-/// Reads a file. Where the mesh does not stay as it is, skeleton and clips are dropped. Errors: those of
-/// importScene() and partOfHead().
-Result<ImportedScene> importHead(const std::string& path, const HeadImportOptions& options);
+/// Spheres for the groups to collide with, each on the bone of `skeleton` nearest to it, in the space of
+/// partOfHead(). `mesh` is in metres. Errors: a group that is not there or has no faces; those of
+/// editing::fitSpheresToParts().
+Result<editing::SphereFit> fitColliders(const ScalpMesh& mesh, const Skeleton& skeleton,
+                                        const HeadImportOptions& options,
+                                        const std::atomic<bool>* cancelled = nullptr);
+
+/// Of some vertices, in their order; none where `all` is empty.
+SkinWeights weightsOf(const SkinWeights& all, std::span<const std::uint32_t> vertices);
+
+struct ImportedHead {
+    ImportedScene scene;
+    editing::SphereFit colliders;  ///< none where nothing is named to collide with
+};
+/// Reads a file. Skeleton and clips stay unless the head is turned. Errors: those of importScene(),
+/// partOfHead() and fitColliders().
+Result<ImportedHead> importHead(const std::string& path, const HeadImportOptions& options);
 
 }  // namespace hairloom

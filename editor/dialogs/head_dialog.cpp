@@ -7,8 +7,11 @@
 #include <QPointer>
 #include <QToolButton>
 #include <algorithm>
+#include <utility>
 
+#include "core/editing/sphere_parts.h"
 #include "core/scene/open.h"
+#include "editor/dialogs/group_roles.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
@@ -38,6 +41,12 @@ QWidget* choices(QButtonGroup& group, const QString& name, const QStringList& la
     return row;
 }
 
+ScalpMesh scaled(const ScalpMesh& mesh, float by) {
+    std::vector<Vec3f> positions(mesh.positions().begin(), mesh.positions().end());
+    for (Vec3f& position : positions) position *= by;
+    return mesh.moved(std::move(positions));
+}
+
 }  // namespace
 
 HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QString& path, QWidget* parent)
@@ -47,13 +56,14 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
       path_(path),
       unit_(new QButtonGroup(this)),
       up_(new QButtonGroup(this)),
-      search_(new QLineEdit),
-      groups_(new QListWidget),
+      groups_(new GroupRoles(preferences)),
+      spheres_(new QSpinBox),
+      fit_(new QLabel),
       summary_(new QLabel),
       view_(new StrandPreview) {
     setObjectName("headDialog");
     setWindowTitle(tr("Head %1").arg(QFileInfo(path).fileName()));
-    resize(820, 540);
+    resize(820, 620);
     auto* layout = new QHBoxLayout(this);
     layout->setContentsMargins(16, 16, 16, 16);
     layout->setSpacing(16);
@@ -73,89 +83,78 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     form->addRow(tr("Up"),
                  choices(*up_, "headUp", {tr("Y"), tr("Z")},
                          tr("Axis of the file that points up. A head on its back needs the other")));
-    search_->setObjectName("headSearch");
-    search_->setPlaceholderText(tr("Search groups"));
-    search_->setToolTip(tr("Shows the groups whose names have these words"));
-    side->addWidget(search_);
-    groups_->setObjectName("headGroups");
-    groups_->setToolTip(
-        tr("Groups that are checked are shown, carry hair and collide with it; the others are left out"));
     side->addWidget(groups_, 1);
+    spheres_->setObjectName("colliderSpheres");
+    spheres_->setRange(1, static_cast<int>(editing::kMaxPartSpheres));
+    spheres_->setValue(static_cast<int>(HeadImportOptions().colliderSpheres));
+    spheres_->setKeyboardTracking(false);
+    spheres_->setToolTip(
+        tr("Number of spheres for all groups that collide, shared by area: each has one at least and 64 at "
+           "most. More lie closer and cost more"));
+    auto* colliders = new QFormLayout;
+    colliders->addRow(tr("Spheres"), spheres_);
+    side->addLayout(colliders);
+    fit_->setObjectName("colliderFit");
+    fit_->setProperty("role", "dim");
+    fit_->setWordWrap(true);
+    side->addWidget(fit_);
     open_ = acceptOrCancel(*this, *side, tr("Open"), tr("Opens the head as shown"));
-    connect(search_, &QLineEdit::textChanged, this, &HeadDialog::search);
+    open_->setObjectName("headOpen");
     connect(unit_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
     connect(up_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
-    connect(groups_, &QListWidget::itemChanged, this, &HeadDialog::refresh);
+    connect(groups_, &GroupRoles::changed, this, &HeadDialog::refresh);
+    connect(spheres_, &QSpinBox::valueChanged, this, &HeadDialog::fit);
+    connect(&tasks_, &Tasks::stopped, this, [this] {
+        fitting_ = false;
+        if (std::exchange(outdated_, false)) fit();
+    });
     read();
 }
 
 void HeadDialog::read() {
     summary_->setText(tr("Reading…"));
-    using Read = std::pair<std::shared_ptr<ImportedScene>, QString>;
+    using Read = std::pair<std::shared_ptr<const ImportedScene>, QString>;
     tasks_.run<Read>(
         tr("Reading %1").arg(QFileInfo(path_).fileName()),
         [path = path_.toStdString()](TaskControl&) -> Result<Read> {
             auto scene = importSceneLoud(path, {});
             if (!scene) return Read{nullptr, errorText(scene.error())};
-            return Read{std::make_shared<ImportedScene>(std::move(*scene)), QString()};
+            return Read{std::make_shared<const ImportedScene>(std::move(*scene)), QString()};
         },
         [self = QPointer(this)](const Read& read) {
             if (!self) return;
             if (read.first) {
-                self->take(std::move(*read.first));
+                self->take(read.first);
             } else {
                 self->summary_->setText(read.second);
             }
         });
 }
 
-void HeadDialog::take(ImportedScene scene) {
+void HeadDialog::take(std::shared_ptr<const ImportedScene> scene) {
     scene_ = std::move(scene);
-    guess_ = guessHead(*scene_);
+    const HeadGuess guess = guessHead(*scene_);
     const auto units = lengthUnits();
-    const auto known =
-        std::ranges::find_if(units, [&](const LengthUnit& u) { return guess_.unit == u.name; });
+    const auto known = std::ranges::find_if(units, [&](const LengthUnit& u) { return guess.unit == u.name; });
     if (known != units.end()) unit_->button(static_cast<int>(known - units.begin()))->setChecked(true);
-    up_->button(guess_.zUp ? 1 : 0)->setChecked(true);
-    fillGroups();
-    open_->setEnabled(true);
+    up_->button(guess.zUp ? 1 : 0)->setChecked(true);
+    groups_->setGroups(scene_->mesh, guess.helpers);
     refresh();
 }
 
-void HeadDialog::fillGroups() {
-    const QSignalBlocker quiet(groups_);
-    groups_->clear();
-    const ScalpMesh& mesh = scene_->mesh;
-    std::vector<std::size_t> faces(mesh.groupNames().size(), 0);
-    for (const std::uint32_t group : mesh.triangleGroups()) ++faces[group];
-    for (std::size_t g = 0; g < faces.size(); ++g) {
-        const bool helper = std::ranges::find(guess_.helpers, mesh.groupNames()[g]) != guess_.helpers.end();
-        auto* item = new QListWidgetItem(QString::fromStdString(mesh.groupNames()[g]), groups_);
-        item->setToolTip(tr("%L1 triangles").arg(faces[g]));
-        item->setCheckState(helper ? Qt::Unchecked : Qt::Checked);
-    }
-}
-
-void HeadDialog::search(const QString& words) {
-    for (int row = 0; row < groups_->count(); ++row) {
-        QListWidgetItem* item = groups_->item(row);
-        item->setHidden(!item->text().contains(words, Qt::CaseInsensitive));
-    }
-}
-
-double HeadDialog::metresPerUnit() const {
-    return lengthUnits()[static_cast<std::size_t>(std::max(unit_->checkedId(), 0))].metres;
+float HeadDialog::metresPerUnit() const {
+    return static_cast<float>(
+        lengthUnits()[static_cast<std::size_t>(std::max(unit_->checkedId(), 0))].metres);
 }
 
 HeadImportOptions HeadDialog::options() const {
     HeadImportOptions options;
     // Metres are what a file without a unit has.
-    if (unit_->checkedId() > 0) options.metresPerUnit = static_cast<float>(metresPerUnit());
+    if (unit_->checkedId() > 0) options.metresPerUnit = metresPerUnit();
     options.zUp = up_->checkedId() == 1;
-    for (int row = 0; row < groups_->count(); ++row) {
-        if (groups_->item(row)->checkState() != Qt::Checked)
-            options.leaveOut.push_back(groups_->item(row)->text().toStdString());
-    }
+    options.leaveOut = groups_->groupsOf(GroupRole::LeftOut);
+    options.collideWith = groups_->groupsOf(GroupRole::Collide);
+    options.colliderSpheres = static_cast<std::uint32_t>(spheres_->value());
     return options;
 }
 
@@ -163,22 +162,71 @@ void HeadDialog::refresh() {
     if (!scene_) return;
     auto part = partOfHead(scene_->mesh, options());
     open_->setEnabled(part.has_value());
+    head_ = part ? std::make_shared<const ScalpMesh>(scaled(*part, metresPerUnit())) : nullptr;
     if (!part) {
         summary_->setText(errorText(part.error()));
+    } else {
+        const Vec3f size = head_->bounds().sizes();
+        const auto odd = implausibleSize(static_cast<double>(size.maxCoeff()), 1);
+        summary_->setText(tr("<p><b>%1</b> high, %2 wide, %3 deep</p><p>%L4 triangles</p>%5")
+                              .arg(lengthText(size.y(), preferences_), lengthText(size.x(), preferences_),
+                                   lengthText(size.z(), preferences_))
+                              .arg(head_->triangleCount())
+                              .arg(odd ? tr("<p>That is neither a head nor a human.</p>") : QString()));
+    }
+    fit();
+}
+
+void HeadDialog::fit() {
+    if (fitting_) {
+        outdated_ = true;
+        tasks_.cancel();
         return;
     }
-    const auto scale = static_cast<float>(metresPerUnit());
-    std::vector<Vec3f> positions(part->positions().begin(), part->positions().end());
-    for (Vec3f& position : positions) position *= scale;
-    const auto shown = std::make_shared<const ScalpMesh>(part->moved(std::move(positions)));
-    const Vec3f size = shown->bounds().sizes();
-    const auto odd = implausibleSize(static_cast<double>(size.maxCoeff()), 1);
-    summary_->setText(tr("<p><b>%1</b> high, %2 wide, %3 deep</p><p>%L4 triangles</p>%5")
-                          .arg(lengthText(size.y(), preferences_), lengthText(size.x(), preferences_),
-                               lengthText(size.z(), preferences_))
-                          .arg(shown->triangleCount())
-                          .arg(odd ? tr("<p>That is neither a head nor a human.</p>") : QString()));
-    view_->show(Groom(), shown);
+    const HeadImportOptions wanted = options();
+    spheres_->setEnabled(!wanted.collideWith.empty());
+    view_->show(Groom(), head_);
+    if (!scene_ || wanted.collideWith.empty()) {
+        fit_->setText(tr("No group is to collide with"));
+        return;
+    }
+    fit_->setText(tr("Fitting spheres…"));
+    using Fit = std::pair<editing::SphereFit, QString>;
+    fitting_ = tasks_.run<Fit>(
+        tr("Fitting spheres"),
+        [scene = scene_, wanted, scale = metresPerUnit()](TaskControl& control) -> Result<Fit> {
+            auto fit = fitColliders(scaled(scene->mesh, scale), {}, wanted, control.cancelFlag());
+            if (!fit) return Fit{{}, errorText(fit.error())};
+            return Fit{std::move(*fit), {}};
+        },
+        [self = QPointer(this)](const Fit& fit) {
+            if (!self) return;
+            if (fit.second.isEmpty()) {
+                self->show(fit.first);
+            } else {
+                self->fit_->setText(fit.second);
+            }
+        });
+    outdated_ = !fitting_;  // other work is under way
+}
+
+void HeadDialog::show(const editing::SphereFit& fit) {
+    const auto length = [this](float metres) {
+        return lengthText(static_cast<double>(metres), preferences_);
+    };
+    fit_->setText(tr("%n spheres: worst gap %1, mean %2; farthest bulge %3", nullptr,
+                     static_cast<int>(fit.spheres.size()))
+                      .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
+    view_->show(Groom(), head_, fit.spheres);
+}
+
+void HeadDialog::done(int result) {
+    outdated_ = false;
+    if (fitting_) {
+        tasks_.cancel();
+        tasks_.finish();
+    }
+    QDialog::done(result);
 }
 
 }  // namespace hairloom::editor

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A look at the head of a file before it is opened: its size, unit, axis and groups.
+// A look at the head of a file before it is opened: its size, unit, axis, groups and what hair collides with.
 
 #include <QButtonGroup>
 #include <QDialog>
 #include <QLabel>
-#include <QLineEdit>
-#include <QListWidget>
 #include <QPushButton>
+#include <QSpinBox>
 
 #include "core/scene/head_import.h"
 #include "editor/document/preferences.h"
@@ -15,6 +14,7 @@
 
 namespace hairloom::editor {
 
+class GroupRoles;
 class StrandPreview;
 
 class HeadDialog : public QDialog {
@@ -26,24 +26,31 @@ class HeadDialog : public QDialog {
     /// As chosen; at first as guessed.
     HeadImportOptions options() const;
 
+    /// Also stops what still runs: nothing shows it any more.
+    void done(int result) override;
+
   private:
     void read();
-    void take(ImportedScene scene);
-    void fillGroups();
-    void search(const QString& words);
-    /// Size and picture of what the options leave.
+    void take(std::shared_ptr<const ImportedScene> scene);
+    /// Size and picture of what the options leave, and then the spheres.
     void refresh();
-    double metresPerUnit() const;
+    /// The spheres that the options lead to, off the interface thread; a later call takes the place of one
+    /// that runs.
+    void fit();
+    void show(const editing::SphereFit& fit);
+    float metresPerUnit() const;
 
     Tasks& tasks_;
     const Preferences& preferences_;
     QString path_;
-    std::optional<ImportedScene> scene_;  ///< as read without options
-    HeadGuess guess_;
+    std::shared_ptr<const ImportedScene> scene_;  ///< as read without options; null until then
+    std::shared_ptr<const ScalpMesh> head_;       ///< what the options leave of it
+    bool fitting_ = false, outdated_ = false;     ///< what is being fitted serves no more
     QButtonGroup* unit_;
     QButtonGroup* up_;
-    QLineEdit* search_;
-    QListWidget* groups_;
+    GroupRoles* groups_;
+    QSpinBox* spheres_;
+    QLabel* fit_;
     QLabel* summary_;
     StrandPreview* view_;
     QPushButton* open_;

@@ -8,14 +8,14 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include "core/animation/bone_near.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
-#include "core/editing/sphere_fit.h"
+#include "core/editing/sphere_parts.h"
 #include "editor/fields/length_text.h"
 #include "editor/fields/option_form.h"
 #include "editor/panels/panel.h"
-#include "editor/simulation/bones.h"
 
 namespace hairloom::editor {
 namespace {
@@ -71,8 +71,8 @@ class SpheresPanel : public QWidget {
         count_->setSuffix(tr(" spheres"));
         count_->setToolTip(tr("Number of spheres; more lie closer to the skin and cost more"));
         auto* fit = pushButton("sphereFit", tr("Fit"),
-                               tr("Replaces all spheres by ones that cover head, neck and shoulders "
-                                  "where hair comes near"),
+                               tr("Replaces the spheres by ones that cover head, neck and shoulders where "
+                                  "hair comes near; those of groups to collide with stay"),
                                [this] { this->fit(); });
         fitRow->addWidget(count_, 1);
         fitRow->addWidget(fit);
@@ -196,8 +196,10 @@ class SpheresPanel : public QWidget {
                 };
                 fit_->setText(tr("Worst gap %1, mean %2; farthest bulge %3")
                                   .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
+                auto all = editing::spheresOfParts(spheres());
+                all.insert(all.end(), fit.spheres.begin(), fit.spheres.end());
                 document_.perform(
-                    editing::setSpheres(document_.editing().model(), std::move(fit.spheres), "Fit spheres"));
+                    editing::setSpheres(document_.editing().model(), std::move(all), "Fit spheres"));
             });
     }
 

@@ -39,17 +39,25 @@ std::shared_ptr<const Actor> DocumentFiles::actorOf(const Groom& groom) {
 
 Result<DocumentFiles::Opened> DocumentFiles::readHead(const std::string& path,
                                                       const HeadImportOptions& options) {
-    auto scene = importHead(path, options);
-    if (!scene) return tl::unexpected(scene.error());
+    auto head = importHead(path, options);
+    if (!head) return tl::unexpected(head.error());
+    ImportedScene& scene = head->scene;
     Opened opened;
-    opened.isUnclear = !guessHead(*scene).isClear();
-    opened.groom.scalp = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
-    // Skeleton and clips fit no other mesh.
-    if (options.keepsMesh()) opened.groom.characterFile = path;
+    opened.isUnclear = !guessHead(scene).isClear();
+    opened.groom.scalp = std::make_shared<const ScalpMesh>(std::move(scene.mesh));
+    // Skeleton and clips fit no head that was turned.
+    if (!options.zUp) opened.groom.characterFile = path;
     opened.groom.characterMetresPerUnit = options.metresPerUnit;
-    if (!scene->warnings.empty()) opened.note = QString::fromStdString(scene->warnings.front());
-    auto actor = Actor::make(opened.groom.scalp, std::move(scene->skeleton), std::move(scene->clips),
-                             std::move(scene->skin));
+    opened.groom.spheres = std::move(head->colliders.spheres);
+    QStringList notes;
+    if (!opened.groom.spheres.empty()) {
+        notes += QObject::tr("Hair will collide with %n spheres beside it", nullptr,
+                             static_cast<int>(opened.groom.spheres.size()));
+    }
+    if (!scene.warnings.empty()) notes += QString::fromStdString(scene.warnings.front());
+    opened.note = notes.join("; ");
+    auto actor = Actor::make(opened.groom.scalp, std::move(scene.skeleton), std::move(scene.clips),
+                             std::move(scene.skin));
     if (actor) opened.actor = std::make_shared<const Actor>(std::move(*actor));
     return opened;
 }

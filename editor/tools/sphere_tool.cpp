@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Collision spheres by hand: a click on the head places one, a drag of its middle moves it, of its rim
 // resizes it.
+#include "core/animation/bone_near.h"
 #include "core/editing/document.h"
 #include "core/editing/sphere_commands.h"
 #include "editor/fields/option_form.h"
 #include "editor/overlays/overlay_mode.h"
-#include "editor/simulation/bones.h"
 #include "editor/tools/surface_pick.h"
 #include "editor/tools/tool_maker.h"
 

@@ -18,15 +18,21 @@ StrandPreview::StrandPreview(QWidget* parent) : QWidget(parent) {
     setToolTip(tr("Drag to turn, wheel to zoom"));
 }
 
-void StrandPreview::show(const Groom& strands, std::shared_ptr<const ScalpMesh> head) {
+void StrandPreview::show(const Groom& strands, std::shared_ptr<const ScalpMesh> head,
+                         std::vector<CollisionSphere> spheres) {
     strands_ = strands;
     head_ = std::move(head);
+    spheres_ = std::move(spheres);
     frame();
 }
 
 void StrandPreview::frame() {
     Box3f box = strands_.bounds();
     if (head_) box.extend(head_->bounds());
+    for (const CollisionSphere& sphere : spheres_) {
+        box.extend(Vec3f(sphere.centre + Vec3f::Constant(sphere.radius)));
+        box.extend(Vec3f(sphere.centre - Vec3f::Constant(sphere.radius)));
+    }
     camera_.frame(box, static_cast<float>(width()) / static_cast<float>(std::max(height(), 1)));
     update();
 }
@@ -66,6 +72,23 @@ void StrandPreview::paintEvent(QPaintEvent*) {
     }
     std::ranges::sort(order);
     for (const auto& [depth, s] : order) drawStrand(painter, s);
+    drawSpheres(painter);
+}
+
+void StrandPreview::drawSpheres(QPainter& painter) const {
+    // As the viewport marks a sphere.
+    const QColor rim(255, 200, 80);
+    QColor inside = rim;
+    inside.setAlphaF(0.12f);
+    painter.setPen(QPen(rim, 1.5));
+    painter.setBrush(inside);
+    for (const CollisionSphere& sphere : spheres_) {
+        const auto middle = camera_.project(sphere.centre, size());
+        if (!middle) continue;
+        const double radius_px = static_cast<double>(sphere.radius) /
+                                 static_cast<double>(camera_.metresPerPixel(sphere.centre, size()));
+        painter.drawEllipse(*middle, radius_px, radius_px);
+    }
 }
 
 void StrandPreview::drawStrand(QPainter& painter, std::size_t strand) const {

@@ -14,8 +14,9 @@ class StrandPreview : public QWidget {
 
   public:
     explicit StrandPreview(QWidget* parent = nullptr);
-    /// `head` may be null.
-    void show(const Groom& strands, std::shared_ptr<const ScalpMesh> head);
+    /// `head` may be null. `spheres` are seen through all else.
+    void show(const Groom& strands, std::shared_ptr<const ScalpMesh> head,
+              std::vector<CollisionSphere> spheres = {});
 
   protected:
     void paintEvent(QPaintEvent* event) override;
@@ -26,11 +27,13 @@ class StrandPreview : public QWidget {
 
   private:
     void frame();
+    void drawSpheres(QPainter& painter) const;
     void drawStrand(QPainter& painter, std::size_t strand) const;
     QPolygonF projected(std::span<const Vec3f> points) const;
 
     Groom strands_;
     std::shared_ptr<const ScalpMesh> head_;
+    std::vector<CollisionSphere> spheres_;
     OrbitCamera camera_;
     QPointF last_px_;
 };

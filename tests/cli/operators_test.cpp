@@ -74,6 +74,33 @@ TEST_F(OperatorsCli, AHeadIsTurnedAndTakenWithoutHelpers) {
     EXPECT_EQ(run(head + "--up x").exitCode, 2);
 }
 
+TEST_F(OperatorsCli, HairCollidesWithGroupsThatAreNoPartOfTheHead) {
+    const std::string head =
+        "create --mesh '" + bustFile() +
+        "' --count 20 --length 0.1 --scalp group:bust_scalp -o dressed.hairloom --force ";
+    EXPECT_EQ(runJson(head)["spheres"], 0);
+    const auto report =
+        runJson(head + "--leave-out bust_neck --collide-with bust_shoulders --collide-spheres 7");
+    EXPECT_EQ(report["spheres"], 7);
+    EXPECT_GT(report["worst_gap_mm"], report["mean_gap_mm"]);
+    EXPECT_LT(report["worst_gap_mm"], 60);
+    const auto info = runJson("info dressed.hairloom");
+    EXPECT_EQ(info["spheres"], 7);
+    EXPECT_EQ(info["scalp"]["groups"], nlohmann::json({"bust_scalp", "bust_face", "bust_ears"}));
+    // The skeleton came along, and moves the spheres.
+    const auto moved = runJson("simulate dressed.hairloom --motion clip:nod_and_turn --frames 20");
+    EXPECT_EQ(moved["nan_count"], 0);
+    const auto fitted = runJson("spheres dressed.hairloom --fit 3 --replace -o more.hairloom");
+    EXPECT_EQ(fitted["spheres"], 10) << "those of the group stay";
+    const auto again = runJson("spheres more.hairloom --fit 2 --replace -o more.hairloom --force");
+    EXPECT_EQ(again["spheres"], 9);
+
+    EXPECT_THAT(run(head + "--collide-with coat").errors, HasSubstr("no group 'coat'; one of: bust_ears"));
+    EXPECT_THAT(run(head + "--collide-with 'bust*'").errors, HasSubstr("no head is left"));
+    EXPECT_EQ(run(head + "--collide-with bust_neck --collide-spheres 257").exitCode, 2);
+    EXPECT_EQ(run(head + "--collide-spheres 4").exitCode, 2) << "of what?";
+}
+
 TEST_F(OperatorsCli, OneActsAloneIsDuplicatedAndRemoved) {
     runJson("stack styled.hairloom --solo 1 -o solo.hairloom");
     EXPECT_EQ(enabled("solo.hairloom"), 1u);

@@ -35,6 +35,32 @@ TEST_F(RealData, MakeHumanInDecimetresHasAScalpOf491SquareCentimetres) {
     EXPECT_THAT(plain.errors, testing::HasSubstr("dm")) << "17 m is no human: the unit that fits is named";
 }
 
+TEST_F(RealData, MakeHumanCollidesWithItsClothes) {
+    HAIRLOOM_NEED_DATA(body, "heads/makehuman_base.obj");
+    const std::string create = "create --mesh '" + body +
+                               "' --unit dm --scalp group:body,above:0.94,cap:90 --count 200 --length 0.3 -o "
+                               "mh.hairloom --force --leave-out 'helper*,joint*' --collide-with ";
+    const auto clothes = runJson(create + "helper-tights --collide-spheres 64");
+    EXPECT_EQ(clothes["spheres"], 64);
+    EXPECT_LT(clothes["worst_gap_mm"], 25);
+    EXPECT_LT(clothes["mean_gap_mm"], 4);
+    EXPECT_EQ(runJson("info mh.hairloom")["scalp"]["groups"], nlohmann::json({"body"}));
+    // Groups from a skirt to eyelashes: each has its sphere.
+    EXPECT_EQ(runJson(create + "'helper-*' --collide-spheres 1")["spheres"], 13);
+    EXPECT_EQ(runJson("simulate mh.hairloom --frames 30 --motion nod")["nan_count"], 0);
+}
+
+TEST_F(RealData, ARobotsHeadCollidesWithItsBodyAndDances) {
+    HAIRLOOM_NEED_DATA(robot, "animated/raylib_robot.glb");
+    const auto head =
+        runJson("create --mesh '" + robot +
+                "' --leave-out 'Arm*,Foot*,Hand*,Leg*,LowerLeg*' --collide-with 'Torso,Shoulder*' "
+                "--collide-spheres 10 --scalp above:0.5,cap:80 --count 50 --length 0.5 -o r.hairloom");
+    EXPECT_EQ(head["spheres"], 10);
+    EXPECT_EQ(runJson("info r.hairloom")["scalp"]["groups"], nlohmann::json({"Head"}));
+    EXPECT_EQ(runJson("simulate r.hairloom --frames 30 --motion clip:Robot_Dance")["nan_count"], 0);
+}
+
 TEST_F(RealData, SintelHairComesInMovesAndLeaves) {
     HAIRLOOM_NEED_DATA(hair, "strands/sintel_16pt.tfx");
     const auto imported =

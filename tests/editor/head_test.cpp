@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Heads that come in wrong, and the dialog that sets them right.
 #include <QFile>
+#include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
-#include <QListWidget>
+#include <QPushButton>
+#include <QSpinBox>
 #include <QToolButton>
+#include <QTreeWidget>
 
 #include "editor/dialogs/head_dialog.h"
 #include "tests/editor/window_fixture.h"
@@ -12,7 +15,30 @@
 namespace hairloom::editor {
 namespace {
 
-class HeadTest : public WindowTest {};
+class HeadTest : public WindowTest {
+  protected:
+    /// The dialog for that file, with the file read.
+    HeadDialog* openDialog(const QString& path) {
+        window->showHeadDialog(path);
+        finishWork();
+        auto* dialog = window->findChild<HeadDialog*>();
+        EXPECT_TRUE(dialog);
+        return dialog;
+    }
+    /// A fit that has been outdated is followed by another.
+    void finishFitting() {
+        while (parts().tasks.isBusy()) finishWork();
+    }
+    static QTreeWidget& groupsIn(HeadDialog& dialog) { return *dialog.findChild<QTreeWidget*>("headGroups"); }
+    static QString textOf(HeadDialog& dialog, const char* label) {
+        return dialog.findChild<QLabel*>(label)->text();
+    }
+    static void clickButton(HeadDialog& dialog, const char* button) {
+        auto* found = dialog.findChild<QPushButton*>(button);
+        ASSERT_TRUE(found && found->isEnabled()) << button;
+        found->click();
+    }
+};
 
 /// A box of skin of 17 × 4 × 3 units that lies along Z, and a helper far away.
 void writeLyingHead(const QString& path) {
@@ -54,11 +80,12 @@ TEST_F(HeadTest, AHeadThatLooksWrongIsShownWithItsUnitAxisAndGroupsGuessed) {
     QTest::mouseClick(dialog->findChild<QToolButton*>("headUp:Y"), Qt::LeftButton);
     EXPECT_TRUE(dialog->findChild<QLabel*>("headSize")->text().contains("<b>30 cm</b>"));
     QTest::mouseClick(dialog->findChild<QToolButton*>("headUp:Z"), Qt::LeftButton);
-    auto* groups = dialog->findChild<QListWidget*>("headGroups");
-    ASSERT_EQ(groups->count(), 2);
+    auto* groups = &groupsIn(*dialog);
+    ASSERT_EQ(groups->topLevelItemCount(), 2);
     dialog->findChild<QLineEdit*>("headSearch")->setText("HELP");
-    EXPECT_TRUE(groups->item(0)->isHidden());
-    EXPECT_FALSE(groups->item(1)->isHidden());
+    EXPECT_TRUE(groups->topLevelItem(0)->isHidden());
+    EXPECT_FALSE(groups->topLevelItem(1)->isHidden());
+    EXPECT_EQ(groups->topLevelItem(1)->text(1), "Left out");
     dialog->accept();
     finishWork();
     ASSERT_TRUE(groom().scalp);
@@ -75,6 +102,104 @@ TEST_F(HeadTest, AHeadThatLooksWrongIsShownWithItsUnitAxisAndGroupsGuessed) {
     window->open(inFolder("lying.hairloom"));
     finishWork();
     EXPECT_EQ(find<QLabel>("head")->text(), "head 170 cm");
+}
+
+TEST_F(HeadTest, AGroupThatCollidesIsNotShownAndHasSpheresThatAFitLeaves) {
+    files().openSample({});
+    finishWork();
+    const std::size_t all = groom().scalp->triangleCount();
+    HeadDialog* dialog = openDialog(QString::fromStdString(groom().characterFile));
+    QTreeWidget& groups = groupsIn(*dialog);
+    ASSERT_EQ(groups.topLevelItemCount(), 5);
+    EXPECT_FALSE(dialog->findChild<QPushButton*>("groupCollide")->isEnabled()) << "nothing is selected";
+    for (const auto* button : dialog->findChildren<QPushButton*>())
+        EXPECT_EQ(button->isDefault(), button->objectName() == "headOpen") << button->text().toStdString();
+    EXPECT_FALSE(dialog->findChild<QSpinBox*>("colliderSpheres")->isEnabled());
+    dialog->findChild<QLineEdit*>("headSearch")->setText("shoulders");
+    groups.selectAll();
+    clickButton(*dialog, "groupCollide");
+    EXPECT_EQ(dialog->options().collideWith, std::vector<std::string>{"bust_shoulders"})
+        << "what the search hides is not meant";
+    dialog->findChild<QSpinBox*>("colliderSpheres")->setValue(7);
+    finishFitting();
+    EXPECT_TRUE(textOf(*dialog, "colliderFit").startsWith("7 spheres: worst gap"))
+        << textOf(*dialog, "colliderFit").toStdString();
+    dialog->accept();
+    finishWork();
+    EXPECT_LT(groom().scalp->triangleCount(), all);
+    ASSERT_EQ(groom().spheres.size(), 7u);
+    for (const CollisionSphere& sphere : groom().spheres) EXPECT_FALSE(sphere.bone.empty());
+    EXPECT_FALSE(document().isModified());
+    EXPECT_FALSE(window->actions().get("edit.undo").isEnabled());
+    ASSERT_TRUE(parts().player.actor());
+    EXPECT_EQ(parts().player.actor()->clips().size(), 1u);
+    expectSound();
+
+    const std::vector<CollisionSphere> clothes = groom().spheres;
+    find<QSpinBox>("sphereCount")->setValue(4);
+    for (int i = 0; i < 2; ++i) {
+        find<QPushButton>("sphereFit")->click();
+        finishWork();
+        ASSERT_EQ(groom().spheres.size(), 11u);
+        EXPECT_EQ(groom().spheres[6].centre, clothes[6].centre);
+    }
+    ASSERT_TRUE(window->saveTo(inFolder("dressed.hairloom")));
+    trigger("file.new");
+    window->open(inFolder("dressed.hairloom"));
+    finishWork();
+    EXPECT_EQ(groom().spheres.size(), 11u);
+    ASSERT_TRUE(parts().player.actor());
+    EXPECT_EQ(parts().player.actor()->mesh().triangleCount(), groom().scalp->triangleCount());
+}
+
+TEST_F(HeadTest, RolesAreChangedByKeysAndByClicks) {
+    writeLyingHead(inFolder("lying.obj"));
+    HeadDialog* dialog = openDialog(inFolder("lying.obj"));
+    QTreeWidget& groups = groupsIn(*dialog);
+    const auto roles = [&] {
+        return groups.topLevelItem(0)->text(1) + ", " + groups.topLevelItem(1)->text(1);
+    };
+    EXPECT_EQ(roles(), "Head, Left out");
+    groups.setFocus();
+    QTest::keyClick(&groups, Qt::Key_Down);
+    QTest::keyClick(&groups, Qt::Key_Space);
+    finishFitting();
+    EXPECT_EQ(roles(), "Head, Collides");
+    EXPECT_TRUE(textOf(*dialog, "colliderFit").contains("12 spheres"))
+        << textOf(*dialog, "colliderFit").toStdString();
+    QTest::keyClick(&groups, Qt::Key_Space);
+    EXPECT_EQ(roles(), "Head, Head");
+    QTest::keyClick(&groups, Qt::Key_A, Qt::ControlModifier);
+    QTest::keyClick(&groups, Qt::Key_Space);
+    QTest::keyClick(&groups, Qt::Key_Space);
+    EXPECT_EQ(roles(), "Collides, Collides");
+    finishFitting();
+    EXPECT_FALSE(dialog->findChild<QPushButton*>("headOpen")->isEnabled());
+    EXPECT_TRUE(textOf(*dialog, "headSize").contains("no head is left", Qt::CaseInsensitive))
+        << textOf(*dialog, "headSize").toStdString();
+    const QRect cell = groups.visualItemRect(groups.topLevelItem(0));
+    QTest::mouseClick(groups.viewport(), Qt::LeftButton, {},
+                      QPoint(groups.header()->sectionPosition(1) + 10, cell.center().y()));
+    EXPECT_EQ(roles(), "Head, Collides");
+    EXPECT_TRUE(dialog->findChild<QPushButton*>("headOpen")->isEnabled());
+    // Closed while spheres are being fitted, which nothing waits for.
+    dialog->reject();
+    EXPECT_FALSE(parts().tasks.isBusy());
+}
+
+TEST_F(HeadTest, AHeadOpensWhileItsSpheresAreStillFitted) {
+    writeLyingHead(inFolder("lying.obj"));
+    HeadDialog* dialog = openDialog(inFolder("lying.obj"));
+    groupsIn(*dialog).topLevelItem(1)->setSelected(true);
+    clickButton(*dialog, "groupCollide");
+    dialog->findChild<QSpinBox*>("colliderSpheres")->setValue(64);
+    dialog->findChild<QSpinBox*>("colliderSpheres")->setValue(3);
+    dialog->accept();
+    finishWork();
+    ASSERT_TRUE(groom().scalp) << window->statusLine().message().toStdString();
+    EXPECT_EQ(groom().spheres.size(), 3u);
+    EXPECT_TRUE(window->statusLine().message().contains("3 spheres"))
+        << window->statusLine().message().toStdString();
 }
 
 TEST_F(HeadTest, AHeadThatIsClearOpensAtOnce) {

@@ -3,15 +3,19 @@
 // checked without eyes is: nothing is clipped.
 #include <QDir>
 #include <QPushButton>
+#include <QSpinBox>
 #include <QToolButton>
+#include <QTreeWidget>
 
 #include "editor/dialogs/export_dialog.h"
+#include "editor/dialogs/head_dialog.h"
 #include "editor/dialogs/import_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
 #include "editor/panels/panel.h"
 #include "tests/editor/nothing_clipped.h"
 #include "tests/editor/window_fixture.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom::editor {
 namespace {
@@ -105,6 +109,30 @@ TEST_P(ScreenshotsTest, Dialogs) {
     importing.show();
     finishWork();
     shoot(importing, "import");
+}
+
+TEST_P(ScreenshotsTest, HeadsWithClothes) {
+    const auto shootHead = [&](const std::filesystem::path& file, const char* clothes, const QString& name) {
+        window->showHeadDialog(QString::fromStdString(file.string()));
+        finishWork();
+        auto* dialog = window->findChild<HeadDialog*>();
+        ASSERT_TRUE(dialog);
+        auto* groups = dialog->findChild<QTreeWidget*>("headGroups");
+        const auto found = groups->findItems(clothes, Qt::MatchExactly);
+        ASSERT_EQ(found.size(), 1);
+        groups->scrollToItem(found[0]);
+        found[0]->setSelected(true);
+        dialog->findChild<QPushButton*>("groupCollide")->click();
+        dialog->findChild<QSpinBox*>("colliderSpheres")->setValue(24);
+        while (parts().tasks.isBusy()) finishWork();
+        shoot(*dialog, name);
+        dialog->reject();
+        QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
+    };
+    shootHead(samplesFolder() / "bust/bust.glb", "bust_shoulders", "head");
+    const auto body = outsideData() / "heads/makehuman_base.obj";
+    if (!std::filesystem::exists(body)) GTEST_SKIP() << body << " is not there";
+    shootHead(body, "helper-tights", "head-body");
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, ScreenshotsTest, testing::Values(Theme::Dark, Theme::Light),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/simulation/bones.h"
+#include "core/animation/bone_near.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace hairloom::editor {
+namespace hairloom {
 namespace {
 
 float distanceToSegment(const Vec3f& point, const Vec3f& a, const Vec3f& b) {
@@ -38,4 +38,4 @@ std::string boneNear(const Skeleton& skeleton, const Vec3f& point_ss) {
     return nearest;
 }
 
-}  // namespace hairloom::editor
+}  // namespace hairloom
