@@ -12,6 +12,7 @@
 #include "core/base/content_kind.h"
 #include "core/base/stopwatch.h"
 #include "core/editing/document.h"
+#include "core/editing/mask_commands.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/groom/file/operators_json.h"
@@ -30,14 +31,15 @@ struct StackOptions {
     std::string keep;
     std::string layer;  ///< name; empty: all
     std::string maskImage;
-    std::uint32_t mask = 1;
+    std::optional<std::uint32_t> mask;
     std::string output;
     std::optional<std::size_t> at, solo, duplicate, remove, only;
     bool bake = false;
 };
 
-/// The steps that the options ask for, in the order of the help.
-Status perform(const StackOptions& options, editing::Document& document) {
+/// The steps that the options ask for, in the order of the help. `filled` gets the mask that the image is in.
+Status perform(const StackOptions& options, editing::Document& document,
+               std::optional<std::uint32_t>& filled) {
     const auto step = [&](editing::StackCommand command, const std::string& file = {}) -> Status {
         if (!command) return tl::unexpected(file.empty() ? command.error() : inFile(command.error(), file));
         document.perform(std::move(*command));
@@ -49,7 +51,11 @@ Status perform(const StackOptions& options, editing::Document& document) {
         if (!image) return tl::unexpected(image.error());
         const auto values = valuesAtRoots(*image, model.groom);
         if (!values) return tl::unexpected(inFile(values.error(), options.input));
-        document.perform(editing::setMask(model, options.mask, *values));
+        const auto number =
+            options.mask ? Result<std::uint32_t>(*options.mask) : editing::freeMask(model.groom);
+        if (!number) return tl::unexpected(inFile(number.error(), options.input));
+        document.perform(editing::setMask(model, *number, *values));
+        filled = *number;
     }
     if (!options.from.empty()) {
         auto operators = loadOperators(options.from);
@@ -82,12 +88,15 @@ Status perform(const StackOptions& options, editing::Document& document) {
 Result<Report> edit(const StackOptions& options, Groom groom) {
     const Stopwatch watch;
     editing::Document document(std::move(groom));
-    if (auto done = perform(options, document); !done) return tl::unexpected(done.error());
+    std::optional<std::uint32_t> filled;
+    if (auto done = perform(options, document, filled); !done) return tl::unexpected(done.error());
     if (auto saved = saveProject(document.groom(), options.output); !saved)
         return tl::unexpected(saved.error());
-    return Report{{"operators", toJson(document.groom().operators)},
-                  {"seconds", watch.seconds()},
-                  {"output", options.output}};
+    Report report{{"operators", toJson(document.groom().operators)}};
+    if (filled) report["mask"] = *filled;
+    report["seconds"] = watch.seconds();
+    report["output"] = options.output;
+    return report;
 }
 
 Result<Report> run(const StackOptions& options) {
@@ -150,7 +159,7 @@ JobRun declare(CLI::App& job) {
     auto* image = job.add_option("--mask-image", options->maskImage,
                                  "PNG whose values at the root UVs become a mask of operators");
     image->needs(output);
-    job.add_option("--mask", options->mask, "Number of that mask")
+    job.add_option("--mask", options->mask, "Number of that mask; else the first that nothing uses")
         ->check(CLI::Range(1u, kPaintedMasks))
         ->needs(image);
     from->needs(output);

@@ -14,7 +14,7 @@
 #include <QWidgetAction>
 
 #include "core/editing/document.h"
-#include "core/editing/selection_commands.h"
+#include "core/editing/mask_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack_file.h"
 #include "editor/document/words.h"
@@ -331,32 +331,19 @@ class OperatorsPanel : public QWidget {
             new FieldForm(document_, preferences_, operatorMaskFields(document_.groom(), index, failed)));
         rows->addWidget(imageButton(
             "maskImage", tr("Mask from image…"),
-            tr("Fills the painted mask with the values of a PNG at the root UVs; where the map is none of "
-               "the "
-               "four, mask 1, which it becomes"),
+            tr("Fills the painted mask that the operator has with the values of a PNG at the root UVs; where "
+               "it has none of the four, the first that nothing uses, which it then has"),
             [this, index](const MaskImage& image) { return takeMask(index, image); }, failed));
         rows->addWidget(new MaskRamp(document_, index, failed));
         return form;
     }
 
-    /// A first image also makes its mask that of the operator.
     Status takeMask(std::size_t index, const MaskImage& image) {
-        if (index >= operators().size()) return {};
         const auto values = valuesAtRoots(image, document_.groom());
         if (!values) return tl::unexpected(values.error());
-        Operator changed = operators()[index];
-        Mask mask = maskOf(changed);
-        const bool painted = mask.map >= MaskMap::mask1;
-        if (!painted) mask.map = MaskMap::mask1;
-        setMaskOf(changed, mask);
-        const auto number =
-            static_cast<std::uint32_t>(mask.map) - static_cast<std::uint32_t>(MaskMap::mask1) + 1;
-        if (!painted) {
-            auto step = editing::setOperator(model(), index, changed, tr("Mask from image").toStdString());
-            if (!step) return tl::unexpected(step.error());
-            document_.perform(std::move(*step));
-        }
-        document_.perform(editing::setMask(model(), number, *values));
+        auto step = editing::fillMaskOf(model(), index, *values);
+        if (!step) return tl::unexpected(step.error());
+        document_.perform(std::move(*step));
         return {};
     }
 

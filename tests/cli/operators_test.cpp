@@ -61,6 +61,15 @@ TEST_F(OperatorsCli, AnImageBecomesAMaskAndADensity) {
     runJson("stack hair.hairloom --from curl.json -o bare.hairloom");
     EXPECT_TRUE(readText(folder / "masked.hairloom") != readText(folder / "bare.hairloom"));
     EXPECT_THAT(run(createArguments("") + " --mask broken.png").errors, HasSubstr("error: broken.png"));
+
+    // Without a number it takes what nothing uses.
+    const std::string fill = " --mask-image half.png -o filled.hairloom --force";
+    EXPECT_EQ(runJson("stack masked.hairloom" + fill)["mask"], 1);
+    for (const int next : {3, 4}) {
+        EXPECT_EQ(runJson("stack filled.hairloom" + fill)["mask"], next) << "the curl has 2";
+    }
+    EXPECT_THAT(run("stack filled.hairloom" + fill).errors, HasSubstr("all 4 masks are in use"));
+    EXPECT_EQ(runJson("stack filled.hairloom --mask 3" + fill)["mask"], 3);
 }
 
 TEST_F(OperatorsCli, AHeadIsTurnedAndTakenWithoutHelpers) {

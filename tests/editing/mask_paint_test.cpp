@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "core/editing/stack_commands.h"
+#include "core/editing/mask_commands.h"
+#include "core/editing/selection_commands.h"
+#include "core/groom/groom_hash.h"
 #include "core/operations/stack.h"
 #include "tests/editing/editing_samples.h"
 
@@ -73,6 +75,90 @@ TEST(MaskPaint, AStrokeRunsTheOperatorsThatHaveTheMaskInOneStep) {
         std::ranges::equal(std::get<CowArray<Vec3f>>(*shape).view(), top.document.groom().positions()));
     ASSERT_TRUE(top.document.undo());
     EXPECT_TRUE(std::ranges::equal(top.points(), straight));
+}
+
+/// Adds a curl that has this map.
+void addCurl(Document& document, MaskMap map) {
+    Operator curl = newOperator("curl");
+    Mask mask;
+    mask.map = map;
+    setMaskOf(curl, mask);
+    auto command = addOperator(document.model(), document.groom().operators.size(), curl);
+    ASSERT_TRUE(command) << command.error().message();
+    document.perform(std::move(*command));
+}
+void paint(Document& document, std::uint32_t number, float value) {
+    document.perform(
+        setMask(document.model(), number, std::vector<float>(document.groom().strandCount(), value)));
+}
+
+TEST(FreeMask, IsTheFirstThatNoOperatorHasAndNothingIsPaintedOn) {
+    Document document(hairOnHead(20));
+    EXPECT_EQ(freeMask(document.groom()), 1u);
+    addCurl(document, MaskMap::mask1);
+    EXPECT_EQ(freeMask(document.groom()), 2u);
+    paint(document, 2, 0.5f);
+    EXPECT_EQ(freeMask(document.groom()), 3u);
+    paint(document, 3, 0);
+    EXPECT_EQ(freeMask(document.groom()), 3u) << "what was painted was taken off again";
+    addCurl(document, MaskMap::mask3);
+    EXPECT_EQ(freeMask(document.groom()), 4u);
+    addCurl(document, MaskMap::mask4);
+    const auto none = freeMask(document.groom());
+    ASSERT_FALSE(none);
+    EXPECT_THAT(none.error().message(), testing::HasSubstr("all 4 masks are in use"));
+}
+
+TEST(FillMask, TakesAFreeMaskInOneStepThatIsUndoneAndReplayed) {
+    Document document(hairOnHead());
+    addCurl(document, MaskMap::mask1);
+    paint(document, 1, 1);
+    addCurl(document, MaskMap::none);
+    const std::uint64_t before = contentHash(document.groom());
+    const std::size_t steps = document.history().doneCount();
+    std::vector<float> values(document.groom().strandCount(), 0);
+    for (std::size_t s = 0; s < values.size() / 2; ++s) values[s] = 1;
+    auto filled = fillMaskOf(document.model(), 1, values);
+    ASSERT_TRUE(filled) << filled.error().message();
+    document.perform(std::move(*filled));
+    EXPECT_EQ(document.history().doneCount(), steps + 1);
+    EXPECT_EQ(maskOf(document.groom().operators[1]).map, MaskMap::mask2);
+    EXPECT_TRUE(std::ranges::equal(document.groom().strandAttributes.view<float>("mask.2"), values));
+    EXPECT_THAT(document.groom().strandAttributes.view<float>("mask.1"), testing::Each(1.0f));
+    StackCache cache;
+    const auto shape = evaluateStack(document.groom(), cache);
+    ASSERT_TRUE(shape);
+    EXPECT_TRUE(std::ranges::equal(std::get<CowArray<Vec3f>>(*shape).view(), document.groom().positions()));
+    const std::uint64_t after = contentHash(document.groom());
+    ASSERT_TRUE(document.undo());
+    EXPECT_EQ(contentHash(document.groom()), before);
+    ASSERT_TRUE(document.redo());
+    EXPECT_EQ(contentHash(document.groom()), after);
+    expectScriptMakesTheSame(document);
+
+    // Again: the operator has a map now, and takes no other.
+    std::ranges::reverse(values);
+    auto again = fillMaskOf(document.model(), 1, values);
+    ASSERT_TRUE(again);
+    document.perform(std::move(*again));
+    EXPECT_EQ(maskOf(document.groom().operators[1]).map, MaskMap::mask2);
+    EXPECT_TRUE(std::ranges::equal(document.groom().strandAttributes.view<float>("mask.2"), values));
+    auto same = fillMaskOf(document.model(), 1, values);
+    ASSERT_TRUE(same);
+    EXPECT_EQ(*same, nullptr);
+}
+
+TEST(FillMask, RefusesWhereNoMaskIsFreeAndLeavesAllAsItWas) {
+    Document document(hairOnHead(20));
+    for (const std::uint32_t number : {1u, 2u, 3u, 4u}) paint(document, number, 0.25f);
+    addCurl(document, MaskMap::density);
+    const std::uint64_t before = contentHash(document.groom());
+    const std::vector<float> values(document.groom().strandCount(), 1);
+    const auto refused = fillMaskOf(document.model(), 0, values);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message(), testing::HasSubstr("all 4 masks are in use"));
+    EXPECT_FALSE(fillMaskOf(document.model(), 1, values)) << "there is no such operator";
+    EXPECT_EQ(contentHash(document.groom()), before);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <QWidgetAction>
 #include <set>
 
+#include "core/editing/selection_commands.h"
 #include "core/operations/stack.h"
 #include "editor/fields/number_box.h"
 #include "editor/fields/ramp_edit.h"
@@ -245,8 +246,8 @@ TEST_F(OperatorsTest, AnImageBecomesAMaskAndTheDensityOfRoots) {
         << window->statusLine().message().toStdString();
     answer("half.png");
     window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
-    EXPECT_EQ(maskOf(groom().operators[kClump]).map, MaskMap::mask1);
-    const auto mask = groom().strandAttributes.view<float>("mask.1");
+    EXPECT_EQ(maskOf(groom().operators[kClump]).map, MaskMap::mask3) << "the sample uses two";
+    const auto mask = groom().strandAttributes.view<float>("mask.3");
     ASSERT_EQ(mask.size(), groom().strandCount());
     const auto uvs = groom().strandAttributes.view<Vec2f>(attribute::kRootUv);
     std::size_t white = 0;
@@ -257,13 +258,30 @@ TEST_F(OperatorsTest, AnImageBecomesAMaskAndTheDensityOfRoots) {
     EXPECT_GT(white, 0u);
     EXPECT_LT(white, mask.size());
     expectEvaluated();
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before) << "one step";
+    // Masks that are in use stay as they are; where all are, it says so.
+    const std::vector<float> painted(groom().strandCount(), 0.5f);
+    document().perform(editing::setMask(document().editing().model(), 3, painted));
+    answer("half.png");
+    window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
+    EXPECT_EQ(maskOf(groom().operators[kClump]).map, MaskMap::mask4);
+    EXPECT_EQ(groom().strandAttributes.view<float>("mask.3")[0], 0.5f);
+    trigger("edit.undo");
+    document().perform(editing::setMask(document().editing().model(), 4, painted));
+    const auto used = hash();
+    answer("half.png");
+    window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
+    EXPECT_EQ(hash(), used);
+    EXPECT_TRUE(window->statusLine().message().contains("all 4 masks are in use", Qt::CaseInsensitive))
+        << window->statusLine().message().toStdString();
     undoAll();
     EXPECT_EQ(hash(), before);
-    const auto painted = groom().scalpDensity;
+    const auto density = groom().scalpDensity;
     answer("half.png");
     window->panel("scalp")->findChild<QPushButton*>("densityImage")->click();
     EXPECT_EQ(groom().scalpDensity.size(), groom().scalp->vertexCount());
-    EXPECT_NE(groom().scalpDensity, painted);
+    EXPECT_NE(groom().scalpDensity, density);
     undoAll();
     EXPECT_EQ(hash(), before);
 }
