@@ -107,6 +107,7 @@ Result<FollowSections> followSections(const Groom& groom, const PreparedStrands&
     for (std::size_t t = 0; t < bindings.triangles.size(); ++t)
         sections.triangles.push_back({bindings.triangles[t], bindings.areas[t]});
     const std::uint32_t most = *std::ranges::max_element(bindings.hairs);
+    if (most == 0) return fail("the densities of all layers leave no hair", "expected one above 0");
     if (std::ranges::any_of(bindings.hairs, [&](std::uint32_t hairs) { return hairs != most; })) {
         for (const std::uint32_t hairs : bindings.hairs)
             sections.hairs.push_back(static_cast<std::uint16_t>(hairs));

@@ -243,6 +243,15 @@ TEST_F(RuntimeAsset, AHairstyleOfOneLayerHasItsDensityAndMaterial) {
     EXPECT_FLOAT_EQ(radii.front(), thick.rootRadius);
 }
 
+TEST_F(RuntimeAsset, DensitiesThatLeaveNoHairAreRefused) {
+    Groom groom = wholeGroom();
+    groom.layers = {{"Base", true, false, 0, {}}};
+    const auto refused = strandWriter("runtime").write(groom, folder / "none.hairrt", {});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message(), HasSubstr("leave no hair; expected one above 0"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "none.hairrt"));
+}
+
 TEST_F(RuntimeAsset, LayersThatAreNotThereAreRefused) {
     Groom groom = wholeGroom();
     groom.layers = {{"Base", true, false, 1, {}}, {"Fringe", true, false, 0.5f, {}}};
