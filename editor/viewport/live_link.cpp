@@ -17,17 +17,13 @@ void LiveLink::add(Job job) {
 }
 
 void LiveLink::run(LiveWork* work) {
-    while (true) {
-        Job job;
-        {
-            const std::lock_guard lock(mutex_);
-            if (jobs_.empty()) return;
-            job = std::move(jobs_.front());
-            jobs_.pop_front();
-            --jobCount_;
-        }
-        job(work);
+    std::deque<Job> jobs;
+    {
+        const std::lock_guard lock(mutex_);
+        jobs.swap(jobs_);
+        jobCount_ = 0;
     }
+    for (const Job& job : jobs) job(work);
 }
 
 void LiveLink::close() {

@@ -35,6 +35,7 @@ class LiveLink {
     /// `wake` is called, on any thread, when there is a job.
     explicit LiveLink(std::function<void()> wake) : wake_(std::move(wake)) {}
     bool hasJobs() const { return jobCount_ > 0; }
+    /// What is there now: where steps take longer than they last the next is always there, and pictures wait.
     void run(LiveWork* work);
     /// From now on jobs are called at once, with null.
     void close();

@@ -149,6 +149,23 @@ TEST_F(LiveTest, EditsArriveWhileItPlays) {
     }
 }
 
+TEST(LiveLinkTest, JobsThatFollowEachOtherLeaveTimeForPictures) {
+    LiveLink link([] {});
+    int done = 0;
+    std::function<void(LiveWork*)> another = [&](LiveWork* work) {
+        if (++done < 100 && work == nullptr) link.post(another);
+    };
+    link.post(another);
+    link.post(another);
+    link.run(nullptr);
+    EXPECT_EQ(done, 2);
+    EXPECT_TRUE(link.hasJobs());
+    link.run(nullptr);
+    EXPECT_EQ(done, 4);
+    link.close();
+    EXPECT_GT(done, 100) << "nobody waits for ever";
+}
+
 TEST_F(LiveTest, ADeviceThatIsLostLeavesTheCpu) {
     gpu::DeviceOptions options;
     options.validation = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From an empty window to an exported, moving hairstyle, as a person goes: the walk that docs/manual.md
 // shows.
+#include <QDir>
 #include <QPushButton>
 
 #include "editor/dialogs/export_dialog.h"
@@ -26,6 +27,7 @@ class WalkTest : public WindowTest {
             ASSERT_TRUE(QTest::qWaitFor([&] { return viewportOnScreen() != before; }, 120'000));
         }
         const QImage screen = onScreen();
+        QDir().mkpath(HAIRLOOM_SCREENSHOTS);
         EXPECT_TRUE(screen.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/walk.png")));
         EXPECT_GT(skinPixels(viewportOnScreen()), 300);
     }
