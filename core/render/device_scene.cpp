@@ -356,7 +356,7 @@ Status DeviceScene::replacePointDyes(std::size_t group, std::span<const float> d
     return {};
 }
 
-Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_ws,
+Status DeviceScene::replaceStrands(gpu::Device& device, std::size_t group, gpu::BufferPtr positions_ws,
                                    std::uint32_t floatsPerPoint, const Box3f& bounds_ws,
                                    std::span<const Vec3f> sample_ws) {
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
@@ -368,6 +368,19 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
                     fmt::format("{} bytes that shaders read, of 3 or 4 floats a point", needed));
     }
     if (bounds_ws.isEmpty()) return fail("positions on the device without their bounds");
+    const bool asTheyAre = device.info().backend != gpu::Backend::Direct3D11 ||
+                           positions_ws->desc().elementBytes == sizeof(float);
+    if (asTheyAre) g.deviceFloats = nullptr;
+    if (!asTheyAre && (g.deviceFloats == nullptr || g.deviceFloats->desc().size < needed)) {
+        gpu::BufferDesc desc;
+        desc.name = "strand points of the device";
+        desc.size = needed;
+        desc.usage = gpu::Usage::ShaderRead;
+        desc.elementBytes = sizeof(float);
+        auto made = device.createBuffer(desc);
+        if (!made) return tl::unexpected(made.error());
+        g.deviceFloats = std::move(*made);
+    }
     g.bounds_ws = bounds_ws;
     g.positions_ws.clear();
     g.sample_ws.assign(sample_ws.begin(), sample_ws.end());

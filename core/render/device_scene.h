@@ -77,9 +77,12 @@ struct StrandGroup {
     std::size_t pointCount = 0;
     bool hasRadii = false;
     bool hasPointDyes = false;
-    std::vector<float> pointDyes;      ///< waiting for their upload
-    std::vector<Vec3f> positions_ws;   ///< waiting for their upload
-    gpu::BufferPtr devicePositions;    ///< of all points, in place of the batches' own
+    std::vector<float> pointDyes;     ///< waiting for their upload
+    std::vector<Vec3f> positions_ws;  ///< waiting for their upload
+    gpu::BufferPtr devicePositions;   ///< of all points, in place of the batches' own
+    /// Of their content in single floats, as Direct3D's shaders see it: a buffer has one size of elements
+    /// there. Null where devicePositions themselves can be read so.
+    gpu::BufferPtr deviceFloats;
     std::uint32_t floatsPerPoint = 3;  ///< of devicePositions: 3 or 4
     Box3f bounds_ws;
     double length = 0;  ///< metres of all strands together, where they stood when they were set
@@ -126,8 +129,9 @@ class DeviceScene {
                        const Box3f& bounds_ws);
     Status replaceStrands(std::size_t group, std::span<const Vec3f> positions_ws);
     Status replacePointDyes(std::size_t group, std::span<const float> dyes);
-    Status replaceStrands(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
-                          const Box3f& bounds_ws, std::span<const Vec3f> sample_ws);
+    Status replaceStrands(gpu::Device& device, std::size_t group, gpu::BufferPtr positions_ws,
+                          std::uint32_t floatsPerPoint, const Box3f& bounds_ws,
+                          std::span<const Vec3f> sample_ws);
 
     /// Makes room for curves of that fineness, `twice` for their light with shadows and without, and for what
     /// their points see of the `sky`; nothing happens when there is.

@@ -35,6 +35,11 @@ shaders::CurveConstants curveConstants(const RendererState& state, const DrawBat
     return c;
 }
 
+const gpu::BufferPtr& pointsOf(const StrandGroup& group, const DrawBatch& batch) {
+    if (group.devicePositions == nullptr) return batch.positions;
+    return group.deviceFloats ? group.deviceFloats : group.devicePositions;
+}
+
 }  // namespace
 
 void takeLights(RendererState& state, std::span<const Light> lights, const Environment& environment,
@@ -120,14 +125,17 @@ shaders::LookConstants lookConstants(const shading::StrandLook& look) {
 }
 
 void recordCurves(gpu::CommandList& list, RendererState& state) {
+    for (const StrandGroup& group : state.scene.groups) {
+        if (group.devicePositions == nullptr || group.deviceFloats == nullptr) continue;
+        list.copyBuffer(group.devicePositions, 0, group.deviceFloats, 0, group.deviceFloats->desc().size);
+    }
     list.beginPass({passName(Pass::curves), {}, {}});
     list.setPipeline(state.pipelines.compute("curve.comp"));
     for (const DrawBatch& batch : state.scene.batches) {
         const StrandGroup& group = state.scene.groups[batch.group];
         const shaders::CurveConstants constants = curveConstants(state, batch);
         list.setConstants(0, gpu::bytesOf(constants));
-        bind(list, {Binding::read(0, batch.headers),
-                    Binding::read(1, group.devicePositions ? group.devicePositions : batch.positions),
+        bind(list, {Binding::read(0, batch.headers), Binding::read(1, pointsOf(group, batch)),
                     Binding::read(2, batch.radii), Binding::write(0, batch.curve)});
         list.dispatch(groupsFor(constants.strandCount, HAIRLOOM_LIST_GROUP));
     }

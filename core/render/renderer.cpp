@@ -132,8 +132,8 @@ Status Renderer::setMeshPositions(std::size_t mesh, gpu::BufferPtr positions_ws,
 Status Renderer::setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws,
                                     std::uint32_t floatsPerPoint, const Box3f& bounds_ws,
                                     std::span<const Vec3f> sample_ws) {
-    auto status = parts_->state.scene.replaceStrands(group, std::move(positions_ws), floatsPerPoint,
-                                                     bounds_ws, sample_ws);
+    auto status = parts_->state.scene.replaceStrands(parts_->device, group, std::move(positions_ws),
+                                                     floatsPerPoint, bounds_ws, sample_ws);
     if (!status) return status;
     parts_->changes.add(Changes::geometry());
     return {};
