@@ -2,6 +2,7 @@
 #include "editor/panels/card_box.h"
 
 #include <QFormLayout>
+#include <QGridLayout>
 #include <QVBoxLayout>
 #include <algorithm>
 
@@ -61,12 +62,14 @@ CardBox::CardBox(QtDocument& document, Messages& messages, ToolBox& tools)
     forgetAll_ = pushButton("cardForgetAll", tr("Forget all"),
                             tr("Makes all cards of this level like the others; deleted ones come back"),
                             [this] { forget(true); });
-    auto* row = new QHBoxLayout;
-    for (QPushButton* button : {pick_, pin_, delete_}) row->addWidget(button);
-    layout->addLayout(row);
-    auto* second = new QHBoxLayout;
-    for (QPushButton* button : {forget_, forgetAll_}) second->addWidget(button);
-    layout->addLayout(second);
+    // In pairs they fit into a narrow panel.
+    auto* buttons = new QGridLayout;
+    int place = 0;
+    for (QPushButton* button : {pick_, pin_, delete_, forget_, forgetAll_}) {
+        buttons->addWidget(button, place / 2, place % 2);
+        ++place;
+    }
+    layout->addLayout(buttons);
     connect(tool_, &CardTool::picked, this, &CardBox::pick);
     connect(tool_, &CardTool::deleteAsked, delete_, &QPushButton::click);
     for (NumberBox* box : {width_, bend_})

@@ -344,7 +344,7 @@ void LevelsPanel::showTexture() {
     const int map = map_->currentIndex();
     if (made == nullptr || map < 0 || static_cast<std::size_t>(map) >= made->textures.size())
         return texture_->setPixmap({});
-    constexpr int kWidth = 280;
+    constexpr int kWidth = 220;  // the narrowest panel has it
     texture_->setPixmap(onChequers(made->textures[static_cast<std::size_t>(map)].image, kWidth));
 }
 
