@@ -371,7 +371,7 @@ Status DeviceScene::replaceStrands(gpu::Device& device, std::size_t group, gpu::
     const bool asTheyAre = device.info().backend != gpu::Backend::Direct3D11 ||
                            positions_ws->desc().elementBytes == sizeof(float);
     if (asTheyAre) g.deviceFloats = nullptr;
-    if (!asTheyAre && (g.deviceFloats == nullptr || g.deviceFloats->desc().size < needed)) {
+    if (!asTheyAre && (g.deviceFloats == nullptr || g.deviceFloats->desc().size != needed)) {
         gpu::BufferDesc desc;
         desc.name = "strand points of the device";
         desc.size = needed;
