@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "benchmarks/benchmark.h"
-#include "core/accuracy/gpu_cost.h"
-#include "core/accuracy/machine.h"
+#include "core/cost/gpu_cost.h"
+#include "core/cost/machine.h"
 
 namespace hairloom::benchmarks {
 

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "benchmarks/gpu_sim.h"
-#include "core/accuracy/plot.h"
+#include "core/charts/plot.h"
 
 namespace hairloom::benchmarks {
 namespace {

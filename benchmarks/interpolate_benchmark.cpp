@@ -5,7 +5,7 @@
 #include "benchmarks/measurement.h"
 #include "benchmarks/sample_hair.h"
 #include "core/accuracy/guide_grid.h"
-#include "core/accuracy/thread_limit.h"
+#include "core/cost/thread_limit.h"
 #include "core/interpolation/follow_hairs.h"
 
 namespace hairloom::benchmarks {

@@ -8,9 +8,9 @@
 
 #include "benchmarks/benchmark.h"
 #include "benchmarks/sample_hair.h"
-#include "core/accuracy/benchmark_scenes.h"
-#include "core/scene/live_cost.h"
-#include "core/scene/open.h"
+#include "core/cost/benchmark_scenes.h"
+#include "core/documents/open.h"
+#include "core/live/live_cost.h"
 
 namespace hairloom::benchmarks {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/accuracy/statistics.h"
+#include "core/cost/statistics.h"
 
 namespace hairloom::benchmarks {
 

@@ -11,12 +11,12 @@
 
 #include "benchmarks/measurement.h"
 #include "benchmarks/sample_hair.h"
-#include "core/accuracy/head_scene.h"
 #include "core/base/random.h"
 #include "core/base/stopwatch.h"
+#include "core/cost/head_scene.h"
 #include "core/gpu/device.h"
+#include "core/live/groom_scene.h"
 #include "core/render/renderer.h"
-#include "core/scene/groom_scene.h"
 
 namespace hairloom::benchmarks {
 namespace {

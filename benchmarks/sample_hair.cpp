@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "core/documents/sample.h"
 #include "core/geometry/curve.h"
-#include "core/scene/sample.h"
 #include "core/simulation/scene_input.h"
 #include "importers/child_process.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/accuracy/step_cost.h"
+#include "core/cost/step_cost.h"
 #include "core/groom/groom.h"
 
 namespace hairloom::benchmarks {

@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "benchmarks/benchmark.h"
-#include "core/accuracy/head_scene.h"
-#include "core/accuracy/plot.h"
+#include "core/charts/plot.h"
+#include "core/cost/head_scene.h"
 #include "core/render/shadow_truth.h"
 
 namespace hairloom::benchmarks {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "benchmarks/measurement.h"
-#include "core/accuracy/machine.h"
-#include "core/accuracy/step_cost.h"
+#include "core/cost/machine.h"
+#include "core/cost/step_cost.h"
 
 namespace hairloom::benchmarks {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "benchmarks/sample_hair.h"
-#include "core/accuracy/instruction_set_limit.h"
 #include "core/base/parallel.h"
+#include "core/cost/instruction_set_limit.h"
 
 namespace hairloom::benchmarks {
 namespace {

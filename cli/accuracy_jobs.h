@@ -9,7 +9,7 @@
 
 #include "cli/job.h"
 #include "core/accuracy/ground_truth.h"
-#include "core/accuracy/statistics.h"
+#include "core/cost/statistics.h"
 
 namespace hairloom::cli {
 

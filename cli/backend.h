@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/gpu_simulation/gpu_engine_method.h"
+#include "core/live/engine_choice.h"
 #include "core/render/fibre_material.h"
-#include "core/scene/engine_choice.h"
 
 namespace hairloom::cli {
 

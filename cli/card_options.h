@@ -4,7 +4,7 @@
 
 #include <CLI/App.hpp>
 
-#include "core/scene/level_chain.h"
+#include "core/levels/level_chain.h"
 
 namespace hairloom::cli {
 

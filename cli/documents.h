@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/job.h"
+#include "core/documents/open.h"
 #include "core/groom/validate.h"
-#include "core/scene/open.h"
 
 namespace hairloom::cli {
 

@@ -2,8 +2,8 @@
 #pragma once
 // Pictures of hair while it is simulated, without a record between.
 
+#include "core/live/live_hair.h"
 #include "core/render/picture.h"
-#include "core/scene/live_hair.h"
 
 namespace hairloom::cli {
 

@@ -7,7 +7,9 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -15,6 +17,7 @@
 #include "cli/error_report.h"
 #include "cli/finite_numbers.h"
 #include "cli/global_options.h"
+#include "cli/help_format.h"
 #include "cli/job.h"
 #include "core/base/log.h"
 #include "core/base/output_file.h"
@@ -28,7 +31,27 @@ using hairloom::cli::Report;
 
 enum ExitCode { kDone = 0, kFailed = 1, kWrongUsage = 2 };
 
-void printForPeople(const Report& report) {
+/// Numbers have as many digits as a person reads; `--json` has all.
+Report rounded(const Report& value) {
+    constexpr double kDigits = 4;
+    if (value.is_structured()) {
+        Report all = value;
+        for (auto& part : all) part = rounded(part);
+        return all;
+    }
+    if (!value.is_number_float()) return value;
+    const double number = value.get<double>();
+    if (number == 0 || !std::isfinite(number)) return value;
+    const double digits = std::max(0.0, kDigits - 1 - std::floor(std::log10(std::abs(number))));
+    // Beyond what a power of ten can say it is left alone.
+    if (digits > 300) return value;
+    const double unit = std::pow(10.0, digits);
+    return std::round(number * unit) / unit;
+}
+
+void printForPeople(const Report& exact) {
+    const Report report = rounded(exact);
+
     for (const auto& [key, value] : report.items()) {
         if (value.is_array()) {
             fmt::print("{}:{}\n", key, value.empty() ? " none" : "");
@@ -97,6 +120,7 @@ int main(int argc, char** argv) {
     // On Windows, too, a word that begins with a slash is a path.
     app.allow_windows_style_options(false);
     app.fallthrough();
+    app.formatter(std::make_shared<hairloom::cli::HelpFormatter>());
     hairloom::cli::GlobalOptions options;
     hairloom::cli::addGlobalOptions(app, options);
 

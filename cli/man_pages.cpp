@@ -24,6 +24,8 @@ std::string escaped(std::string_view text) {
             out += "\\-";
         else if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n'))
             out += std::string("\\&") + c;
+        else if (c == '\n')
+            out += "\n.br\n";
         else
             out += c;
     }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "core/scene/motions.h"
+#include "core/documents/motions.h"
 #include "core/simulation/motion.h"
 
 namespace hairloom::cli {

@@ -9,7 +9,7 @@
 #include "cli/documents.h"
 #include "cli/progress.h"
 #include "cli/vectors.h"
-#include "core/scene/picture_cost_report.h"
+#include "core/live/picture_cost_report.h"
 
 namespace hairloom::cli {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What a game may do to a hairstyle without breaking it, as its certificate says
-// (core/accuracy/certificate.h).
+// (core/stability/certificate.h).
 
 #include <cstdint>
 #include <span>

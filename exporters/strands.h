@@ -62,7 +62,7 @@ struct StrandWriter {
     std::string limits;   ///< in words
     std::vector<ExportTarget> targets;  ///< at least one
     std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }
-    /// Null: the format holds cards instead of strands (core/scene/hair_export.h). Otherwise it
+    /// Null: the format holds cards instead of strands (core/documents/hair_export.h). Otherwise it
     /// replaces `path` atomically, reads the file back and compares. Strands that no consumer could use
     /// (fewer than two points, not finite, of no length) are left out and reported. Errors: nothing left to
     /// write, a limit of the format that options cannot mend, a file that cannot be written or does not read

@@ -16,7 +16,7 @@
 #include "core/accuracy/compare_reports.h"
 #include "core/accuracy/work_precision_report.h"
 #include "core/base/file.h"
-#include "core/scene/groom_scene.h"
+#include "core/live/groom_scene.h"
 
 namespace hairloom::cli {
 namespace {

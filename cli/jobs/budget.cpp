@@ -16,7 +16,7 @@
 #include "core/base/content_kind.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
-#include "core/scene/live_cost.h"
+#include "core/live/live_cost.h"
 
 namespace hairloom::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/job.h"
 #include "cli/motions.h"
 #include "cli/progress.h"
-#include "core/accuracy/effect_cost.h"
+#include "core/cost/effect_cost.h"
 
 namespace hairloom::cli {
 namespace {
@@ -28,7 +28,8 @@ Report effectRow(const EffectCosts& costs, const EffectCost& effect) {
     row["ms_on"] = effect.on ? Report(asItIs) : Report();
     row["ms_off"] = effect.on ? without : Report(asItIs);
     const auto& cost = effect.costMilliseconds;
-    row["ms_cost"] = cost ? Report(cost->median) : Report();
+    const auto price = effect.price();
+    row["ms"] = price ? Report(*price) : Report();
     row["ms_cost_q1"] = cost ? Report(cost->q1) : Report();
     row["ms_cost_q3"] = cost ? Report(cost->q3) : Report();
     row["ms_stages"] = effect.stageMilliseconds;

@@ -10,11 +10,11 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "core/accuracy/certificate.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
-#include "core/scene/hair_export.h"
-#include "core/scene/web_page.h"
+#include "core/documents/hair_export.h"
+#include "core/documents/web_page.h"
+#include "core/stability/certificate.h"
 
 namespace hairloom::cli {
 namespace {
@@ -134,22 +134,20 @@ std::vector<std::string> formatNames() {
     return names;
 }
 
-/// What each carries beside the points, and its limits.
+/// A line for each.
 std::string formatsInWords() {
-    std::string text;
-    for (const StrandWriter& writer : hairWriters()) {
-        text += fmt::format("{}{}: {}, with {}; {}.", text.empty() ? "" : " ", writer.name, writer.label,
-                            writer.carries, writer.limits);
-    }
-    text += " web: a folder with a page that plays the runtime asset in a browser, offline.";
+    constexpr int kColumn = 16;
+    std::string text = "What to write";
+    for (const StrandWriter& writer : hairWriters())
+        text += fmt::format("\n{:<{}}{}", writer.name, kColumn, writer.label);
+    text += fmt::format("\n{:<{}}A folder with a page that plays the hair in a browser", kWebFormat, kColumn);
     return text;
 }
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ExportOptions>();
     job.add_option("groom", options->input, "Groom to export")->required();
-    job.add_option("--format", options->format, "What to write. " + formatsInWords())
-        ->check(CLI::IsMember(formatNames()));
+    job.add_option("--format", options->format, formatsInWords())->check(CLI::IsMember(formatNames()));
     job.add_option(
            "--target", options->target,
            "Program to write for: sets unit, axis, points and limits, and the format where that is not "

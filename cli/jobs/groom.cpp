@@ -8,8 +8,8 @@
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/stopwatch.h"
+#include "core/documents/hair_import.h"
 #include "core/groom/file/project_file.h"
-#include "core/scene/hair_import.h"
 
 namespace hairloom::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include "cli/job.h"
 #include "cli/progress.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/level_report.h"
-#include "core/scene/spring_fit.h"
+#include "core/levels/level_report.h"
+#include "core/levels/spring_fit.h"
 
 namespace hairloom::cli {
 namespace {

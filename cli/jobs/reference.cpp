@@ -11,6 +11,7 @@
 #include "cli/job.h"
 #include "cli/man_pages.h"
 #include "cli/outputs.h"
+#include "cli/readme_lists.h"
 #include "core/base/file.h"
 #include "core/groom/file/fields.h"
 #include "core/operations/script.h"
@@ -131,18 +132,32 @@ Result<Report> writeManPages(const std::string& folder) {
     return Report{{"output", folder}, {"files", *names}};
 }
 
+Result<Report> writeReadme(const std::string& path) {
+    const auto before = readTextFile(path);
+    if (!before) return tl::unexpected(before.error());
+    const auto page = withLists(*before);
+    if (!page) return tl::unexpected(inFile(page.error(), path));
+    if (auto status = writeFileAtomically(path, *page); !status) return tl::unexpected(status.error());
+    return Report{{"bytes", page->size()}, {"output", path}};
+}
+
 JobRun declare(CLI::App& job) {
     struct Options {
-        std::string output, man;
+        std::string output, man, readme;
     };
     const auto options = std::make_shared<Options>();
     auto* page = job.add_option("-o,--output", options->output, "Markdown file to write");
     auto* man = job.add_option("--man", options->man,
                                "Folder to write the manual pages hairloom.1 and hairloom-cli.1 into");
-    page->excludes(man);
+    auto* readme = job.add_option("--readme", options->readme,
+                                  "README.md whose table of what the program has to make anew, in its place");
+    page->excludes(man)->excludes(readme);
+    man->excludes(readme);
     job.require_option(1);
     return [options](const std::string&) {
         if (!options->man.empty()) return writeManPages(options->man);
+        if (!options->readme.empty())
+            return withOutputs({{options->readme}}, [&] { return writeReadme(options->readme); });
         return withOutputs({{options->output}}, [&] { return write(options->output); });
     };
 }

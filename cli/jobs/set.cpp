@@ -10,10 +10,10 @@
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
+#include "core/documents/dye_mask.h"
+#include "core/documents/hair_preset.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
-#include "core/scene/dye_mask.h"
-#include "core/scene/hair_preset.h"
 #include "hairloom/presets.h"
 
 namespace hairloom::cli {

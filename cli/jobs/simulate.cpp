@@ -106,7 +106,7 @@ Report effectsReport(const std::vector<EffectReport>& effects) {
         rows.push_back(Report{{"name", effect.name},
                               {"on", effect.on},
                               {"why", effect.why},
-                              {"ms", effect.milliseconds},
+                              {"ms", effect.milliseconds ? Report(*effect.milliseconds) : Report()},
                               {"bytes", effect.bytes}});
     }
     return rows;

@@ -9,11 +9,11 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/progress.h"
-#include "core/accuracy/certificate.h"
-#include "core/accuracy/stability_report.h"
-#include "core/accuracy/stable_steps.h"
 #include "core/base/file.h"
 #include "core/base/output_file.h"
+#include "core/stability/certificate.h"
+#include "core/stability/stability_report.h"
+#include "core/stability/stable_steps.h"
 
 namespace hairloom::cli {
 namespace {

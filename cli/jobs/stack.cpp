@@ -11,6 +11,7 @@
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
 #include "core/base/stopwatch.h"
+#include "core/documents/mask_image.h"
 #include "core/editing/document.h"
 #include "core/editing/mask_commands.h"
 #include "core/editing/selection_commands.h"
@@ -19,7 +20,6 @@
 #include "core/groom/file/project_file.h"
 #include "core/operations/mask.h"
 #include "core/operations/stack_file.h"
-#include "core/scene/mask_image.h"
 
 namespace hairloom::cli {
 namespace {

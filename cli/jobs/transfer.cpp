@@ -7,8 +7,8 @@
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
+#include "core/documents/head_transfer.h"
 #include "core/groom/file/project_file.h"
-#include "core/scene/head_transfer.h"
 
 namespace hairloom::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/accuracy/without_effect.h"
 #include "core/accuracy/work_precision.h"
+#include "core/cost/without_effect.h"
 
 namespace hairloom {
 namespace {

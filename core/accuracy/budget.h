@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/accuracy/ground_truth.h"
-#include "core/accuracy/statistics.h"
+#include "core/cost/statistics.h"
 
 namespace hairloom {
 

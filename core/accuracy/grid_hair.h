@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/accuracy/grid.h"
-#include "core/accuracy/scene_run.h"
-#include "core/accuracy/thread_limit.h"
+#include "core/cost/scene_run.h"
+#include "core/cost/thread_limit.h"
 
 namespace hairloom {
 

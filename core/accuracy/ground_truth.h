@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/accuracy/scene_run.h"
+#include "core/cost/scene_run.h"
 
 namespace hairloom {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/accuracy/scene_run.h"
+#include "core/cost/scene_run.h"
 
 namespace hairloom {
 

@@ -10,7 +10,7 @@
 #include "core/accuracy/grid.h"
 #include "core/accuracy/ground_truth.h"
 #include "core/accuracy/other_errors.h"
-#include "core/accuracy/statistics.h"
+#include "core/cost/statistics.h"
 
 namespace hairloom {
 

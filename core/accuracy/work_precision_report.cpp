@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "core/accuracy/html_report.h"
-#include "core/accuracy/machine.h"
 #include "core/base/file.h"
+#include "core/charts/html_report.h"
+#include "core/cost/machine.h"
 
 namespace hairloom {
 namespace {

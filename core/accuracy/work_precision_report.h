@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/accuracy/measures.h"
-#include "core/accuracy/plot.h"
 #include "core/accuracy/work_precision.h"
+#include "core/charts/plot.h"
 
 namespace hairloom {
 

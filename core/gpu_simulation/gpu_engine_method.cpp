@@ -60,11 +60,12 @@ class GpuEngineMethod final : public StrandMethod {
         std::vector<EffectReport> effects;
         for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
             const auto effect = static_cast<runtime::Effect>(index);
-            effects.push_back({runtime::effectName(effect), engine_.plan().on(effect),
-                               reasonAlone(engine_.plan().why(effect)), 0.0, engine_.effectBytes(effect)});
+            const bool on = engine_.plan().on(effect);
+            effects.push_back({runtime::effectName(effect), on, reasonAlone(engine_.plan().why(effect)),
+                               on ? std::nullopt : std::optional(0.0), engine_.effectBytes(effect)});
         }
         if (engine_.volumeBytes() > 0)
-            effects.push_back({"hair-hair", true, "on, asked for", 0.0, engine_.volumeBytes()});
+            effects.push_back({"hair-hair", true, "on, asked for", std::nullopt, engine_.volumeBytes()});
         return effects;
     }
 

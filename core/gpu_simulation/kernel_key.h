@@ -6,7 +6,7 @@
 #include <string>
 
 #include "hairloom/plan.h"
-#include "runtime/src/kernels.h"
+#include "runtime/engine/kernels.h"
 
 namespace hairloom::gpu_simulation {
 

@@ -10,8 +10,8 @@
 
 #include "core/gpu/device.h"
 #include "core/gpu_simulation/kernel_key.h"
+#include "runtime/engine/state.h"
 #include "runtime/shaders/types.h"
-#include "runtime/src/state.h"
 
 namespace hairloom::gpu_simulation {
 

@@ -8,7 +8,7 @@
 
 #include "core/gpu_simulation/bend_reduction.h"
 #include "core/gpu_simulation/strand_engine_impl.h"
-#include "runtime/src/checks.h"
+#include "runtime/engine/checks.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -17,8 +17,8 @@
 #include "core/gpu_simulation/gpu_hair_volume.h"
 #include "core/gpu_simulation/kernel_library.h"
 #include "core/gpu_simulation/strand_batch.h"
-#include "runtime/src/frame_setup.h"
-#include "runtime/src/state_read.h"
+#include "runtime/engine/frame_setup.h"
+#include "runtime/engine/state_read.h"
 
 namespace hairloom::gpu_simulation {
 

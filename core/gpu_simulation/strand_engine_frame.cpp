@@ -9,8 +9,8 @@
 #include "core/gpu_simulation/bend_reduction.h"
 #include "core/gpu_simulation/compiled_kernel.h"
 #include "core/gpu_simulation/strand_engine_impl.h"
+#include "runtime/engine/checks.h"
 #include "runtime/shaders/live_types.h"
-#include "runtime/src/checks.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -5,8 +5,8 @@
 #include <deque>
 
 #include "core/gpu_simulation/strand_engine.h"
+#include "runtime/models/rods/rods.h"
 #include "runtime/shaders/rod_types.h"
-#include "runtime/src/rods.h"
 
 namespace hairloom::gpu_simulation {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/gpu_simulation/strand_engine_impl.h"
-#include "runtime/src/checks.h"
+#include "runtime/engine/checks.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "core/gpu_simulation/strand_engine_impl.h"
-#include "runtime/src/checks.h"
+#include "runtime/engine/checks.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -27,7 +27,7 @@ struct RenderMesh {
     bool matte = false;                        ///< a plain Lambertian: no light under the skin, no highlight
 };
 
-/// How strands are drawn: what core/scene/hair_look.h makes of an authored material. Colours are linear RGB.
+/// How strands are drawn: what core/live/hair_look.h makes of an authored material. Colours are linear RGB.
 struct StrandShading {
     Vec3f albedo = Vec3f(0.21f, 0.115f, 0.06f);  ///< 0…1; where a strand has no colour of its own
     float radius = 0.00004f;    ///< metres at the root, where points have none; 25–60 µm are human

@@ -96,7 +96,8 @@ class AlternativeMethod : public StrandMethod {
         readPositions(positions_ws);
         milliseconds_ = 1e-6 * static_cast<double>(host_.nanoseconds() - begin);
         ++frames_;
-        effect_.milliseconds += (milliseconds_ - effect_.milliseconds) / static_cast<double>(frames_);
+        const double mean = effect_.milliseconds.value_or(0);
+        effect_.milliseconds = mean + (milliseconds_ - mean) / static_cast<double>(frames_);
     }
     double stepMilliseconds() const override { return milliseconds_; }
     runtime::Measurements measure() const override { return points_.measure(); }

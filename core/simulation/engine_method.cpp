@@ -72,9 +72,11 @@ class EngineMethod : public StrandMethod {
         std::vector<EffectReport> effects;
         for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
             const auto effect = static_cast<Effect>(index);
-            effects.push_back({runtime::effectName(effect), engine_.plan().on(effect),
-                               reasonAlone(engine_.plan().why(effect)), effectMilliseconds_[index] / frames,
-                               engine_.effectBytes(effect)});
+            const bool on = engine_.plan().on(effect);
+            std::optional<double> milliseconds = effectMilliseconds_[index] / frames;
+            if (on && *milliseconds == 0) milliseconds.reset();
+            effects.push_back({runtime::effectName(effect), on, reasonAlone(engine_.plan().why(effect)),
+                               milliseconds, engine_.effectBytes(effect)});
         }
         effects.push_back({"solve", true, "on, moves the strands: all that no other row counts",
                            solveMilliseconds_ / frames, 0});

@@ -24,8 +24,10 @@ namespace hairloom {
 struct EffectReport {
     std::string name;
     bool on;
-    std::string why;      ///< "no sphere within reach of a strand"
-    double milliseconds;  ///< per frame, mean since the start; 0 while off
+    std::string why;  ///< "no sphere within reach of a strand"
+    /// Per frame, mean since the start; 0 while off. Absent where it has no time of its own: rods solve all
+    /// effects of a strand at once, and measuring the hair without it (core/cost/effect_cost.h) prices it.
+    std::optional<double> milliseconds;
     std::uint64_t bytes;  ///< memory of its own; 0 while off
 };
 

@@ -11,10 +11,10 @@
 #include <algorithm>
 #include <atomic>
 
-#include "core/accuracy/certificate.h"
-#include "core/scene/hair_export.h"
-#include "core/scene/played_frames.h"
-#include "core/scene/web_page.h"
+#include "core/documents/hair_export.h"
+#include "core/documents/web_page.h"
+#include "core/live/played_frames.h"
+#include "core/stability/certificate.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"

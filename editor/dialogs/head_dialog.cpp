@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/documents/open.h"
 #include "core/editing/sphere_parts.h"
-#include "core/scene/open.h"
 #include "editor/dialogs/group_roles.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"

@@ -8,7 +8,7 @@
 #include <QPushButton>
 #include <QSpinBox>
 
-#include "core/scene/head_import.h"
+#include "core/documents/head_import.h"
 #include "editor/document/preferences.h"
 #include "editor/document/tasks.h"
 

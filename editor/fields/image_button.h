@@ -5,7 +5,7 @@
 #include <QPushButton>
 #include <functional>
 
-#include "core/scene/mask_image.h"
+#include "core/documents/mask_image.h"
 
 namespace hairloom::editor {
 

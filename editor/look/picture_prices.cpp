@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/editing/document.h"
-#include "core/scene/picture_cost.h"
+#include "core/live/picture_cost.h"
 #include "editor/document/words.h"
 #include "editor/look/parts.h"
 

@@ -9,10 +9,10 @@
 #include <QStandardPaths>
 #include <QVBoxLayout>
 
+#include "core/documents/look_presets.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/settings_json.h"
-#include "core/scene/look_presets.h"
 #include "editor/document/words.h"
 #include "editor/fields/colour.h"
 #include "editor/look/parts.h"

@@ -41,7 +41,7 @@ void drawEffectCost(const OverlayView& view, Marks& marks) {
     if (!frame || frame->pose->positions_ws.size() != groom.pointCount()) return;
     double all = 0, spheres = 0;
     for (const EffectReport& effect : frame->stats.effects) {
-        (isAboutSpheres(effect.name) ? spheres : all) += effect.milliseconds;
+        (isAboutSpheres(effect.name) ? spheres : all) += effect.milliseconds.value_or(0);
     }
     std::vector<float> points(groom.strandCount()), near(groom.strandCount());
     double awake = 0, reached = 0;

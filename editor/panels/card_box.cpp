@@ -9,7 +9,7 @@
 #include "core/editing/command.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
-#include "core/scene/held_cards.h"
+#include "core/levels/held_cards.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 

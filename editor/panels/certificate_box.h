@@ -8,7 +8,7 @@
 #include <QWidget>
 #include <optional>
 
-#include "core/accuracy/certificate.h"
+#include "core/stability/certificate.h"
 #include "editor/document/qt_document.h"
 #include "editor/document/tasks.h"
 

@@ -8,7 +8,7 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
-#include "core/accuracy/effect_cost.h"
+#include "core/cost/effect_cost.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/simulation/effect_switch.h"

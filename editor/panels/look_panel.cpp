@@ -5,9 +5,9 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/documents/look_presets.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
-#include "core/scene/look_presets.h"
 #include "editor/fields/field_form.h"
 #include "editor/look/parts.h"
 #include "editor/panels/panel.h"

@@ -7,7 +7,7 @@
 #include <QString>
 #include <vector>
 
-#include "core/scene/level_chain.h"
+#include "core/levels/level_chain.h"
 #include "editor/document/tasks.h"
 
 namespace hairloom::editor {

@@ -6,9 +6,9 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "core/documents/hair_preset.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
-#include "core/scene/hair_preset.h"
 #include "core/simulation/sag.h"
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"

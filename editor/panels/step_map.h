@@ -6,7 +6,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "core/accuracy/stable_steps.h"
+#include "core/stability/stable_steps.h"
 #include "editor/document/preferences.h"
 
 namespace hairloom::editor {

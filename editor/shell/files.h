@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/animation/actor.h"
-#include "core/scene/head_import.h"
+#include "core/documents/head_import.h"
 #include "editor/document/messages.h"
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <optional>
 
+#include "core/documents/motions.h"
 #include "core/editing/document.h"
-#include "core/scene/motions.h"
 #include "core/simulation/clip_motion.h"
 #include "core/simulation/effect_switch.h"
 #include "editor/document/words.h"

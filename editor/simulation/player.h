@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "core/animation/actor.h"
-#include "core/scene/engine_choice.h"
+#include "core/live/engine_choice.h"
 #include "core/simulation/simulation.h"
 #include "editor/document/qt_document.h"
 #include "editor/simulation/played_method.h"

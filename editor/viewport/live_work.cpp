@@ -80,8 +80,10 @@ Status LiveWork::step(const LiveStep& step) {
     const runtime::EffectPlan& plan = hair_->engine().plan();
     for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
         const auto effect = static_cast<runtime::Effect>(index);
-        report_.effects.push_back({runtime::effectName(effect), plan.on(effect),
-                                   reasonAlone(plan.why(effect)), 0, hair_->engine().effectBytes(effect)});
+        const bool on = plan.on(effect);
+        report_.effects.push_back({runtime::effectName(effect), on, reasonAlone(plan.why(effect)),
+                                   on ? std::nullopt : std::optional(0.0),
+                                   hair_->engine().effectBytes(effect)});
     }
     for (const auto& [part, milliseconds] : times_)
         report_.effects.push_back({part, true, "on, on the GPU", milliseconds, 0});

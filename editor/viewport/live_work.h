@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "core/scene/device_hair.h"
-#include "core/scene/engine_choice.h"
+#include "core/live/device_hair.h"
+#include "core/live/engine_choice.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom::editor {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/gpu/device.h"
+#include "core/live/groom_scene.h"
 #include "core/render/renderer.h"
-#include "core/scene/groom_scene.h"
 #include "editor/viewport/live_work.h"
 #include "editor/viewport/picture_request.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A substep of elastic rods (docs/engine.md, "Rods"): a prediction, one elimination from tip to root, one pass back, and
-// the guards that keep the objective from rising. As runtime/kernels/rod-inl.h.
+// the guards that keep the objective from rising. As runtime/models/rods/rod-inl.h.
 
 #define FIRST_SEGMENT (HAIR_CLAMPED - 1)
 #define SEGMENTS (POINTS - 1)

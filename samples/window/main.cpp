@@ -9,7 +9,7 @@
 #include <map>
 #include <thread>
 
-#include "core/scene/sample.h"
+#include "core/documents/sample.h"
 #include "samples/window/show.h"
 
 namespace hairloom::window {

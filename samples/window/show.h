@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/gpu/device.h"
+#include "core/live/live_hair.h"
 #include "core/render/renderer.h"
-#include "core/scene/live_hair.h"
 #include "samples/window/window.h"
 
 namespace hairloom::window {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/accuracy/certificate.h"
+#include "core/stability/certificate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/accuracy/thread_limit.h"
+#include "core/cost/thread_limit.h"
 #include "tests/accuracy/hair.h"
 
 namespace hairloom::test {

@@ -8,7 +8,7 @@
 
 #include "core/accuracy/grid.h"
 #include "core/accuracy/ground_truth.h"
-#include "core/accuracy/statistics.h"
+#include "core/cost/statistics.h"
 #include "tests/accuracy/hair.h"
 #include "tests/support/spring_settings.h"
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Charts: well-formed, with sensible ticks, nothing clipped, nothing printed over something else.
 
-#include "core/accuracy/plot.h"
+#include "core/charts/plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/accuracy/markup.h"
-#include "core/accuracy/plot_labels.h"
-#include "core/accuracy/plot_ticks.h"
+#include "core/charts/markup.h"
+#include "core/charts/plot_labels.h"
+#include "core/charts/plot_ticks.h"
 #include "tests/accuracy/xml_check.h"
 
 namespace hairloom::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/accuracy/stability.h"
+#include "core/stability/stability.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <set>
 
-#include "core/accuracy/stability_map.h"
-#include "core/accuracy/stability_report.h"
+#include "core/stability/stability_map.h"
+#include "core/stability/stability_report.h"
 #include "hairloom/stable.h"
 #include "tests/accuracy/xml_check.h"
 #include "tests/support/spring_settings.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the benchmarks run on is what they say; how long it takes is not tested.
-#include "core/accuracy/step_cost.h"
+#include "core/cost/step_cost.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "core/accuracy/instruction_set_limit.h"
+#include "core/cost/instruction_set_limit.h"
 
 namespace hairloom {
 namespace {

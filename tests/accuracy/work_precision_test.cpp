@@ -10,10 +10,10 @@
 
 #include "core/accuracy/choice.h"
 #include "core/accuracy/compare_reports.h"
-#include "core/accuracy/effect_cost.h"
 #include "core/accuracy/work_precision_report.h"
 #include "core/base/file.h"
 #include "core/base/parallel.h"
+#include "core/cost/effect_cost.h"
 #include "tests/accuracy/hair.h"
 #include "tests/accuracy/xml_check.h"
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <sstream>
 
 #include "tests/cli/command.h"
@@ -17,6 +18,26 @@ TEST_F(Reference, PageIsUpToDate) {
     runJson("reference -o reference.md");
     EXPECT_EQ(readText(folder / "reference.md"), readText(sourceDir() / "docs/reference.md"))
         << "`hairloom-cli reference -o docs/reference.md` makes it anew";
+}
+
+TEST_F(Reference, ReadmeHasWhatTheProgramHas) {
+    const std::string readme = readText(sourceDir() / "README.md");
+    std::ofstream(folder / "README.md") << readme;
+    runJson("reference --readme README.md --force");
+    EXPECT_EQ(readText(folder / "README.md"), readme)
+        << "`hairloom-cli reference --readme README.md` makes its table anew";
+    std::ofstream(folder / "README.md") << "# A page without marks\n";
+    EXPECT_EQ(run("reference --readme README.md --force").exitCode, 1);
+    EXPECT_EQ(readText(folder / "README.md"), "# A page without marks\n");
+}
+
+TEST_F(Reference, HelpFitsAScreen) {
+    for (const char* job : {"", "export", "simulate", "render", "create"}) {
+        std::istringstream lines(run(std::string(job) + " --help").output);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u) << line;
+    }
+    EXPECT_THAT(run("export --help").output,
+                testing::HasSubstr("\n                          abc             "));
 }
 
 TEST_F(Reference, GroomListsOperationsAndBrushesWithTheirFields) {
@@ -52,7 +73,7 @@ TEST_F(Reference, ManualPagesHaveEveryJobAndBrush) {
     std::istringstream lines(page);
     for (std::string line; std::getline(lines, line);) {
         if (line.empty() || line[0] != '.') continue;
-        EXPECT_THAT(line, testing::MatchesRegex("\\.(TH|SH|SS|TP|PP|B|BR|RB|RI|I|RS|RE|EX|EE)( .*)?"));
+        EXPECT_THAT(line, testing::MatchesRegex("\\.(TH|SH|SS|TP|PP|B|BR|RB|RI|I|RS|RE|EX|EE|br)( .*)?"));
     }
     EXPECT_THAT(readText(folder / "man/hairloom.1"), testing::HasSubstr(".B Comb\n"));
     EXPECT_EQ(run("reference").exitCode, 2) << "neither a page nor a folder";

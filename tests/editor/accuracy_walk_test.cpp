@@ -98,7 +98,7 @@ TEST_F(AccuracyWalkTest, TheCheapestSettingUnderOnePixelIsFoundByWordsInFourClic
     // What else there is: points that say what they are, another limit, and the way back.
     auto* plot = find<AccuracyPlot>("accuracyPlot");
     QTest::mouseMove(plot, plot->place_px(0).toPoint());
-    ASSERT_TRUE(QTest::qWaitFor([] { return QToolTip::text().contains(" ms, "); }))
+    ASSERT_TRUE(QTest::qWaitFor([] { return QToolTip::text().contains(" ms, "); }, 60'000))
         << QToolTip::text().toStdString();
     auto& limit = find<NumberBox>("accuracyMs")->spinBox();
     limit.selectAll();

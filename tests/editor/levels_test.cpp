@@ -8,9 +8,9 @@
 #include <QTreeWidget>
 #include <algorithm>
 
+#include "core/documents/hair_import.h"
 #include "core/editing/selection_commands.h"
 #include "core/operations/script.h"
-#include "core/scene/hair_import.h"
 #include "editor/panels/levels_panel.h"
 #include "tests/editor/window_fixture.h"
 

@@ -9,9 +9,9 @@
 
 #include "core/gpu/validation.h"
 #include "editor/simulation/player.h"
+#include "tests/documents/small_head.h"
 #include "tests/editor/resident_memory.h"
 #include "tests/editor/window_fixture.h"
-#include "tests/scene/small_head.h"
 
 namespace hairloom::editor {
 namespace {

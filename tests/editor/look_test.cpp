@@ -6,7 +6,7 @@
 #include <QPushButton>
 #include <cstdlib>
 
-#include "core/scene/look_presets.h"
+#include "core/documents/look_presets.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/number_box.h"
 #include "editor/fields/price_tag.h"

@@ -7,8 +7,8 @@
 #include <QListWidget>
 #include <QPushButton>
 
+#include "core/documents/look_presets.h"
 #include "core/editing/document.h"
-#include "core/scene/look_presets.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
@@ -188,7 +188,7 @@ TEST_F(ManualTest, Accuracy) {
     find<QPushButton>("accuracyShow")->click();
     finishWork();
     const auto atRest = viewport().pose();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() && viewport().pose() != atRest; }));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() && viewport().pose() != atRest; }, 60'000));
     QTest::qWait(30'000);  // it moves, and is never the last picture
     shoot(*window, "accuracy");
     find<QPushButton>("accuracyShow")->click();

@@ -18,8 +18,8 @@
 #include <QToolButton>
 
 #include "core/base/file.h"
+#include "core/documents/hair_import.h"
 #include "core/groom/file/project_file.h"
-#include "core/scene/hair_import.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/import_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"

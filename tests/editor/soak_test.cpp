@@ -13,9 +13,9 @@
 #include <set>
 
 #include "editor/fields/number_box.h"
+#include "tests/documents/small_head.h"
 #include "tests/editor/resident_memory.h"
 #include "tests/editor/window_fixture.h"
-#include "tests/scene/small_head.h"
 
 namespace hairloom::editor {
 namespace {

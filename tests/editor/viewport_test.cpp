@@ -344,8 +344,7 @@ TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {
     openBust();
     ASSERT_TRUE(QTest::qWaitFor([this] { return viewport().presents(); }, 20'000));
     ASSERT_TRUE(viewport().waitForPicture(60'000));
-    QTest::qWait(300);
-    EXPECT_GT(skinPixels(viewportOnScreen()), 300);
+    EXPECT_TRUE(QTest::qWaitFor([this] { return skinPixels(viewportOnScreen()) > 300; }, 20'000));
     // Events reach the window that the device draws to.
     const Vec3f eye = viewport().camera().camera().eye_ws;
     drag({QPoint(200, 200), QPoint(260, 200)});

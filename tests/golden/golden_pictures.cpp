@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/documents/sample.h"
+#include "core/documents/sample_material.h"
 #include "core/render/png.h"
 #include "core/render/tone_map.h"
-#include "core/scene/sample.h"
-#include "core/scene/sample_material.h"
 #include "tests/support/source_dir.h"
 
 namespace hairloom::golden {

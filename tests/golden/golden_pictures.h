@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/live/groom_scene.h"
 #include "core/render/flip.h"
 #include "core/render/picture.h"
-#include "core/scene/groom_scene.h"
 
 namespace hairloom::golden {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/gpu_simulation/strand_engine.h"
-#include "runtime/src/rods.h"
-#include "runtime/src/scratch.h"
+#include "runtime/engine/scratch.h"
+#include "runtime/models/rods/rods.h"
 #include "tests/support/spring_settings.h"
 
 namespace hairloom::gpu_simulation::test {

@@ -2,7 +2,7 @@
 // Follow hairs on the device beside those of the runtime.
 #include <algorithm>
 
-#include "core/accuracy/benchmark_scenes.h"
+#include "core/cost/benchmark_scenes.h"
 #include "core/gpu_simulation/gpu_follow_hairs.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
 

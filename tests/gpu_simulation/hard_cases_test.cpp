@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The hard cases of the strand engine, on the device; each a test of its own, as each compiles kernels of its
 // own.
-#include "core/accuracy/stability.h"
+#include "core/stability/stability.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
 
 namespace hairloom::gpu_simulation {

@@ -9,9 +9,9 @@
 #include <cstring>
 #include <thread>
 
-#include "core/accuracy/strand_set.h"
 #include "core/base/file.h"
 #include "core/gpu/validation.h"
+#include "core/stability/strand_set.h"
 #include "runtime/shaders/simulation_types.h"
 #include "shaders/shaders.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"

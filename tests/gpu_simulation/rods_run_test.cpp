@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/accuracy/benchmark_scenes.h"
-#include "core/accuracy/strand_set.h"
+#include "core/cost/benchmark_scenes.h"
+#include "core/stability/strand_set.h"
 #include "hairloom/engine.h"
 #include "tests/gpu_simulation/cpu_frame.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"

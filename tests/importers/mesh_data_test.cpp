@@ -8,7 +8,6 @@
 #endif
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 #include "importers/scene.h"
@@ -55,6 +54,22 @@ void expectLittleMemory() {
 #endif
 }
 
+/// Of this process and of the readers it ran, which other work on this machine does not lengthen.
+double processorSeconds() {
+#ifdef _WIN32
+    return 0;
+#else
+    double seconds = 0;
+    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage usage{};
+        getrusage(who, &usage);
+        for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+            seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
+    return seconds;
+#endif
+}
+
 class MeshData : public testing::TestWithParam<const char*> {};
 
 TEST_P(MeshData, EveryFileIsLoadedOrRefusedWithAMessage) {
@@ -65,9 +80,9 @@ TEST_P(MeshData, EveryFileIsLoadedOrRefusedWithAMessage) {
     std::size_t loaded = 0;
     for (const fs::path& file : files) {
         SCOPED_TRACE(file.string());
-        const auto start = std::chrono::steady_clock::now();
+        const double start = processorSeconds();
         const auto scene = importScene(file);
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+        EXPECT_LT(processorSeconds() - start, 10);
         if (scene) {
             ++loaded;
             expectSound(*scene);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/accuracy/head_scene.h"
+#include "core/cost/head_scene.h"
 #include "core/render/picture.h"
 #include "tests/gpu/test_backend.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <optional>
 
-#include "runtime/src/kernels.h"
+#include "runtime/engine/kernels.h"
 #include "tests/runtime/instruction_sets.h"
 #include "tests/runtime/strand_fixture.h"
 #include "tests/runtime/threads.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "runtime/src/kernels.h"
+#include "runtime/engine/kernels.h"
 #include "tests/runtime/allocations.h"
 #include "tests/runtime/follow_fixture.h"
 #include "tests/runtime/instruction_sets.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "runtime/src/kernels.h"
-#include "runtime/src/state.h"
+#include "runtime/engine/kernels.h"
+#include "runtime/engine/state.h"
 
 namespace hairloom::runtime {
 namespace {

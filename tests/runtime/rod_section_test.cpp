@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "hairloom/presets.h"
-#include "src/rods.h"
+#include "models/rods/rods.h"
 #include "tests/runtime/strand_fixture.h"
 
 namespace hairloom::runtime {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/accuracy/strand_set.h"
+#include "core/stability/strand_set.h"
 #include "hairloom/engine.h"
 #include "tests/support/spring_settings.h"
 

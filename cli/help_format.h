@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// How `--help` looks: within 100 columns, a choice of many each on a line of its own.
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <string>
+#include <string_view>
+
+namespace hairloom::cli {
+
+/// Lines of an option's description stay lines; each is wrapped, and what follows two spaces inside a line
+/// hangs under itself: `abc  Alembic`.
+class HelpFormatter : public CLI::Formatter {
+  public:
+    std::string make_option(const CLI::Option* option, bool isPositional) const override;
+};
+
+/// `text` in lines of at most `width` columns, without the last line's end.
+/// All but the first are indented by `indent` columns, which count.
+std::string wrapped(std::string_view text, std::size_t width, std::size_t indent);
+
+}  // namespace hairloom::cli

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/documents/hair_export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include "core/base/output_file.h"
+#include "core/cost/scene_run.h"
+#include "core/groom/strand_subset.h"
+#include "core/interpolation/follow_hairs.h"
+#include "core/levels/card_meshes.h"
+#include "core/levels/card_usd.h"
+#include "core/live/root_rotations.h"
+#include "core/simulation/simulation.h"
+#include "core/stability/certificate.h"
+
+namespace hairloom {
+namespace {
+
+/// Follow hairs in a frame, wisps as wide as their speed makes them.
+class MovingHairs {
+  public:
+    MovingHairs(const Groom& rest, const FollowBindings& bindings) : rest_(rest), bindings_(bindings) {}
+
+    Result<std::vector<Vec3f>> at(const Groom& posed, const RecordedFrame& frame) {
+        std::vector<Vec3f> guides = guidePositions(posed, bindings_);
+        std::vector<Vec3f> velocities;
+        for (std::size_t p = 0; p < before_.size(); ++p)
+            velocities.push_back((guides[p] - before_[p]) * frame.framesPerSecond);
+        const std::vector<Quatf> turns = rootRotations(rest_, posed, frame.pose);
+        std::vector<Quatf> rotations;
+        for (const std::uint32_t strand : bindings_.guideStrands) rotations.push_back(turns[strand]);
+        std::vector<Vec3f> hairs(bindings_.hairCount() * bindings_.pointsPerHair);
+        auto made = evaluateFollowHairs(bindings_, {guides, velocities, rotations}, {}, hairs);
+        before_ = std::move(guides);
+        if (!made) return tl::unexpected(made.error());
+        return hairs;
+    }
+
+  private:
+    const Groom& rest_;
+    const FollowBindings& bindings_;
+    std::vector<Vec3f> before_;  ///< guides, a frame ago
+};
+
+std::vector<Vec3f> pointsOf(const Groom& whole, std::span<const std::uint32_t> strands,
+                            std::span<const Vec3f> positions) {
+    std::vector<Vec3f> points;
+    for (const std::uint32_t s : strands) {
+        const auto own = positions.subspan(whole.offsets[s], whole.offsets[s + 1] - whole.offsets[s]);
+        points.insert(points.end(), own.begin(), own.end());
+    }
+    return points;
+}
+
+/// The shapes of `rest` at the frames, and itself at the first of them.
+struct Moving {
+    Groom first;
+    std::vector<std::vector<Vec3f>> shapes;
+};
+Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> strands, const Groom& guides,
+                          const HairToExport& wanted, const FollowBindings* bindings) {
+    Moving moving;
+    std::optional<MovingHairs> hairs;
+    if (bindings) hairs.emplace(guides, *bindings);
+    for (const RecordedFrame& frame : wanted.frames) {
+        const Groom posed = posedGroom(guides, pointsOf(whole, strands, frame.positions_ws), frame.pose);
+        std::vector<Vec3f> shape(posed.positions().begin(), posed.positions().end());
+        if (hairs) {
+            auto made = hairs->at(posed, frame);
+            if (!made) return tl::unexpected(made.error());
+            shape = std::move(*made);
+        }
+        if (moving.shapes.empty()) {
+            moving.first = posed;
+            if (bindings) {
+                auto baked = bakeFollowHairs(guides, *bindings);
+                if (!baked) return tl::unexpected(baked.error());
+                moving.first = std::move(*baked);
+                moving.first.scalp = posed.scalp;
+                moving.first.pointAttributes.set(attribute::kPosition, shape);
+            }
+        }
+        moving.shapes.push_back(std::move(shape));
+    }
+    return moving;
+}
+
+constexpr const char *kQuantised = "gltf-quantised", *kObj = "obj-cards", *kFbx = "fbx", *kUsd = "usda-cards";
+
+Result<ExportReport> writeCardFile(const cards::Chain& chain, const Groom& groom, const std::string& format,
+                                   const std::filesystem::path& path) {
+    if (format == kCardFormat || format == kQuantised) {
+        auto file = levelFile(
+            chain, groom, format == kQuantised ? cards::GlbNumbers::quantised : cards::GlbNumbers::floats);
+        if (!file) return tl::unexpected(file.error());
+        if (auto status = writeFileAtomically(path, file->bytes); !status)
+            return tl::unexpected(status.error());
+        return std::move(file->report);
+    }
+    auto companions =
+        format == kUsd
+            ? writeCardUsd(chain, path)
+            : writeCardMeshes(chain, format == kFbx ? CardMeshFormat::fbx : CardMeshFormat::obj, path);
+    if (!companions) return tl::unexpected(companions.error());
+    ExportReport report = levelReport(chain, groom);
+    report.companions = std::move(*companions);
+    report.bytes = std::filesystem::file_size(path);
+    std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
+    report.leftBehind.push_back({"springs, and the distances of levels", "write them as gltf"});
+    if (format != kFbx) report.leftBehind.push_back({"joints and weights", "write them as fbx"});
+    if (format == kUsd)
+        report.leftBehind.push_back({"what cards have beside a texture that they share",
+                                     "multiply displayColor in, which UsdPreviewSurface cannot"});
+    return report;
+}
+
+Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
+                                const std::filesystem::path& path, const StrandExportOptions& options) {
+    if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
+        return fail("another unit, axis or number of points is asked for, and cards have none",
+                    "glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
+    const auto progress = wanted.progress ? wanted.progress : [](std::string_view, double) {};
+    const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
+    if (!chain) return tl::unexpected(chain.error());
+    auto report = writeCardFile(*chain, groom, writer.name, path);
+    if (report) report->format = writer.name;
+    return report;
+}
+
+StrandWriter cardWriter(const char* format, const char* label, const char* carries, ExportTarget target,
+                        const char* suffix) {
+    target.note =
+        "Cards and a shell for far away, each measured against the strands. It takes a minute or so; the "
+        "panel Levels shows them before they leave." +
+        target.note;
+    return {format, label, carries, "cards and a shell, no strands", {std::move(target)}, nullptr, suffix};
+}
+
+/// Of the strands as a game plays them.
+Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand,
+                              const HairToExport& wanted) {
+    CertificateOptions options;
+    options.storms = wanted.storms;
+    std::atomic<std::size_t> most = 0;
+    options.progress = [&](std::size_t done, std::size_t total) {
+        // Threads report out of order; a bar must not go back.
+        std::size_t before = most;
+        while (before < done && !most.compare_exchange_weak(before, done)) {
+        }
+        if (wanted.progress && before < done)
+            wanted.progress("storms", static_cast<double>(done) / static_cast<double>(total));
+    };
+    options.cancelled = [&] { return wanted.cancel != nullptr && *wanted.cancel; };
+    const SceneHair all = sampleStrands(guides, guides.strandCount(), 0);
+    const auto made =
+        certify(pointsPerStrand > 0 ? resampledHair(all, pointsPerStrand).groom : guides, options);
+    if (!made) return tl::unexpected(made.error());
+    const StormStrength& limits = made->limits;
+    return SafeLimits{static_cast<float>(limits.step),
+                      static_cast<float>(limits.rootSpeed),
+                      static_cast<float>(limits.turn),
+                      static_cast<float>(limits.wind),
+                      made->storms,
+                      static_cast<std::uint32_t>(made->failed.size())};
+}
+
+}  // namespace
+
+const std::vector<StrandWriter>& hairWriters() {
+    static const std::vector<StrandWriter> all = [] {
+        std::vector<StrandWriter> writers = strandWriters();
+        constexpr const char* kCarries = "textures, a skin, levels (MSFT_lod) and springs (VRMC_springBone)";
+        writers.push_back(cardWriter(kCardFormat, "Cards as binary glTF 2.0", kCarries,
+                                     {"cards", "Engines without strands: cards (glTF)", "", {}}, "glb"));
+        writers.push_back(cardWriter(kQuantised, "Cards as binary glTF 2.0, quantised",
+                                     "the same with 40 bytes a vertex in place of 88 (KHR_mesh_quantization)",
+                                     {"cards-small",
+                                      "Engines without strands: cards (glTF, quantised)",
+                                      " For readers of KHR_mesh_quantization.",
+                                      {}},
+                                     "glb"));
+        writers.push_back(cardWriter(kUsd, "Cards as USD .usda",
+                                     "a variant for each level, textures beside the file",
+                                     {"cards-usd", "Engines without strands: cards (USD)", "", {}}, "usda"));
+        if (canWriteCardMeshes()) {
+            writers.push_back(cardWriter(kFbx, "Cards as FBX", "a skin, and textures beside the file",
+                                         {"cards-fbx", "Engines without strands: cards (FBX)", "", {}},
+                                         "fbx"));
+            writers.push_back(cardWriter(kObj, "Cards as OBJ", "textures and materials beside the file",
+                                         {"cards-obj", "Engines without strands: cards (OBJ)", "", {}},
+                                         "obj"));
+        }
+        std::ranges::sort(writers, {}, &StrandWriter::name);
+        return writers;
+    }();
+    return all;
+}
+
+Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
+                                const std::filesystem::path& path, const StrandExportOptions& options) {
+    if (wanted.frames.size() > 1 && !writer.animates) {
+        std::string formats;
+        for (const StrandWriter& other : strandWriters()) {
+            if (other.animates) formats += (formats.empty() ? "" : ", ") + other.name;
+        }
+        return fail(fmt::format("{} holds one shape, and {} frames are to be written", writer.name,
+                                wanted.frames.size()),
+                    "expected one frame, or one of " + formats);
+    }
+    std::vector<std::uint32_t> strands(groom.strandCount());
+    std::iota(strands.begin(), strands.end(), 0u);
+    if (!wanted.layers.empty()) {
+        auto found = strandsOfLayers(groom, wanted.layers);
+        if (!found) return tl::unexpected(found.error());
+        strands = std::move(*found);
+    }
+    const Groom guides = wanted.layers.empty() ? groom : strandsOf(groom, strands);
+    const std::uint32_t perGuide = guides.interpolation.followPerGuide;
+    const bool isBaked = wanted.hair == ExportedHair::hairs && perGuide > 0 && !writer.holdsCards();
+    FollowBindings bindings;
+    Groom shown = guides;
+    if (isBaked) {
+        auto bound = bindFollowHairs(guides, guides.interpolation);
+        if (!bound) return tl::unexpected(bound.error());
+        bindings = std::move(*bound);
+    }
+    StrandExportOptions exporting = options;
+    if (!wanted.frames.empty()) {
+        auto moving = movingHair(groom, strands, guides, wanted, isBaked ? &bindings : nullptr);
+        if (!moving) return tl::unexpected(moving.error());
+        shown = std::move(moving->first);
+        if (moving->shapes.size() > 1) {
+            exporting.frames = std::make_shared<const StrandFrames>(
+                StrandFrames{static_cast<double>(wanted.frames.front().framesPerSecond),
+                             static_cast<double>(wanted.firstFrame), std::move(moving->shapes)});
+        }
+    } else if (isBaked) {
+        auto baked = bakeFollowHairs(guides, bindings);
+        if (!baked) return tl::unexpected(baked.error());
+        shown = std::move(*baked);
+    }
+    if (wanted.storms > 0) {
+        const auto limits = safeLimits(guides, isBaked ? 0 : exporting.pointsPerStrand, wanted);
+        if (!limits) return tl::unexpected(limits.error());
+        exporting.safeLimits = *limits;
+    }
+    auto report = writer.holdsCards() ? writeCards(shown, wanted, writer, path, exporting)
+                                      : writer.write(shown, path, exporting);
+    if (report) report->safeLimits = exporting.safeLimits;
+    if (report && !writer.holdsCards() && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {
+        report->findings.push_back({Severity::Warning,
+                                    fmt::format("{} follow hairs for each guide are left out", perGuide),
+                                    "interpolation", "export hairs to write what pictures show"});
+    }
+    return report;
+}
+
+}  // namespace hairloom

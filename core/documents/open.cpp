@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/documents/open.h"
+
+#include <fmt/format.h>
+
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/groom/file/project_file.h"
+#include "core/groom/file/settings_json.h"
+#include "core/operations/stack.h"
+#include "importers/length_unit.h"
+#include "importers/strands.h"
+
+namespace hairloom {
+
+float metresPerUnit(const std::string& unit) {
+    for (const LengthUnit& known : lengthUnits()) {
+        if (unit == known.name) return static_cast<float>(known.metres);
+    }
+    return 1.0f;
+}
+
+Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportOptions& options) {
+    auto scene = importScene(path, options);
+    if (scene) {
+        for (const std::string& warning : scene->warnings) log::warning("{}: {}", path, warning);
+    }
+    return scene;
+}
+
+Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit) {
+    MeshImportOptions options;
+    if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
+    return importSceneLoud(path, options);
+}
+
+Result<Groom> loadDocument(const std::string& path) {
+    if (looksLikeProject(path)) return openProject(path);
+    auto imported = importStrands(path, {});
+    if (!imported) return tl::unexpected(imported.error());
+    logFindings(path, imported->warnings);
+    return std::move(imported->groom);
+}
+
+Result<Opened> openAny(const std::string& path, const std::string& unit) {
+    Opened opened;
+    if (looksLikeProject(path)) {
+        auto groom = openProject(path);
+        if (!groom) return tl::unexpected(groom.error());
+        opened.groom = std::move(*groom);
+        opened.format = "hairloom";
+        opened.findings = validate(opened.groom);
+        return opened;
+    }
+    StrandImportOptions options;
+    if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
+    if (auto imported = importStrands(path, options)) {
+        opened.groom = std::move(imported->groom);
+        opened.format = imported->format;
+        opened.findings = validate(opened.groom);
+        opened.findings.insert(opened.findings.end(), imported->warnings.begin(), imported->warnings.end());
+        for (const DroppedStrand& dropped : imported->dropped) {
+            opened.findings.push_back({Severity::Error, std::string(dropReasonName(dropped.reason)),
+                                       fmt::format("strand {}", dropped.strand),
+                                       "import drops such strands"});
+        }
+        return opened;
+    } else if (looksLikeStrandFile(readBeginning(path, 256))) {
+        return tl::unexpected(imported.error());
+    }
+    auto scene = importSceneWithUnit(path, unit);
+    if (!scene) return tl::unexpected(scene.error());
+    opened.format = scene->format;
+    for (const MeshRepair& repair : scene->mesh.repairs()) {
+        opened.findings.push_back(
+            {Severity::Warning, repair.what, fmt::format("{} places", repair.count), "mended when imported"});
+    }
+    for (const std::string& warning : scene->warnings) {
+        opened.findings.push_back({Severity::Warning, warning, "file", ""});
+    }
+    opened.groom.scalp = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
+    return opened;
+}
+
+Result<std::vector<CollisionSphere>> readSpheres(const std::string& path) {
+    const auto text = readTextFile(path, kMaxJsonBytes);
+    if (!text) return tl::unexpected(text.error());
+    auto parsed = parseJson(path, *text);
+    if (!parsed) return tl::unexpected(parsed.error());
+    const nlohmann::json document{{"spheres", std::move(*parsed)}};
+    JsonReader reader(document, path);
+    std::vector<CollisionSphere> spheres;
+    for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
+    if (auto status = reader.status(); !status) return tl::unexpected(status.error());
+    return spheres;
+}
+
+namespace {
+
+void readLayerSettings(JsonReader reader, const nlohmann::json& named, Groom& groom) {
+    for (const std::string& name : reader.keys()) {
+        JsonReader entry = reader.object(name);
+        if (!reader.ok()) return;
+        std::size_t found = 0;
+        for (Layer& layer : groom.layers) {
+            if (layer.name != name) continue;
+            ++found;
+            if (entry.has("density"))
+                layer.density =
+                    static_cast<float>(entry.number("density", 0, static_cast<double>(kMaxLayerDensity)));
+            if (!entry.has("material")) continue;
+            if (named.at(name).at("material").is_null()) {
+                layer.material.reset();
+                continue;
+            }
+            HairMaterial material = layer.material.value_or(groom.material);
+            readSettings(entry.object("material"), material);
+            layer.material = material;
+        }
+        if (found == 0) reader.complain(name, "is no layer", "expected one that `layers` shows");
+        entry.finish();
+    }
+}
+
+}  // namespace
+
+Status applySettings(const nlohmann::json& document, const std::string& source, Groom& groom) {
+    JsonReader reader(document, source);
+    if (reader.has("simulation")) readSettings(reader.object("simulation"), groom.simulation);
+    if (reader.has("material")) readSettings(reader.object("material"), groom.material);
+    if (reader.has("interpolation")) readSettings(reader.object("interpolation"), groom.interpolation);
+    if (reader.has("layers")) readLayerSettings(reader.object("layers"), document.at("layers"), groom);
+    reader.finish();
+    return reader.status();
+}
+
+void logFindings(const std::string& path, const std::vector<Finding>& findings) {
+    for (const Finding& finding : findings) {
+        log::warning("{}: {}: {}{}{}", path, finding.where, finding.what, finding.fix.empty() ? "" : "; ",
+                     finding.fix);
+    }
+}
+
+}  // namespace hairloom

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/levels/card_files.h"
+
+#include <fmt/format.h>
+
+#include "core/base/content_kind.h"
+#include "core/base/output_file.h"
+#include "core/cards/atlas_images.h"
+#include "core/render/png.h"
+
+namespace hairloom {
+
+LevelTextures texturesOf(const cards::Level& level, const cards::LevelArrays& arrays,
+                         const std::string& stem) {
+    LevelTextures textures;
+    const auto* made = std::get_if<cards::Cards>(&level.content);
+    if (made == nullptr) return textures;
+    const cards::Picture picture = cards::brightened(made->atlas, arrays.albedoScale);
+    textures.colour = fmt::format("{}_{}_colour.png", stem, level.name);
+    textures.normal = fmt::format("{}_{}_normal.png", stem, level.name);
+    textures.images.emplace_back(textures.colour, cards::colourImage(picture, 1));
+    textures.images.emplace_back(textures.normal, cards::normalImage(picture));
+    return textures;
+}
+
+Result<std::vector<std::string>> writeTogether(
+    std::vector<std::pair<std::filesystem::path, std::vector<std::byte>>> files, const NamedImages& images) {
+    for (const auto& [name, image] : images) {
+        auto bytes = render::encodePng(image);
+        if (!bytes) return tl::unexpected(bytes.error());
+        files.emplace_back(files.front().first.parent_path() / name, std::move(*bytes));
+    }
+    std::vector<OutputFile> outputs;
+    for (const auto& [to, bytes] : files) {
+        auto file = OutputFile::open(to, contentKind(bytes));
+        if (!file) return tl::unexpected(file.error());
+        if (auto status = file->write(bytes); !status) return tl::unexpected(status.error());
+        outputs.push_back(std::move(*file));
+    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        if (auto status = outputs[i].finish(); !status) return tl::unexpected(status.error());
+        if (i > 0) names.push_back(files[i].first.filename().string());
+    }
+    return names;
+}
+
+}  // namespace hairloom

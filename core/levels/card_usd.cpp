@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/levels/card_usd.h"
+
+#include <fmt/format.h>
+
+#include "core/levels/card_files.h"
+#include "exporters/usd_curves.h"
+#include "exporters/usda_numbers.h"
+
+namespace hairloom {
+namespace {
+
+using cards::Level;
+using cards::LevelArrays;
+
+std::span<const float> numbersOfUvs(const std::vector<Vec2f>& values) {
+    return {values[0].data(), values.size() * 2};
+}
+
+void writeVertexArray(std::string& out, const std::string& name, std::span<const float> numbers,
+                      std::size_t components) {
+    out += fmt::format("                {} = ", name);
+    writeNumbers(out, numbers, components);
+    out += " (\n                    interpolation = \"vertex\"\n                )\n";
+}
+
+std::string meshText(const std::string& name, const LevelArrays& arrays) {
+    std::string out = fmt::format(
+        "            def Mesh \"{0}\" (\n                prepend apiSchemas = [\"MaterialBindingAPI\"]\n"
+        "            )\n            {{\n                rel material:binding = </hair/materials/{0}>\n"
+        "                uniform token subdivisionScheme = \"none\"\n"
+        "                uniform bool doubleSided = true\n                float3[] extent = ",
+        name);
+    const std::array<Vec3f, 2> extent = extentOf(arrays.positions_ws);
+    writeNumbers(out, numbersOf(extent), 3);
+    const std::vector<std::int32_t> counts(arrays.indices.size() / 3, 3);
+    out += "\n                int[] faceVertexCounts = ";
+    writeNumbers(out, std::span<const std::int32_t>(counts), 1);
+    out += "\n                int[] faceVertexIndices = ";
+    writeNumbers(out, std::span<const std::uint32_t>(arrays.indices), 1);
+    out += "\n                point3f[] points = ";
+    writeNumbers(out, numbersOf(arrays.positions_ws), 3);
+    out += '\n';
+    writeVertexArray(out, "normal3f[] normals", numbersOf(arrays.normals_ws), 3);
+    writeVertexArray(out, "color3f[] primvars:displayColor", numbersOf(arrays.colours), 3);
+    if (!arrays.uvs.empty()) {
+        std::vector<Vec2f> uvs = arrays.uvs;
+        for (Vec2f& uv : uvs) uv.y() = 1 - uv.y();  // v goes up
+        writeVertexArray(out, "texCoord2f[] primvars:st", numbersOfUvs(uvs), 2);
+    }
+    out += "            }\n";
+    return out;
+}
+
+/// A shader that reads what meshes have at their vertices.
+std::string readerText(std::string_view name, std::string_view type, std::string_view primvar) {
+    return fmt::format(
+        "            def Shader \"{}\"\n            {{\n"
+        "                uniform token info:id = \"UsdPrimvarReader_{}\"\n"
+        "                string inputs:varname = \"{}\"\n                {} outputs:result\n            }}\n",
+        name, type, primvar, type);
+}
+
+std::string textureText(const std::string& material, std::string_view name, const std::string& file,
+                        std::string_view more) {
+    return fmt::format(
+        "            def Shader \"{1}\"\n            {{\n                uniform token info:id = "
+        "\"UsdUVTexture\"\n"
+        "                asset inputs:file = @./{2}@\n"
+        "                float2 inputs:st.connect = </hair/materials/{0}/st.outputs:result>\n{3}"
+        "                float3 outputs:rgb\n                float outputs:a\n            }}\n",
+        material, name, file, more);
+}
+
+std::string materialText(const std::string& name, const Level& level, const LevelTextures& textures) {
+    const auto* made = std::get_if<cards::Cards>(&level.content);
+    std::string surface, readers;
+    const auto connect = [&](std::string_view input, std::string_view output) {
+        surface += fmt::format("                {}.connect = </hair/materials/{}/{}>\n", input, name, output);
+    };
+    if (made != nullptr) {
+        connect("color3f inputs:diffuseColor", "colour.outputs:rgb");
+        connect("float inputs:opacity", "colour.outputs:a");
+        surface += fmt::format("                float inputs:opacityThreshold = {}\n", made->atlas.threshold);
+        connect("normal3f inputs:normal", "normal.outputs:rgb");
+        readers = readerText("st", "float2", "st") +
+                  textureText(name, "colour", textures.colour,
+                              "                token inputs:sourceColorSpace = \"sRGB\"\n") +
+                  textureText(name, "normal", textures.normal,
+                              "                token inputs:sourceColorSpace = \"raw\"\n"
+                              "                float4 inputs:scale = (2, 2, 2, 1)\n"
+                              "                float4 inputs:bias = (-1, -1, -1, 0)\n");
+    } else {
+        connect("color3f inputs:diffuseColor", "colour.outputs:result");
+        readers = readerText("colour", "float3", "displayColor");
+    }
+    return fmt::format(
+        "        def Material \"{0}\"\n        {{\n"
+        "            token outputs:surface.connect = </hair/materials/{0}/surface.outputs:surface>\n\n"
+        "            def Shader \"surface\"\n            {{\n"
+        "                uniform token info:id = \"UsdPreviewSurface\"\n"
+        "                float inputs:roughness = 0.5\n{1}                token outputs:surface\n"
+        "            }}\n{2}        }}\n",
+        name, surface, readers);
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> writeCardUsd(const cards::Chain& chain, const std::filesystem::path& path) {
+    std::string variants, materials;
+    NamedImages images;
+    std::size_t lod = 0;
+    for (const Level& level : chain.levels) {
+        if (level.spec.kind == cards::LevelKind::strands) continue;
+        const LevelArrays arrays = cards::arraysOf(level, chain.rig);
+        const std::string name = usdName(level.name);
+        LevelTextures textures = texturesOf(level, arrays, path.stem().string());
+        variants += fmt::format("        \"LOD{}\" {{\n{}        }}\n", lod++, meshText(name, arrays));
+        materials += materialText(name, level, textures);
+        std::ranges::move(textures.images, std::back_inserter(images));
+    }
+    if (lod == 0) return fail("no level that a mesh can hold", "one of cards or a shell");
+    const std::string text = fmt::format(
+        "#usda 1.0\n(\n    defaultPrim = \"hair\"\n    doc = \"Hairloom\"\n    metersPerUnit = 1\n"
+        "    upAxis = \"Y\"\n)\n\ndef Xform \"hair\" (\n    variants = {{\n        string lod = \"LOD0\"\n"
+        "    }}\n    prepend variantSets = \"lod\"\n)\n{{\n    variantSet \"lod\" = {{\n{}    }}\n\n"
+        "    def Scope \"materials\"\n    {{\n{}    }}\n}}\n",
+        variants, materials);
+    const auto bytes = std::as_bytes(std::span(text));
+    return writeTogether({{path, {bytes.begin(), bytes.end()}}}, images);
+}
+
+}  // namespace hairloom

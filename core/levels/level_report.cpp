@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/levels/level_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/output_file.h"
+#include "core/cards/atlas_images.h"
+#include "core/charts/html_report.h"
+#include "core/charts/plot.h"
+#include "core/groom/file/card_edits_json.h"
+#include "core/levels/held_cards.h"
+#include "core/operations/script.h"
+#include "core/render/png.h"
+
+namespace hairloom {
+namespace {
+
+using cards::Chain;
+using cards::Level;
+
+std::vector<std::vector<std::string>> rowsOf(const Chain& chain) {
+    const std::vector<double> steps = cards::lightSteps(chain.levels);
+    std::vector<std::vector<std::string>> rows{{"level", "head, px", "from, m", "hairs", "cards", "triangles",
+                                                "MB", "coverage", "light", "step, %", "FLIP", "worst FLIP",
+                                                "outline, px", "draw, ms", "move, ms"}};
+    for (std::size_t i = 0; i < chain.levels.size(); ++i) {
+        const Level& level = chain.levels[i];
+        const cards::Difference& off = level.difference;
+        rows.push_back({level.name, fmt::format("{}", level.spec.headPx),
+                        fmt::format("{:.2f}", cards::distanceOf(level.spec.headPx)),
+                        fmt::format("{}", level.hairs), fmt::format("{}", level.cards()),
+                        fmt::format("{}", level.triangles),
+                        fmt::format("{:.2f}", static_cast<double>(level.bytes) / 1e6),
+                        fmt::format("{:.3f}", off.coverage), fmt::format("{:.3f}", off.light),
+                        fmt::format("{:.1f}", 100 * steps[i]), fmt::format("{:.3f}", off.flip),
+                        fmt::format("{:.3f}", off.worstFlip), fmt::format("{:.2f}", off.silhouettePx),
+                        fmt::format("{:.1f}", level.drawMs), fmt::format("{:.3f}", level.moveMs)});
+    }
+    return rows;
+}
+
+/// Error against cost: the same diagram as that of accuracy.
+Plot plotOf(const Chain& chain) {
+    Plot plot;
+    plot.title = "What levels lose, against what they take to draw";
+    plot.x = {.title = "triangles", .scale = Scale::Logarithmic};
+    plot.y = {.title = "FLIP to all strands, at the level's distance", .scale = Scale::Linear, .low = 0};
+    Series series{.name = "levels", .line = LineStyle::Dashed};
+    for (const Level& level : chain.levels) {
+        series.points.push_back(
+            {.x = static_cast<double>(level.triangles), .y = level.difference.flip, .label = level.name});
+    }
+    plot.series.push_back(std::move(series));
+    return plot;
+}
+
+std::string csv(const Chain& chain) {
+    std::string text;
+    for (const auto& row : rowsOf(chain)) {
+        std::string line;
+        for (const std::string& cell : row)
+            line +=
+                (line.empty() ? "" : ",") + (cell.find(',') == std::string::npos ? cell : "\"" + cell + "\"");
+        text += line + "\n";
+    }
+    return text;
+}
+
+void put(render::Image& page, const render::Image& picture, std::uint32_t left, std::uint32_t top) {
+    for (std::uint32_t y = 0; y < picture.height; ++y) {
+        const auto row = picture.rgba.begin() + std::ptrdiff_t{4} * y * picture.width;
+        std::copy(row, row + std::ptrdiff_t{4} * picture.width,
+                  page.rgba.begin() + std::ptrdiff_t{4} * ((std::ptrdiff_t{top} + y) * page.width + left));
+    }
+}
+
+std::string springWords(const cards::SpringFit& fit) {
+    return fmt::format(
+        "While the head makes the motion {} for {:g} s, springs keep the joints {:.1f} mm from where the "
+        "strands "
+        "would have them, {:.1f} mm at most; those that are not fitted {:.1f} and {:.1f} mm.",
+        fit.motion, fit.seconds, fit.after.meanMm, fit.after.largestMm, fit.before.meanMm,
+        fit.before.largestMm);
+}
+
+std::string html(const Chain& chain, const std::string& commandLine) {
+    HtmlReport report("Levels of detail");
+    report.paragraph(fmt::format("{} hairs, judged from {} directions. Made in {:.1f} s.", chain.strands,
+                                 chain.views.size(), chain.makeSeconds));
+    report.command(commandLine);
+    report.table(rowsOf(chain));
+    report.drawing(svg(plotOf(chain)));
+    if (chain.springFit) report.paragraph(springWords(*chain.springFit));
+    report.paragraph(
+        "Coverage and light are those of the level's hair, times those of all strands. The step is the "
+        "largest change of light when a level takes over from the one before, and on the way to where the "
+        "next one does. Outlines are off by the area between them, by their length. FLIP is the mean of all "
+        "pixels and directions. Drawing is the judge's, on one core.");
+    return report.html();
+}
+
+/// A script that holds all cards of a level as they are.
+std::string cardScript(const Level& level, const cards::Cards& made, std::span<const Vec3f> roots_ws) {
+    std::vector<CardEdit> edits;
+    for (const cards::Card& card : made.cards) {
+        CardEdit edit = editOf(card, static_cast<std::uint32_t>(level.spec.amount), roots_ws);
+        edit.width = card.width, edit.bend = card.bend, edit.deleted = card.deleted;
+        if (card.pinned) edit.strip = stationsOf(card.strip);
+        edits.push_back(std::move(edit));
+    }
+    const nlohmann::ordered_json step{{"op", "card_edits"}, {"card_edits", toJson(edits)}};
+    return nlohmann::ordered_json{{"hairloom_script", kScriptVersion}, {"operations", {step}}}.dump() + "\n";
+}
+
+}  // namespace
+
+nlohmann::ordered_json toJson(const Level& level) {
+    const cards::Difference& off = level.difference;
+    nlohmann::ordered_json lights = nlohmann::ordered_json::array();
+    for (const cards::LightAt& at : level.lights)
+        lights.push_back({{"distance_m", cards::distanceOf(at.headPx)}, {"light", at.light}});
+    return {{"name", level.name},           {"kind", cards::nameOf(level.spec.kind)},
+            {"hairs", level.hairs},         {"cards", level.cards()},
+            {"triangles", level.triangles}, {"bytes", level.bytes},
+            {"head_px", level.spec.headPx}, {"distance_m", cards::distanceOf(level.spec.headPx)},
+            {"coverage", off.coverage},     {"flip", off.flip},
+            {"flip_worst", off.worstFlip},  {"light", off.light},
+            {"lights", std::move(lights)},  {"silhouette_px", off.silhouettePx},
+            {"ms_draw", level.drawMs},      {"ms_move", level.moveMs}};
+}
+
+nlohmann::ordered_json toJson(const cards::SpringFit& fit) {
+    return {{"motion", fit.motion},
+            {"seconds", fit.seconds},
+            {"error_mm", fit.after.meanMm},
+            {"largest_mm", fit.after.largestMm},
+            {"default_error_mm", fit.before.meanMm},
+            {"default_largest_mm", fit.before.largestMm}};
+}
+
+std::string levelTable(const Chain& chain) {
+    std::string text;
+    const auto rows = rowsOf(chain);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        text += "|";
+        for (const std::string& cell : rows[r]) text += " " + cell + " |";
+        text += "\n";
+        if (r > 0) continue;
+        text += "|";
+        for (std::size_t c = 0; c < rows[r].size(); ++c) text += c == 0 ? "---|" : "---:|";
+        text += "\n";
+    }
+    return text;
+}
+
+render::Image sideBySide(const Level& level) {
+    constexpr std::size_t kMostShown = 4;
+    const std::size_t step = std::max<std::size_t>(1, level.shots.size() / kMostShown);
+    render::Image page;
+    std::vector<std::size_t> shown;
+    for (std::size_t v = 0; v < level.shots.size() && shown.size() < kMostShown; v += step)
+        shown.push_back(v);
+    std::uint32_t row = 0;
+    for (const std::size_t v : shown) {
+        page.width += level.shots[v].width;
+        row = std::max(row, level.shots[v].height);
+    }
+    page.height = 2 * row;
+    page.rgba.assign(std::size_t{4} * page.width * page.height, 255);
+    std::uint32_t left = 0;
+    for (const std::size_t v : shown) {
+        put(page, cards::shownAs(level.strands[v]), left, 0);
+        put(page, cards::shownAs(level.shots[v]), left, row);
+        left += level.shots[v].width;
+    }
+    return page;
+}
+
+render::Image chainPicture(const Chain& chain) {
+    constexpr std::uint32_t kGap = 8;
+    struct Pair {
+        const Level* level;
+        std::size_t direction;
+        std::uint32_t left, row;
+    };
+    std::vector<Pair> pairs;
+    render::Image page;
+    std::vector<std::uint32_t> heights;
+    for (const std::size_t direction : {std::size_t{0}, std::size_t{1}}) {
+        std::uint32_t left = 0, height = 0;
+        for (const Level& level : chain.levels) {
+            if (level.spec.kind == cards::LevelKind::strands || direction >= level.shots.size()) continue;
+            pairs.push_back({&level, direction, left, static_cast<std::uint32_t>(heights.size())});
+            left += 2 * level.shots[direction].width + kGap;
+            height = std::max(height, level.shots[direction].height);
+        }
+        page.width = std::max(page.width, left);
+        heights.push_back(height);
+        page.height += height;
+    }
+    page.rgba.assign(std::size_t{4} * page.width * page.height, 255);
+    for (const Pair& pair : pairs) {
+        const cards::Shot& shot = pair.level->shots[pair.direction];
+        const std::uint32_t top = (pair.row == 0 ? 0 : heights[0]) + heights[pair.row] - shot.height;
+        put(page, cards::shownAs(pair.level->strands[pair.direction]), pair.left, top);
+        put(page, cards::shownAs(shot), pair.left + shot.width, top);
+    }
+    return page;
+}
+
+Result<std::vector<std::string>> writeChain(const Chain& chain, const std::string& commandLine,
+                                            std::span<const cards::Collider> colliders,
+                                            const std::filesystem::path& folder) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const Level& level : chain.levels) rows.push_back(toJson(level));
+    std::vector<std::pair<std::string, std::string>> texts{{"report.html", html(chain, commandLine)},
+                                                           {"levels.csv", csv(chain)},
+                                                           {"levels.md", levelTable(chain)},
+                                                           {"levels.json", rows.dump(2) + "\n"},
+                                                           {"error.svg", svg(plotOf(chain))}};
+    for (const Level& level : chain.levels)
+        if (const auto* made = std::get_if<cards::Cards>(&level.content))
+            texts.emplace_back(level.name + ".json", cardScript(level, *made, chain.roots_ws));
+    auto names = writeFiles(folder, texts);
+    if (!names) return names;
+    const auto write = [&](const std::string& name, const render::Image& image) -> Status {
+        names->push_back(name);
+        return render::writePng(folder / name, image);
+    };
+    for (const Level& level : chain.levels) {
+        if (auto status = write(level.name + ".png", sideBySide(level)); !status)
+            return tl::unexpected(status.error());
+        const auto* made = std::get_if<cards::Cards>(&level.content);
+        if (made == nullptr) continue;
+        for (const cards::AtlasImage& image : cards::imagesOf(made->atlas)) {
+            const std::string name = level.name + "_" + image.name + ".png";
+            if (auto status = write(name, image.image); !status) return tl::unexpected(status.error());
+        }
+    }
+    const auto isStrands = [](const Level& level) { return level.spec.kind == cards::LevelKind::strands; };
+    if (std::ranges::all_of(chain.levels, isStrands)) return names;
+    if (auto status = write("chain.png", chainPicture(chain)); !status) return tl::unexpected(status.error());
+    const auto glb = cards::glbOf(chain, colliders);
+    if (!glb) return tl::unexpected(glb.error());
+    if (auto status = writeFileAtomically(folder / "levels.glb", *glb); !status)
+        return tl::unexpected(status.error());
+    names->push_back("levels.glb");
+    return names;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/live/hair_look.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/parallel.h"
+#include "core/groom/point_dye.h"
+#include "core/groom/strand_subset.h"
+#include "core/groom/streaks.h"
+
+namespace hairloom {
+namespace {
+
+using shading::LookQuantity;
+
+constexpr double kMinLobeWidth = 0.5 * shading::kDegree;  // in θ_h
+constexpr double kLargestLobeWidth = 60 * shading::kDegree;
+
+double asDouble(float value) {
+    return static_cast<double>(value);
+}
+
+double roughnessOf(const HairMaterial& authored, const FibreView& view) {
+    return view.azimuthalRoughness.value_or(asDouble(authored.azimuthalRoughness));
+}
+
+Vec3d melaninAbsorption(const HairMaterial& authored, double factor) {
+    return factor * shading::absorption({asDouble(authored.eumelanin), asDouble(authored.pheomelanin)});
+}
+
+/// The colours of Kajiya-Kay.
+shading::StrandLook colourLook(const HairMaterial& authored) {
+    shading::StrandLook look;
+    look.quantity = LookQuantity::colour;
+    look.root = authored.rootColour.cast<double>();
+    look.tip = authored.tipColour.cast<double>();
+    if (authored.streakColourSource == ColourSource::colours) {
+        look.streakRoot = look.streakTip = authored.streakColour.cast<double>();
+    } else {
+        const double factor = asDouble(authored.streakMelanin);
+        look.streakRoot = shading::colourOfMoreAbsorption(look.root, factor);
+        look.streakTip = shading::colourOfMoreAbsorption(look.tip, factor);
+    }
+    look.dye = authored.dyeColour.cast<double>();
+    return look;
+}
+
+/// What fibres absorb.
+shading::StrandLook absorptionLook(const HairMaterial& authored, double roughness) {
+    shading::StrandLook look;
+    look.quantity = LookQuantity::absorption;
+    look.ownScale = shading::absorptionScale(roughness);
+    const auto ofColour = [&](const Vec3f& colour) {
+        return shading::absorptionOfColour(colour.cast<double>(), roughness);
+    };
+    const bool dyed = authored.colourSource == ColourSource::colours;
+    look.root = dyed ? ofColour(authored.rootColour) : melaninAbsorption(authored, 1);
+    look.tip =
+        dyed ? ofColour(authored.tipColour) : melaninAbsorption(authored, asDouble(authored.tipMelanin));
+    if (authored.streakColourSource == ColourSource::colours) {
+        look.streakRoot = look.streakTip = ofColour(authored.streakColour);
+    } else {
+        look.streakRoot = asDouble(authored.streakMelanin) * look.root;
+        look.streakTip = asDouble(authored.streakMelanin) * look.tip;
+    }
+    look.dye = ofColour(authored.dyeColour);
+    return look;
+}
+
+/// The highlights of an authored material against those of its fibre: R, TT, TRT.
+struct LobeControls {
+    std::array<double, 3> intensity, width, shift;
+
+    explicit LobeControls(const HairMaterial& m)
+        : intensity{asDouble(m.rIntensity), asDouble(m.ttIntensity), asDouble(m.trtIntensity)},
+          width{asDouble(m.rWidth), asDouble(m.ttWidth), asDouble(m.trtWidth)},
+          shift{asDouble(m.rShiftDegrees) * shading::kDegree, asDouble(m.ttShiftDegrees) * shading::kDegree,
+                asDouble(m.trtShiftDegrees) * shading::kDegree} {}
+
+    void applyTo(shading::MarschnerParameters& m) const {
+        for (std::size_t p = 0; p < 3; ++p) {
+            m.intensity[p] *= intensity[p];
+            m.width[p] = std::clamp(m.width[p] * width[p], kMinLobeWidth, kLargestLobeWidth);
+            m.tilt[p] += shift[p];
+        }
+    }
+    /// Lobes keep their height when they get wider: that is the model's intention.
+    void applyTo(shading::SadeghiParameters& s) const {
+        std::size_t p = 0;
+        for (shading::SadeghiLobe* lobe : {&s.r, &s.tt, &s.trt}) {
+            lobe->intensity *= intensity[p];
+            lobe->width *= width[p];
+            lobe->shift += shift[p];
+            ++p;
+        }
+    }
+};
+
+/// What Sadeghi's lobes have that Marschner's have not.
+void paintLobes(const HairMaterial& authored, shading::SadeghiParameters& s) {
+    s.r.tint = authored.rColour.cast<double>();
+    s.tt.tint = authored.ttColour.cast<double>();
+    s.trt.tint = authored.trtColour.cast<double>();
+    s.ttAzimuthalWidth *= asDouble(authored.ttAzimuthalWidth);
+    s.glintIntensity *= asDouble(authored.glintIntensity);
+    s.glintWidth = asDouble(authored.glintWidthDegrees) * shading::kDegree;
+    s.glintNear = asDouble(authored.glintNearDegrees) * shading::kDegree;
+    s.glintFar = asDouble(authored.glintFarDegrees) * shading::kDegree;
+}
+
+bool isEven(const HairMaterial& authored, const shading::StrandLook& look, bool ownColours) {
+    const bool sameEnds = look.root == look.tip;
+    const bool ownMatter = ownColours && look.quantity == LookQuantity::absorption;
+    return sameEnds && !ownMatter && authored.streakShare <= 0 && authored.dyeStrength <= 0 &&
+           authored.melaninVariation <= 0 && authored.emission <= 0;
+}
+
+void finishLook(const HairMaterial& authored, shading::StrandLook& look) {
+    look.gradient =
+        shading::LinearStep::between(asDouble(authored.gradientStart), asDouble(authored.gradientEnd));
+    look.dyeAlong = shading::LinearStep::between(asDouble(authored.dyeStart), asDouble(authored.dyeEnd));
+    look.spread = asDouble(authored.melaninVariation);
+    look.emissionRoot = asDouble(authored.emission) * authored.emissionRootColour.cast<double>();
+    look.emissionTip = asDouble(authored.emission) * authored.emissionTipColour.cast<double>();
+}
+
+render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view) {
+    const double roughness = roughnessOf(authored, view);
+    shading::MarschnerParameters m;
+    m.azimuthal.ior = view.ior.value_or(asDouble(authored.indexOfRefraction));
+    m.azimuthal.absorption = view.absorption ? *view.absorption
+                             : view.colour   ? shading::absorptionOfColour(*view.colour, roughness)
+                             : view.melanin  ? shading::absorption(*view.melanin)
+                                             : absorptionLook(authored, roughness).root;
+    m.azimuthal.width = shading::azimuthalWidth(roughness);
+    if (m.azimuthal.width >= shading::kMinAzimuthalWidth) m.azimuthal.causticWidth = 0;
+    m.azimuthal.axisRatio = view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
+    shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
+                       shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
+    const LobeControls controls(authored);
+    const render::ShadingModel model = shadingModel(authored, view);
+    if (model == render::ShadingModel::marschner) controls.applyTo(m);
+    if (view.width) m.width = *view.width;
+    if (view.tilt) m.tilt = *view.tilt;
+
+    render::FibreMaterial fibre;
+    fibre.model = model;
+    fibre.scattering = view.scattering;
+    if (model == render::ShadingModel::marschner) fibre.marschner = m;
+    if (model == render::ShadingModel::sadeghi) {
+        fibre.sadeghi = sadeghiLike(shading::Marschner(m));
+        controls.applyTo(fibre.sadeghi);
+        paintLobes(authored, fibre.sadeghi);
+        fibre.sadeghi.bounded = authored.energy == EnergyRule::bounded;
+        fibre.marschner = m;
+    }
+    return fibre;
+}
+
+std::vector<Vec3f> rootsOf(const Groom& groom) {
+    std::vector<Vec3f> roots(groom.strandCount());
+    for (std::size_t s = 0; s < roots.size(); ++s) roots[s] = groom.strand(s)[0];
+    return roots;
+}
+
+bool isPainted(const Groom& groom) {
+    return groom.pointAttributes.has(attribute::kPointDye);
+}
+
+/// Of a strand's points, at a share of its length in points.
+float valueAt(std::span<const float> values, float share) {
+    const float place = share * static_cast<float>(values.size() - 1);
+    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
+    const float t = place - static_cast<float>(before);
+    return values[before] + t * (values[before + 1] - values[before]);
+}
+
+float maskOf(std::span<const float> mask, std::size_t strand) {
+    return mask.empty() ? 1.0f : mask[strand];
+}
+
+/// As RenderStrands::materials counts them.
+std::vector<const HairMaterial*> authoredMaterials(const Groom& groom) {
+    std::vector<const HairMaterial*> materials{&groom.material};
+    for (const Layer& layer : groom.layers) {
+        if (layer.material) materials.push_back(&*layer.material);
+    }
+    return materials;
+}
+
+/// Which material each strand that is drawn has.
+struct Owners {
+    std::vector<const HairMaterial*> materials;
+    std::vector<std::uint32_t> ofStrands;  ///< empty: all have the first
+
+    const HairMaterial& of(std::size_t strand) const {
+        const std::uint32_t which = ofStrands.empty() ? 0 : ofStrands[strand];
+        return *materials[which == render::kNotDrawn ? 0 : which];
+    }
+    bool hasStreaks() const {
+        return std::ranges::any_of(materials, [](const auto* m) { return m->streakShare > 0; });
+    }
+    bool isDyed() const {
+        return std::ranges::any_of(materials, [](const auto* m) { return m->dyeStrength > 0; });
+    }
+    std::vector<float> streaks(std::span<const Vec3f> roots) const {
+        if (ofStrands.empty()) return streakWeights(*materials.front(), roots);
+        std::vector<float> weights(roots.size());
+        for (std::size_t m = 0; m < materials.size(); ++m) {
+            const std::vector<float> own = streakWeights(*materials[m], roots);
+            for (std::size_t s = 0; s < own.size(); ++s) {
+                if (ofStrands[s] == m) weights[s] = own[s];
+            }
+        }
+        return weights;
+    }
+};
+
+/// `ownColours`: strands have colours of their own.
+render::StrandShading strandShading(const HairMaterial& authored, const ViewFile& view, bool ownColours) {
+    render::StrandShading material;
+    material.albedo = authored.tipColour;
+    material.rootBrightness = material.tipBrightness = 1;
+    material.variation = authored.colourVariation;
+    material.radius = view.rootRadius.value_or(authored.rootRadius);
+    material.tipScale = view.tipScale.value_or(authored.tipScale);
+    material.radiusVariation = authored.radiusVariation;
+    material.rootOpacity = authored.rootOpacity;
+    material.tipOpacity = authored.tipOpacity;
+    // One authored highlight drives both of the shader's: the light's own colour, narrow, and the fibre's,
+    // wide.
+    material.primary = Vec3f::Constant(0.32f * authored.specular);
+    material.primaryExponent = 1.5f * authored.shininess;
+    material.secondary = Vec3f::Constant(1.1f * authored.specular);
+    material.secondaryExponent = 0.4f * authored.shininess;
+    material.primaryShift = 2 * authored.scaleTiltDegrees;
+    material.secondaryShift = -3 * authored.scaleTiltDegrees;
+    material.fibre = fibreMaterial(authored, view.fibre);
+    material.fibreColour = shading::colourOfAbsorption(material.fibre.marschner.azimuthal.absorption,
+                                                       roughnessOf(authored, view.fibre))
+                               .cast<float>();
+    material.tubes = authored.tubes;
+    material.bounded = authored.energy == EnergyRule::bounded;
+    const render::ShadingModel model = material.fibre.model;
+    const bool isKajiya = model == render::ShadingModel::kajiya || authored.tubes;
+    if (!isKajiya && view.fibre.saysColour()) {
+        material.variation = 0;
+        return material;
+    }
+    shading::StrandLook look =
+        isKajiya ? colourLook(authored) : absorptionLook(authored, roughnessOf(authored, view.fibre));
+    if (isEven(authored, look, ownColours)) return material;
+    finishLook(authored, look);
+    material.look = look;
+    // The tables hold all absorptions: none has to be baked again when a colour moves.
+    if (model == render::ShadingModel::marschner) material.fibre.marschner.azimuthal.absorption.setZero();
+    return material;
+}
+
+}  // namespace
+
+render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view) {
+    static_assert(static_cast<int>(ShadingModel::marschner) ==
+                      static_cast<int>(render::ShadingModel::marschner) &&
+                  static_cast<int>(ShadingModel::sadeghi) == static_cast<int>(render::ShadingModel::sadeghi));
+    return view.model.value_or(static_cast<render::ShadingModel>(authored.shadingModel));
+}
+
+bool StrandMaterials::hasLook() const {
+    return material.look ||
+           std::ranges::any_of(others, [](const auto& other) { return other.look.has_value(); });
+}
+
+StrandMaterials strandMaterials(const Groom& groom, const ViewFile& view) {
+    const bool ownColours = groom.strandAttributes.has(attribute::kStrandColour);
+    StrandMaterials materials{strandShading(groom.material, view, ownColours), {}, {}};
+    for (const Layer& layer : groom.layers) {
+        if (layer.material) materials.others.push_back(strandShading(*layer.material, view, ownColours));
+    }
+    return materials;
+}
+
+std::vector<std::uint32_t> materialsOfStrands(const Groom& groom) {
+    std::vector<std::uint32_t> ofLayers;
+    std::uint32_t own = 0;
+    for (const Layer& layer : groom.layers) {
+        if (layer.material) ++own;
+        ofLayers.push_back(!layer.visible ? render::kNotDrawn : layer.material ? own : 0);
+    }
+    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
+    const auto isHidden = [&](std::size_t strand) { return strand < hidden.size() && hidden[strand] != 0; };
+    std::vector<std::uint32_t> materials = layersOfStrands(groom);
+    bool allAlike = true;
+    for (std::size_t s = 0; s < materials.size(); ++s) {
+        const std::uint32_t layer = materials[s];
+        materials[s] = isHidden(s) ? render::kNotDrawn : layer < ofLayers.size() ? ofLayers[layer] : 0;
+        allAlike = allAlike && materials[s] == 0;
+    }
+    return allAlike ? std::vector<std::uint32_t>() : materials;
+}
+
+std::vector<std::uint32_t> materialsOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    const std::vector<std::uint32_t> strands = materialsOfStrands(groom);
+    if (strands.empty()) return {};
+    std::vector<std::uint32_t> materials(bindings.hairCount());
+    for (std::size_t hair = 0; hair < materials.size(); ++hair)
+        materials[hair] = strands[bindings.guideStrands[bindings.guides[hair][0]]];
+    return materials;
+}
+
+StreakAndDyeWeights weightsOfStrands(const Groom& groom) {
+    const Owners owners{authoredMaterials(groom), materialsOfStrands(groom)};
+    StreakAndDyeWeights weights;
+    if (owners.hasStreaks()) weights.streaks = owners.streaks(rootsOf(groom));
+    if (!owners.isDyed()) return weights;
+    if (isPainted(groom)) weights.pointDyes = pointDyes(groom);
+    const auto mask =
+        isPainted(groom) ? std::span<const float>() : groom.strandAttributes.view<float>(attribute::kDye);
+    weights.dyes.resize(groom.strandCount());
+    for (std::size_t s = 0; s < weights.dyes.size(); ++s)
+        weights.dyes[s] = owners.of(s).dyeStrength * maskOf(mask, s);
+    return weights;
+}
+
+Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    const Owners owners{authoredMaterials(groom), materialsOfFollowHairs(groom, bindings)};
+    StreakAndDyeWeights weights;
+    if (owners.hasStreaks()) {
+        const auto rest = bakeFollowHairs(groom, bindings);
+        if (!rest) return tl::unexpected(rest.error());
+        weights.streaks = owners.streaks(rootsOf(*rest));
+    }
+    if (!owners.isDyed()) return weights;
+    if (isPainted(groom)) {
+        weights.pointDyes = pointDyesOfFollowHairs(groom, bindings);
+        weights.dyes.resize(bindings.hairCount());
+        for (std::size_t hair = 0; hair < weights.dyes.size(); ++hair)
+            weights.dyes[hair] = owners.of(hair).dyeStrength;
+        return weights;
+    }
+    const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
+    weights.dyes.resize(bindings.hairCount());
+    for (std::size_t hair = 0; hair < weights.dyes.size(); ++hair) {
+        float sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t strand = bindings.guideStrands[bindings.guides[hair][k]];
+            sum += bindings.rootWeights[hair][static_cast<int>(k)] * maskOf(mask, strand);
+        }
+        weights.dyes[hair] = owners.of(hair).dyeStrength * std::clamp(sum, 0.0f, 1.0f);
+    }
+    return weights;
+}
+
+std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    if (!isPainted(groom)) return {};
+    const std::size_t perHair = bindings.pointsPerHair;
+    const auto mask = groom.pointAttributes.view<float>(attribute::kPointDye);
+    std::vector<float> guides(bindings.guideCount() * perHair);
+    for (std::size_t guide = 0; guide < bindings.guideCount(); ++guide) {
+        const std::size_t first = groom.offsets[bindings.guideStrands[guide]];
+        const std::size_t count = groom.offsets[bindings.guideStrands[guide] + 1] - first;
+        for (std::size_t i = 0; i < perHair; ++i) {
+            const float share = static_cast<float>(i) / static_cast<float>(perHair - 1);
+            guides[guide * perHair + i] = valueAt(mask.subspan(first, count), share);
+        }
+    }
+    constexpr std::size_t kGrain = 256;
+    std::vector<float> dyes(bindings.hairCount() * perHair);
+    parallelFor(bindings.hairCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t hair = begin; hair < end; ++hair) {
+            for (std::size_t i = 0; i < perHair; ++i) {
+                float sum = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const float weight = bindings.rootWeights[hair][static_cast<int>(k)];
+                    sum += weight * guides[bindings.guides[hair][k] * perHair + i];
+                }
+                dyes[hair * perHair + i] = std::clamp(sum, 0.0f, 1.0f);
+            }
+        }
+    });
+    return dyes;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a groom's material means to the renderer.
+
+#include "core/live/groom_scene.h"
+
+namespace hairloom {
+
+/// The one way from the authored HairMaterial to what the renderer draws by; members of the view come first.
+///
+/// | authored | StrandShading |
+/// |---|---|
+/// | rootRadius, tipScale, radiusVariation, rootOpacity, tipOpacity, tubes | the same |
+/// | specular, shininess, scaleTiltDegrees | `primary…`, `secondary…`: Kajiya-Kay's two highlights |
+/// | energy | `bounded`, also of Sadeghi's lobes |
+/// | tipColour, colourVariation | `albedo`, `variation` |
+/// | indexOfRefraction, roughnesses, scaleTiltDegrees, eccentricity, r…, tt…, trt… | `fibre.marschner` |
+/// | those, tints, ttAzimuthalWidth, glints | `fibre.sadeghi`, from the Marschner fibre of the same hair |
+/// | colours, melanin, gradient, streaks, dye, emission | `look`; even hair has none, but a fibre's
+/// absorption |
+///
+/// Hair is uneven where it has other colours or pigment at the tip, streaks, dye, strands of their own
+/// colour, random pigment or light of its own.
+///
+/// `ofStrands` is left empty.
+StrandMaterials strandMaterials(const Groom& groom, const ViewFile& view);
+/// Which of them each strand has; those that are hidden or on a layer that is are not drawn.
+std::vector<std::uint32_t> materialsOfStrands(const Groom& groom);
+/// Of follow hairs: that of their own guide.
+std::vector<std::uint32_t> materialsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
+
+/// The view's, or else the groom's.
+render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view);
+
+/// Of the groom's own strands, by their materials, their roots at rest and the attributes `dye`.
+StreakAndDyeWeights weightsOfStrands(const Groom& groom);
+/// Of follow hairs: by the material of their own guide, their own roots at rest, and the dye of the guides
+/// around them. Errors: hairs that cannot be evaluated.
+Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
+/// The painted dye of the guides around each point of a follow hair; empty where none was painted.
+std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
+
+}  // namespace hairloom

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/live/live_cost.h"
+
+#include <algorithm>
+
+#include "core/base/stopwatch.h"
+#include "core/gpu/frames_under_way.h"
+
+namespace hairloom {
+namespace {
+
+constexpr float kFrame = 1.0f / 60;  // seconds
+constexpr std::uint32_t kWarmUp = 8;
+constexpr std::size_t kUnderWay = 2;  // frames
+
+/// As the viewport draws while something moves.
+render::RenderOptions viewportOptions(std::uint32_t width, std::uint32_t height) {
+    render::RenderOptions options;
+    options.width = width;
+    options.height = height;
+    options.frames = 1;
+    options.samples = 1;
+    options.subdivisions = 1;
+    options.shadowResolution = 512;
+    options.skyStrands = 1024;
+    options.detail = 0.5f;
+    options.bakeBehind = true;
+    options.temporal = true;
+    options.transparency = render::Transparency::automatic;
+    return options;
+}
+
+}  // namespace
+
+LiveLoop::LiveLoop(gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
+                   std::uint32_t width, std::uint32_t height)
+    : device_(device),
+      kernels_(std::move(kernels)),
+      options_(viewportOptions(width, height)),
+      renderer_(device) {}
+
+Result<LiveCost> LiveLoop::run(const Groom& groom, const HeadMotion& motion, EngineKind engine,
+                               std::uint32_t frames) {
+    auto scene = GroomScene::make(groom, {}, {});
+    if (!scene) return tl::unexpected(scene.error());
+    auto live = LiveHair::make(device_, kernels_, std::move(*scene), motion, engine);
+    if (!live) return tl::unexpected(live.error());
+    if (auto status = setUp(live->scene()); !status) return tl::unexpected(status.error());
+    if (auto status = play(*live, kWarmUp); !status) return tl::unexpected(status.error());
+    cost_ = {};
+    const gpu::Traffic before = device_.traffic();
+    const Stopwatch watch;
+    if (auto status = play(*live, frames); !status) return tl::unexpected(status.error());
+    cost_.wall = 1e3 * watch.seconds();
+    const gpu::Traffic after = device_.traffic();
+    cost_.toDevice = static_cast<double>(after.toDevice - before.toDevice);
+    cost_.fromDevice = static_cast<double>(after.fromDevice - before.fromDevice);
+    for (double* sum : {&cost_.simulate, &cost_.follow, &cost_.shadow, &cost_.shade, &cost_.draw, &cost_.wall,
+                        &cost_.toDevice, &cost_.fromDevice})
+        *sum /= frames;
+    for (auto& [name, milliseconds] : cost_.passes) milliseconds /= frames;
+    const render::RenderScene drawn = live->scene().scene();
+    cost_.hairs = drawn.strands.front().offsets.size() - 1;
+    cost_.pointBytes = static_cast<double>(drawn.strands.front().positions_ws.size_bytes());
+    return cost_;
+}
+
+Status LiveLoop::setUp(const GroomScene& groom) {
+    render::RenderScene scene = groom.scene();
+    const float aspect = static_cast<float>(options_.width) / static_cast<float>(options_.height);
+    scene.camera = render::frame(render::View::ThreeQuarter, groom.subject(), aspect);
+    scene.lights = render::studioLights(scene.camera);
+    gpu::TextureDesc desc;
+    desc.name = "bench";
+    desc.width = options_.width;
+    desc.height = options_.height;
+    desc.usage = gpu::Usage::RenderTarget;
+    auto target = device_.createTexture(desc);
+    if (!target) return tl::unexpected(target.error());
+    target_ = std::move(*target);
+    return renderer_.setScene(scene);
+}
+
+Status LiveLoop::play(LiveHair& live, std::uint32_t count) {
+    gpu::FramesUnderWay underWay(kUnderWay, [this](const auto& times) { add(times); });
+    for (std::uint32_t frame = 0; frame < count; ++frame) {
+        auto list = device_.createCommandList();
+        if (!list) return tl::unexpected(list.error());
+        if (auto status = live.record(**list, renderer_, kFrame); !status) return status;
+        if (auto status = renderer_.record(**list, options_, target_); !status) return status;
+        auto submission = device_.submit(std::move(*list));
+        if (!submission) return tl::unexpected(submission.error());
+        live.submitted(*submission);
+        cost_.simulate += live.simulateMilliseconds();
+        cost_.follow += live.followMilliseconds();
+        if (auto status = underWay.add(std::move(*submission)); !status) return status;
+    }
+    return underWay.finish();
+}
+
+void LiveLoop::add(const std::vector<gpu::PassTime>& times) {
+    for (const gpu::PassTime& time : times) {
+        sumOf(time.name) += time.milliseconds;
+        cost_.passes[time.name] += time.milliseconds;
+    }
+}
+
+double& LiveLoop::sumOf(std::string_view pass) {
+    using render::Pass;
+    const auto isOne = [&](std::initializer_list<std::string_view> names) {
+        return std::ranges::find(names, pass) != names.end();
+    };
+    if (isOne({"head", "roots", "roots of slots", "strands", "measures", "extent"})) return cost_.simulate;
+    if (isOne({"wisps", "follow hairs"})) return cost_.follow;
+    if (isOne({passName(Pass::headDepth), passName(Pass::firstHair), passName(Pass::opacity),
+               passName(Pass::skyHead), passName(Pass::skyFirst), passName(Pass::skyLayers),
+               passName(Pass::skySeen)}))
+        return cost_.shadow;
+    if (isOne({passName(Pass::shade), passName(Pass::curves)})) return cost_.shade;
+    return cost_.draw;
+}
+
+}  // namespace hairloom

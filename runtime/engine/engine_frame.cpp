@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: MIT
+// A frame of an engine: what comes in, the plan that follows, and the run of its blocks.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+#include "engine/checks.h"
+#include "engine/engine_impl.h"
+
+namespace hairloom::runtime {
+namespace {
+
+constexpr std::size_t kBlocksPerJob = 4;
+
+RootBounds noRoots() {
+    RootBounds bounds;
+    std::fill_n(bounds.low[0], 3 * kBlockLanes, 1e30f);
+    std::fill_n(bounds.high[0], 3 * kBlockLanes, -1e30f);
+    std::fill_n(bounds.longest, kBlockLanes, 0.0f);
+    return bounds;
+}
+float minimum(const float* row) {
+    return *std::min_element(row, row + kBlockLanes);
+}
+float maximum(const float* row) {
+    return *std::max_element(row, row + kBlockLanes);
+}
+
+}  // namespace
+
+Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& settings, Host host)
+    : settings_(settings), host_(std::move(host)), shape_(makeRestShape(strands)) {
+    state_.planes.assign(shape_->planeFloats * kStatePlanes, 0.0f);
+    state_.roots.assign(shape_->blocks.size() * kRootRows * kBlockLanes, 0.0f);
+    blockReports_.resize(shape_->blocks.size());
+    nextRoots_.assign(state_.roots.size(), 0.0f);
+    makeRods();
+    wind_.wind = makeWind(settings);
+    reset(shape_->restRoots);
+}
+
+void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
+    report_ = {};
+    state_.rests.assign(shape_->blocks.size(), {});
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const std::uint32_t strand = shape_->blocks[b].strandOfLane[lane];
+            RootFrame root = roots_ws[strand];
+            if (!usableWithin(root, kFarthest)) root = shape_->restRoots[strand];
+            const float values[kRootRows] = {root.position.x, root.position.y, root.position.z,
+                                             root.rotation.x, root.rotation.y, root.rotation.z,
+                                             root.rotation.w};
+            for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = values[r];
+            placeAtRest(*shape_, state_, b, lane);
+            placeRodAtRest(*shape_, rods_, state_, b, lane);
+        }
+    }
+    state_.spheres.clear();
+    state_.substep = 0.0f;
+    state_.fastest = 0.0f;
+    state_.origin_ws.reset();
+    FrameInput here;
+    here.roots_ws = roots_ws;
+    takeRoots(here);
+    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+}
+
+void Engine::Impl::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
+                         std::span<const Float3> velocities_ws) {
+    reset(roots_ws);
+    state_.substep = kUsualFrame / static_cast<float>(substepsIn(settings_, kUsualFrame));
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        const Block& block = shape_->blocks[b];
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const std::size_t first = shape_->offsets[block.strandOfLane[lane]];
+            const auto finite = [&](std::span<const Float3> values) {
+                const auto strand = values.subspan(first, block.points);
+                return std::all_of(strand.begin(), strand.end(),
+                                   [](Float3 value) { return isFinite(value); });
+            };
+            if (finite(positions_ws) && finite(velocities_ws))
+                placeLane(b, lane, &positions_ws[first], &velocities_ws[first]);
+        }
+    }
+}
+
+void Engine::Impl::placeLane(std::size_t index, std::uint32_t lane, const Float3* positions_ws,
+                             const Float3* velocities_ws) {
+    const Block& block = shape_->blocks[index];
+    const std::size_t size = planeSize(block);
+    const float* const root = state_.roots.data() + index * kRootRows * kBlockLanes + lane;
+    const Float3 root_ws{root[0], root[kBlockLanes], root[2 * kBlockLanes]};
+    float* const moving = state_.planes.data() + block.firstPlane * kStatePlanes;
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        const Float3 at = positions_ws[p] - root_ws, before = at - velocities_ws[p] * state_.substep;
+        const float values[] = {at.x, at.y, at.z, before.x, before.y, before.z};
+        for (std::size_t plane = 0; plane < kStatePlanes; ++plane) moving[plane * size + i] = values[plane];
+    }
+    if (!rods_.planes.empty()) placeRodOnPoints(*shape_, rods_, state_, index, lane);
+}
+
+std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
+    if (std::string error = validationError(settings); !error.empty()) return error;
+    settings_ = settings;
+    makeRods();
+    scratch_ = {};
+    wind_ = {makeWind(settings), false};
+    bend_.substep = 0.0f;
+    state_.rests.assign(shape_->blocks.size(), {});
+    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+    return {};
+}
+
+bool Engine::Impl::setState(const State& state) {
+    if (state.planes.size() != state_.planes.size() || state.roots.size() != state_.roots.size() ||
+        state.rests.size() != state_.rests.size())
+        return false;
+    state_ = state;
+    makeRods();
+    wind_.given = false;
+    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+    return true;
+}
+
+void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
+                          Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
+    FramePlanInput planInput{strandCount(),         shape_->longestPointCount,
+                             shape_->longestStrand, shape_->straight,
+                             rootsMin_ws,           rootsMax_ws,
+                             rootMotion_,           state_.fastest};
+    planInput.restTime = 1e30f;
+    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
+        if (state_.rests[b].asleep) planInput.asleep += shape_->blocks[b].strands;
+        planInput.restTime = std::min(planInput.restTime, state_.rests[b].time);
+    }
+    plan_ = planFrame(settings_, planInput, wind_, spheres, sphereMotion, frameTime);
+    allocateForPlan();
+}
+
+/// What strands are as rods under these settings; strands that were none before go on from where they are.
+void Engine::Impl::makeRods() {
+    if (settings_.strandModel != StrandModel::rods) {
+        rods_ = {};
+        state_.rods = state_.rodLanes = {};
+        return;
+    }
+    rods_ = makeRodRest(*shape_, settings_);
+    if (!state_.rods.empty()) return;
+    state_.rods = Floats(shape_->planeFloats * kRodStatePlanes, 0.0f);
+    state_.rodLanes = Floats(shape_->blocks.size() * kRodLaneRows * kBlockLanes, 0.0f);
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
+            placeRodOnPoints(*shape_, rods_, state_, b, lane);
+    }
+}
+
+void Engine::Impl::allocateForPlan() {
+    const bool angular = plan_.on(Effect::angular);
+    const bool factored = angular && plan_.factored();
+    const bool targets = plan_.on(Effect::torsion);
+    if (angular == bend_.planes.empty() || factored != bend_.factored || targets != bend_.targets) {
+        bend_.factored = factored;
+        bend_.targets = targets;
+        bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
+        bend_.substep = 0.0f;
+    }
+    if (plan_.keepsTensions() == state_.tensions.empty())
+        state_.tensions = Floats(plan_.keepsTensions() ? shape_->planeFloats : 0, 0.0f);
+    evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
+                        : settings_.integrator == Integrator::rk4  ? kRungeKuttaPlanes
+                                                                   : kEvaluationPlanes;
+    if (evaluation_.size() != shape_->planeFloats * evaluationPlanes_)
+        evaluation_ = Floats(shape_->planeFloats * evaluationPlanes_, 0.0f);
+    // Sleeping strands keep theirs, so that they wake up without asking for memory.
+    const std::size_t jobs = (shape_->blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
+    scratch_.grow(host_.parallelFor ? scratchPieces(jobs) : 1,
+                  solverFloats(plan_.stages(), shape_->longestPointCount, kernels()));
+}
+
+/// Measures what is known of the last frame from the origin of this one.
+void Engine::Impl::moveOrigin(std::array<double, 3> origin_ws) {
+    if (!isFinite(origin_ws)) origin_ws = state_.origin_ws.value_or(std::array<double, 3>{});
+    const Float3 shift = shiftOfOrigin(state_.origin_ws.value_or(origin_ws), origin_ws);
+    state_.origin_ws = origin_ws;
+    if (shift == Float3{}) return;
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        float* const rows = state_.roots.data() + b * kRootRows * kBlockLanes;
+        const float parts[] = {shift.x, shift.y, shift.z};
+        for (std::size_t i = 0; i < 3 * kBlockLanes; ++i) rows[i] += parts[i / kBlockLanes];
+    }
+    for (Sphere& sphere : state_.spheres) sphere.center_ws = sphere.center_ws + shift;
+    state_.rootsMin_ws = state_.rootsMin_ws + shift;
+    state_.rootsMax_ws = state_.rootsMax_ws + shift;
+}
+
+/// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
+void Engine::Impl::takeRoots(const FrameInput& input) {
+    RootBounds bounds = noRoots();
+    const float cut = settings_.teleportDistance * settings_.teleportDistance;
+    const Kernels& table = kernels();
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        const Block& block = shape_->blocks[b];
+        const float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
+        float* const next = nextRoots_.data() + b * kRootRows * kBlockLanes;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const RootFrame& root = input.roots_ws[block.strandOfLane[lane]];
+            const float values[kRootRows] = {root.position.x, root.position.y, root.position.z,
+                                             root.rotation.x, root.rotation.y, root.rotation.z,
+                                             root.rotation.w};
+            for (std::size_t r = 0; r < kRootRows; ++r) next[r * kBlockLanes + lane] = values[r];
+        }
+        bounds.anyTeleported = false;
+        if (!table.takeRoots(rows, next, false, cut, bounds)) {
+            repairRoots(b);
+            table.takeRoots(rows, next, true, cut, bounds);
+        }
+        blockReports_[b].rootsTeleported = bounds.anyTeleported;
+        blockReports_[b].rootsMoved = std::memcmp(rows, next, kRootRows * kBlockLanes * sizeof(float)) != 0;
+    }
+    rootMotion_ = std::sqrt(maximum(bounds.longest));
+    state_.rootsMin_ws = {minimum(bounds.low[0]), minimum(bounds.low[1]), minimum(bounds.low[2])};
+    state_.rootsMax_ws = {maximum(bounds.high[0]), maximum(bounds.high[1]), maximum(bounds.high[2])};
+}
+
+/// Puts the block's roots that are no positions back to those of the last frame.
+void Engine::Impl::repairRoots(std::size_t block) {
+    const float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;
+    float* const next = nextRoots_.data() + block * kRootRows * kBlockLanes;
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        const auto given = [&](std::size_t r) -> float& { return next[r * kBlockLanes + lane]; };
+        RootFrame root{{given(0), given(1), given(2)}, {given(3), given(4), given(5), given(6)}};
+        if (usableWithin(root, kFarthest)) {
+            given(3) = root.rotation.x;
+            given(4) = root.rotation.y;
+            given(5) = root.rotation.z;
+            given(6) = root.rotation.w;
+            continue;
+        }
+        for (std::size_t r = 0; r < kRootRows; ++r) given(r) = rows[r * kBlockLanes + lane];
+        if (lane < shape_->blocks[block].strands) ++report_.rejectedRoots;
+    }
+}
+
+/// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
+bool Engine::Impl::sphereNear(std::size_t block) const {
+    const float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
+    for (const Sphere& waking : spheres_.waking) {
+        for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
+            const Float3 root{rows[lane], rows[kBlockLanes + lane], rows[2 * kBlockLanes + lane]};
+            if (length(root - waking.center_ws) < waking.radius) return true;
+        }
+    }
+    return false;
+}
+
+void Engine::Impl::wakeBlocks() {
+    const bool windy = length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
+    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
+        Rest& rest = state_.rests[b];
+        if (rest.asleep && (windy || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
+    }
+}
+
+Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
+    Frame frame{};
+    frame.input = &input;
+    frame.context = substepContext(settings_, plan_, input.dt, movingSpheres_);
+    const float h = frame.context.h;
+    frame.windy = plan_.on(Effect::wind);
+    if (frame.windy) {
+        const double time = std::isfinite(input.time) ? input.time : 0.0;
+        frame.windFrom = windPhases(wind_.wind, time - static_cast<double>(input.dt), *state_.origin_ws);
+        frame.windTo = windPhases(wind_.wind, time, *state_.origin_ws);
+    }
+    frame.context.stepRatio = state_.substep > 0.0f ? h / state_.substep : kRodFirstRatio;
+    frame.context.conservative = !frame.windy;
+    if (frame.windy) {
+        frame.context.wind = &wind_.wind;
+        const double time = std::isfinite(input.time) ? input.time : 0.0;
+        for (std::uint32_t i = 0; i < frame.context.count; ++i) {
+            const double left = static_cast<double>(frame.context.count - 1 - i) * static_cast<double>(h);
+            frame.windPhases[i] = windPhases(wind_.wind, time - left, *state_.origin_ws);
+        }
+    }
+    frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
+    frame.starts = !(state_.substep > 0.0f);
+    frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
+    frame.kernels = &kernels();
+    frame.passes = host_.nanoseconds ? singlePassesOf(plan_.stages(), *frame.kernels)
+                                     : passesOf(plan_.stages(), *frame.kernels);
+    return frame;
+}
+
+void Engine::Impl::step(const FrameInput& input) {
+    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return;
+    const std::uint64_t begin = host_.nanoseconds ? host_.nanoseconds() : 0;
+    report_ = {};
+
+    moveOrigin(input.origin_ws);
+    const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
+    takeRoots(input);
+    const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
+    takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
+    report_.rejectedSpheres = spheres_.rejected;
+    report_.rejectedWinds = takeWind(settings_, input, wind_);
+    wakeBlocks();
+    replan(spheres_.usable, spheres_.motion,
+           {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
+           {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
+           input.dt);
+    if (plan_.on(Effect::collision)) {
+        moveSpheres(spheres_, substepsIn(settings_, input.dt), movingSpheres_);
+        if (!rods_.planes.empty()) scratch_.reserveSpheres(movingSpheres_.size());
+    } else {
+        movingSpheres_ = {};
+    }
+
+    const Frame frame = makeFrame(input);
+    runBlocks(frame);
+    state_.spheres.assign(spheres_.usable.begin(), spheres_.usable.end());
+    state_.substep = frame.context.h;
+    if (frame.newBend) bend_.substep = frame.context.h;
+    sumReports();
+    if (host_.nanoseconds) report_.milliseconds = static_cast<double>(host_.nanoseconds() - begin) * 1e-6;
+}
+
+void Engine::Impl::runBlocks(const Frame& frame) {
+    const std::size_t blocks = shape_->blocks.size();
+    const auto run = [&](std::size_t first, std::size_t end) {
+        Scratch::Piece& piece = scratch_.take();
+        for (std::size_t b = first; b < end; ++b) runBlock(b, piece.lanes, frame);
+        piece.taken.store(false, std::memory_order_release);
+    };
+    if (host_.parallelFor) {
+        // By reference: a std::function that copied the captures could allocate.
+        const Host::Body body = std::ref(run);
+        host_.parallelFor(blocks, kBlocksPerJob, body);
+    } else {
+        run(0, blocks);
+    }
+}
+
+void Engine::Impl::sumReports() {
+    float fastest = 0.0f;
+    for (const BlockReport& block : blockReports_) {
+        for (std::size_t i = 0; host_.nanoseconds && i < kStageCount; ++i)
+            report_.stageMilliseconds[i] += static_cast<double>(block.nanoseconds[i]) * 1e-6;
+        report_.restoredStrands += block.restored;
+        report_.guardedStrands += block.guarded;
+        fastest = std::max(fastest, block.fastest);
+    }
+    state_.fastest = std::sqrt(fastest) / state_.substep;
+    if (report_.restoredStrands > 0 && host_.log) {
+        host_.log(std::to_string(report_.restoredStrands) +
+                  " strands had left the range of sound places and were put back to rest");
+    }
+}
+
+BlockView Engine::Impl::view(std::size_t block) {
+    BlockView view =
+        viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
+    view.rod = rodViewOf(*shape_, rods_, state_, block);
+    return view;
+}
+
+void Engine::Impl::addVelocities(std::span<const Float3> changes_ws) {
+    const float h = state_.substep;
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        const Block& block = shape_->blocks[b];
+        const BlockView blockView = view(b);
+        const Planes previous = blockView.previous;
+        const RodView& rod = blockView.rod;
+        bool changed = false;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            // Lanes past the last strand repeat it.
+            const std::uint32_t first = shape_->offsets[block.strandOfLane[lane]];
+            for (std::uint32_t p = settings_.clampedPoints; p < block.points; ++p) {
+                const Float3 change = changes_ws[first + p];
+                if (!isFinite(change) || change == Float3{}) continue;
+                const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+                previous.x[i] -= change.x * h;
+                previous.y()[i] -= change.y * h;
+                previous.z()[i] -= change.z * h;
+                for (const Planes& velocity : {rod.velocity, rod.velocityBefore}) {
+                    if (!velocity.x) continue;
+                    velocity.x[i] += change.x;
+                    velocity.y()[i] += change.y;
+                    velocity.z()[i] += change.z;
+                }
+                if (rod.energy) rod.energy[lane] = kRodNoEnergy;
+                changed = true;
+            }
+        }
+        if (changed) state_.rests[b] = {};
+    }
+}
+
+}  // namespace hairloom::runtime

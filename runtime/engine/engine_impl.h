@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What is behind Engine, for its own sources.
+
+#include <array>
+
+#include "engine/frame_setup.h"
+#include "engine/scratch.h"
+#include "engine/state.h"
+#include "engine/state_read.h"
+#include "hairloom/engine.h"
+#include "models/rods/rods.h"
+
+namespace hairloom::runtime {
+
+/// Trusts the sizes of what it is given.
+struct Engine::Impl {
+    struct Frame;
+    struct BlockReport {
+        std::array<std::uint64_t, kStageCount> nanoseconds{};
+        float fastest = 0.0f;  ///< square metres, as Kernels::fastest
+        std::uint32_t restored = 0, guarded = 0;
+        bool rootsMoved = false;
+        bool rootsTeleported = false;  ///< some are carried along rigidly
+    };
+    Impl(const StrandsView& strands, const SimulationSettings& settings, Host host);
+
+    void reset(std::span<const RootFrame> roots_ws);
+    void place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
+               std::span<const Float3> velocities_ws);
+    void placeLane(std::size_t block, std::uint32_t lane, const Float3* positions_ws,
+                   const Float3* velocities_ws);
+    std::string setSettings(const SimulationSettings& settings);
+    bool setState(const State& state);
+    void step(const FrameInput& input);
+    void addVelocities(std::span<const Float3> changes_ws);
+    std::size_t effectBytes(Effect effect) const;
+    std::size_t baseBytes() const;
+    std::uint32_t strandCount() const { return static_cast<std::uint32_t>(shape_->offsets.size() - 1); }
+    std::uint32_t pointCount() const { return shape_->offsets.back(); }
+
+    void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
+                Float3 rootsMax_ws, float frameTime);
+    void allocateForPlan();
+    void makeRods();
+    void takeRoots(const FrameInput& input);
+    void repairRoots(std::size_t block);
+    void wakeBlocks();
+    bool sphereNear(std::size_t block) const;
+    Frame makeFrame(const FrameInput& input);
+    BlockView view(std::size_t block);
+    void runBlocks(const Frame& frame);
+    void runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame);
+    static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
+    void teleportLanes(const BlockView& view, float* rows, const float* next) const;
+    void moveOrigin(std::array<double, 3> origin_ws);
+    void touchSpheres(std::size_t block, const SubstepContext& context, LaneFrame& lanes) const;
+    void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
+    static void openSubstep(SubstepContext& context, const Frame& frame);
+    static void runPass(std::size_t i, const BlockView& view, LaneFrame& lanes, const SubstepContext& context,
+                        const Frame& frame);
+    void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
+    void restoreStrands(std::size_t block, const BlockView& view);
+    void rest(std::size_t block, const BlockView& view, const Frame& frame);
+    void sumReports();
+
+    SimulationSettings settings_;
+    Host host_;
+    std::shared_ptr<const RestShape> shape_;
+    RodRest rods_;  // empty for springs
+    EffectPlan plan_;
+    FrameWind wind_;
+    State state_;
+    Bend bend_;
+    Floats evaluation_;  // empty for position Verlet
+    std::size_t evaluationPlanes_ = 0;
+    Scratch scratch_;
+    StepReport report_;
+    std::vector<BlockReport> blockReports_;
+    // Of the frame under way.
+    Floats nextRoots_;  // as State::roots, at the frame's end
+    FrameSpheres spheres_;
+    std::vector<MovingSphere> movingSpheres_;
+    float rootMotion_ = 0.0f;  // metres, the longest way of a root
+};
+
+/// What all blocks share in one step.
+struct Engine::Impl::Frame {
+    const FrameInput* input;
+    SubstepContext context;
+    std::array<float, kWindModes> windFrom, windTo;
+    bool windy;
+    /// Of rods: of the wind at the end of each substep.
+    std::array<std::array<float, kWindModes>, kMaxSubsteps> windPhases;
+    float rescale;  ///< new substep over old, 1 when equal
+    bool starts;    ///< the first since the hair was put at rest
+    bool newBend;
+    const Kernels* kernels;
+    Passes passes;  ///< of the plan; single ones where there is a clock between its stages
+};
+
+}  // namespace hairloom::runtime

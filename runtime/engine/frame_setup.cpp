@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "engine/frame_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/state.h"
+#include "models/rods/rods.h"
+
+namespace hairloom::runtime {
+namespace {
+
+/// Seconds in which the tension that bending knows of follows that of the segments.
+constexpr float kTensionTime = 0.2f;
+
+float shareLeft(float h, float timeConstant) {
+    return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
+}
+
+/// Faster air is a mistake, and its squares would leave the range of single precision.
+bool isWind(Float3 velocity) {
+    constexpr float kMax = 1000.0f;  // m/s
+    return isFinite(velocity) && length(velocity) <= kMax;
+}
+
+void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& spheres) {
+    const std::size_t count = std::max(spheres.usable.size(), before.size());
+    spheres.waking.clear();
+    spheres.waking.reserve(2 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Sphere then = i < before.size() ? before[i] : Sphere{};
+        const Sphere now = i < spheres.usable.size() ? spheres.usable[i] : Sphere{};
+        if (then.center_ws == now.center_ws && then.radius == now.radius) continue;
+        const bool moved = then.radius > 0.0f && now.radius > 0.0f;
+        const float distance = moved ? length(now.center_ws - then.center_ws) : 0.0f;
+        for (const Sphere& sphere : {then, now}) {
+            if (sphere.radius > 0.0f)
+                spheres.waking.push_back({sphere.center_ws, hair + sphere.radius + distance});
+        }
+    }
+}
+
+/// SubstepContext::slowestSwept for the spheres and collision radii of the context.
+float slowestSwept(const SubstepContext& context) {
+    float smallest = 1e30f, fastestSquared = 0.0f;
+    for (const MovingSphere& sphere : context.spheres) {
+        smallest = std::min(smallest, sphere.radius);
+        fastestSquared = std::max(fastestSquared, dot(sphere.step, sphere.step));
+    }
+    smallest += std::min(context.collisionRadiusAtRoot, context.collisionRadiusAtTip);
+    return std::max(0.999f * kUnsweptShare * smallest - 1.001f * std::sqrt(fastestSquared), 0.0f);
+}
+
+}  // namespace
+
+void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
+                 std::span<const Sphere> given, FrameSpheres& spheres) {
+    spheres.usable.assign(given.begin(), given.end());
+    spheres.motion.assign(given.size(), Float3{});
+    spheres.rejected = 0;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        Sphere& sphere = spheres.usable[i];
+        if (!isFinite(sphere.center_ws) || !std::isfinite(sphere.radius) || !(sphere.radius > 0.0f)) {
+            sphere = {};
+            ++spheres.rejected;
+            continue;
+        }
+        if (i < before.size() && before[i].radius > 0.0f) {
+            const Float3 motion = sphere.center_ws - before[i].center_ws;
+            if (length(motion) <= settings.teleportDistance) spheres.motion[i] = motion;
+        }
+    }
+    findWaking(hairReach(settings, longestStrand), before, spheres);
+}
+
+void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving) {
+    moving.clear();
+    const float share = 1.0f / static_cast<float>(substeps);
+    for (std::size_t i = 0; i < spheres.usable.size(); ++i) {
+        const Sphere& sphere = spheres.usable[i];
+        if (!(sphere.radius > 0.0f)) continue;
+        moving.push_back({sphere.center_ws - spheres.motion[i], spheres.motion[i] * share, sphere.radius});
+    }
+}
+
+std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& input, FrameWind& wind) {
+    WindInput given;
+    std::uint32_t rejected = 0;
+    if (input.wind_ws) {
+        if (isWind(*input.wind_ws)) {
+            given.mean_ws = input.wind_ws;
+        } else {
+            ++rejected;
+        }
+    }
+    if (isWind(input.actorVelocity_ws)) {
+        given.actorVelocity_ws = input.actorVelocity_ws;
+    } else {
+        ++rejected;
+    }
+    const bool before = wind.given;
+    wind.given =
+        given.mean_ws || (settings.windKind == WindKind::vehicle && given.actorVelocity_ws != Float3{});
+    if (wind.given || before) wind.wind = makeWind(settings, given);
+    return rejected;
+}
+
+EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& planInput,
+                     const FrameWind& wind, std::span<const Sphere> spheres,
+                     std::span<const Float3> sphereMotion, float frameTime) {
+    PlanInput scene;
+    scene.settings = settings;
+    scene.strandCount = planInput.strandCount;
+    scene.longestPointCount = planInput.longestPointCount;
+    scene.longestStrand = planInput.longestStrand;
+    scene.straight = planInput.straight;
+    scene.rootsMin_ws = planInput.rootsMin_ws;
+    scene.rootsMax_ws = planInput.rootsMax_ws;
+    scene.spheres = spheres;
+    scene.sphereMotion = sphereMotion;
+    SimulationSettings& planned = scene.settings;
+    if (wind.given) {
+        planned.windSpeed = length(wind.wind.mean);
+        if (planned.windSpeed > 0.0f) planned.windDirection = wind.wind.mean * (1.0f / planned.windSpeed);
+    }
+    float sphereDisplacement = 0.0f;
+    for (const Float3& motion : sphereMotion)
+        sphereDisplacement = std::max(sphereDisplacement, length(motion));
+    // Within a frame hair may gain what gravity and air give, and a whip of its own.
+    const auto substeps = static_cast<float>(substepsIn(settings, frameTime));
+    const float h = frameTime / substeps;
+    const float pushed = (length(settings.gravity) + settings.airDrag * length(wind.wind.mean)) * frameTime;
+    scene.fastest =
+        16.0f * planInput.fastest * h + pushed * h + (planInput.rootMotion + sphereDisplacement) / substeps;
+    scene.asleep = planInput.asleep;
+    scene.restTime = planInput.restTime;
+    return plan(scene);
+}
+
+Float3 shiftOfOrigin(const std::array<double, 3>& from_ws, const std::array<double, 3>& to_ws) {
+    return {static_cast<float>(from_ws[0] - to_ws[0]), static_cast<float>(from_ws[1] - to_ws[1]),
+            static_cast<float>(from_ws[2] - to_ws[2])};
+}
+
+SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
+                              std::span<const MovingSphere> spheres) {
+    const std::uint32_t substeps = substepsIn(settings, dt);
+    const float h = dt / static_cast<float>(substeps);
+    const auto oscillation = [&](float hertz) {
+        const float turns = 2.0f * std::numbers::pi_v<float> * hertz * h;
+        return turns * turns;
+    };
+    SubstepContext context;
+    context.count = substeps;
+    context.h = h;
+    context.velocityShare = shareLeft(h, settings.dampingTime);
+    context.gravityStep = settings.gravity * (h * h);
+    const bool decays =
+        settings.integrator == Integrator::verlet || settings.integrator == Integrator::implicitEuler;
+    context.dragShare = decays ? 1.0f - std::exp(-settings.airDrag * h) : settings.airDrag * h;
+    context.springStep = oscillation(settings.springFrequency);
+    context.penaltyStep = oscillation(settings.penaltyFrequency);
+    context.bendRate = bendRate(settings, h, plan.on(Effect::torsion));
+    context.tensionShare = 1.0f - shareLeft(h, kTensionTime);
+    context.lengthIterations = settings.lengthIterations;
+    context.maximalExtension = settings.maximalExtension;
+    if (plan.on(Effect::collisionRadius)) {
+        context.collisionRadiusAtRoot = settings.collisionRadiusRoot;
+        context.collisionRadiusAtTip = settings.collisionRadiusTip;
+    }
+    context.air = plan.on(Effect::wind) ? Air::moving : plan.on(Effect::drag) ? Air::still : Air::none;
+    context.gravity = settings.gravity;
+    context.airDrag = settings.airDrag;
+    context.rootDamping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
+    context.bendDampingTime = settings.bendDampingTime;
+    const RodSectionRatios section = rodSectionRatios(settings);
+    context.twist = static_cast<float>(section.twist);
+    context.flat = static_cast<float>(section.flat);
+    context.spheresRest = std::all_of(spheres.begin(), spheres.end(),
+                                      [](const MovingSphere& sphere) { return sphere.stepLength == 0.0f; });
+    context.sweeps = plan.on(Effect::continuousCollision);
+    context.friction = settings.friction;
+    context.restitution = settings.restitution;
+    context.spheres = spheres;
+    context.slowestSwept = slowestSwept(context);
+    return context;
+}
+
+}  // namespace hairloom::runtime

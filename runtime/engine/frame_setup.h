@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What every runner of strands makes of a frame's input before it moves any: the engine here, and one on a
+// GPU. Nothing here depends on how strands are stored.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/kernels.h"
+#include "hairloom/plan.h"
+#include "hairloom/strands.h"
+#include "hairloom/wind.h"
+
+namespace hairloom::runtime {
+
+/// The spheres of a frame. Those that cannot be used stay in their place at radius 0.
+struct FrameSpheres {
+    std::vector<Sphere> usable;
+    std::vector<Float3> motion;  ///< each one's displacement during the frame; none for a cut
+    std::uint32_t rejected = 0;  ///< not finite or without radius
+    /// Around a root within `radius` of which a sphere that has changed since the last frame may touch the
+    /// hair: what sleeps there wakes up.
+    std::vector<Sphere> waking;
+};
+/// `before` are the usable ones of the last frame. Keeps the memory of `spheres`.
+void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
+                 std::span<const Sphere> given, FrameSpheres& spheres);
+/// Those with a radius, on their way through the frame's substeps.
+void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving);
+
+/// The wind of a frame.
+struct FrameWind {
+    Wind wind;
+    bool given = false;  ///< by the frame, not by the settings alone
+};
+/// Takes the wind that the frame gives in place of the settings'; how many values of it were refused.
+std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& input, FrameWind& wind);
+
+/// What is known about the hair when a frame begins.
+struct FramePlanInput {
+    std::uint32_t strandCount = 0;
+    std::uint32_t longestPointCount = 0;
+    float longestStrand = 0.0f;  ///< metres
+    bool straight = true;
+    Float3 rootsMin_ws, rootsMax_ws;  ///< box of all roots over the frame
+    float rootMotion = 0.0f;          ///< metres, the longest way of a root
+    float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
+    std::uint32_t asleep = 0;         ///< strands
+    float restTime = 0.0f;            ///< seconds
+};
+/// The plan of a frame of `frameTime` seconds.
+EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& planInput,
+                     const FrameWind& wind, std::span<const Sphere> spheres,
+                     std::span<const Float3> sphereMotion, float frameTime);
+
+/// By how much numbers grow that were measured from one origin and are now measured from another.
+Float3 shiftOfOrigin(const std::array<double, 3>& from_ws, const std::array<double, 3>& to_ws);
+inline bool isFinite(const std::array<double, 3>& position) {
+    return std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]);
+}
+
+/// Of the first substep of a frame of `dt` seconds.
+SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
+                              std::span<const MovingSphere> spheres);
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The arrays of one engine: the rest shape, made once, and the state, which every step changes.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <optional>
+#include <vector>
+
+#include "engine/kernels.h"
+
+namespace hairloom::runtime {
+
+/// Storage that starts on a cache line, so that every register load is aligned.
+template <class T>
+struct CacheLineAllocator {
+    using value_type = T;
+    CacheLineAllocator() = default;
+    template <class U>
+    CacheLineAllocator(const CacheLineAllocator<U>&) {}
+    T* allocate(std::size_t n) {
+        return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64}));
+    }
+    void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
+    friend bool operator==(CacheLineAllocator, CacheLineAllocator) { return true; }
+};
+using Floats = std::vector<float, CacheLineAllocator<float>>;
+
+/// Up to kBlockLanes strands of one point count. Lanes past `strands` repeat the last strand and are never
+/// read.
+struct Block {
+    std::uint32_t points;
+    std::uint32_t strands;
+    std::size_t firstPlane;  ///< start of its first plane, in units of one plane's floats over all blocks
+    std::uint32_t strandOfLane[kBlockLanes];
+};
+
+/// Rest shape and grouping of the strands; immutable, shared by copies of an engine.
+struct RestShape {
+    std::vector<std::uint32_t> offsets;
+    std::vector<Block> blocks;
+    std::size_t planeFloats = 0;  ///< sum of the blocks' plane sizes
+    Floats planes;                ///< per block: rest x, y, z, length, inverse length, inverse mass
+    std::vector<RootFrame> restRoots;
+    std::uint32_t longestPointCount = 0;
+    float longestStrand = 0.0f;  ///< metres
+    bool straight = true;        ///< no strand bends at rest
+
+    std::size_t bytes() const;
+};
+
+/// A plane holds one float per point and lane.
+inline std::size_t planeSize(const Block& block) {
+    return std::size_t{block.points} * kBlockLanes + kPlanePadding;
+}
+
+/// `strands` must be sound (Engine::make checks it).
+std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands);
+
+/// How long a block has been at rest.
+struct Rest {
+    float time = 0.0f;  ///< seconds
+    bool asleep = false;
+
+    friend bool operator==(const Rest&, const Rest&) = default;
+};
+
+/// What changes from step to step. A copy is a snapshot: running on from it gives the same bits.
+struct State {
+    Floats planes;  ///< per block: position x, y, z, previous x, y, z
+    Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
+    Floats tensions;                  ///< per block: BlockView::tension; empty unless it is needed
+    Floats rods;                      ///< per block: what RodView says; empty for springs
+    Floats rodLanes;                  ///< per block: RodView::turn and energy
+    std::vector<Rest> rests;          ///< per block
+    std::vector<Sphere> spheres;      ///< of the last frame
+    Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
+    float substep = 0.0f;             ///< seconds of the last substep; 0 before the first
+    float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
+    std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
+
+    std::uint64_t hash() const;
+};
+
+/// Arrays of angular and flexion springs, derived from rest shape, settings and substep.
+struct Bend {
+    Floats
+        planes;  ///< per block: stiffness, then 3 of the factors, then 3 of the targets where there are any
+    bool factored = false;
+    bool targets = false;
+    float substep = 0.0f;  ///< seconds that `planes` was made for; 0 for not yet
+
+    std::size_t planeCount() const { return 1u + (factored ? 3u : 0u) + (targets ? 3u : 0u); }
+};
+
+inline constexpr std::size_t kRestPlanes = 6;
+inline constexpr std::size_t kStatePlanes = 6;
+/// Planes of integrators that evaluate forces: start, stepDisplacement; RK4 also kick, sum and
+/// stepDisplacementSum.
+inline constexpr std::size_t kEvaluationPlanes = 6;
+inline constexpr std::size_t kRungeKuttaPlanes = 15;
+
+/// Everything a block's kernels need; `bend` and `evaluation` may be empty.
+struct Arrays {
+    const RestShape& shape;
+    State& state;
+    const Bend& bend;
+    Floats& evaluation;
+    std::size_t evaluationPlanes;
+};
+BlockView viewOf(const Arrays& arrays, std::size_t block, std::uint32_t clampedPoints);
+
+/// Places lane `lane` of block `b` at rest on its row of state.roots, without speed.
+void placeAtRest(const RestShape& shape, State& state, std::size_t block, std::uint32_t lane);
+
+/// Fills the planes of block `b` for substeps of h seconds.
+void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t block,
+              Bend& bend);
+
+/// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
+float bendRate(const SimulationSettings& settings, float h, bool curved);
+
+}  // namespace hairloom::runtime

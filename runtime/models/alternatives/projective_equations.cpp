@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+#include "hairloom/alternatives/projective_equations.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "engine/checks.h"
+
+namespace hairloom::runtime {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kLargestAcceleration = 1e6f;  // m/s², of a root
+constexpr float kFastest = 1e6f;              // m/s
+constexpr float kLongestFrame = 1000.0f;      // seconds
+constexpr double kLongestTime = 1e12;         // seconds; later ones leave gusts no phase
+constexpr float kRigid = 1e12f;               // 1/s²; a stiffer joint does not move
+constexpr std::size_t kStrandsPerJob = 16;
+
+Float3 bounded(Float3 v, float limit) {
+    const float size = length(v);
+    if (size <= limit) return v;
+    return std::isfinite(size) ? v * (limit / size) : Float3{};
+}
+
+Float3 lerp(Float3 a, Float3 b, float t) {
+    return a + (b - a) * t;
+}
+
+Float3 airAt(const Wind& wind, const std::array<float, kWindModes>& phases, Float3 position_ws) {
+    Float3 sum = wind.mean;
+    for (std::size_t m = 0; m < kWindModes; ++m) {
+        const float turns = dot(position_ws, wind.modes[m].waveVector) + phases[m];
+        sum = sum + wind.modes[m].amplitude * std::sin(2.0f * kPi * turns);
+    }
+    return sum;
+}
+
+}  // namespace
+
+/// What all strands share in one step.
+struct ProjectiveEquations::Frame {
+    const FrameInput* input;
+    std::array<float, kWindModes> windFrom, windTo;
+};
+
+/// What all sticks of a strand share in one substep.
+struct ProjectiveEquations::Substep {
+    RootFrame root;          ///< at the end of the substep
+    Float3 rootVelocity;     ///< m/s
+    Float3 pull;             ///< gravity less the acceleration of the root
+    Float3 airRoot, airTip;  ///< m/s
+    float share;             ///< of the frame, at the end of the substep
+    float h;                 ///< seconds
+    float decay;             ///< share of its rate that damping leaves a stick
+};
+
+ProjectiveEquations::Result ProjectiveEquations::make(const StrandsView& strands,
+                                                      const SimulationSettings& settings, Host host) {
+    if (std::string error = validationError(settings); !error.empty())
+        return {std::nullopt, std::move(error)};
+    if (std::string error = validationError(strands); !error.empty()) return {std::nullopt, std::move(error)};
+    ProjectiveEquations made;
+    made.host_ = std::move(host);
+    made.offsets_.assign(strands.offsets.begin(), strands.offsets.end());
+    const std::size_t points = strands.restPositions_ss.size();
+    made.sticks_.resize(points);
+    made.motions_.resize(points);
+    made.positions_.resize(points);
+    made.velocities_.resize(points);
+    made.roots_.resize(strands.offsets.size() - 1);
+    std::vector<RootFrame> roots;
+    for (std::size_t s = 0; s < made.roots_.size(); ++s) {
+        RootFrame& root = made.roots_[s].rest;
+        root.position = strands.restPositions_ss[strands.offsets[s]];
+        if (!strands.rootRotations_ss.empty()) root.rotation = strands.rootRotations_ss[s];
+        normalize(root.rotation);
+        roots.push_back(root);
+        const Quat toRoot = conjugate(root.rotation);
+        const Float3 up = rotate(toRoot, {0.0f, 1.0f, 0.0f});
+        for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
+            made.sticks_[p] =
+                makeStick(rotate(toRoot, strands.restPositions_ss[p] - strands.restPositions_ss[p - 1]), up);
+        }
+    }
+    made.setSettings(settings);
+    made.reset(roots);
+    return {std::move(made), {}};
+}
+
+std::string ProjectiveEquations::setSettings(const SimulationSettings& settings) {
+    if (std::string error = validationError(settings); !error.empty()) return error;
+    settings_ = settings;
+    wind_ = makeWind(settings);
+    fillSticks();
+    return {};
+}
+
+/// The stiffness of docs/engine.md on a stick's moment of inertia: κ/I = 3 B/(l̄ l³); and where the torque has
+/// to aim for the authored shape to hang in restGravity.
+void ProjectiveEquations::fillSticks() {
+    for (std::size_t s = 0; s < roots_.size(); ++s) {
+        const Float3 gravity = rotate(conjugate(roots_[s].rest.rotation), settings_.gravity);
+        const std::uint32_t root = offsets_[s], segments = offsets_[s + 1] - root - 1;
+        for (std::uint32_t j = 0; j < segments; ++j) {
+            Stick& stick = sticks_[root + j + 1];
+            const float l = stick.length;
+            const float along = static_cast<float>(j) / static_cast<float>(segments);
+            const float authored = settings_.angularStiffness * settings_.angularCurve.at(along);
+            const float inner = j >= settings_.clampedPoints ? sticks_[root + j].length : 0.0f;
+            const double rod =
+                kHairBendingStiffness * static_cast<double>(authored) / (1.0 - static_cast<double>(authored));
+            const double slope = authored > 0.0f ? 3.0 * rod / (0.5 * (l + inner) * std::pow(l, 3.0)) : 0.0;
+            stick.fixed = j + 1 < settings_.clampedPoints || !(slope < static_cast<double>(kRigid));
+            stick.bend = stick.fixed ? 0.0f : static_cast<float>(slope);
+            aimAgainst(stick, gravity * settings_.restGravity);
+        }
+    }
+}
+
+bool ProjectiveEquations::reset(std::span<const RootFrame> roots_ws) {
+    if (roots_ws.size() != strandCount()) return false;
+    lastSpheres_.clear();
+    for (std::uint32_t s = 0; s < strandCount(); ++s) {
+        Root& root = roots_[s];
+        root.now = roots_ws[s];
+        if (!usableWithin(root.now, kFarthest)) root.now = root.rest;
+        root.velocity = {};
+        for (std::uint32_t p = offsets_[s]; p < offsets_[s + 1]; ++p) {
+            motions_[p] = {};
+            motions_[p].frame = root.now.rotation;
+            velocities_[p] = {};
+            if (p == offsets_[s]) continue;
+            positions_[p] =
+                positions_[p - 1] + rotate(root.now.rotation, sticks_[p].along) * sticks_[p].length;
+        }
+    }
+    return true;
+}
+
+void ProjectiveEquations::takeSpheres(const FrameInput& input) {
+    spheres_.clear();
+    for (std::size_t i = 0; i < input.spheres.size(); ++i) {
+        const Sphere& now = input.spheres[i];
+        if (!isFinite(now.center_ws) || !std::isfinite(now.radius) || !(now.radius > 0.0f)) continue;
+        Float3 motion;
+        if (i < lastSpheres_.size() && isFinite(lastSpheres_[i].center_ws)) {
+            motion = now.center_ws - lastSpheres_[i].center_ws;
+            if (!(length(motion) <= settings_.teleportDistance)) motion = {};
+        }
+        spheres_.push_back({now.center_ws - motion, motion, now.radius});
+    }
+    lastSpheres_.assign(input.spheres.begin(), input.spheres.end());
+}
+
+bool ProjectiveEquations::step(const FrameInput& input) {
+    if (input.roots_ws.size() != strandCount()) return false;
+    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
+    takeSpheres(input);
+    const double time = std::abs(input.time) <= kLongestTime ? input.time : 0.0;
+    const Frame frame{&input, windPhases(wind_, time - static_cast<double>(input.dt)),
+                      windPhases(wind_, time)};
+    const auto strands = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) runStrand(static_cast<std::uint32_t>(s), frame);
+    };
+    // By reference: a std::function that copied the captures would allocate.
+    const Host::Body body = std::ref(strands);
+    if (host_.parallelFor) {
+        host_.parallelFor(strandCount(), kStrandsPerJob, body);
+    } else {
+        body(0, strandCount());
+    }
+    return true;
+}
+
+void ProjectiveEquations::runStrand(std::uint32_t strand, const Frame& frame) {
+    Root& root = roots_[strand];
+    const float dt = std::min(frame.input->dt, kLongestFrame);
+    RootFrame from = root.now, to = frame.input->roots_ws[strand];
+    if (!usableWithin(to, kFarthest)) to = from;
+    Float3 acceleration;
+    if (length(to.position - from.position) > settings_.teleportDistance) {
+        const Quat turn = to.rotation * conjugate(from.rotation);
+        for (std::uint32_t p = offsets_[strand]; p < offsets_[strand + 1]; ++p) {
+            motions_[p].frame = turn * motions_[p].frame;
+            positions_[p] = rotate(turn, positions_[p]);
+        }
+        root.velocity = rotate(turn, root.velocity);
+        from = to;
+    } else {
+        const Float3 velocity = bounded((to.position - from.position) * (1.0f / dt), kFastest);
+        acceleration = bounded((velocity - root.velocity) * (1.0f / dt), kLargestAcceleration);
+        root.velocity = velocity;
+    }
+    root.now = to;
+
+    const Float3 tip = positions_[offsets_[strand + 1] - 1];
+    const Float3 rootFrom = airAt(wind_, frame.windFrom, from.position);
+    const Float3 rootTo = airAt(wind_, frame.windTo, to.position);
+    const Float3 tipFrom = airAt(wind_, frame.windFrom, from.position + tip);
+    const Float3 tipTo = airAt(wind_, frame.windTo, to.position + tip);
+    const std::uint32_t substeps = substepsIn(settings_, dt);
+    const float count = static_cast<float>(substeps), h = dt / count;
+    const float decay = settings_.dampingTime > 0.0f ? std::exp(-h / settings_.dampingTime) : 1.0f;
+    for (std::uint32_t i = 0; i < substeps; ++i) {
+        const float share = static_cast<float>(i + 1) / count;
+        runSubstep(strand, {between(from, to, share), root.velocity, settings_.gravity - acceleration,
+                            lerp(rootFrom, rootTo, share), lerp(tipFrom, tipTo, share), share, h, decay});
+    }
+}
+
+/// From root to tip; each stick finds its parent's frame already at the end of the substep.
+void ProjectiveEquations::runSubstep(std::uint32_t strand, const Substep& substep) {
+    const std::uint32_t root = offsets_[strand], end = offsets_[strand + 1];
+    velocities_[root] = substep.rootVelocity;
+    Quat frame = substep.root.rotation;
+    for (std::uint32_t p = root + 1; p < end; ++p) {
+        const Stick& stick = sticks_[p];
+        StickMotion& motion = motions_[p];
+        const float along = static_cast<float>(p - root) / static_cast<float>(end - root - 1);
+        if (stick.fixed || !(stick.length > kShortestStick)) {
+            motion = {};
+            motion.frame = frame;
+        } else {
+            turnStick(stick, motion, frame, forcesOn(p, frame, along, substep));
+            collide(p, frame, along, substep);
+        }
+        const Float3 position =
+            positions_[p - 1] + rotate(frame, polarOf(stick, motion).direction) * stick.length;
+        velocities_[p] =
+            substep.rootVelocity + bounded((position - positions_[p]) * (1.0f / substep.h), kFastest);
+        positions_[p] = position;
+        frame = carriedFrame(stick, motion, frame);
+    }
+}
+
+/// Air: Rünz 2012, Section 3.3, at the stick's middle. What the stick's own turning adds to the flow is left
+/// to turnStick, which takes it implicitly.
+StickForces ProjectiveEquations::forcesOn(std::uint32_t point, Quat frame, float along,
+                                          const Substep& substep) const {
+    const Stick& stick = sticks_[point];
+    const StickMotion& motion = motions_[point];
+    const Quat toFrame = conjugate(frame);
+    StickForces forces{rotate(toFrame, substep.pull), 0.0f, substep.decay, settings_.bendDampingTime,
+                       substep.h};
+    const Polar polar = polarOf(stick, motion);
+    const Float3 flow =
+        rotate(toFrame, lerp(substep.airRoot, substep.airTip, along) - velocities_[point - 1]);
+    const Float3 turning =
+        (polar.acrossMeridian * (motion.thetaRate * std::cos(motion.phi)) + polar.byPhi * motion.phiRate) *
+        (0.5f * stick.length);
+    const Float3 seen = flow - turning;
+    const float speed = length(seen);
+    if (!(speed > 1e-12f)) return forces;
+    const float sine = std::min(length(cross(seen, polar.direction)) / speed, 1.0f);
+    forces.dragRate = settings_.airDrag * sine;
+    forces.force = forces.force + flow * forces.dragRate;
+    return forces;
+}
+
+void ProjectiveEquations::collide(std::uint32_t point, Quat frame, float along, const Substep& substep) {
+    const float collisionRadius = settings_.collisionRadiusRoot +
+                                  (settings_.collisionRadiusTip - settings_.collisionRadiusRoot) * along;
+    const Float3 joint_ws = substep.root.position + positions_[point - 1];
+    for (const MovingSphere& sphere : spheres_) {
+        const Float3 centre_ws = sphere.from_ws + sphere.motion * substep.share;
+        pushOut(sticks_[point], motions_[point], rotate(conjugate(frame), centre_ws - joint_ws),
+                sphere.radius + collisionRadius);
+    }
+}
+
+bool ProjectiveEquations::readPositions(std::span<Float3> positions_ws) const {
+    if (positions_ws.size() != pointCount()) return false;
+    for (std::uint32_t s = 0; s < strandCount(); ++s) {
+        for (std::uint32_t p = offsets_[s]; p < offsets_[s + 1]; ++p) {
+            positions_ws[p] = roots_[s].now.position + positions_[p];
+        }
+    }
+    return true;
+}
+
+bool ProjectiveEquations::readVelocities(std::span<Float3> velocities_ws) const {
+    if (velocities_ws.size() != pointCount()) return false;
+    std::copy(velocities_.begin(), velocities_.end(), velocities_ws.begin());
+    return true;
+}
+
+}  // namespace hairloom::runtime

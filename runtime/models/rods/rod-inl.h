@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: MIT
+// A substep of elastic rods (docs/engine.md, "Rods"): a prediction, one elimination from tip to root, one
+// pass back, and the guards that keep the objective from rising.
+#if defined(HAIRLOOM_RUNTIME_ROD_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_ROD_INL_H
+#undef HAIRLOOM_RUNTIME_ROD_INL_H
+#else
+#define HAIRLOOM_RUNTIME_ROD_INL_H
+#endif
+
+#include <cmath>
+
+#include "engine/kernels.h"
+#include "engine/lanes-inl.h"
+#include "engine/wind-inl.h"
+#include "hwy/highway.h"
+#include "models/rods/rod_contact-inl.h"
+#include "models/rods/rod_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hairloom::runtime {
+namespace HWY_NAMESPACE {
+
+/// What a vector of strands keeps of segment j and of its outer node while it is solved; in
+/// LaneFrame::solver.
+struct RodPoint {
+    V4 rotation;      ///< predicted
+    V4 relative;      ///< predicted, of the vertex at the inner node
+    V3 wanted;        ///< strain that elasticity and damping pull to together
+    V3 increment;     ///< predicted rotation of this substep
+    V3 displacement;  ///< predicted, of the outer node in this substep, world
+    V3 target;        ///< where inertia, gravity and air alone would take it
+    V weight;         ///< m/(h² D)
+    RodGains gains;
+    V3 newDisplacement;
+    V4 newRelative;
+    RodContact contact;
+};
+
+/// One vector of strands in one substep.
+template <bool kTwists, bool kContacts>
+class RodStrip {
+  public:
+    RodStrip(const BlockView& block, LaneFrame& lanes, const SubstepContext& context, std::uint32_t lane)
+        : block_(block),
+          rod_(block.rod),
+          lanes_(lanes),
+          context_(context),
+          lane_(lane),
+          points_(reinterpret_cast<RodPoint*>(lanes.solver)),
+          first_(block.firstFree - 1),
+          segments_(block.points - 1) {
+        openStep();
+    }
+
+    void run() {
+        kept_ = hn::Not(noLane());
+        predict();
+        const auto worse =
+            objective_ > hn::MulAdd(startObjective_, all(static_cast<float>(HAIRLOOM_ROD_PREDICTION_SHARE)),
+                                    rounding(startObjective_));
+        if (!hn::AllFalse(D(), worse)) {
+            kept_ = hn::Not(worse);
+            predict();
+        }
+        eliminate();
+        V share = all(1.0f);
+        const V limit = objective_ + hn::MulAdd(objective_, all(1e-5f), rounding(objective_));
+        for (int shortenings = 0;; ++shortenings) {
+            const auto rose = hn::Not(advance(share) <= limit);
+            if (shortenings > HAIRLOOM_ROD_SHORTENINGS || hn::AllFalse(D(), rose)) break;
+            const V shorter = shortenings < HAIRLOOM_ROD_SHORTENINGS
+                                  ? share * all(static_cast<float>(HAIRLOOM_ROD_SHORTENING))
+                                  : hn::Zero(D());
+            share = hn::IfThenElse(rose, shorter, share);
+        }
+        finish();
+    }
+
+  private:
+    std::size_t at(std::uint32_t j) const { return std::size_t{j} * kBlockLanes + lane_; }
+    V4 loadRotation(const float* planes, std::size_t i) const {
+        const float* const x = planes + i;
+        return {hn::Load(D(), x), hn::Load(D(), x + block_.pitch), hn::Load(D(), x + 2 * block_.pitch),
+                hn::Load(D(), x + 3 * block_.pitch)};
+    }
+    void storeRotation(V4 q, float* planes, std::size_t i) const {
+        float* const x = planes + i;
+        hn::Store(q.x, D(), x);
+        hn::Store(q.y, D(), x + block_.pitch);
+        hn::Store(q.z, D(), x + 2 * block_.pitch);
+        hn::Store(q.w, D(), x + 3 * block_.pitch);
+    }
+    V lengthOf(std::uint32_t j) const { return hn::Load(D(), block_.length + at(j)); }
+
+    /// The rounding error of an elastic energy: strains are wrong by about one unit in the last place.
+    V rounding(V energy) const {
+        return all(4.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) *
+               hn::Sqrt(hn::Abs(energy + energy) * stiffnessSum_);
+    }
+
+    /// The time scheme: y = x + c (x − x₋), backward differences of second order with c = r²/(1 + 2r) for
+    /// steps of the ratio r, backward Euler with c = 0.
+    void openStep() {
+        const V h = all(context_.h), ratio = all(context_.stepRatio);
+        const float most = context_.stepRatio < static_cast<float>(HAIRLOOM_ROD_LONGEST_RATIO)
+                               ? context_.stepRatio * context_.stepRatio / (1.0f + 2.0f * context_.stepRatio)
+                               : 0.0f;
+        const V turn = hn::Load(D(), rod_.turn + lane_);
+        const V calm = hn::NegMulAdd(turn, all(static_cast<float>(HAIRLOOM_ROD_BLEND_SLOPE)),
+                                     all(static_cast<float>(HAIRLOOM_ROD_BLEND_END)));
+        blend_ = all(most) * hn::Min(hn::Max(calm, hn::Zero(D())), all(1.0f));
+        velocityAhead_ = blend_ * all(1.0f / context_.stepRatio + 2.0f);
+        step_ = h * (all(1.0f) - blend_ / ratio);
+        inverseStep_ = all(1.0f) / step_;
+        damped_ = all(1.0f) + all(context_.bendDampingTime) * inverseStep_;
+        dampingShare_ = (damped_ - all(1.0f)) / damped_;
+        rootDisplacement_ = load3(lanes_.rootDisplacement, lane_);
+        takeRoot();
+    }
+
+    /// Turns the clamped segment with its root, or, where only the root is held, the frame that stands for
+    /// one.
+    void takeRoot() {
+        const V4 root = load4(lanes_.rotation, lane_);
+        inner_ = root;
+        inDisplacement_ = rootDisplacement_;
+        if (block_.firstFree > 1) {
+            const V4 before = loadRotation(rod_.rotation, at(0));
+            const V3 along = restTangent(0);
+            inDisplacement_ =
+                mad3(rodRotate(inner_, along) - rodRotate(before, along), lengthOf(0), rootDisplacement_);
+            storeRotation(inner_, rod_.rotation, at(0));
+        }
+        const V4 from = load4(lanes_.rotationFrom, lane_), to = load4(lanes_.rotationTo, lane_);
+        const V turned =
+            hn::Abs(from.x - to.x) + hn::Abs(from.y - to.y) + hn::Abs(from.z - to.z) + hn::Abs(from.w - to.w);
+        const V moved = dot(rootDisplacement_, rootDisplacement_) + turned;
+        still_ = hn::And(moved <= hn::Zero(D()), all(context_.conservative ? 1.0f : 0.0f) > hn::Zero(D()));
+    }
+
+    /// A predicted rotation, which is no longer than HAIRLOOM_ROD_LARGEST_PREDICTION.
+    static V3 shortened(V3 u) {
+        const V squared = dot(u, u);
+        const V most = all(static_cast<float>(HAIRLOOM_ROD_LARGEST_PREDICTION));
+        const auto longer = squared > most * most;
+        if (HWY_LIKELY(hn::AllFalse(D(), longer))) return u;
+        return u * hn::IfThenElse(longer, most / hn::Sqrt(squared), all(1.0f));
+    }
+
+    /// Repeats the last substep's rotations, in lanes that keep them, and finds the objective there and where
+    /// nothing turns.
+    void predict() {
+        V3 outer = inDisplacement_;
+        V4 before = inner_;
+        objective_ = startObjective_ = stiffnessSum_ = hn::Zero(D());
+        V3 position = zero3();  // of the inner node, relative to the root at the end of the substep
+        if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
+        for (std::uint32_t j = first_; j < segments_; ++j) {
+            RodPoint& point = points_[j];
+            const std::size_t i = at(j), node = at(j + 1);
+            const V4 old = loadRotation(rod_.rotation, i);
+            const V3 along = restTangent(j), oldTangent = rodRotate(old, along);
+            V3 u = load3(rod_.increment, i) * all(context_.stepRatio);
+            u = onlyWhere(kept_, shortened(u));
+            const V length = lengthOf(j);
+            outer = mad3(rodTangentChange(u, oldTangent), length, outer);
+            point.increment = u;
+            point.rotation = rodTurned(old, u);
+            point.displacement = outer;
+            const V3 tangent = rodRotate(point.rotation, along);
+            position = mad3(tangent, length, position);
+            aim(point, node, tangent, position);
+            if constexpr (kContacts) meet(point, node, tangent, position, j + 1);
+
+            const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i);
+            const V4 last = rodOfStrain(strain);
+            point.wanted = wanted;
+            point.relative = rodRelative(before, point.rotation, last);
+            const V bend = hn::Load(D(), rod_.bend + i) * damped_;
+            const RodSection section = sectionOf(i, bend);
+            stiffnessSum_ = stiffnessSum_ + bend;
+            const V3 off = outer - point.target;
+            objective_ = objective_ + rodTwiceEnergy(twice(point.relative) - wanted, bend, section) +
+                         point.weight * dot(off, off);
+            const V3 offStart = inDisplacement_ - point.target;
+            const V3 strainStart = j == first_ ? twice(rodRelative(inner_, old, last)) : strain;
+            startObjective_ = startObjective_ + rodTwiceEnergy(strainStart - wanted, bend, section) +
+                              point.weight * dot(offStart, offStart);
+            if constexpr (kContacts) {
+                objective_ = objective_ + point.contact.twiceEnergy;
+                startObjective_ = startObjective_ + point.contact.twiceEnergyAt(inDisplacement_ - outer);
+            }
+            before = point.rotation;
+        }
+        objective_ = objective_ * all(0.5f);
+        startObjective_ = startObjective_ * all(0.5f);
+    }
+
+    static V3 twice(V4 relative) {
+        return {relative.x + relative.x, relative.y + relative.y, relative.z + relative.z};
+    }
+    V3 restTangent(std::uint32_t j) const { return load3(rod_.tangent, at(j)); }
+    /// Of a vertex, for its B/l̄.
+    RodSection sectionOf(std::size_t i, V bend) const {
+        RodSection section{zero3(), zero3(), hn::Zero(D()), hn::Zero(D()), kTwists, false};
+        if constexpr (kTwists) {
+            section.axis = load3(rod_.axis, i);
+            section.twist = bend * all(context_.twist);
+            section.isFlat = context_.flat != 0.0f;
+            if (section.isFlat) {
+                section.normal = load3(rod_.normal, i);
+                section.flat = bend * all(context_.flat);
+            }
+        }
+        return section;
+    }
+
+    /// Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to
+    /// none.
+    V3 blendStrain(V3 strain, std::size_t i) const {
+        const V3 extrapolated = mad3(strain - load3(rod_.strainBefore, i), blend_, strain);
+        return extrapolated * dampingShare_;
+    }
+
+    /// Where inertia, gravity and air take a node, which the prediction has at `position`.
+    void aim(RodPoint& point, std::size_t node, V3 tangent, V3 position) const {
+        const V3 now = load3(rod_.velocity, node), faster = now - load3(rod_.velocityBefore, node);
+        const V3 velocity = mad3(faster, blend_, now);
+        V3 change = mad3(all3(context_.gravity), step_, velocity);
+        V rate = all(context_.rootDamping);
+        change = mad3(rootDisplacement_, all(context_.rootDamping / context_.h) * step_, change);
+        if (context_.air != Air::none) {
+            V3 air = zero3();
+            if (context_.air == Air::moving)
+                air = windAt(*context_.wind, context_.windPhases, position + rootPosition());
+            // Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz
+            // 2012, Section 3.3); velocity and tangent are predicted for the end of the substep, so that the
+            // scheme keeps its order.
+            const V3 flow = air - mad3(faster, velocityAhead_, now);
+            const V all2 = dot(flow, flow), parallel = dot(flow, tangent);
+            const V sine = hn::Sqrt(hn::Max(negMad(parallel, parallel, all2), hn::Zero(D())) /
+                                    hn::Max(all2, all(1e-30f)));
+            const V drag = sine * all(context_.airDrag);
+            rate = rate + drag;
+            change = mad3(air, drag * step_, change);
+        }
+        const V slowed = mad(rate, step_, all(1.0f));
+        point.target = mad3(load3(rod_.displacement, node), blend_, change * (step_ / slowed));
+        point.weight = hn::Load(D(), rod_.mass + node) * inverseStep_ * inverseStep_ * slowed;
+    }
+    V3 rootPosition() const {
+        return mad3(rootDisplacement_, all(static_cast<float>(context_.index + 1)),
+                    load3(lanes_.root, lane_));
+    }
+
+    void meet(RodPoint& point, std::size_t node, V3 tangent, V3 position, std::uint32_t p) const {
+        const float along = static_cast<float>(p) / static_cast<float>(segments_);
+        const float radius = context_.collisionRadiusAtRoot +
+                             along * (context_.collisionRadiusAtTip - context_.collisionRadiusAtRoot);
+        point.contact = contactOf(lanes_, rootPosition(),
+                                  {position, point.displacement, tangent, load3(rod_.velocity, node),
+                                   point.weight, hn::Load(D(), rod_.load + node), step_, radius},
+                                  context_);
+    }
+
+    void eliminate() {
+        RodForm form = noForm();
+        for (std::uint32_t j = segments_; j-- > first_;) {
+            RodPoint& point = points_[j];
+            V3 r = (point.displacement - point.target) * point.weight;
+            if constexpr (kContacts) {
+                r = r + point.contact.gradient;
+                const V* const h = point.contact.hessian;
+                rodAddContact(form, h[0], h[1], h[2], h[3], h[4], h[5]);
+            }
+            rodAddNode(form, point.weight, r, onlyWhere(kept_, r));
+            const V bend = hn::Load(D(), rod_.bend + at(j)) * damped_;
+            rodEliminate(form, point.rotation, rodRotate(point.rotation, restTangent(j)), lengthOf(j),
+                         point.relative, twice(point.relative) - point.wanted, bend, sectionOf(at(j), bend),
+                         point.gains);
+        }
+    }
+
+    /// Turns the segments from root to tip; returns the objective.
+    V advance(V share) {
+        V3 outer = inDisplacement_, x = zero3(), u = zero3();
+        V3 predicted = inDisplacement_;
+        V4 before = inner_;
+        V sum = hn::Zero(D());
+        for (std::uint32_t j = first_; j < segments_; ++j) {
+            RodPoint& point = points_[j];
+            const std::size_t i = at(j);
+            u = u - V3{rodGain(point.gains, 0, share, x, u), rodGain(point.gains, 1, share, x, u),
+                       rodGain(point.gains, 2, share, x, u)};
+            const V4 q = rodTurned(point.rotation, u);
+            const V3 change = rodTangentChange(u, rodRotate(point.rotation, restTangent(j)));
+            // Displacements are summed from rotations: differences of positions would lose their digits.
+            outer = mad3(change, lengthOf(j), outer) + (point.displacement - predicted);
+            predicted = point.displacement;
+            x = outer - predicted;
+            const V4 relative = rodRelative(before, q, point.relative);
+            const V bend = hn::Load(D(), rod_.bend + i) * damped_;
+            const V3 off = outer - point.target;
+            sum = sum + rodTwiceEnergy(twice(relative) - point.wanted, bend, sectionOf(i, bend)) +
+                  point.weight * dot(off, off);
+            if constexpr (kContacts) sum = sum + point.contact.twiceEnergyAt(x);
+            point.newDisplacement = outer;
+            point.newRelative = relative;
+            storeRotation(q, rod_.rotation, i);
+            store3(point.increment + u, rod_.increment, i);
+            before = q;
+        }
+        return sum * all(0.5f);
+    }
+
+    /// Takes the step: places, velocities, and what the next one starts from.
+    void finish() {
+        V3 position = zero3();
+        if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
+        V turn = hn::Zero(D()), energy = hn::Zero(D()), kinetic = hn::Zero(D()), size = hn::Zero(D()),
+          touched = hn::Zero(D()), masses = hn::Zero(D());
+        V stiffness = hn::Zero(D());
+        // The least that the normal part of a contact's force can be of it.
+        const V normalShare = all(1.0f / std::sqrt(1.0f + context_.friction * context_.friction));
+        for (std::uint32_t j = first_; j < segments_; ++j) {
+            const RodPoint& point = points_[j];
+            const std::size_t i = at(j), node = at(j + 1);
+            position = mad3(rodRotate(loadRotation(rod_.rotation, i), restTangent(j)), lengthOf(j), position);
+            const V3 moved = point.newDisplacement;
+            const V3 velocity = negMad3(load3(rod_.displacement, node), blend_, moved) * inverseStep_;
+            store3(load3(rod_.velocity, node), rod_.velocityBefore, node);
+            store3(velocity, rod_.velocity, node);
+            store3(moved, rod_.displacement, node);
+            store3(position, block_.position, node);
+            store3(position - moved, block_.previous, node);
+            // Strains are those of quaternions with w ≥ 0; the one before goes with the new one.
+            const V3 strain = withSignOf(twice(point.newRelative), point.newRelative.w);
+            store3(withSignOf(load3(rod_.strain, i), point.newRelative.w), rod_.strainBefore, i);
+            store3(strain, rod_.strain, i);
+            const V3 increment = load3(rod_.increment, i);
+            turn = hn::Max(turn, dot(increment, increment));
+            const V mass = hn::Load(D(), rod_.mass + node), bend = hn::Load(D(), rod_.bend + i);
+            stiffness = stiffness + bend;
+            const V elastic = rodTwiceEnergy(strain, bend, sectionOf(i, bend)) * all(0.5f);
+            const V weight = mass * dot(all3(context_.gravity), position);
+            energy = energy + (elastic - weight);
+            size = size + (elastic + hn::Abs(weight));
+            kinetic = mad(mass * all(0.5f), dot(velocity, velocity), kinetic);
+            masses = masses + mass;
+            V load = hn::Zero(D());
+            if constexpr (kContacts) {
+                touched = hn::Max(touched, point.contact.touching);
+                const V3 force = point.contact.force(moved - point.displacement);
+                load = hn::Sqrt(dot(force, force)) * normalShare;
+                load = hn::IfThenElse(point.contact.touching > all(1.0f), hn::Neg(load), load);
+                load = hn::IfThenElseZero(dot(force, point.contact.normal) > hn::Zero(D()), load);
+            }
+            hn::Store(load, D(), rod_.load + node);
+        }
+        turn = hn::Sqrt(turn);
+        // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time
+        // scheme add is taken back.
+        const V last = hn::Load(D(), rod_.energy + lane_);
+        V noise = all(30.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * (size + kinetic) +
+                  all(4.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * hn::Sqrt((size + size) * stiffness);
+        // Where spheres press, what is as slow as this is rounding.
+        constexpr float kSlow = static_cast<float>(HAIRLOOM_ROD_CONTACT_SPEED);
+        if constexpr (kContacts)
+            noise =
+                hn::IfThenElse(touched > hn::Zero(D()), mad(masses, all(0.5f * kSlow * kSlow), noise), noise);
+        const auto rose = hn::And(still_, hn::And(energy + kinetic > last + noise, kinetic > hn::Zero(D())));
+        V after = energy + kinetic;
+        if (!hn::AllFalse(D(), rose)) {
+            const V share = hn::IfThenElse(
+                rose,
+                hn::Sqrt(hn::Min(hn::Max((last - energy) / hn::Max(kinetic, all(1e-30f)), hn::Zero(D())),
+                                 all(1.0f))),
+                all(1.0f));
+            slow(share);
+            after = mad(kinetic, share * share, energy);
+            const auto guarded = share < all(0.9f);
+            turn = hn::IfThenElse(guarded, all(kRodNoStep), turn);
+            lanes_.guarded |= bitsOf(guarded) << lane_;
+        }
+        // What contacts with spheres that move do is work that is not counted here. Those that rest can only
+        // take: what they push out comes to rest outside.
+        if constexpr (kContacts) {
+            if (!context_.spheresRest)
+                after = hn::IfThenElse(touched > hn::Zero(D()), all(kRodNoEnergy), after);
+        }
+        hn::Store(after, D(), rod_.energy + lane_);
+        hn::Store(turn, D(), rod_.turn + lane_);
+    }
+
+    void slow(V share) {
+        for (std::uint32_t j = first_; j < segments_; ++j) {
+            store3(load3(rod_.velocity, at(j + 1)) * share, rod_.velocity, at(j + 1));
+            store3(load3(rod_.increment, at(j)) * share, rod_.increment, at(j));
+        }
+    }
+
+    const BlockView& block_;
+    const RodView& rod_;
+    LaneFrame& lanes_;
+    const SubstepContext& context_;
+    std::uint32_t lane_;
+    RodPoint* points_;
+    std::uint32_t first_, segments_;
+    V blend_, step_, inverseStep_;
+    V velocityAhead_;          ///< share of the last change of velocity that is expected again
+    V damped_, dampingShare_;  ///< 1 + τ/h, and the part of it that is damping
+    V3 rootDisplacement_, inDisplacement_;
+    V4 inner_;  ///< rotation of the segment before the first free one
+    hn::Mask<D> kept_, still_;
+    V objective_, startObjective_, stiffnessSum_;
+};
+
+template <bool kTwists, bool kContacts>
+void stepRodsWith(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
+        RodStrip<kTwists, kContacts>(block, lanes, context, lane).run();
+}
+
+/// Each block pays for what its strands need.
+void stepRods(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    const bool contacts = !lanes.touchable.empty();
+    if (block.rod.curved) {
+        contacts ? stepRodsWith<true, true>(block, lanes, context)
+                 : stepRodsWith<true, false>(block, lanes, context);
+    } else {
+        contacts ? stepRodsWith<false, true>(block, lanes, context)
+                 : stepRodsWith<false, false>(block, lanes, context);
+    }
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace hairloom::runtime
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// shaders/rod.h for vectors of strands.
+#if defined(HAIRLOOM_RUNTIME_ROD_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_ROD_MATH_INL_H
+#undef HAIRLOOM_RUNTIME_ROD_MATH_INL_H
+#else
+#define HAIRLOOM_RUNTIME_ROD_MATH_INL_H
+#endif
+
+#include "engine/lanes-inl.h"
+#include "hwy/highway.h"
+#include "shaders/rod_constants.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hairloom::runtime {
+namespace HWY_NAMESPACE {
+
+using Real = V;
+using Real3 = V3;
+using Real4 = V4;
+
+HWY_INLINE V mad(V a, V b, V c) {
+    return hn::MulAdd(a, b, c);
+}
+HWY_INLINE V negMad(V a, V b, V c) {
+    return hn::NegMulAdd(a, b, c);
+}
+HWY_INLINE V3 mad3(V3 a, V s, V3 b) {
+    return mulAdd(a, s, b);
+}
+HWY_INLINE V3 negMad3(V3 a, V s, V3 b) {
+    return negMulAdd(a, s, b);
+}
+HWY_INLINE V maximum(V a, V b) {
+    return hn::Max(a, b);
+}
+HWY_INLINE V absolute(V a) {
+    return hn::Abs(a);
+}
+HWY_INLINE V root(V a) {
+    return hn::Sqrt(a);
+}
+HWY_INLINE V3 xyz(V4 q) {
+    return {q.x, q.y, q.z};
+}
+HWY_INLINE V3 real3(V x, V y, V z) {
+    return {x, y, z};
+}
+HWY_INLINE V4 real4(V3 v, V w) {
+    return {v.x, v.y, v.z, w};
+}
+HWY_INLINE V withSignOf(V v, V sign) {
+    return hn::Xor(v, hn::And(sign, all(-0.0f)));
+}
+HWY_INLINE V3 withSignOf(V3 v, V sign) {
+    const V negative = hn::And(sign, all(-0.0f));
+    return {hn::Xor(v.x, negative), hn::Xor(v.y, negative), hn::Xor(v.z, negative)};
+}
+
+#define ROD_FUNCTION HWY_INLINE
+#define ROD_INOUT(Type) Type&
+#define ROD_OUT(Type) Type&
+#define ROD_UNROLL
+#define ROD_NUMBER(value) all(static_cast<float>(value))
+#undef HAIRLOOM_ROD_FUNCTIONS
+#include "shaders/rod.h"
+#undef ROD_FUNCTION
+#undef ROD_INOUT
+#undef ROD_OUT
+#undef ROD_UNROLL
+#undef ROD_NUMBER
+
+HWY_INLINE RodForm noForm() {
+    RodForm form;
+    for (V& number : form.P) number = hn::Zero(D());
+    for (V& number : form.R) number = hn::Zero(D());
+    for (V& number : form.U) number = hn::Zero(D());
+    form.gx = form.gu = form.force = zero3();
+    return form;
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace hairloom::runtime
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,470 @@
+// SPDX-License-Identifier: MIT
+#include "play/instance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "engine/state.h"
+#include "follow/follow_kernels.h"
+#include "models/rods/rods.h"
+
+namespace hairloom::runtime {
+namespace {
+
+Refusal wrongSize(const std::string& what, std::size_t size, std::size_t wanted) {
+    return {HL_WRONG_SIZE, std::to_string(size) + " " + what + "; expected " + std::to_string(wanted)};
+}
+
+Float3 float3At(const float* values, std::size_t index) {
+    return {values[3 * index], values[3 * index + 1], values[3 * index + 2]};
+}
+
+Matrix34 matrixAt(const float* values, std::size_t index) {
+    Matrix34 matrix;
+    std::copy_n(values + 12 * index, 12, matrix.begin());
+    return matrix;
+}
+
+/// Whether a value of `size` bytes of each of `count` points fits.
+Outcome fits(const hl_out& out, const char* what, std::size_t count, std::size_t size) {
+    if (!out.data) return std::nullopt;
+    if (out.stride < size) return wrongSize(std::string("bytes of stride of ") + what, out.stride, size);
+    if (out.bytes < size || (count > 0 && (out.bytes - size) / out.stride < count - 1))
+        return Refusal{HL_WRONG_SIZE,
+                       std::to_string(out.bytes) + " bytes for " + std::to_string(count) + " " + what};
+    return std::nullopt;
+}
+
+template <class T>
+void store(const hl_out& out, std::size_t index, const T& value) {
+    std::memcpy(static_cast<char*>(out.data) + index * out.stride, &value, sizeof value);
+}
+
+/// Of unit length, from the neighbours of a point; upwards where they coincide.
+Float3 tangentAt(std::span<const Float3> strand, std::size_t p) {
+    const Float3 along = strand[std::min(p + 1, strand.size() - 1)] - strand[p > 0 ? p - 1 : 0];
+    const float size = length(along);
+    return size > 1e-12f && std::isfinite(size) ? along * (1 / size) : Float3{0, 1, 0};
+}
+
+float between(float root, float tip, std::size_t p, std::size_t points) {
+    return root + (tip - root) * static_cast<float>(p) / static_cast<float>(points - 1);
+}
+
+/// `usual` where the asset has none, or one out of range.
+float numberWithin(const Asset& asset, std::string_view name, double min, double max, double usual) {
+    const double value = asset.numberOf(name, usual);
+    return static_cast<float>(value >= min && value <= max ? value : usual);
+}
+
+/// Radii at root and tip that a group of settings says, or `usual`.
+std::array<float, 2> radiiOf(const Asset& asset, const std::string& group, std::array<float, 2> usual) {
+    const double root{usual[0]}, tip{usual[1]};
+    const float radius = numberWithin(asset, group + ".rootRadius", 5e-6, 0.05, root);
+    return {radius, radius * numberWithin(asset, group + ".tipScale", 0, 1, tip / root)};
+}
+
+/// Whether some layers have materials of their own.
+bool hasMaterials(const Asset& asset) {
+    return std::any_of(asset.layers.begin(), asset.layers.end(),
+                       [](const asset::Layer& layer) { return layer.ownMaterial != 0; });
+}
+
+std::size_t bytesOf(const Engine& engine) {
+    std::size_t bytes = engine.baseBytes();
+    for (std::uint32_t effect = 0; effect < kEffectCount; ++effect)
+        bytes += engine.effectBytes(static_cast<Effect>(effect));
+    return bytes;
+}
+
+/// More than a block's report takes.
+constexpr std::size_t kReportBytes = 1024;
+
+/// Of an instance of `hairPoints` points of hairs, beside its engine and its FollowHairs.
+std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t hairPoints) {
+    const std::size_t velocities = hairPoints > 0 ? points : 0;
+    return strands * (sizeof(RootFrame) + sizeof(Quat) + sizeof(std::uint32_t)) +
+           (points + velocities + hairPoints) * sizeof(Float3);
+}
+
+/// Of an engine at most, beside what threads work in; `strandsOf` counts strands by their points.
+std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf) {
+    // Strands of one point count fill blocks; straight ones and others are apart, and the last of each has
+    // room to spare.
+    std::size_t planeFloats = 0, blocks = 0, strands = 0;
+    for (const auto& [points, count] : strandsOf) {
+        const std::size_t more = count / kBlockLanes + std::min<std::size_t>(count, 2);
+        blocks += more;
+        planeFloats += more * (std::size_t{points} * kBlockLanes + kPlanePadding);
+        strands += count;
+    }
+    // Rods take more than springs with any integrator do; of angular springs they have stiffness and targets.
+    const std::size_t planes = kRestPlanes + kStatePlanes + kRodFlatRestPlanes + kRodStatePlanes + 4;
+    const std::size_t lanes =
+        (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
+    return planeFloats * planes * sizeof(float) + blocks * lanes +
+           strands * (sizeof(RootFrame) + sizeof(std::uint32_t));
+}
+
+std::map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset) {
+    std::map<std::uint32_t, std::size_t> strandsOf;
+    for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
+    return strandsOf;
+}
+
+/// What HL_LEVELS adds; strands of a level have at most the points of the longest.
+std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread) {
+    const std::size_t strands = asset.strandCount(), points = asset.pointCount();
+    std::size_t bytes = 2 * points * sizeof(Float3) + 2 * strands * sizeof(RootFrame) +
+                        (strands + asset.guides.size() + 3) * sizeof(std::uint32_t) + sizeof(LevelSet);
+    for (std::uint32_t level = 1; level < HL_LEVEL_RIGID; ++level) {
+        std::map<std::uint32_t, std::size_t> strandsOf;
+        const std::uint32_t guides = guidesOfLevel(level, asset.strandCount());
+        // Whichever guides are taken, they have no more points than as many of the longest.
+        strandsOf[pointsOfLevel(level, longest)] = guides;
+        const std::size_t blocksMore = strandsByPoints(asset).size() * 2;
+        bytes += engineBytes(strandsOf) + thread + blocksMore * engineBytes({{longest, 1}}) +
+                 strands * sizeof(Level::Sources) + guides * 2 * sizeof(std::uint32_t) +
+                 3 * std::size_t{guides} * longest * sizeof(Float3) + sizeof(Level) + sizeof(Engine);
+        bytes += asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere));
+    }
+    return bytes;
+}
+
+}  // namespace
+
+InstanceMemory instanceMemory(const Asset& asset) {
+    const std::map<std::uint32_t, std::size_t> strandsOf = strandsByPoints(asset);
+    const std::uint32_t longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
+    const std::size_t solver =
+        *std::max_element(std::begin(kernels().solverFloats), std::end(kernels().solverFloats)) *
+        std::size_t{longest};
+    const std::size_t thread = sizeof(LaneFrame) + (solver + kSolverPadding) * sizeof(float);
+    const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
+    const std::size_t guides = engineBytes(strandsOf) + thread +
+                               asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
+                               ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) +
+                               RootPoses::bytesFor(asset);
+    // Speeds are kept for follow hairs and for levels.
+    const std::size_t levels = levelBytes(asset, longest, thread) + points * sizeof(Float3);
+    if (hairs == 0) return {guides, 0, levels, thread};
+    const std::uint32_t pointsPerHair = asset.recipe[0].pointsPerHair;
+    return {guides,
+            FollowHairs::bytesFor(strands, hairs, pointsPerHair) +
+                (asset.guides.size() + 1) * sizeof(std::uint32_t) +
+                (hasMaterials(asset) ? asset.guides.size() * 2 * sizeof(float) : 0) +
+                ownBytes(strands, points, hairs * pointsPerHair) - ownBytes(strands, points, 0),
+            levels, thread};
+}
+
+Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsLevels, Host host) {
+    Asset::Strands strands = asset.strandsAtRest();
+    Engine::Result made = Engine::make({strands.offsets, strands.positions_ss}, asset.simulation(), host);
+    if (!made.engine) return {std::nullopt, std::move(made.error)};
+    Instance instance(std::move(*made.engine), RootPoses(asset, strands), std::move(host));
+    instance.roots_.resize(asset.strands.size());
+    instance.turns_.resize(asset.strands.size());
+    instance.restSpheres_.assign(asset.spheres.begin(), asset.spheres.end());
+    instance.spheres_.resize(asset.spheres.size());
+    instance.last_.bones.reserve(12 * asset.bones.size());
+    instance.positions_.resize(strands.positions_ss.size());
+    for (const std::uint16_t radius : asset.radii)
+        instance.radii_.own.push_back(static_cast<float>(radius) * asset::kRadiusStep);
+    const std::array<float, 2> usual = radiiOf(asset, "material", {4e-5f, 1.6e-5f});
+    instance.radii_.root = usual[0];
+    instance.radii_.tip = usual[1];
+    if (wantsHairs && asset.hairCount() > 0) {
+        FollowHairs::Result hairs = asset.followHairs(strands, instance.host_);
+        if (!hairs.hairs) return {std::nullopt, std::move(hairs.error)};
+        instance.hairs_ = std::move(hairs.hairs);
+        instance.hairGroups_.push_back(0);
+        for (std::size_t guide = 0; guide < asset.guides.size(); ++guide)
+            instance.hairGroups_.push_back(instance.hairGroups_.back() + asset.hairsOf(guide));
+        if (hasMaterials(asset)) {
+            for (const asset::Guide& guide : asset.guides) {
+                const std::uint32_t layer = asset.layerOf(guide.strand);
+                const bool own = asset.layers[layer].ownMaterial != 0;
+                instance.radii_.ofHairs.push_back(
+                    own ? radiiOf(asset, "layer" + std::to_string(layer + 1), usual) : usual);
+            }
+        }
+        instance.velocities_.resize(instance.positions_.size());
+        instance.hairPositions_.resize(std::size_t{instance.hairs_->hairCount()} *
+                                       instance.hairs_->pointsPerHair());
+    }
+    instance.poses_.followHead(kIdentity34, instance.roots_);
+    instance.engine_.reset(instance.roots_);
+    instance.offsets_ = strands.offsets;
+    if (wantsLevels) instance.makeLevels(asset, strands);
+    return {std::move(instance), {}};
+}
+
+Outcome Instance::placeRoots(const hl_frame& frame) {
+    const Matrix34 head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
+    if (frame.roots) {
+        if (frame.root_count != roots_.size()) return wrongSize("roots", frame.root_count, roots_.size());
+        for (std::size_t s = 0; s < roots_.size(); ++s) {
+            const float* root = frame.roots + 7 * s;
+            roots_[s] = {{root[0], root[1], root[2]}, {root[3], root[4], root[5], root[6]}};
+        }
+        return std::nullopt;
+    }
+    if (frame.scalp) {
+        if (frame.scalp_count != poses_.scalpVertexCount())
+            return wrongSize("scalp vertices", frame.scalp_count, poses_.scalpVertexCount());
+        if (!poses_.hasScalp()) return Refusal{HL_BAD_VALUE, "the asset's roots stand on no scalp"};
+        poses_.followScalp({frame.scalp, 3 * frame.scalp_count}, roots_);
+        return std::nullopt;
+    }
+    if (frame.bones) {
+        if (frame.bone_count != poses_.boneCount())
+            return wrongSize("bones", frame.bone_count, poses_.boneCount());
+        if (poses_.hasScalp()) {
+            poses_.followBones({frame.bones, 12 * frame.bone_count}, head, roots_);
+            return std::nullopt;
+        }
+    }
+    poses_.followHead(head, roots_);
+    return std::nullopt;
+}
+
+Outcome Instance::placeSpheres(const hl_frame& frame, FrameInput& input) {
+    if (frame.spheres) {
+        if (frame.sphere_count > 4096) return wrongSize("spheres", frame.sphere_count, 4096);
+        if (spheres_.size() < frame.sphere_count) spheres_.resize(frame.sphere_count);
+        for (std::size_t s = 0; s < frame.sphere_count; ++s) {
+            const float* sphere = frame.spheres + 4 * s;
+            spheres_[s] = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
+        }
+        input.spheres = std::span(spheres_).first(frame.sphere_count);
+        return std::nullopt;
+    }
+    const Matrix34 head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
+    for (std::size_t s = 0; s < restSpheres_.size(); ++s) {
+        const asset::Sphere& sphere = restSpheres_[s];
+        const bool boned = frame.bones && sphere.bone >= 0;
+        const Matrix34 matrix = boned ? matrixAt(frame.bones, static_cast<std::size_t>(sphere.bone)) : head;
+        spheres_[s] = {transform(matrix, {sphere.centre[0], sphere.centre[1], sphere.centre[2]}),
+                       sphere.radius};
+    }
+    input.spheres = std::span(spheres_).first(restSpheres_.size());
+    return std::nullopt;
+}
+
+Outcome Instance::place(const hl_frame& frame, FrameInput& input) {
+    if (frame.size != sizeof(hl_frame)) return wrongSize("bytes of hl_frame", frame.size, sizeof(hl_frame));
+    if (frame.bones && frame.bone_count != poses_.boneCount())
+        return wrongSize("bones", frame.bone_count, poses_.boneCount());
+    // Last, since it is what read-outs look at: nothing is refused any more once it has begun to write.
+    if (Outcome refused = placeSpheres(frame, input)) return refused;
+    if (Outcome refused = placeRoots(frame)) return refused;
+    input.dt = frame.dt;
+    input.time = frame.time;
+    input.roots_ws = roots_;
+    if (frame.wind) input.wind_ws = float3At(frame.wind, 0);
+    input.origin_ws = {frame.origin[0], frame.origin[1], frame.origin[2]};
+    return std::nullopt;
+}
+
+Outcome Instance::reset(const hl_frame& frame) {
+    FrameInput input;
+    if (Outcome refused = place(frame, input)) return refused;
+    engine_.reset(roots_);
+    takeTurns();
+    asleep_ = false;
+    if (levels_) resetLevel();
+    return std::nullopt;
+}
+
+/// Roots that are no numbers stay where they were, and so does what is turned with them.
+void Instance::takeTurns() {
+    for (std::size_t s = 0; s < roots_.size(); ++s) {
+        Quat rotation = roots_[s].rotation;
+        if (isFinite(roots_[s].position) && normalize(rotation)) turns_[s] = roots_[s].rotation;
+    }
+}
+
+Outcome Instance::step(const hl_frame& frame) {
+    // Speeds of a shorter step are no numbers any more.
+    if (!(frame.dt >= 1e-6f) || !std::isfinite(frame.dt))
+        return Refusal{HL_BAD_VALUE, "dt is " + std::to_string(frame.dt) + "; expected 0.000001 s or more"};
+    // Nothing wakes it: a step would leave every bit as it is.
+    if (asleep_ && asBefore(frame)) return std::nullopt;
+    FrameInput input;
+    if (Outcome refused = place(frame, input)) return refused;
+    takeTurns();
+    if (levels_)
+        stepLevel(input);
+    else
+        engine_.step(input);
+    remember(frame);
+    const Engine* const engine = engineOfLevel();
+    asleep_ = !(levels_ && levels_->fading) && (!engine || engine->asleep() == engine->strandCount());
+    return std::nullopt;
+}
+
+bool Instance::asBefore(const hl_frame& frame) const {
+    const auto same = [](const float* given, const auto& known) {
+        return std::memcmp(given, known.data(), known.size() * sizeof(float)) == 0;
+    };
+    return last_.known && frame.size == sizeof(hl_frame) && !frame.roots && !frame.scalp && !frame.spheres &&
+           frame.dt == last_.dt && std::equal(last_.origin.begin(), last_.origin.end(), frame.origin) &&
+           same(frame.head ? frame.head : kIdentity34.data(), last_.head) &&
+           (frame.wind != nullptr) == last_.hasWind && (!frame.wind || same(frame.wind, last_.wind)) &&
+           (frame.bones ? frame.bone_count : 0) * 12 == last_.bones.size() &&
+           (!frame.bones || same(frame.bones, last_.bones));
+}
+
+void Instance::remember(const hl_frame& frame) {
+    last_.known = !frame.roots && !frame.scalp && !frame.spheres;
+    if (!last_.known) return;
+    last_.dt = frame.dt;
+    std::copy_n(frame.origin, 3, last_.origin.begin());
+    last_.head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
+    last_.hasWind = frame.wind != nullptr;
+    if (frame.wind) std::copy_n(frame.wind, 3, last_.wind.begin());
+    last_.bones.assign(frame.bones, frame.bones ? frame.bones + 12 * frame.bone_count : frame.bones);
+}
+
+Outcome Instance::set(std::string_view name, std::span<const double> values) {
+    const auto* field = findField<SimulationSettings>(name);
+    const auto refuse = [&](const std::string& why) {
+        return Refusal{HL_BAD_VALUE, "setting '" + std::string(name) + "' " + why};
+    };
+    if (!field) return refuse("does not exist");
+    if (field->kind == FieldKind::Ramp) return refuse("is a curve");
+    if (values.size() != field->components())
+        return wrongSize("values of '" + std::string(name) + "'", values.size(), field->components());
+    SimulationSettings settings = engine_.settings();
+    for (std::uint32_t c = 0; c < values.size(); ++c) {
+        if (!setFieldValue(settings, *field, values[c], c))
+            return refuse("is " + std::to_string(values[c]) + "; expected " + std::to_string(field->min) +
+                          " to " + std::to_string(field->max));
+    }
+    if (const std::string why = engine_.setSettings(settings); !why.empty())
+        return Refusal{HL_BAD_VALUE, why};
+    if (levels_) setSettingsOfLevels(settings);
+    asleep_ = false;
+    return std::nullopt;
+}
+
+Outcome Instance::readGuides(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
+    const std::size_t points = positions_.size();
+    if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
+    showPositions();
+    for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) {
+        const std::size_t first = offsets_[s], count = offsets_[s + 1] - first;
+        const auto strand = std::span<const Float3>(positions_).subspan(first, count);
+        for (std::size_t p = 0; p < count; ++p) {
+            if (positions.data) store(positions, first + p, strand[p]);
+            if (tangents.data) store(tangents, first + p, tangentAt(strand, p));
+            if (radii.data)
+                store(
+                    radii, first + p,
+                    radii_.own.empty() ? between(radii_.root, radii_.tip, p, count) : radii_.own[first + p]);
+        }
+    }
+    return std::nullopt;
+}
+
+Outcome Instance::readHairs(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
+    if (!hairs_)
+        return Refusal{HL_BAD_VALUE, "the instance was made without follow hairs, or the asset has none"};
+    const std::uint32_t hairs = hairsRead();
+    const std::size_t count = hairs_->pointsPerHair(), points = hairs * count;
+    if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
+    showPositions();
+    showVelocities();
+    const std::vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
+    hairs_->evaluateSome({positions_, velocities_, turns_}, hairGroups_, taken,
+                         std::span(hairPositions_).first(points), host_);
+    // Fewer hairs cover what all did.
+    const float wider = static_cast<float>(hairs_->hairCount()) / static_cast<float>(hairs);
+    const auto radiiOfHair = [&](std::size_t hair) -> std::array<float, 2> {
+        if (radii_.ofHairs.empty()) return {radii_.root, radii_.tip};
+        const auto next = std::upper_bound(taken.begin(), taken.end(), hair);
+        return radii_.ofHairs[static_cast<std::size_t>(next - taken.begin() - 1)];
+    };
+    const auto write = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t hair = begin; hair < end; ++hair) {
+            const auto [root, tip] = radiiOfHair(hair);
+            const auto strand = std::span<const Float3>(hairPositions_).subspan(hair * count, count);
+            for (std::size_t p = 0; p < count; ++p) {
+                const std::size_t at = hair * count + p;
+                if (positions.data) store(positions, at, strand[p]);
+                if (tangents.data) store(tangents, at, tangentAt(strand, p));
+                if (radii.data) store(radii, at, between(root, tip, p, count) * wider);
+            }
+        }
+    };
+    constexpr std::size_t kHairsPerPiece = 512;
+    if (host_.parallelFor)
+        host_.parallelFor(hairs, kHairsPerPiece, std::cref(write));
+    else
+        write(0, hairs);
+    return std::nullopt;
+}
+
+Outcome Instance::readOffsets(std::span<std::uint32_t> offsets) const {
+    if (offsets.size() != offsets_.size()) return wrongSize("offsets", offsets.size(), offsets_.size());
+    std::copy(offsets_.begin(), offsets_.end(), offsets.begin());
+    return std::nullopt;
+}
+
+hl_instance_info Instance::describe() const {
+    hl_instance_info info{};
+    info.guides = static_cast<std::uint32_t>(roots_.size());
+    info.guide_points = static_cast<std::uint32_t>(positions_.size());
+    info.hairs = hairsRead();
+    info.points_per_hair = hairs_ ? hairs_->pointsPerHair() : 0;
+    const Engine* const engine = engineOfLevel();
+    const StepReport report = engine ? engine->lastStep() : StepReport{};
+    // At a coarser level the guides that are not simulated sleep when the others do.
+    info.asleep = asleep_ ? info.guides : engine ? engine->asleep() : 0;
+    info.restored = report.restoredStrands;
+    info.left_roots = report.rejectedRoots;
+    info.left_spheres = report.rejectedSpheres;
+    info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() + (hairs_ ? hairs_->bytes() : 0) +
+                 ownBytes(roots_.size(), positions_.size(), hairPositions_.size()) +
+                 hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
+                 radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
+                 spheres_.size() * sizeof(Sphere) + bytesOfLevels();
+    return info;
+}
+
+void Instance::setClock(const std::function<std::uint64_t()>& nanoseconds) {
+    engine_.setClock(nanoseconds);
+    if (!levels_) return;
+    for (Engine& engine : levels_->engines) engine.setClock(nanoseconds);
+}
+
+hl_effect Instance::describeEffect(std::uint32_t number) const {
+    hl_effect effect{};
+    const bool strands = number == kEffectCount;
+    effect.name = strands ? "strands" : kEffects[number].name;
+    const Engine* const engine = engineOfLevel();
+    std::string why;
+    if (!engine || asleep_) {
+        why = std::string(effect.name) + (asleep_ ? ": off, all strands at rest" : ": off, hair is rigid");
+    } else {
+        effect.on = strands || engine->plan().on(static_cast<Effect>(number));
+        why = strands ? "strands: on, of every strand" : engine->plan().why(static_cast<Effect>(number));
+        const StepReport& report = engine->lastStep();
+        for (std::uint32_t stage = 0; stage < kStageCount; ++stage) {
+            const auto of = kStages[stage].effect;
+            if (strands ? !of : of == static_cast<Effect>(number))
+                effect.milliseconds += static_cast<float>(report.stageMilliseconds[stage]);
+        }
+    }
+    why.resize(std::min(why.size(), sizeof effect.why - 1));
+    std::memcpy(effect.why, why.c_str(), why.size() + 1);
+    return effect;
+}
+
+}  // namespace hairloom::runtime
