@@ -42,12 +42,15 @@ Names writers(bool cards) {
     return names;
 }
 
+/// Without what a target's name says of the format.
 Names programs() {
     Names names;
     for (const StrandWriter& writer : hairWriters()) {
         for (const ExportTarget& target : writer.targets) {
-            if (target.program != "plain" && std::ranges::find(names, target.name) == names.end())
-                names.push_back(target.name);
+            std::string name = target.name.substr(0, target.name.find_first_of(",("));
+            while (!name.empty() && name.back() == ' ') name.pop_back();
+            if (target.program != "plain" && std::ranges::find(names, name) == names.end())
+                names.push_back(name);
         }
     }
     std::ranges::sort(names);
