@@ -18,6 +18,9 @@ struct RawAttribute {
     std::uint32_t components = 1;     ///< 1 … 4 of numbers, else 1
     std::vector<float> numbers;       ///< of Number
     std::vector<std::int32_t> whole;  ///< of the others
+    /// Elements that the file has no value of, [first, second), ascending: those of parts without the
+    /// attribute.
+    std::vector<std::pair<std::size_t, std::size_t>> absent{};
 };
 
 /// An object or group of a file that strands come in (importers/strand_parts.h).
@@ -43,13 +46,18 @@ struct RawStrands {
     bool mirrorZ = false;                ///< the file is left-handed by a negated Z
     std::vector<RawAttribute> attributes;  ///< what else the file has; no two of one name and domain
     std::vector<std::string> groupNames;   ///< of the attribute "group"
-    std::vector<std::string> layerNames;   ///< of the attribute "layer", where the file has parts
+    /// Of an attribute "groom_group_name" of whole numbers, by these; 0 is none.
+    std::vector<std::string> groupTexts{std::string()};
+    std::vector<std::string> layerNames;  ///< of the attribute "layer", where the file has parts
     std::vector<StrandPart> parts;
     std::vector<std::uint32_t> partOfStrand;   ///< of all strands, or of none
     std::vector<std::vector<Vec3f>> frames;    ///< `positions` at each time where the strands move
     float framesPerSecond = 0;                 ///< of them
     std::optional<float> statedMetresPerUnit;  ///< where the file says it; goes before the option
-    std::optional<UpAxis> statedUp;            ///< as well
+    /// What the format takes for the unit where the file does not say; the option goes before it, where one
+    /// was asked for.
+    std::optional<float> assumedMetresPerUnit;
+    std::optional<UpAxis> statedUp;  ///< as well
     /// Settings, material, interpolation and spheres, of a file that has them; no strands.
     std::shared_ptr<const Groom> authored;
     std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out

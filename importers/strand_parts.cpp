@@ -166,6 +166,15 @@ void NameGiver::reserve(std::string_view name) {
     if (at == taken_.end() || *at != name) taken_.insert(at, std::string(name));
 }
 
+bool isGivenTo(std::string_view legal, std::string_view original, NameGiver::Legal isLegal) {
+    const std::string plain = NameGiver(isLegal).give(original);
+    if (!legal.starts_with(plain)) return false;
+    legal.remove_prefix(plain.size());
+    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+    return legal.empty() ||
+           (legal.size() > 1 && legal.front() == '_' && std::ranges::all_of(legal.substr(1), isDigit));
+}
+
 bool isLegalInUsd(char c, bool isFirst) {
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
     return letter || (!isFirst && c >= '0' && c <= '9');

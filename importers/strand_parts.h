@@ -44,6 +44,9 @@ class NameGiver {
     std::vector<std::string> taken_;  ///< ascending
 };
 
+/// Whether `legal` is what such a giver makes of `original`, which is its name then.
+bool isGivenTo(std::string_view legal, std::string_view original, NameGiver::Legal isLegal);
+
 /// Letters, digits and underscores, and no digit first: prims and properties of USD.
 bool isLegalInUsd(char c, bool isFirst);
 /// All but what separates objects and properties, and control characters: Alembic.

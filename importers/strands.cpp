@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/base/file.h"
+#include "importers/attribute_units.h"
 #include "importers/raw_strands.h"
 #include "importers/strand_parts.h"
 #include "importers/strand_roots.h"
@@ -185,9 +186,19 @@ class Cleaner {
 
 void takeThickness(RawStrands& raw, Groom& groom, float metresPerUnit) {
     if (!raw.thickness.empty()) {
-        // Thickness is a diameter: renderers of these files draw it as a width.
-        for (float& value : raw.thickness)
-            value = std::isfinite(value) && value > 0 ? 0.5f * value * metresPerUnit : 0;
+        // Thickness is a diameter: renderers of these files draw it as a width. What has none has the
+        // material's.
+        for (std::size_t strand = 0; strand < groom.strandCount(); ++strand) {
+            const std::uint32_t first = groom.offsets[strand], end = groom.offsets[strand + 1];
+            for (std::uint32_t point = first; point < end; ++point) {
+                float& value = raw.thickness[point];
+                const float t = static_cast<float>(point - first) / static_cast<float>(end - first - 1);
+                if (std::isnan(value))
+                    value = groom.material.rootRadius * (1 + t * (groom.material.tipScale - 1));
+                else
+                    value = std::isfinite(value) && value > 0 ? 0.5f * value * metresPerUnit : 0;
+            }
+        }
         groom.pointAttributes.set(attribute::kRadius, std::move(raw.thickness));
         return;
     }
@@ -261,6 +272,21 @@ std::string importedName(const RawAttribute& attribute) {
     return known && !isAsMeantHere(attribute) ? attribute.name + "_of_file" : attribute.name;
 }
 
+/// Lengths, places and vectors become metres, Y up.
+void toMetres(RawAttribute& attribute, const StrandImportOptions& options, bool mirrorZ) {
+    const AttributeUnit unit = attributeUnit(attribute.name, attribute.components);
+    if (attribute.type != RawAttribute::Type::Number || unit == AttributeUnit::None) return;
+    if (unit == AttributeUnit::Length) {
+        if (options.metresPerUnit == 1) return;
+        for (float& length : attribute.numbers) length *= options.metresPerUnit;
+        return;
+    }
+    for (std::size_t i = 0; i + 2 < attribute.numbers.size(); i += 3) {
+        Eigen::Map<Vec3f> value(&attribute.numbers[i]);
+        value = toMetresYUp(value, options, mirrorZ);
+    }
+}
+
 void takeAttributes(RawStrands& raw, Groom& groom) {
     for (RawAttribute& attribute : raw.attributes) {
         AttributeSet& set = attribute.perPoint ? groom.pointAttributes : groom.strandAttributes;
@@ -288,6 +314,9 @@ Groom makeFrom(RawStrands& raw, float metresPerUnit) {
 
 /// The options with the unit and axis that the file itself states.
 StrandImportOptions stated(RawStrands& raw, StrandImportOptions options) {
+    if (!raw.statedMetresPerUnit && raw.assumedMetresPerUnit && !options.isUnitAsked &&
+        options.metresPerUnit == 1.0f)
+        options.metresPerUnit = *raw.assumedMetresPerUnit;
     if (raw.statedMetresPerUnit) {
         const float unit = *raw.statedMetresPerUnit;
         if (options.metresPerUnit != 1.0f && std::abs(options.metresPerUnit / unit - 1) > 1e-4f) {
@@ -390,7 +419,9 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
     result.format = std::move(raw->format);
     result.dropped = std::move(raw->dropped);
     result.warnings = std::move(raw->warnings);
+    for (RawAttribute& attribute : raw->attributes) toMetres(attribute, options, raw->mirrorZ);
     result.groom = makeFrom(*raw, options.metresPerUnit);
+    for (Finding& finding : findThickHair(result.groom)) result.warnings.push_back(std::move(finding));
     if (raw->authored) takeSettings(*raw->authored, result);
     result.frames = std::move(raw->frames);
     result.framesPerSecond = raw->framesPerSecond;
@@ -407,7 +438,9 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
 Result<ImportedStrands> importStrands(const std::filesystem::path& path, const StrandImportOptions& options) {
     auto bytes = readFile(path);
     if (!bytes) return tl::unexpected(bytes.error());
-    return importBytes(path.string(), std::move(*bytes), options, path);
+    StrandImportOptions beside = options;
+    if (beside.folder.empty()) beside.folder = std::filesystem::absolute(path).parent_path();
+    return importBytes(path.string(), std::move(*bytes), beside, path);
 }
 
 }  // namespace hairloom
