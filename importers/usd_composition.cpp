@@ -13,9 +13,9 @@
 namespace hairloom {
 namespace {
 
-constexpr int kMaxArcs = 32;                  ///< that lead to each other
-constexpr int kMaxDepth = 384;                ///< of prims in each other, with those of arcs
-constexpr std::size_t kMaxPrims = 1'000'000;  ///< of the stage, copies counted
+constexpr int kMaxArcs = 32;                ///< that lead to each other
+constexpr int kMaxDepth = 384;              ///< of prims in each other, with those of arcs
+constexpr std::size_t kMaxPrims = 200'000;  ///< of the stage, copies counted
 constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 28u;  ///< likewise
 
 void moveInTime(UsdPrim& prim, const UsdTimeOffset& time) {

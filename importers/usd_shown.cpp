@@ -72,7 +72,7 @@ class Walk {
                 return leaveOut(prim, path, "is not visible");
         }
         const std::string own = tokenOf(prim, "purpose", time_);
-        const std::string purpose = own.empty() || own == "default" ? purposeAbove : own;
+        const std::string purpose = own.empty() ? purposeAbove : own;
         Levels levels = above;
         levels.push_back({&prim, false, 0});
         if (prim.hasClips) leaveOut(prim, path, "has value clips, which are not followed");

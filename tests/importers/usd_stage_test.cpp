@@ -123,8 +123,8 @@ TEST_F(UsdStages, ReferencesPayloadsAndLayersOfTheFolderAreFollowed) {
 TEST_F(UsdStages, FilesElsewhereAreNotReadWhateverLeadsThere) {
     write("secret.usda", kHead + std::string("def Xform \"groom\"\n{\n") + curves("hair", 3) + "}\n");
     fs::create_symlink(folder / "secret.usda", folder / "in" / "link.usda");
-    for (const std::string asset :
-         {"../secret.usda", "./link.usda", (folder / "secret.usda").string().c_str()}) {
+    const std::string absolute = (folder / "secret.usda").string();
+    for (const std::string& asset : {std::string("../secret.usda"), std::string("./link.usda"), absolute}) {
         write("in/stage.usda",
               kHead + curves("own", 1, 1) + "def \"groom\" (references = @" + asset + "@)\n{\n}\n");
         const auto imported = read("in/stage.usda");
