@@ -132,7 +132,8 @@ bool UsdaScanner::takeAsset(std::string& into) {
 }
 
 bool UsdaScanner::number(UsdValue& value) {
-    const char* const begin = text_.data() + at_ + (peek() == '+' ? 1 : 0);
+    if (peek() == '+') ++at_;
+    const char* const begin = text_.data() + at_;
     const char* const end = text_.data() + text_.size();
     if (value.numbers.kind() == UsdNumbers::Kind::Whole) {
         std::uint64_t large = 0;
