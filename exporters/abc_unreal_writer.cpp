@@ -27,6 +27,7 @@ StrandWriter abcUnrealWriter() {
           ".abc in centimetres, Y up; import it with rotation 90, 0, 0 and scale 1, -1, 1", centimetres}},
         write};
     writer.animates = true;
+    writer.marksGuides = true;
     return writer;
 }
 

@@ -34,8 +34,10 @@ std::string parameter(std::string_view scope, std::string_view pod, std::uint32_
 
 class CurvesWriter {
   public:
-    CurvesWriter(const Groom& groom, const PreparedStrands& strands, const StrandFrames* frames, bool unreal)
-        : strands_(strands), attributes_(exportedAttributes(groom, strands)), unreal_(unreal) {
+    CurvesWriter(const Groom& groom, PreparedStrands& strands, const StrandFrames* frames, bool unreal)
+        : strands_(strands),
+          attributes_(exportedAttributes(groom, strands, alembicNames(unreal))),
+          unreal_(unreal) {
         file_.reserve(roomOf(strands, attributes_));
         if (!frames) return;
         times_ = {static_cast<std::uint32_t>(frames->points.size()), frames->first / frames->framesPerSecond,
@@ -137,10 +139,7 @@ class CurvesWriter {
             else
                 addParameter(out, attribute);
         }
-        if (!unreal_) return;
-        out.array("groom_width", AlembicType::Float, 1, bytesOf(strands_.thickness),
-                  parameter("vtx", "float32_t"));
-        addClosestGuides(out, closest);
+        if (unreal_) addClosestGuides(out, closest);
     }
 
     static void addParameter(AlembicCompound& out, const ExportedAttribute& attribute) {

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "core/groom/file/fields.h"
+#include "core/groom/strand_subset.h"
 
 namespace hairloom {
 namespace {
@@ -87,6 +89,40 @@ bool same(const S& a, const S& b) {
     return true;
 }
 
+const std::string& layerName(const Groom& groom, std::uint32_t layer) {
+    static const std::string kNone = Layer{}.name;
+    return layer < groom.layers.size() ? groom.layers[layer].name : kNone;
+}
+
+/// Whether each strand of the file is in a layer of its layer's name.
+bool haveSameLayers(const Groom& groom, const PreparedStrands& prepared, const Groom& read) {
+    const std::vector<std::uint32_t> authored = layersOfStrands(groom), found = layersOfStrands(read);
+    for (std::size_t s = 0; s < prepared.strandCount(); ++s) {
+        if (layerName(groom, authored[prepared.sources[s]]) != layerName(read, found[s])) return false;
+    }
+    return true;
+}
+
+/// Layers of a name that several have, and those without strands, do not tell themselves apart.
+void reportLayers(const Groom& groom, const PreparedStrands& prepared, const ImportedStrands& readBack,
+                  ExportReport& report) {
+    if (groom.layers.size() < 2) return;
+    if (readBack.hasSettings && readBack.groom.layers.size() == groom.layers.size()) return;
+    if (!haveSameLayers(groom, prepared, readBack.groom)) {
+        report.leftBehind.push_back({fmt::format("{} layers", groom.layers.size()),
+                                     "export to USD, which has them as prims, or keep the project"});
+        return;
+    }
+    report.leftBehind.push_back({"materials, locks and densities of layers", "keep the project"});
+    std::set<std::uint32_t> used;
+    const std::vector<std::uint32_t> authored = layersOfStrands(groom);
+    for (const std::uint32_t source : prepared.sources) used.insert(authored[source]);
+    if (used.size() < groom.layers.size())
+        report.leftBehind.push_back(
+            {fmt::format("{} layers without strands", groom.layers.size() - used.size()),
+             "keep the project"});
+}
+
 void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportReport& report) {
     const Groom& read = readBack.groom;
     const bool carried = readBack.hasSettings;
@@ -96,8 +132,6 @@ void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportR
     if (groom.interpolation.followPerGuide > 0 && !(carried && same(groom.interpolation, read.interpolation)))
         leave(fmt::format("{} follow hairs of each strand", groom.interpolation.followPerGuide),
               "export the hairs instead of the guides, or interpolate in the other program");
-    if (groom.layers.size() > 1 && !(carried && read.layers.size() == groom.layers.size()))
-        leave(fmt::format("{} layers", groom.layers.size()), "export them one by one, or keep the project");
     if (!groom.spheres.empty() && !(carried && read.spheres.size() == groom.spheres.size()))
         leave(fmt::format("{} collision spheres", groom.spheres.size()),
               "place colliders in the other program");
@@ -123,6 +157,7 @@ void compareAttributes(const Groom& groom, const PreparedStrands& prepared, floa
         compareSet(groom.pointAttributes, groom.pointCount(), readBack.groom.pointAttributes, points,
                    "points", report);
     }
+    reportLayers(groom, prepared, readBack, report);
     reportSettings(groom, readBack, report);
 }
 

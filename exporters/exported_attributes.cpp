@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exporters/exported_attributes.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <optional>
+
+#include "importers/attribute_units.h"
 
 namespace hairloom {
 namespace {
@@ -31,31 +38,63 @@ bool isCarriedOtherwise(std::string_view name, bool perPoint) {
            name == attribute::kHidden || name == attribute::kFrozen || name == attribute::kLayer;
 }
 
+/// The names that the exporter gives by itself.
+constexpr std::string_view kId = "groom_id", kGroupId = "groom_group_id", kGuideFlag = "groom_guide",
+                           kRootUvs = "groom_root_uv", kColours = "groom_color", kWidths = "groom_width",
+                           kDisplayColours = "displayColor";
+
 class Collector {
   public:
-    Collector(const Groom& groom, const PreparedStrands& strands) : groom_(groom), strands_(strands) {}
+    Collector(const Groom& groom, PreparedStrands& strands, const ExportNames& names)
+        : groom_(groom), strands_(strands), names_(names), giver_(names.isLegal) {
+        for (const std::string_view taken : names.taken) giver_.reserve(taken);
+    }
 
     std::vector<ExportedAttribute> run() {
-        addIds();
-        addGroups();
-        if (const auto guides = ofStrands<std::uint8_t>(attribute::kGuide); !guides.empty())
-            add("groom_guide", false, guides, strands_.sources);
-        addVectors("groom_root_uv", false, rootUvs(groom_, strands_), false);
-        addVectors("groom_color", true, strands_.colours, true);
+        addOwn();
         for (const auto& [name, data] : groom_.strandAttributes.all())
             addOther(name, data, false, groom_.strandCount(), strands_.sources);
-        if (strands_.isResampled) return std::move(result_);
-        std::vector<std::uint32_t> points;
-        for (const std::uint32_t source : strands_.sources) {
-            for (std::uint32_t p = groom_.offsets[source]; p < groom_.offsets[source + 1]; ++p)
-                points.push_back(p);
+        if (!strands_.isResampled) {
+            std::vector<std::uint32_t> points;
+            for (const std::uint32_t source : strands_.sources) {
+                for (std::uint32_t p = groom_.offsets[source]; p < groom_.offsets[source + 1]; ++p)
+                    points.push_back(p);
+            }
+            for (const auto& [name, data] : groom_.pointAttributes.all())
+                addOther(name, data, true, groom_.pointCount(), points);
         }
-        for (const auto& [name, data] : groom_.pointAttributes.all())
-            addOther(name, data, true, groom_.pointCount(), points);
         return std::move(result_);
     }
 
   private:
+    void addOwn() {
+        if (!isAuthors(kId)) addIds();
+        if (!isAuthors(kGroupId)) addGroups();
+        if (const auto guides = ofStrands<std::uint8_t>(attribute::kGuide);
+            !guides.empty() && !isAuthors(kGuideFlag))
+            add(std::string(kGuideFlag), false, guides, strands_.sources);
+        if (!isAuthors(kRootUvs)) addVectors(std::string(kRootUvs), false, rootUvs(groom_, strands_), false);
+        // Programs look for colours under either name.
+        addVectors(std::string(!isAuthors(kColours)          ? kColours
+                               : !isAuthors(kDisplayColours) ? kDisplayColours
+                                                             : "groom_point_color"),
+                   true, strands_.colours, true);
+        if (names_.isUnreal && !isAuthors(kWidths)) {
+            ExportedAttribute& widths = start(std::string(kWidths), true, Type::Number, 1);
+            widths.numbers = strands_.thickness;
+        }
+    }
+
+    /// Whether the groom has the name itself and the file gets that.
+    bool isAuthors(std::string_view name) const {
+        const auto fits = [&](const AttributeSet& set, std::size_t elements) {
+            const auto found = set.all().find(name);
+            return found != set.all().end() && sizeOf(found->second) == elements;
+        };
+        return fits(groom_.strandAttributes, groom_.strandCount()) ||
+               (!strands_.isResampled && fits(groom_.pointAttributes, groom_.pointCount()));
+    }
+
     template <class T>
     std::span<const T> ofStrands(std::string_view name) const {
         const auto values = groom_.strandAttributes.view<T>(name);
@@ -64,7 +103,8 @@ class Collector {
 
     ExportedAttribute& start(const std::string& name, bool perPoint, Type type, std::uint32_t components) {
         ExportedAttribute attribute;
-        attribute.name = name;
+        attribute.name = giver_.give(name);
+        if (attribute.name != name) attribute.original = name;
         attribute.perPoint = perPoint;
         attribute.type = type;
         attribute.components = components;
@@ -73,18 +113,44 @@ class Collector {
     }
 
     void addIds() {
-        ExportedAttribute& ids = start("groom_id", false, Type::Whole, 1);
         const auto own = ofStrands<std::uint32_t>(attribute::kStrandId);
-        for (const std::uint32_t source : strands_.sources)
-            ids.whole.push_back(static_cast<std::int32_t>(own.empty() ? source : own[source]));
+        std::vector<std::uint32_t> ids;
+        for (const std::uint32_t source : strands_.sources) ids.push_back(own.empty() ? source : own[source]);
+        start(std::string(kId), false, Type::Whole, 1).whole = narrowed(kId, ids);
     }
 
     void addGroups() {
         const auto groups = ofStrands<std::uint32_t>(attribute::kGroup);
+        if (groups.empty() && names_.isUnreal) return addLayersAsGroups();
         if (groups.empty()) return;
-        ExportedAttribute& numbers = start("groom_group_id", false, Type::Whole, 1);
+        ExportedAttribute& numbers = start(std::string(kGroupId), false, Type::Whole, 1);
         for (const std::uint32_t source : strands_.sources)
             numbers.whole.push_back(groupNumber(groom_, groups[source]));
+    }
+
+    void addLayersAsGroups() {
+        const auto layers = ofStrands<std::uint32_t>(attribute::kLayer);
+        if (layers.empty() || groom_.layers.size() < 2) return;
+        ExportedAttribute& numbers = start(std::string(kGroupId), false, Type::Whole, 1);
+        for (const std::uint32_t source : strands_.sources)
+            numbers.whole.push_back(static_cast<std::int32_t>(layers[source]));
+    }
+
+    /// Files have signed numbers of 32 bits: what these do not hold is numbered anew, alike ones alike.
+    std::vector<std::int32_t> narrowed(std::string_view name, const std::vector<std::uint32_t>& numbers) {
+        if (std::ranges::all_of(numbers, [](std::uint32_t number) { return number <= INT32_MAX; }))
+            return {numbers.begin(), numbers.end()};
+        std::vector<std::uint32_t> different = numbers;
+        std::ranges::sort(different);
+        different.erase(std::unique(different.begin(), different.end()), different.end());
+        std::vector<std::int32_t> narrow;
+        for (const std::uint32_t number : numbers)
+            narrow.push_back(
+                static_cast<std::int32_t>(std::ranges::lower_bound(different, number) - different.begin()));
+        strands_.findings.push_back({Severity::Warning,
+                                     fmt::format("{} has numbers above {}", name, INT32_MAX),
+                                     std::string(name), "the file has them numbered from 0 in their order"});
+        return narrow;
     }
 
     template <class Vector>
@@ -101,12 +167,38 @@ class Collector {
                   const std::vector<std::uint32_t>& chosen) {
         if (isCarriedOtherwise(name, perPoint) || sizeOf(data) != elements) return;
         std::visit([&](const auto& array) { add(name, perPoint, array.view(), chosen); }, data);
+        ExportedAttribute& added = result_.back();
+        added.isColour = added.components == 3 && (name == kColours || name == kDisplayColours);
+        toFileUnit(name, added);
+    }
+
+    /// The groom's are metres, Y up.
+    void toFileUnit(const std::string& name, ExportedAttribute& attribute) const {
+        const AttributeUnit unit = attributeUnit(name, attribute.components);
+        if (attribute.type != Type::Number || unit == AttributeUnit::None) return;
+        if (unit == AttributeUnit::Length) {
+            if (strands_.metresPerUnit == 1) return;
+            for (float& length : attribute.numbers) length /= strands_.metresPerUnit;
+            return;
+        }
+        StrandExportOptions options;
+        options.metresPerUnit = strands_.metresPerUnit;
+        options.up = strands_.up;
+        for (std::size_t i = 0; i + 2 < attribute.numbers.size(); i += 3) {
+            Eigen::Map<Vec3f> value(&attribute.numbers[i]);
+            value = toFile(value, options);
+        }
     }
 
     template <class T>
     void add(const std::string& name, bool perPoint, std::span<const T> values,
              const std::vector<std::uint32_t>& chosen) {
-        if constexpr (std::is_integral_v<T>) {
+        if constexpr (std::is_same_v<T, std::uint32_t>) {
+            std::vector<std::uint32_t> numbers;
+            for (const std::uint32_t index : chosen) numbers.push_back(values[index]);
+            std::vector<std::int32_t> narrow = narrowed(name, numbers);
+            start(name, perPoint, Type::Whole, 1).whole = std::move(narrow);
+        } else if constexpr (std::is_integral_v<T>) {
             ExportedAttribute& to = start(name, perPoint, sizeof(T) == 1 ? Type::Flag : Type::Whole, 1);
             for (const std::uint32_t index : chosen)
                 to.whole.push_back(static_cast<std::int32_t>(values[index]));
@@ -122,14 +214,37 @@ class Collector {
     }
 
     const Groom& groom_;
-    const PreparedStrands& strands_;
+    PreparedStrands& strands_;
+    const ExportNames& names_;
+    NameGiver giver_;
     std::vector<ExportedAttribute> result_;
 };
 
+bool isLegalInPly(char c, bool) {
+    return static_cast<unsigned char>(c) > 0x20 && c != 0x7f;
+}
+
 }  // namespace
 
-std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, const PreparedStrands& strands) {
-    return Collector(groom, strands).run();
+ExportNames usdNames() {
+    // Of curves: a primvar of such a name would go before the attribute.
+    return {isLegalInUsd, {"widths", "normals"}};
+}
+
+ExportNames alembicNames(bool unreal) {
+    ExportNames names{isLegalInAlembic, {}};
+    names.isUnreal = unreal;
+    if (unreal) names.taken.emplace_back("groom_closest_guides");
+    return names;
+}
+
+ExportNames plyNames() {
+    return {isLegalInPly, {"x", "y", "z", "width", "radius", "red", "green", "blue"}};
+}
+
+std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
+                                                  const ExportNames& names) {
+    return Collector(groom, strands, names).run();
 }
 
 std::size_t roomOf(const PreparedStrands& strands, std::span<const ExportedAttribute> attributes) {

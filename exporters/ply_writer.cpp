@@ -9,18 +9,17 @@
 namespace hairloom {
 namespace {
 
-/// Attributes of points that are single numbers, and names that PLY can have.
+/// Attributes of points that are single numbers.
 bool isCarried(const ExportedAttribute& attribute) {
     return attribute.perPoint && attribute.components == 1 &&
-           attribute.type == ExportedAttribute::Type::Number &&
-           attribute.name.find_first_of(" \t\r\n") == std::string::npos;
+           attribute.type == ExportedAttribute::Type::Number;
 }
 
 Result<ExportReport> writePly(const Groom& groom, const std::filesystem::path& path,
                               const StrandExportOptions& options) {
     auto strands = prepareStrands(groom, options, options.pointsPerStrand);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
-    auto attributes = exportedAttributes(groom, *strands);
+    auto attributes = exportedAttributes(groom, *strands, plyNames());
     std::erase_if(attributes, [](const ExportedAttribute& attribute) { return !isCarried(attribute); });
     std::string head = fmt::format(
         "ply\nformat binary_little_endian 1.0\ncomment Hairloom, {} m in a unit, {} up\nelement vertex {}\n"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
@@ -70,8 +71,14 @@ struct Tally {
 
 class Preparer {
   public:
-    Preparer(const Groom& groom, const StrandExportOptions& options, std::uint32_t target)
-        : groom_(groom), options_(options), target_(target), layers_(layersOfStrands(groom)) {
+    Preparer(const Groom& groom, const StrandExportOptions& options, std::uint32_t target, bool byLayer)
+        : groom_(groom),
+          options_(options),
+          target_(target),
+          byLayer_(byLayer),
+          layers_(layersOfStrands(groom)) {
+        result_.metresPerUnit = options.metresPerUnit;
+        result_.up = options.up;
         radii_ = perPoint<float>(attribute::kRadius);
         transparency_ = perPoint<float>(attribute::kTransparency);
         colours_ = perPoint<Vec3f>(attribute::kPointColour);
@@ -82,7 +89,12 @@ class Preparer {
         const std::size_t points = target_ ? strands * target_ : groom_.pointCount();
         result_.positions.reserve(points);
         result_.thickness.reserve(points);
-        for (std::size_t strand = 0; strand < strands; ++strand) add(strand);
+        std::vector<std::size_t> order(strands);
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        if (byLayer_)
+            std::ranges::stable_sort(order, {}, [&](std::size_t strand) { return layers_[strand]; });
+        for (const std::size_t strand : order) add(strand);
+        addParts();
         addFrames();
         sayFindings();
         return std::move(result_);
@@ -115,6 +127,15 @@ class Preparer {
         append(result_.colours, colours_, points, first, count);
         result_.sources.push_back(static_cast<std::uint32_t>(strand));
         result_.offsets.push_back(static_cast<std::uint32_t>(result_.positions.size()));
+    }
+
+    void addParts() {
+        for (std::size_t s = 0; s < result_.sources.size(); ++s) {
+            const std::uint32_t layer = byLayer_ ? layers_[result_.sources[s]] : 0;
+            if (result_.parts.empty() || result_.parts.back().layer != layer)
+                result_.parts.push_back({layer, s, 0});
+            ++result_.parts.back().strandCount;
+        }
     }
 
     void addFrames() {
@@ -205,6 +226,7 @@ class Preparer {
     const Groom& groom_;
     const StrandExportOptions& options_;
     std::uint32_t target_;
+    bool byLayer_;
     std::vector<std::uint32_t> layers_;
     std::span<const float> radii_;
     std::span<const float> transparency_;
@@ -295,13 +317,13 @@ Vec3f toFile(const Vec3f& position, const StrandExportOptions& options) {
 }
 
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
-                                       std::uint32_t pointsPerStrand) {
+                                       std::uint32_t pointsPerStrand, bool byLayer) {
     if (!(options.metresPerUnit > 0) || !std::isfinite(options.metresPerUnit)) {
         return fail(fmt::format("{} metres per unit", options.metresPerUnit), "expected a positive number");
     }
     if (pointsPerStrand == 1)
         return fail("1 point per strand", "expected 2 or more, or 0 to keep what there is");
-    auto prepared = Preparer(groom, options, pointsPerStrand).run();
+    auto prepared = Preparer(groom, options, pointsPerStrand, byLayer).run();
     if (prepared.sources.empty())
         return fail("the groom has no usable strand", "expected at least one to write");
     judgeLimits(options.limits, prepared);
@@ -317,7 +339,11 @@ std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands) {
     const auto bindings = groom.rootBindings();
     const bool onScalp =
         groom.scalp && !groom.scalp->cornerUvs().empty() && bindings.size() == groom.strandCount();
+    const auto isZero = [](const Vec2f& uv) { return uv == Vec2f::Zero(); };
+    const bool isMadeUp = !stored.empty() && groom.scalp && groom.scalp->cornerUvs().empty() &&
+                          std::ranges::all_of(stored, isZero);
     std::vector<Vec2f> uvs;
+    if (isMadeUp) return uvs;
     for (const std::uint32_t source : strands.sources) {
         if (stored.size() == groom.strandCount())
             uvs.push_back(stored[source]);
@@ -359,6 +385,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     if (auto status = writeFileAtomically(path, bytes); !status) return tl::unexpected(status.error());
     StrandImportOptions importOptions;
     importOptions.metresPerUnit = options.metresPerUnit;
+    importOptions.isUnitAsked = true;
     importOptions.up = options.up;
     importOptions.frames = options.frames != nullptr;
     // What went into a device cannot be had back.

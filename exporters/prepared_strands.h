@@ -13,6 +13,12 @@
 
 namespace hairloom {
 
+/// Strands of one layer, one after another.
+struct PreparedPart {
+    std::uint32_t layer = 0;  ///< of Groom::layers
+    std::size_t firstStrand = 0, strandCount = 0;
+};
+
 /// The strands that go into a file, in its units and axes.
 struct PreparedStrands {
     std::vector<std::uint32_t> sources;      ///< strand of the groom
@@ -22,6 +28,9 @@ struct PreparedStrands {
     std::vector<float> thickness;            ///< per point, diameter in units of the file
     std::vector<float> transparency;         ///< per point, or empty
     std::vector<Vec3f> colours;              ///< per point, or empty
+    std::vector<PreparedPart> parts;         ///< that the strands are ordered by; at least one
+    float metresPerUnit = 1;                 ///< of the file
+    UpAxis up = UpAxis::Y;                   ///< likewise
     bool isResampled = false;                ///< some strand has other points than the groom's
     std::vector<Finding> findings;
 
@@ -32,15 +41,16 @@ struct PreparedStrands {
 Vec3f toFile(const Vec3f& position, const StrandExportOptions& options);
 
 /// `pointsPerStrand` 0 keeps every strand's points; strands that have that many already keep theirs too.
+/// `byLayer` orders them by their layers, for formats that keep these apart; otherwise they are one part.
 /// Errors: options out of range, nothing to write.
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
-                                       std::uint32_t pointsPerStrand);
+                                       std::uint32_t pointsPerStrand, bool byLayer = false);
 
 /// Of Unity's hair (com.unity.demoteam.hair).
 TargetLimits unityLimits();
 
 /// Of the strands that are written: the groom's own, else those of their roots on the scalp; empty where
-/// neither is known.
+/// neither is known, as on a head without UVs, where strands have (0, 0) for want of any.
 std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands);
 
 /// A file as its writer made it.

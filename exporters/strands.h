@@ -71,6 +71,7 @@ struct StrandWriter {
                                   const StrandExportOptions& options);
     std::string ownSuffix{};            ///< of its files, where that is not the name
     bool generatesFollowHairs = false;  ///< the file tells how follow hairs come from guides
+    bool marksGuides = false;           ///< hairs go with the guides that they follow, and how much they do
     bool animates = false;              ///< the file can hold StrandExportOptions::frames
     bool holdsCards() const { return write == nullptr; }
 };

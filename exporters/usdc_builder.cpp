@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t kBootstrap = 88;
 constexpr std::uint32_t kAttribute = 1, kPrim = 6, kRoot = 7;
-constexpr std::uint8_t kBool = 1, kUChar = 2, kInt = 3, kFloat = 8, kDouble = 9, kToken = 11, kVec2f = 20,
-                       kVec3f = 24, kVec4f = 28, kTokenVector = 41, kSpecifier = 42, kVariability = 44,
-                       kTimeSamples = 46, kDoubleVector = 48;
+constexpr std::uint8_t kBool = 1, kUChar = 2, kInt = 3, kFloat = 8, kDouble = 9, kString = 10, kToken = 11,
+                       kVec2f = 20, kVec3f = 24, kVec4f = 28, kTokenVector = 41, kSpecifier = 42,
+                       kVariability = 44, kTimeSamples = 46, kDoubleVector = 48;
 
 UsdcRep inlined(std::uint8_t type, std::uint32_t payload) {
     return {std::uint64_t{1} << 62u | std::uint64_t{type} << 48u | payload};
@@ -70,6 +70,11 @@ std::uint32_t UsdcBuilder::tokenIndex(const std::string& text) {
 
 UsdcRep UsdcBuilder::token(const std::string& text) {
     return inlined(kToken, tokenIndex(text));
+}
+
+UsdcRep UsdcBuilder::string(const std::string& text) {
+    strings_.push_back(tokenIndex(text));
+    return inlined(kString, static_cast<std::uint32_t>(strings_.size() - 1));
 }
 
 UsdcRep UsdcBuilder::tokens(std::span<const std::string> texts) {
@@ -203,7 +208,10 @@ std::vector<std::byte> UsdcBuilder::finish() {
         out_.write(std::uint64_t{text.size()});
         writePacked(std::as_bytes(std::span(text)));
     });
-    section("STRINGS", [&] { out_.write(std::uint64_t{0}); });
+    section("STRINGS", [&] {
+        out_.write(std::uint64_t{strings_.size()});
+        out_.writeArray(std::span<const std::uint32_t>(strings_));
+    });
     section("FIELDS", [&] {
         out_.write(std::uint64_t{fieldTokens_.size()});
         writeIntegers(out_, std::span<const std::uint32_t>(fieldTokens_));

@@ -27,6 +27,8 @@ class UsdcBuilder {
     UsdcBuilder();
 
     UsdcRep token(const std::string& text);
+    /// A text that is no name.
+    UsdcRep string(const std::string& text);
     UsdcRep tokens(std::span<const std::string> texts);
     UsdcRep number(double value);
     /// What a prim is (def) and whether an attribute may change in time.
@@ -65,6 +67,7 @@ class UsdcBuilder {
     ByteWriter out_;
     std::vector<std::string> tokens_;
     std::unordered_map<std::string, std::uint32_t> tokenIndices_;
+    std::vector<std::uint32_t> strings_;  ///< tokens
     std::vector<std::uint32_t> fieldTokens_, fieldSets_;
     std::vector<std::uint64_t> fieldValues_;
     std::vector<Path> paths_;

@@ -8,28 +8,22 @@
 namespace hairloom {
 namespace {
 
-UsdcRep valueOf(UsdcBuilder& file, const ExportedAttribute& attribute, std::string_view type) {
+UsdcRep valueOf(UsdcBuilder& file, const UsdPart& part, const ExportedAttribute& attribute,
+                std::string_view type) {
     if (attribute.type == ExportedAttribute::Type::Number)
-        return file.floats(attribute.numbers, attribute.components);
-    if (attribute.type == ExportedAttribute::Type::Whole && type != "bool") return file.ints(attribute.whole);
-    const std::vector<std::uint8_t> bytes(attribute.whole.begin(), attribute.whole.end());
+        return file.floats(part.numbers(attribute), attribute.components);
+    const auto whole = part.wholes(attribute);
+    if (type == "int") return file.ints(whole);
+    const std::vector<std::uint8_t> bytes(whole.begin(), whole.end());
     return file.bytes(bytes, type == "bool");
 }
 
-Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& path,
-                               const StrandExportOptions& options) {
-    auto strands = prepareStrands(groom, options, options.pointsPerStrand);
-    if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
-    const std::vector<std::int32_t> counts = curveVertexCounts(*strands);
-    const std::array<Vec3f, 2> extent = extentOf(strands->positions);
-    const auto attributes = exportedAttributes(groom, *strands);
-    std::vector<double> times;
-    for (std::size_t f = 0; f < strands->frames.size(); ++f)
-        times.push_back(options.frames->first + static_cast<double>(f));
+std::span<const float> numbersOf(std::span<const Vec3f> values) {
+    return {values[0].data(), values.size() * 3};
+}
 
-    UsdcBuilder file;
-    file.reserve(roomOf(*strands, attributes));
-    const std::vector<std::string> top{"groom"}, below{"hair"};
+void writeRoot(UsdcBuilder& file, const PreparedStrands& strands, const StrandExportOptions& options) {
+    const std::vector<std::string> top{"groom"};
     UsdcBuilder::Fields head{{"defaultPrim", file.token("groom")},
                              {"metersPerUnit", file.number(readableDecimal(options.metresPerUnit))},
                              {"upAxis", file.token(options.up == UpAxis::Z ? "Z" : "Y")},
@@ -37,55 +31,98 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
     if (options.frames) {
         const double first = options.frames->first, rate = options.frames->framesPerSecond;
         head.emplace_back("startTimeCode", file.number(first));
-        head.emplace_back("endTimeCode",
-                          file.number(first + static_cast<double>(strands->frames.size() - 1)));
+        head.emplace_back("endTimeCode", file.number(first + static_cast<double>(strands.frames.size() - 1)));
         head.emplace_back("framesPerSecond", file.number(rate));
         head.emplace_back("timeCodesPerSecond", file.number(rate));
     }
     file.root(head);
+}
+
+class PartWriter {
+  public:
+    PartWriter(UsdcBuilder& file, const PreparedStrands& strands, const StrandExportOptions& options)
+        : file_(file), strands_(strands) {
+        for (std::size_t f = 0; f < strands.frames.size(); ++f)
+            times_.push_back(options.frames->first + static_cast<double>(f));
+    }
+
+    void write(const UsdPart& part, std::span<const ExportedAttribute> attributes) {
+        std::vector<std::string> names{"type", "wrap", "extent", "curveVertexCounts", "points", "widths"};
+        for (const ExportedAttribute& attribute : attributes) names.push_back("primvars:" + attribute.name);
+        UsdcBuilder::Fields fields{{"specifier", file_.definition()},
+                                   {"typeName", file_.token("BasisCurves")},
+                                   {"properties", file_.tokens(names)}};
+        if (!part.displayName.empty()) fields.emplace_back("displayName", file_.string(part.displayName));
+        file_.prim(2, part.name, fields);
+        for (const auto& [name, value] : {std::pair("type", "linear"), std::pair("wrap", "nonperiodic")})
+            file_.attribute(3, name,
+                            {{"typeName", file_.token("token")},
+                             {"variability", file_.uniform()},
+                             {"default", file_.token(value)}});
+        writePoints(part);
+        file_.attribute(3, "widths",
+                        {{"typeName", file_.token("float[]")},
+                         {"interpolation", file_.token("vertex")},
+                         {"default", file_.floats(part.widths(strands_), 1)}});
+        for (const ExportedAttribute& attribute : attributes) writeAttribute(part, attribute);
+    }
+
+  private:
+    void writePoints(const UsdPart& part) {
+        const auto add = [&](const std::string& name, const char* type, UsdcRep value,
+                             std::span<const UsdcRep> frames = {}) {
+            UsdcBuilder::Fields fields{{"typeName", file_.token(type)}, {"default", value}};
+            if (!frames.empty()) fields.emplace_back("timeSamples", file_.samples(times_, frames));
+            file_.attribute(3, name, fields);
+        };
+        const auto box = [&](std::span<const Vec3f> all) {
+            const std::array<Vec3f, 2> extent = part.extent(strands_, all);
+            return file_.floats({extent[0].data(), 6}, 3);
+        };
+        const auto points = [&](std::span<const Vec3f> all) {
+            return file_.floats(numbersOf(part.points(all)), 3);
+        };
+        std::vector<UsdcRep> extents, shapes;
+        for (const std::vector<Vec3f>& frame : strands_.frames) {
+            extents.push_back(box(frame));
+            shapes.push_back(points(frame));
+        }
+        add("extent", "float3[]", box(strands_.positions), extents);
+        add("curveVertexCounts", "int[]", file_.ints(part.vertexCounts(strands_)));
+        add("points", "point3f[]", points(strands_.positions), shapes);
+    }
+
+    void writeAttribute(const UsdPart& part, const ExportedAttribute& attribute) {
+        const std::string type(usdTypeOf(attribute));
+        UsdcBuilder::Fields fields{{"typeName", file_.token(type + "[]")},
+                                   {"interpolation", file_.token(attribute.perPoint ? "vertex" : "uniform")},
+                                   {"default", valueOf(file_, part, attribute, type)}};
+        if (!attribute.original.empty()) fields.emplace_back("displayName", file_.string(attribute.original));
+        file_.attribute(3, "primvars:" + attribute.name, fields);
+    }
+
+    UsdcBuilder& file_;
+    const PreparedStrands& strands_;
+    std::vector<double> times_;
+};
+
+Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& path,
+                               const StrandExportOptions& options) {
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand, true);
+    if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
+    const auto attributes = exportedAttributes(groom, *strands, usdNames());
+    const std::vector<UsdPart> parts = usdParts(groom, *strands);
+    UsdcBuilder file;
+    file.reserve(roomOf(*strands, attributes));
+    writeRoot(file, *strands, options);
+    std::vector<std::string> names;
+    for (const UsdPart& part : parts) names.push_back(part.name);
     file.prim(1, "groom",
               {{"specifier", file.definition()},
                {"typeName", file.token("Xform")},
-               {"primChildren", file.tokens(below)}});
-    std::vector<std::string> names{"type", "wrap", "extent", "curveVertexCounts", "points", "widths"};
-    for (const ExportedAttribute& attribute : attributes)
-        names.push_back("primvars:" + usdName(attribute.name));
-    file.prim(2, "hair",
-              {{"specifier", file.definition()},
-               {"typeName", file.token("BasisCurves")},
-               {"properties", file.tokens(names)}});
-    for (const auto& [name, value] : {std::pair("type", "linear"), std::pair("wrap", "nonperiodic")})
-        file.attribute(3, name,
-                       {{"typeName", file.token("token")},
-                        {"variability", file.uniform()},
-                        {"default", file.token(value)}});
-    const auto add = [&](const std::string& name, const char* type, UsdcRep value,
-                         std::span<const UsdcRep> frames = {}) {
-        UsdcBuilder::Fields fields{{"typeName", file.token(type)}, {"default", value}};
-        if (!frames.empty()) fields.emplace_back("timeSamples", file.samples(times, frames));
-        file.attribute(3, name, fields);
-    };
-    std::vector<UsdcRep> extents, points;
-    for (const std::vector<Vec3f>& frame : strands->frames) {
-        const std::array<Vec3f, 2> box = extentOf(frame);
-        extents.push_back(file.floats({box[0].data(), 6}, 3));
-        points.push_back(file.floats({frame[0].data(), frame.size() * 3}, 3));
-    }
-    add("extent", "float3[]", file.floats({extent[0].data(), 6}, 3), extents);
-    add("curveVertexCounts", "int[]", file.ints(counts));
-    add("points", "point3f[]", file.floats({strands->positions[0].data(), strands->positions.size() * 3}, 3),
-        points);
-    file.attribute(3, "widths",
-                   {{"typeName", file.token("float[]")},
-                    {"interpolation", file.token("vertex")},
-                    {"default", file.floats(strands->thickness, 1)}});
-    for (const ExportedAttribute& attribute : attributes) {
-        const std::string type(usdTypeOf(attribute));
-        file.attribute(3, "primvars:" + usdName(attribute.name),
-                       {{"typeName", file.token(type + "[]")},
-                        {"interpolation", file.token(attribute.perPoint ? "vertex" : "uniform")},
-                        {"default", valueOf(file, attribute, type)}});
-    }
+               {"primChildren", file.tokens(names)}});
+    PartWriter writer(file, *strands, options);
+    for (const UsdPart& part : parts) writer.write(part, attributes);
     return writeAndCompare(groom, std::move(*strands), options, path, file.finish());
 }
 

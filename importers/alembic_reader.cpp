@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "importers/alembic_archive.h"
+#include "importers/alembic_unreal.h"
 #include "importers/curve_set.h"
 
 namespace hairloom {
@@ -119,6 +120,7 @@ class Reader {
     }
 
     Result<RawStrands> strands() {
+        narrowWholeNumbers(curves_, strands_.warnings);
         std::size_t frames = 0;
         for (const CurveSet& set : curves_) frames = std::max(frames, set.frames.size());
         for (CurveSet& set : curves_) {
@@ -429,8 +431,11 @@ Result<RawStrands> readAlembic(const std::string& file, std::vector<std::byte>&&
     if (!archive) return tl::unexpected(archive.error());
     Reader reader(*archive, file, options.frames);
     if (auto status = reader.readAll(); !status) return tl::unexpected(status.error());
+    const bool isUnreal = hasUnrealSchema(*archive);
     std::vector<std::byte>().swap(bytes);
-    return reader.strands();
+    auto strands = reader.strands();
+    if (strands && isUnreal) assumeUnrealUnit(options, *strands);
+    return strands;
 }
 
 }  // namespace

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
+
+#include "importers/attribute_units.h"
 
 namespace hairloom {
 namespace {
@@ -122,7 +126,11 @@ class AttributeSink {
 /// Values of elements that came before the attribute did, or that other curves do not have.
 void pad(RawAttribute& attribute, std::size_t strands, std::size_t points) {
     const std::size_t elements = attribute.perPoint ? points : strands;
-    if (attribute.type == RawAttribute::Type::Number)
+    const bool isNumber = attribute.type == RawAttribute::Type::Number;
+    const std::size_t there =
+        isNumber ? attribute.numbers.size() / attribute.components : attribute.whole.size();
+    if (there < elements) attribute.absent.emplace_back(there, elements);
+    if (isNumber)
         attribute.numbers.resize(elements * attribute.components);
     else
         attribute.whole.resize(elements);
@@ -144,6 +152,10 @@ void spread(std::vector<T>& values, std::size_t components, std::span<const std:
 void spread(RawAttribute& attribute, std::span<const std::uint32_t> offsets) {
     spread(attribute.numbers, attribute.components, offsets);
     spread(attribute.whole, 1, offsets);
+    for (auto& [first, second] : attribute.absent) {
+        first = offsets[first];
+        second = offsets[second];
+    }
     attribute.perPoint = true;
 }
 
@@ -211,8 +223,7 @@ class Appender {
         if (points != sizes_.points)
             return wrong(fmt::format("curves of together {} points", points),
                          fmt::format("the file has {} points", sizes_.points));
-        if (!curves_.knots.empty() && knots != curves_.knots.size())
-            return wrong(fmt::format("{} knots", curves_.knots.size()), fmt::format("expected {}", knots));
+        if (curves_.basis == CurveBasis::Nurbs) mendKnots(static_cast<std::size_t>(knots));
         if (!curves_.orders.empty() && curves_.orders.size() != 1 && curves_.orders.size() != sizes_.curves)
             return wrong(fmt::format("{} orders", curves_.orders.size()),
                          fmt::format("expected one for each of {} curves", sizes_.curves));
@@ -225,6 +236,31 @@ class Appender {
                              fmt::format("expected {} at all times", sizes_.points));
         }
         return {};
+    }
+
+    /// Knots are as many as control points and order; some programs leave the first and the last out.
+    void mendKnots(std::size_t expected) {
+        const std::size_t found = curves_.knots.size();
+        if (found == expected || found == 0) return;
+        std::vector<double> mended;
+        if (found + 2 * sizes_.curves == expected) {
+            std::size_t at = 0;
+            for (std::size_t curve = 0; curve < sizes_.curves; ++curve) {
+                const std::size_t count = curves_.counts[curve] + orderOf(curve) - 2;
+                if (count == 0 || count > found - at) break;
+                mended.push_back(curves_.knots[at]);
+                mended.insert(mended.end(), curves_.knots.begin() + static_cast<std::ptrdiff_t>(at),
+                              curves_.knots.begin() + static_cast<std::ptrdiff_t>(at + count));
+                at += count;
+                mended.push_back(mended.back());
+            }
+            if (mended.size() != expected) mended.clear();
+        }
+        strands_.warnings.push_back(fileWarning(
+            fmt::format("{} knots, where curves of these orders have {}", found, expected), curves_.path,
+            mended.empty() ? "uniform knots were taken"
+                           : "the first and the last of each curve were taken twice"));
+        curves_.knots = std::move(mended);
     }
 
     std::uint32_t orderOf(std::size_t curve) const {
@@ -251,9 +287,8 @@ class Appender {
                 open.emplace_back(SIZE_MAX, scope);
                 continue;
             }
-            if (part.name == "width") {
-                for (float& width : part.numbers) width = static_cast<float>(width * widthScale_);
-            }
+            tellScope(part, scope);
+            scaleAttribute(part);
             std::size_t target = targetOf(part, scope, strands, points);
             // Said twice of the same curves: the first counts.
             if (std::ranges::find(open, target, &std::pair<std::size_t, Scope>::first) != open.end())
@@ -263,6 +298,34 @@ class Appender {
         for (std::size_t i = 0; i < parts_.size(); ++i) {
             if (open[i].first != SIZE_MAX)
                 sinks_.emplace_back(parts_[i], open[i].second, strands_.attributes[open[i].first]);
+        }
+    }
+
+    /// Other readers go by what the file says.
+    void tellScope(const CurveAttribute& part, Scope scope) {
+        if (part.scope == Scope::Unknown || part.scope == scope) return;
+        constexpr std::array<std::string_view, 5> kNames{"", "constant", "uniform", "varying", "vertex"};
+        const auto name = [&](Scope one) { return kNames[static_cast<std::size_t>(one)]; };
+        strands_.warnings.push_back(
+            fileNote(fmt::format("{} says that it is {} and has {} values, where that is {}", part.name,
+                                 name(part.scope), part.count(), sizes_.of(part.scope)),
+                     curves_.path, fmt::format("it was taken for {}", name(scope))));
+    }
+
+    /// Lengths and places are in the object's space.
+    void scaleAttribute(CurveAttribute& part) const {
+        const AttributeUnit unit = attributeUnit(part.name, part.components);
+        if (part.numbers.empty() || unit == AttributeUnit::None) return;
+        if (unit == AttributeUnit::Length) {
+            for (float& length : part.numbers) length = static_cast<float>(length * widthScale_);
+            return;
+        }
+        for (std::size_t i = 0; i + 2 < part.numbers.size(); i += 3) {
+            Eigen::Map<Vec3f> value(&part.numbers[i]);
+            const Eigen::Vector3d there = value.cast<double>();
+            value = (unit == AttributeUnit::Position ? Eigen::Vector3d(curves_.toFile * there)
+                                                     : Eigen::Vector3d(curves_.toFile.linear() * there))
+                        .cast<float>();
         }
     }
 
@@ -392,6 +455,39 @@ Status appendCurves(const std::string& file, CurveSet curves, std::size_t frames
     for (RawAttribute& attribute : strands.attributes)
         pad(attribute, strands.offsets.size() - 1, strands.positions.size());
     return {};
+}
+
+void narrowWholeNumbers(std::vector<CurveSet>& sets, std::vector<Finding>& warnings) {
+    std::map<std::string, std::vector<std::int64_t>> wide;
+    const auto isWide = [](std::int64_t value) { return value < INT32_MIN || value > INT32_MAX; };
+    for (const CurveSet& set : sets) {
+        for (const CurveAttribute& attribute : set.attributes) {
+            if (std::ranges::any_of(attribute.whole, isWide)) wide[attribute.name];
+        }
+    }
+    if (wide.empty()) return;
+    for (const CurveSet& set : sets) {
+        for (const CurveAttribute& attribute : set.attributes) {
+            const auto found = wide.find(attribute.name);
+            if (found != wide.end())
+                found->second.insert(found->second.end(), attribute.whole.begin(), attribute.whole.end());
+        }
+    }
+    for (auto& [name, values] : wide) {
+        std::ranges::sort(values);
+        values.erase(std::unique(values.begin(), values.end()), values.end());
+        warnings.push_back(fileWarning(
+            fmt::format("{} has numbers of 64 bits, which are more than are kept", name), name,
+            fmt::format("its {} different values were numbered from 0 in their order", values.size())));
+    }
+    for (CurveSet& set : sets) {
+        for (CurveAttribute& attribute : set.attributes) {
+            const auto found = wide.find(attribute.name);
+            if (found == wide.end()) continue;
+            for (std::int64_t& value : attribute.whole)
+                value = std::ranges::lower_bound(found->second, value) - found->second.begin();
+        }
+    }
 }
 
 }  // namespace hairloom

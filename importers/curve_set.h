@@ -39,10 +39,14 @@ struct CurveSet {
     std::vector<Eigen::Affine3d> frameToFile;              ///< as many, or empty where it stays
 };
 
+/// Whole numbers that 32 bits do not hold, such as hashes for ids, are numbered anew over all sets, alike
+/// ones alike, with a warning.
+void narrowWholeNumbers(std::vector<CurveSet>& sets, std::vector<Finding>& warnings);
+
 /// Appends the curves to the strands, and `frames` positions of each point where that is not 0: those of the
 /// set, the last one again where it has fewer. Curves of one point are left to the import to drop; those that
-/// are none of their basis become lines through their control points, with a warning. Errors: counts that do
-/// not add up.
+/// are none of their basis become lines through their control points, and too few or too many knots uniform
+/// ones, with a warning. Errors: counts that do not add up.
 Status appendCurves(const std::string& file, CurveSet curves, std::size_t frames, RawStrands& strands);
 
 /// Names that other programs gave attributes become Hairloom's, once all curves of a file are appended:

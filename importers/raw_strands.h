@@ -18,6 +18,15 @@ struct RawAttribute {
     std::uint32_t components = 1;     ///< 1 … 4 of numbers, else 1
     std::vector<float> numbers;       ///< of Number
     std::vector<std::int32_t> whole;  ///< of the others
+    /// Elements that the file has no value of, [first, second), ascending: those of parts without the
+    /// attribute.
+    std::vector<std::pair<std::size_t, std::size_t>> absent{};
+};
+
+/// An object or group of a file that strands come in (importers/strand_parts.h).
+struct StrandPart {
+    std::string path;  ///< "/groom/brows", in the file
+    std::string name;  ///< what people call it, where the file says so
 };
 
 struct RawStrands {
@@ -35,12 +44,20 @@ struct RawStrands {
     std::optional<Vec3f> defaultColour;  ///< linear RGB for all points
     bool rootFirst = true;               ///< false where the format does not say which end is the root
     bool mirrorZ = false;                ///< the file is left-handed by a negated Z
-    std::vector<RawAttribute> attributes;      ///< what else the file has; no two of one name and domain
-    std::vector<std::string> groupNames;       ///< of the attribute "group"
+    std::vector<RawAttribute> attributes;  ///< what else the file has; no two of one name and domain
+    std::vector<std::string> groupNames;   ///< of the attribute "group"
+    /// Of an attribute "groom_group_name" of whole numbers, by these; 0 is none.
+    std::vector<std::string> groupTexts{std::string()};
+    std::vector<std::string> layerNames;  ///< of the attribute "layer", where the file has parts
+    std::vector<StrandPart> parts;
+    std::vector<std::uint32_t> partOfStrand;   ///< of all strands, or of none
     std::vector<std::vector<Vec3f>> frames;    ///< `positions` at each time where the strands move
     float framesPerSecond = 0;                 ///< of them
     std::optional<float> statedMetresPerUnit;  ///< where the file says it; goes before the option
-    std::optional<UpAxis> statedUp;            ///< as well
+    /// What the format takes for the unit where the file does not say; the option goes before it, where one
+    /// was asked for.
+    std::optional<float> assumedMetresPerUnit;
+    std::optional<UpAxis> statedUp;  ///< as well
     /// Settings, material, interpolation and spheres, of a file that has them; no strands.
     std::shared_ptr<const Groom> authored;
     std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out

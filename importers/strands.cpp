@@ -9,7 +9,9 @@
 #include <fstream>
 
 #include "core/base/file.h"
+#include "importers/attribute_units.h"
 #include "importers/raw_strands.h"
+#include "importers/strand_parts.h"
 #include "importers/strand_roots.h"
 #include "importers/strand_size.h"
 
@@ -184,9 +186,19 @@ class Cleaner {
 
 void takeThickness(RawStrands& raw, Groom& groom, float metresPerUnit) {
     if (!raw.thickness.empty()) {
-        // Thickness is a diameter: renderers of these files draw it as a width.
-        for (float& value : raw.thickness)
-            value = std::isfinite(value) && value > 0 ? 0.5f * value * metresPerUnit : 0;
+        // Thickness is a diameter: renderers of these files draw it as a width. What has none has the
+        // material's.
+        for (std::size_t strand = 0; strand < groom.strandCount(); ++strand) {
+            const std::uint32_t first = groom.offsets[strand], end = groom.offsets[strand + 1];
+            for (std::uint32_t point = first; point < end; ++point) {
+                float& value = raw.thickness[point];
+                const float t = static_cast<float>(point - first) / static_cast<float>(end - first - 1);
+                if (std::isnan(value))
+                    value = groom.material.rootRadius * (1 + t * (groom.material.tipScale - 1));
+                else
+                    value = std::isfinite(value) && value > 0 ? 0.5f * value * metresPerUnit : 0;
+            }
+        }
         groom.pointAttributes.set(attribute::kRadius, std::move(raw.thickness));
         return;
     }
@@ -260,6 +272,21 @@ std::string importedName(const RawAttribute& attribute) {
     return known && !isAsMeantHere(attribute) ? attribute.name + "_of_file" : attribute.name;
 }
 
+/// Lengths, places and vectors become metres, Y up.
+void toMetres(RawAttribute& attribute, const StrandImportOptions& options, bool mirrorZ) {
+    const AttributeUnit unit = attributeUnit(attribute.name, attribute.components);
+    if (attribute.type != RawAttribute::Type::Number || unit == AttributeUnit::None) return;
+    if (unit == AttributeUnit::Length) {
+        if (options.metresPerUnit == 1) return;
+        for (float& length : attribute.numbers) length *= options.metresPerUnit;
+        return;
+    }
+    for (std::size_t i = 0; i + 2 < attribute.numbers.size(); i += 3) {
+        Eigen::Map<Vec3f> value(&attribute.numbers[i]);
+        value = toMetresYUp(value, options, mirrorZ);
+    }
+}
+
 void takeAttributes(RawStrands& raw, Groom& groom) {
     for (RawAttribute& attribute : raw.attributes) {
         AttributeSet& set = attribute.perPoint ? groom.pointAttributes : groom.strandAttributes;
@@ -279,12 +306,17 @@ Groom makeFrom(RawStrands& raw, float metresPerUnit) {
     if (!raw.thicknessScale.empty())
         groom.strandAttributes.set("thickness_scale", std::move(raw.thicknessScale));
     takeAttributes(raw, groom);
+    if (!raw.layerNames.empty()) groom.layers.clear();
+    for (const std::string& name : raw.layerNames) groom.layers.emplace_back().name = name;
     if (raw.defaultColour) groom.material.rootColour = groom.material.tipColour = *raw.defaultColour;
     return groom;
 }
 
 /// The options with the unit and axis that the file itself states.
 StrandImportOptions stated(RawStrands& raw, StrandImportOptions options) {
+    if (!raw.statedMetresPerUnit && raw.assumedMetresPerUnit && !options.isUnitAsked &&
+        options.metresPerUnit == 1.0f)
+        options.metresPerUnit = *raw.assumedMetresPerUnit;
     if (raw.statedMetresPerUnit) {
         const float unit = *raw.statedMetresPerUnit;
         if (options.metresPerUnit != 1.0f && std::abs(options.metresPerUnit / unit - 1) > 1e-4f) {
@@ -363,6 +395,7 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
     auto raw = readRaw(file, std::move(bytes), asked, path);
     if (!raw) return tl::unexpected(raw.error());
     const StrandImportOptions options = stated(*raw, asked);
+    layersFromParts(*raw);
     Cleaner(*raw, options).run();
     std::sort(raw->dropped.begin(), raw->dropped.end(),
               [](const DroppedStrand& a, const DroppedStrand& b) { return a.strand < b.strand; });
@@ -386,7 +419,9 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
     result.format = std::move(raw->format);
     result.dropped = std::move(raw->dropped);
     result.warnings = std::move(raw->warnings);
+    for (RawAttribute& attribute : raw->attributes) toMetres(attribute, options, raw->mirrorZ);
     result.groom = makeFrom(*raw, options.metresPerUnit);
+    for (Finding& finding : findThickHair(result.groom)) result.warnings.push_back(std::move(finding));
     if (raw->authored) takeSettings(*raw->authored, result);
     result.frames = std::move(raw->frames);
     result.framesPerSecond = raw->framesPerSecond;
@@ -403,7 +438,9 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
 Result<ImportedStrands> importStrands(const std::filesystem::path& path, const StrandImportOptions& options) {
     auto bytes = readFile(path);
     if (!bytes) return tl::unexpected(bytes.error());
-    return importBytes(path.string(), std::move(*bytes), options, path);
+    StrandImportOptions beside = options;
+    if (beside.folder.empty()) beside.folder = std::filesystem::absolute(path).parent_path();
+    return importBytes(path.string(), std::move(*bytes), beside, path);
 }
 
 }  // namespace hairloom

@@ -35,15 +35,20 @@ enum class RibbonParticle : std::uint8_t {
 
 struct StrandImportOptions {
     float metresPerUnit = 1.0f;  ///< > 0; metres in one unit of the file
-    UpAxis up = UpAxis::Y;       ///< axis of the file that points up; Z up becomes (x, z, −y)
+    bool isUnitAsked =
+        false;              ///< somebody chose it: it goes before what a format takes where a file says none
+    UpAxis up = UpAxis::Y;  ///< axis of the file that points up; Z up becomes (x, z, −y)
     RibbonOrder ribbonOrder = RibbonOrder::Detect;
     RibbonParticle ribbonParticle = RibbonParticle::FirstEdge;
     bool frames = false;               ///< ImportedStrands::frames, too, for the formats that have them
+    float framesPerSecond = 0;         ///< of these, resampled in time; 0: as the file has them, if evenly
     std::uint32_t ribbonSegments = 0;  ///< segments of each ribbon, n − 1; 0 finds it from the faces
     /// Where given, the end of a strand nearer to this mesh is its root, for the formats that do not say
     /// which end is (OBJ). It must be in metres and Y up. The groom is not bound to it; that is
     /// bindToScalp's.
     const ScalpMesh* scalp = nullptr;
+    /// Where files that this one refers to may lie, for the formats that do (USD); empty: none are read.
+    std::filesystem::path folder = {};
 };
 
 /// Metres. A point that is not farther from the one before it is taken for the same and removed.

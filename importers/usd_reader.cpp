@@ -1,80 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves of USD files: BasisCurves and NurbsCurves below transforms, with the unit and axis of their stage.
+// Curves of USD files: BasisCurves, NurbsCurves and HermiteCurves of the stage, with its unit and axis.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <set>
 
 #include "importers/curve_set.h"
-#include "importers/usd_stage.h"
+#include "importers/frame_times.h"
+#include "importers/hermite_curves.h"
+#include "importers/strand_parts.h"
+#include "importers/usd_values.h"
 
 namespace hairloom {
 namespace {
 
-/// The value at a time, or at the first one that there is: held between samples of numbers that do not match.
-UsdValue valueAt(const UsdAttribute& attribute, double time) {
-    if (attribute.samples.empty()) return attribute.value;
-    const auto after = attribute.samples.lower_bound(time);
-    if (after == attribute.samples.begin()) return after->second;
-    if (after == attribute.samples.end()) return std::prev(after)->second;
-    const auto before = std::prev(after);
-    UsdValue value = before->second;
-    if (value.numbers.size() != after->second.numbers.size()) return value;
-    const double t = (time - before->first) / (after->first - before->first);
-    for (std::size_t i = 0; i < value.numbers.size(); ++i)
-        value.numbers.set(i, (1 - t) * value.numbers[i] + t * after->second.numbers[i]);
-    return value;
-}
+constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 27u;  ///< of all curves, copies and frames counted
 
-/// As well, of an attribute that is read once: what stays in time is taken from it.
-UsdValue takeAt(UsdAttribute& attribute, double time) {
-    return attribute.samples.empty() ? std::move(attribute.value) : valueAt(attribute, time);
-}
-
-/// A rotation about axes in turn, the first letter first: "XYZ".
-Eigen::Matrix3d eulerRotation(std::string_view axes, const std::vector<double>& degrees) {
-    Eigen::Matrix3d result = Eigen::Matrix3d::Identity();
-    for (const char axis : axes) {
-        const int index = axis - 'X';
-        const double angle = degrees[static_cast<std::size_t>(index)] * M_PI / 180;
-        result = Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(index)).toRotationMatrix() * result;
-    }
-    return result;
-}
-
-/// Numbers that an operation of the name takes; 0 for one that is not known.
-std::size_t numbersOf(std::string_view kind) {
-    if (kind == "transform") return 16;
-    if (kind == "orient") return 4;
-    if (kind == "rotateX" || kind == "rotateY" || kind == "rotateZ") return 1;
-    if (kind == "translate" || kind == "scale") return 3;
-    constexpr std::array<std::string_view, 6> kOrders{"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"};
-    const bool euler =
-        kind.starts_with("rotate") && std::ranges::find(kOrders, kind.substr(6)) != kOrders.end();
-    return euler ? 3 : 0;
-}
-
-Eigen::Affine3d operation(std::string_view kind, const std::vector<double>& v) {
-    Eigen::Affine3d result = Eigen::Affine3d::Identity();
-    if (kind == "transform") {
-        // Points are rows there: the matrix is the transpose of ours.
-        result.matrix() = Eigen::Map<const Eigen::Matrix4d>(v.data());
-    } else if (kind == "translate") {
-        result.translate(Eigen::Vector3d(v[0], v[1], v[2]));
-    } else if (kind == "scale") {
-        result.scale(Eigen::Vector3d(v[0], v[1], v[2]));
-    } else if (kind == "orient") {
-        result.rotate(Eigen::Quaterniond(v[0], v[1], v[2], v[3]).normalized());
-    } else if (v.size() == 1) {
-        result.rotate(Eigen::AngleAxisd(v[0] * M_PI / 180, Eigen::Vector3d::Unit(kind.back() - 'X')));
-    } else {
-        result.rotate(eulerRotation(kind.substr(6), v));
-    }
-    return result;
+/// As valueAt(), of an attribute that is read once where `isLast`: what stays in time is taken from it.
+UsdValue takeAt(UsdAttribute& attribute, double time, bool isLast) {
+    return attribute.samples.empty() && isLast ? std::move(attribute.value) : valueAt(attribute, time);
 }
 
 CurveAttribute::Scope scopeOf(std::string_view interpolation) {
@@ -96,137 +43,170 @@ std::vector<float> pointsOf(UsdValue value) {
     return value.components == 3 ? std::move(value.numbers).floats() : std::vector<float>();
 }
 
+std::string listOf(const std::vector<std::string>& texts) {
+    constexpr std::size_t kShown = 3;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(texts.size(), kShown); ++i)
+        list += (list.empty() ? "" : "; ") + texts[i];
+    if (texts.size() > kShown) list += fmt::format("; and {} more", texts.size() - kShown);
+    return list;
+}
+
+std::string tokenOf(const UsdPrim& prim, std::string_view name, const char* otherwise) {
+    const UsdAttribute* const attribute = prim.find(name);
+    return attribute == nullptr || attribute->value.texts.empty() ? otherwise
+                                                                  : attribute->value.texts.front();
+}
+
 class Reader {
   public:
-    Reader(UsdStage stage, const std::string& file, bool frames)
-        : stage_(std::move(stage)), file_(file), frames_(frames) {}
+    Reader(UsdStage stage, const std::string& file, const StrandImportOptions& options)
+        : stage_(std::move(stage)), file_(file), options_(options) {}
 
     Result<RawStrands> run() {
         readStage();
-        if (auto status = visit(stage_.root, "", {}); !status)
+        auto shown = shownCurves(stage_.root, firstTime(stage_.root));
+        if (!shown) return tl::unexpected(inFile(shown.error(), file_));
+        std::vector<std::string> reasons = stage_.notFollowed;
+        reasons.insert(reasons.end(), shown->leftOut.begin(), shown->leftOut.end());
+        if (shown->curves.empty())
+            return failIn(file_, {},
+                          reasons.empty() ? "has no curves" : "has no curves that show: " + listOf(reasons),
+                          "expected hair as BasisCurves, NurbsCurves or HermiteCurves");
+        if (!shown->leftOut.empty())
+            strands_.warnings.push_back(
+                fileNote(listOf(shown->leftOut), "stage", "these curves were left out"));
+        if (auto status = planTimes(shown->curves); !status)
             return tl::unexpected(inFile(status.error(), file_));
-        if (curves_.empty()) return failIn(file_, {}, "has no curves", "expected hair as BasisCurves");
-        std::size_t frames = 0;
-        for (const CurveSet& set : curves_) frames = std::max(frames, set.frames.size());
-        for (CurveSet& set : curves_) {
-            const std::string path = set.path;
-            if (auto status = appendCurves(file_, std::move(set), frames, strands_); !status) {
-                // One set of several that contradicts itself leaves the others to be had.
-                strands_.warnings.push_back(
-                    fileWarning(status.error().problem, path, status.error().expected));
-            }
+        for (UsdShownCurves& curves : shown->curves) {
+            if (auto status = readCurves(curves); !status)
+                return tl::unexpected(inFile(status.error(), file_));
         }
-        adoptAttributes(strands_);
-        strands_.format = "USD";
-        return std::move(strands_);
+        return append();
     }
 
   private:
-    using Above = std::vector<const UsdPrim*>;
-
-    double number(std::string_view name, double otherwise) const {
-        const auto found = stage_.metadata.find(name);
-        return found == stage_.metadata.end() || found->second.numbers.empty()
-                   ? otherwise
-                   : found->second.numbers.front();
+    /// The first time of all, for what is shown; 0 where nothing changes.
+    static double firstTime(const UsdPrim& prim) {
+        double first = std::numeric_limits<double>::infinity();
+        addFirst(prim, first);
+        return std::isfinite(first) ? first : 0;
+    }
+    static void addFirst(const UsdPrim& prim, double& first) {
+        for (const UsdAttribute& attribute : prim.attributes) {
+            if (!attribute.samples.empty()) first = std::min(first, attribute.samples.begin()->first);
+        }
+        for (const UsdPrim& child : prim.children) addFirst(child, first);
     }
 
     void readStage() {
-        const double unit = number("metersPerUnit", 0);
-        if (unit > 0 && std::isfinite(unit)) strands_.statedMetresPerUnit = static_cast<float>(unit);
+        const double unit = usdNumber(stage_.metadata, "metersPerUnit", 0);
+        if (unit > 0 && std::isfinite(unit)) {
+            strands_.statedMetresPerUnit = static_cast<float>(unit);
+        } else {
+            constexpr float kFallback = 0.01f;
+            strands_.assumedMetresPerUnit = kFallback;
+            if (!options_.isUnitAsked)
+                strands_.warnings.push_back(
+                    fileNote("the stage states no metersPerUnit; USD takes centimetres then", "unit",
+                             "import with --unit where it is another"));
+        }
         const auto up = stage_.metadata.find("upAxis");
         if (up != stage_.metadata.end() && !up->second.texts.empty())
             strands_.statedUp = up->second.texts.front() == "Z" ? UpAxis::Z : UpAxis::Y;
-        const double rate = number("timeCodesPerSecond", number("framesPerSecond", 24));
-        strands_.framesPerSecond = rate > 0 && std::isfinite(rate) ? static_cast<float>(rate) : 24;
-        if (stage_.notFollowed.empty()) return;
-        strands_.warnings.push_back(fileWarning(
-            fmt::format("{} and {} more are not followed", stage_.notFollowed.front(),
-                        stage_.notFollowed.size() - 1),
-            "composition", "flatten the stage (usdcat --flatten) to have all that it is made of"));
+        const double rate = usdNumber(stage_.metadata, "timeCodesPerSecond",
+                                      usdNumber(stage_.metadata, "framesPerSecond", 24));
+        if (rate > 0 && std::isfinite(rate)) codesPerSecond_ = rate;
+        for (const std::string& repeated : stage_.repeated)
+            strands_.warnings.push_back({Severity::Error, "stands twice, and USD's own library refuses it",
+                                         repeated, "write the file anew with each name once"});
+        if (!stage_.chosen.empty())
+            strands_.warnings.push_back(
+                fileNote(listOf(stage_.chosen), "variants", "other variants were left out"));
+        if (!stage_.notFollowed.empty())
+            strands_.warnings.push_back(
+                fileWarning(listOf(stage_.notFollowed), "composition",
+                            "put what is missing beside the file, or flatten the stage (usdcat --flatten)"));
     }
 
-    Status visit(UsdPrim& prim, const std::string& path, const Above& above) {
-        Above levels = above;
-        levels.push_back(&prim);
-        if (!prim.isOver && (prim.type == "BasisCurves" || prim.type == "NurbsCurves")) {
-            if (auto status = readCurves(prim, path, levels); !status) return status;
+    /// When the frames are, over all curves: each property is looked up at these times.
+    Status planTimes(const std::vector<UsdShownCurves>& curves) {
+        std::set<double> times;
+        for (const UsdShownCurves& one : curves) {
+            for (const char* name : {"points", "tangents"}) {
+                const UsdAttribute* const moving = one.prim->find(name);
+                if (moving == nullptr) continue;
+                for (const auto& [time, value] : moving->samples) times.insert(time);
+            }
+            addTimes(one.levels, times);
         }
-        for (UsdPrim& child : prim.children) {
-            if (auto status = visit(child, path + "/" + child.name, levels); !status) return status;
+        times_.assign(times.begin(), times.end());
+        if (!std::ranges::all_of(times_, [](double time) { return std::isfinite(time); }))
+            return fail("a time of a sample is not finite", "expected time codes");
+        if (times_.empty()) times_.push_back(0);
+        if (times_.size() < 2) return {};
+        if (!options_.frames) {
+            strands_.warnings.insert(
+                strands_.warnings.begin(),
+                fileNote(
+                    fmt::format("the hair moves: {} samples in time; the first was taken", times_.size()),
+                    "time", "import --record keeps all as a record of frames"));
+            return {};
         }
+        std::vector<double> seconds;
+        for (const double time : times_) seconds.push_back(time / codesPerSecond_);
+        const auto planned = frameTimes(seconds, static_cast<double>(options_.framesPerSecond),
+                                        usdNumber(stage_.metadata, "framesPerSecond", 0));
+        if (!planned)
+            return fail("its samples in time are more frames than are kept", "ask for fewer with --fps");
+        if (!planned->said.empty()) strands_.warnings.push_back(fileNote(planned->said, "time"));
+        strands_.framesPerSecond = static_cast<float>(planned->rate);
+        for (const double second : planned->seconds) frames_.push_back(second * codesPerSecond_);
         return {};
     }
 
-    Result<Eigen::Affine3d> toFile(const Above& levels, double time) const {
-        Eigen::Affine3d result = Eigen::Affine3d::Identity();
-        for (const UsdPrim* prim : levels) {
-            const UsdAttribute* const order = prim->find("xformOpOrder");
-            if (order == nullptr) continue;
-            for (const std::string& name : order->value.texts) {
-                if (name == "!resetXformStack!") {
-                    result = Eigen::Affine3d::Identity();
-                    continue;
-                }
-                const auto one = transformOf(*prim, name, time);
-                if (!one) return one;
-                result = result * *one;
-            }
-        }
-        if (!result.matrix().allFinite()) return fail("a transform is not finite", "expected numbers");
-        return result;
+    Status count(std::size_t points) {
+        points_ += points;
+        if (points_ <= kMaxPoints) return {};
+        return fail("curves, their instances and frames have more points than are read",
+                    fmt::format("expected at most {}", kMaxPoints));
     }
 
-    Result<Eigen::Affine3d> transformOf(const UsdPrim& prim, std::string_view name, double time) const {
-        constexpr std::string_view kInvert = "!invert!", kPrefix = "xformOp:";
-        const bool inverse = name.starts_with(kInvert);
-        if (inverse) name.remove_prefix(kInvert.size());
-        const UsdAttribute* const attribute = prim.find(name);
-        if (attribute == nullptr || !name.starts_with(kPrefix)) return Eigen::Affine3d::Identity();
-        std::string_view kind = name.substr(kPrefix.size());
-        kind = kind.substr(0, kind.find(':'));
-        const UsdValue value = valueAt(*attribute, time);
-        const std::size_t wanted = numbersOf(kind);
-        if (wanted == 0 || value.numbers.size() != wanted)
-            return fail(fmt::format("{} of {} has {} numbers", name, prim.name, value.numbers.size()),
-                        fmt::format("expected {} of a transform that is known", wanted));
-        const Eigen::Affine3d result = operation(kind, value.numbers.doubles());
-        return inverse ? Eigen::Affine3d(result.inverse()) : result;
-    }
-
-    Status readCurves(UsdPrim& prim, const std::string& path, const Above& levels) {
+    Status readCurves(UsdShownCurves& curves) {
+        UsdPrim& prim = *curves.prim;
         UsdAttribute* const points = prim.find("points");
         const UsdAttribute* const counts = prim.find("curveVertexCounts");
         if (points == nullptr || counts == nullptr) return {};
-        const std::set<double> times = timesOf(*points, levels);
-        const double first = times.empty() ? 0 : *times.begin();
+        const double first = times_.front();
         CurveSet set;
-        set.path = path;
-        for (const double count : valueAt(*counts, first).numbers.doubles()) {
-            if (!(count >= 0 && count <= INT32_MAX))
-                return fail(fmt::format("{}: a curve of {} points", path, count), "expected a count");
-            if (count > 0) set.counts.push_back(static_cast<std::uint32_t>(count));
+        set.path = curves.path;
+        const UsdValue numbers = valueAt(*counts, first);
+        for (std::size_t i = 0; i < numbers.numbers.size(); ++i) {
+            const std::int64_t number = numbers.numbers.whole(i);
+            if (number < 0 || number > INT32_MAX)
+                return fail(fmt::format("{}: a curve of {} points", set.path, number), "expected a count");
+            if (number > 0) set.counts.push_back(static_cast<std::uint32_t>(number));
         }
         if (set.counts.empty()) return {};
-        const auto where = toFile(levels, first);
+        const auto where = toFile(curves.levels, first);
         if (!where) return tl::unexpected(where.error());
         set.toFile = *where;
         readForm(prim, set);
-        if (auto status = readFrames(*points, levels, times, set); !status) return status;
-        set.points = pointsOf(takeAt(*points, first));
+        if (auto status = readFrames(curves, *points, set); !status) return status;
+        set.points = pointsOf(takeAt(*points, first, curves.isLast));
         if (set.points.empty()) return {};
-        for (UsdAttribute& attribute : prim.attributes) addAttribute(prim, attribute, first, set);
+        if (auto status = count(set.points.size() / 3); !status) return status;
+        for (UsdAttribute& attribute : prim.attributes) addAttribute(curves, attribute, first, set);
+        addGroup(curves, set);
+        if (curves.isGuide) addGuide(set);
+        if (prim.type == "HermiteCurves") bendHermite(curves, set);
+        parts_.push_back(prim.displayName);
         curves_.push_back(std::move(set));
         return {};
     }
 
-    static std::string tokenOf(const UsdPrim& prim, std::string_view name, const char* otherwise) {
-        const UsdAttribute* const attribute = prim.find(name);
-        return attribute == nullptr || attribute->value.texts.empty() ? otherwise
-                                                                      : attribute->value.texts.front();
-    }
-
     static void readForm(const UsdPrim& prim, CurveSet& set) {
+        if (prim.type == "HermiteCurves") return;
         if (prim.type == "NurbsCurves") {
             set.basis = CurveBasis::Nurbs;
             if (const UsdAttribute* const orders = prim.find("order")) {
@@ -250,66 +230,92 @@ class Reader {
                                             : CurveBasis::Bezier;
     }
 
-    /// All times at which points or transforms are given.
-    static std::set<double> timesOf(const UsdAttribute& points, const Above& levels) {
-        std::set<double> times;
-        for (const auto& [time, value] : points.samples) times.insert(time);
-        for (const UsdPrim* prim : levels) {
-            for (const UsdAttribute& attribute : prim->attributes) {
-                if (!attribute.name.starts_with("xformOp:")) continue;
-                for (const auto& [time, value] : attribute.samples) times.insert(time);
+    Status readFrames(const UsdShownCurves& curves, const UsdAttribute& points, CurveSet& set) {
+        if (frames_.empty()) return {};
+        std::set<double> moving;
+        addTimes(curves.levels, moving);
+        if (points.samples.size() > 1) {
+            for (const double time : frames_) {
+                set.frames.push_back(pointsOf(valueAt(points, time)));
+                if (auto status = count(set.frames.back().size() / 3); !status) return status;
+            }
+            const auto isOther = [&](const auto& frame) { return frame.size() != set.frames.front().size(); };
+            if (std::ranges::any_of(set.frames, isOther)) {
+                strands_.warnings.push_back(fileWarning("the number of points changes in time", set.path,
+                                                        "these curves stay as they are at first"));
+                set.frames.clear();
             }
         }
-        return times;
-    }
-
-    Status readFrames(const UsdAttribute& points, const Above& levels, const std::set<double>& times,
-                      CurveSet& set) {
-        if (times.size() < 2) return {};
-        if (!frames_) {
-            strands_.warnings.push_back(
-                fileNote(fmt::format("the hair moves: {} samples in time; the first was taken", times.size()),
-                         set.path, "import --record keeps all as a record of frames"));
-            return {};
-        }
-        for (const double time : times) {
-            set.frames.push_back(pointsOf(valueAt(points, time)));
-            const auto where = toFile(levels, time);
+        if (moving.size() < 2) return {};
+        for (const double time : frames_) {
+            const auto where = toFile(curves.levels, time);
             if (!where) return tl::unexpected(where.error());
             set.frameToFile.push_back(*where);
         }
-        const double step = *std::next(times.begin()) - *times.begin();
-        if (curves_.empty() && step > 0) strands_.framesPerSecond /= static_cast<float>(step);
         return {};
     }
 
-    void addAttribute(const UsdPrim& prim, UsdAttribute& attribute, double time, CurveSet& set) {
-        constexpr std::string_view kPrimvar = "primvars:", kIndices = ":indices";
-        const bool isWidth = attribute.name == "widths";
-        if (!isWidth && !attribute.name.starts_with(kPrimvar)) return;
-        if (attribute.name.ends_with(kIndices)) return;
-        UsdValue value = takeAt(attribute, time);
-        CurveAttribute added;
-        added.name = isWidth ? "width" : attribute.name.substr(kPrimvar.size());
-        if (value.numbers.empty()) {
-            if (!value.texts.empty())
-                strands_.warnings.push_back(fileNote("text of curves was left out", added.name));
+    /// Hermite curves are Bézier curves; what points have is of these' knots then.
+    void bendHermite(UsdShownCurves& curves, CurveSet& set) {
+        UsdAttribute* const tangents = curves.prim->find("tangents");
+        std::uint64_t points = 0;
+        for (const std::uint32_t size : set.counts) points += size;
+        const auto bend = [&](std::vector<float>& numbers, double time) {
+            const std::vector<float> along =
+                tangents == nullptr ? std::vector<float>() : pointsOf(valueAt(*tangents, time));
+            const bool fits = along.size() == numbers.size() && numbers.size() == 3 * points;
+            if (fits) numbers = bezierOfHermite(set.counts, numbers, along);
+            return fits;
+        };
+        if (!bend(set.points, times_.front())) {
+            strands_.warnings.push_back(fileWarning("Hermite curves have not one tangent for each point",
+                                                    set.path, "lines through their points were taken"));
             return;
         }
+        for (std::size_t f = 0; f < set.frames.size(); ++f) {
+            if (bend(set.frames[f], frames_[f])) continue;
+            set.frames.clear();
+            break;
+        }
+        for (std::uint32_t& size : set.counts) size = 3 * size - 2;
+        set.basis = CurveBasis::Bezier;
+        for (CurveAttribute& attribute : set.attributes) {
+            if (attribute.count() == points) attribute.scope = CurveAttribute::Scope::Knot;
+        }
+    }
+
+    void addAttribute(const UsdShownCurves& curves, UsdAttribute& attribute, double time, CurveSet& set) {
+        constexpr std::string_view kPrimvar = "primvars:", kIndices = ":indices", kWidths = "primvars:widths";
+        const UsdPrim& prim = *curves.prim;
+        const UsdAttribute* const primvar = prim.find(kWidths);
+        const bool isPrimvar = primvar != nullptr && primvar->hasValue();
+        // The primvar goes before the attribute, as the schema of curves has it.
+        const bool isWidth = attribute.name == (isPrimvar ? kWidths : "widths");
+        if (!isWidth && !attribute.name.starts_with(kPrimvar)) return;
+        if (attribute.name.ends_with(kIndices) || attribute.type == "rel") return;
+        const UsdAttribute* const indices = prim.find(attribute.name + std::string(kIndices));
+        UsdValue value = takeAt(attribute, time, curves.isLast);
+        CurveAttribute added;
+        added.name = isWidth ? "width" : attribute.name.substr(kPrimvar.size());
+        if (!isWidth && isGivenTo(added.name, attribute.displayName, isLegalInUsd))
+            added.name = attribute.displayName;
+        added.scope = scopeOf(attribute.interpolation);
+        if (value.numbers.empty()) return addTexts(value, indices, time, std::move(added), set);
         // The colour that a viewer draws a whole object in is none of the hair's.
         if (added.name == "displayColor" && value.numbers.size() == 3) return;
-        added.scope = scopeOf(attribute.interpolation);
         added.components = value.components;
         if (attribute.elementSize > 1 && attribute.elementSize <= 4)
             added.components *= static_cast<std::uint32_t>(attribute.elementSize);
-        if (added.components > 4) return;
+        if (added.components > 4) {
+            strands_.warnings.push_back(fileNote(
+                fmt::format("has {} numbers a value; it was left out", added.components), added.name));
+            return;
+        }
         UsdNumbers numbers = std::move(value.numbers);
-        if (const UsdAttribute* const indices = prim.find(attribute.name + std::string(kIndices)))
-            numbers = indexed(numbers, added.components, valueAt(*indices, time).numbers.doubles());
+        if (indices != nullptr) numbers = indexed(numbers, added.components, valueAt(*indices, time).numbers);
         if (isWhole(attribute.type)) {
             added.isFlag = attribute.type.starts_with("bool") || attribute.type.starts_with("uchar");
-            for (const double number : numbers.doubles())
-                added.whole.push_back(std::abs(number) < 9e15 ? static_cast<std::int64_t>(number) : 0);
+            for (std::size_t i = 0; i < numbers.size(); ++i) added.whole.push_back(numbers.whole(i));
         } else {
             added.numbers = std::move(numbers).floats();
         }
@@ -317,47 +323,160 @@ class Reader {
     }
 
     /// Values by their places; one that there is not is 0.
-    static UsdNumbers indexed(const UsdNumbers& values, std::size_t components,
-                              const std::vector<double>& places) {
+    static UsdNumbers indexed(const UsdNumbers& values, std::size_t components, const UsdNumbers& places) {
         UsdNumbers found;
-        for (const double place : places) {
-            const bool is = place >= 0 && place < static_cast<double>(values.size() / components);
-            for (std::size_t c = 0; c < components; ++c)
-                found.push_back(is ? values[static_cast<std::size_t>(place) * components + c] : 0);
+        found.keep(values.kind());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const std::int64_t place = places.whole(i);
+            const bool is = place >= 0 && static_cast<std::size_t>(place) < values.size() / components;
+            for (std::size_t c = 0; c < components; ++c) {
+                const std::size_t at = is ? static_cast<std::size_t>(place) * components + c : 0;
+                if (values.kind() == UsdNumbers::Kind::Whole)
+                    found.pushWhole(is ? values.whole(at) : 0);
+                else
+                    found.push_back(is ? values[at] : 0);
+            }
         }
         return found;
     }
 
+    /// Of texts, the names of groups alone have a use.
+    void addTexts(const UsdValue& value, const UsdAttribute* indices, double time, CurveAttribute added,
+                  CurveSet& set) {
+        if (value.texts.empty()) return;
+        if (added.name != "groom_group_name") {
+            strands_.warnings.push_back(fileNote("text of curves was left out", added.name));
+            return;
+        }
+        if (indices != nullptr) {
+            const UsdNumbers places = valueAt(*indices, time).numbers;
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                const auto place = static_cast<std::size_t>(places.whole(i));
+                added.whole.push_back(place < value.texts.size() ? textIndex(value.texts[place]) : 0);
+            }
+        } else {
+            for (const std::string& text : value.texts) added.whole.push_back(textIndex(text));
+        }
+        set.attributes.push_back(std::move(added));
+    }
+
+    std::int64_t textIndex(const std::string& text) {
+        auto found = std::ranges::find(strands_.groupTexts, text);
+        if (found == strands_.groupTexts.end()) found = strands_.groupTexts.insert(found, text);
+        return found - strands_.groupTexts.begin();
+    }
+
+    /// Number and name of a group that an object states for all its curves: as a primvar that they inherit,
+    /// or as what Blender makes of a property of an object.
+    void addGroup(const UsdShownCurves& curves, CurveSet& set) {
+        for (const char* name : {"groom_group_id", "groom_group_name"}) {
+            if (std::ranges::find(set.attributes, name, &CurveAttribute::name) != set.attributes.end())
+                continue;
+            const UsdAttribute* const found = ofLevels(curves, name);
+            if (found == nullptr) continue;
+            const UsdValue value = valueAt(*found, times_.front());
+            CurveAttribute added;
+            added.name = name;
+            added.scope = CurveAttribute::Scope::Constant;
+            if (!value.texts.empty() && added.name == "groom_group_name")
+                added.whole.push_back(textIndex(value.texts.front()));
+            else if (!value.numbers.empty() && added.name == "groom_group_id")
+                added.whole.push_back(value.numbers.whole(0));
+            if (!added.whole.empty()) set.attributes.push_back(std::move(added));
+        }
+    }
+
+    static const UsdAttribute* ofLevels(const UsdShownCurves& curves, std::string_view name) {
+        for (auto level = curves.levels.rbegin(); level != curves.levels.rend(); ++level) {
+            for (const char* prefix : {"primvars:", "userProperties:", ""}) {
+                const UsdAttribute* const found = level->prim->find(prefix + std::string(name));
+                if (found != nullptr && found->hasValue()) return found;
+            }
+        }
+        return nullptr;
+    }
+
+    static void addGuide(CurveSet& set) {
+        constexpr const char* kGuide = "groom_guide";
+        if (std::ranges::find(set.attributes, kGuide, &CurveAttribute::name) != set.attributes.end()) return;
+        CurveAttribute guide;
+        guide.name = kGuide;
+        guide.scope = CurveAttribute::Scope::Constant;
+        guide.whole = {1};
+        guide.isFlag = true;
+        set.attributes.push_back(std::move(guide));
+    }
+
+    Result<RawStrands> append() {
+        narrowWholeNumbers(curves_, strands_.warnings);
+        std::size_t frames = 0;
+        for (const CurveSet& set : curves_) {
+            if (!set.frames.empty() || !set.frameToFile.empty()) frames = frames_.size();
+        }
+        std::vector<std::string> broken;
+        for (std::size_t i = 0; i < curves_.size(); ++i) {
+            const std::string path = curves_[i].path;
+            if (auto status = appendCurves(file_, std::move(curves_[i]), frames, strands_); !status) {
+                // One set of several that contradicts itself leaves the others to be had.
+                strands_.warnings.push_back(
+                    {Severity::Error, status.error().problem, path, status.error().expected});
+                broken.push_back(fmt::format("{}; {}", status.error().problem, status.error().expected));
+            }
+            endPart(strands_, path, parts_[i]);
+        }
+        if (strands_.offsets.size() < 2 && !broken.empty())
+            return failIn(file_, {}, "has no curves that can be read: " + listOf(broken),
+                          "expected counts that add up to the points");
+        adoptAttributes(strands_);
+        strands_.format = "USD";
+        return std::move(strands_);
+    }
+
     UsdStage stage_;
     const std::string& file_;
-    bool frames_;
+    const StrandImportOptions& options_;
+    double codesPerSecond_ = 24;
+    std::vector<double> times_, frames_;  ///< time codes: of all samples, and of the record
+    std::uint64_t points_ = 0;
     std::vector<CurveSet> curves_;
+    std::vector<std::string> parts_;  ///< what people call each of them
     RawStrands strands_;
 };
 
 bool beginsWith(std::span<const std::byte> bytes, std::string_view start) {
     return bytes.size() >= start.size() && std::memcmp(bytes.data(), start.data(), start.size()) == 0;
 }
-bool isUsdc(std::span<const std::byte> bytes) {
-    return beginsWith(bytes, "PXR-USDC");
+
+/// A zip whose first file's name is that of a layer.
+bool isPackage(std::span<const std::byte> bytes) {
+    constexpr std::size_t kNameSize = 26, kName = 30;
+    if (!beginsWith(bytes, "PK\x03\x04") || bytes.size() < kName) return false;
+    const std::size_t size = std::to_integer<std::size_t>(bytes[kNameSize]) |
+                             std::to_integer<std::size_t>(bytes[kNameSize + 1]) << 8u;
+    const std::string_view name(reinterpret_cast<const char*>(bytes.data()) + kName,
+                                std::min(size, bytes.size() - kName));
+    return name.ends_with(".usd") || name.ends_with(".usda") || name.ends_with(".usdc");
 }
+
 bool isUsd(std::span<const std::byte> bytes) {
-    return beginsWith(bytes, "#usda") || isUsdc(bytes);
+    return beginsWith(bytes, "#usda") || beginsWith(bytes, "PXR-USDC") || isPackage(bytes);
 }
 
 Result<RawStrands> readUsd(const std::string& file, std::vector<std::byte>&& bytes,
                            const StrandImportOptions& options) {
-    auto stage = isUsdc(bytes) ? readUsdc(file, bytes)
-                               : readUsda(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (!stage) return tl::unexpected(stage.error());
+    auto stage = openUsdStage(file, std::move(bytes), options.folder);
     std::vector<std::byte>().swap(bytes);
-    return Reader(std::move(*stage), file, options.frames).run();
+    if (!stage) return tl::unexpected(stage.error());
+    return Reader(std::move(*stage), file, options).run();
 }
 
 }  // namespace
 
 StrandReader usdReader() {
-    return {{"USD .usda or .usdc", {"usda", "usdc", "usd"}}, Recognition::Signature, isUsd, readUsd};
+    return {{"USD .usda, .usdc or .usdz", {"usda", "usdc", "usd", "usdz"}},
+            Recognition::Signature,
+            isUsd,
+            readUsd};
 }
 
 }  // namespace hairloom

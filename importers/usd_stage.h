@@ -1,101 +1,131 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A USD layer as far as hair needs it: prims with attributes and their values in time.
+// USD as far as hair needs it: layers as files have them, and the stage that they compose.
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/base/result.h"
+#include "importers/usd_numbers.h"
 
 namespace hairloom {
-
-/// Numbers, one after another: in single precision where the file has no more, since points weigh.
-class UsdNumbers {
-  public:
-    /// From now on, of numbers that are none yet.
-    void keepSingle() { isSingle_ = true; }
-
-    std::size_t size() const { return isSingle_ ? singles_.size() : doubles_.size(); }
-    bool empty() const { return size() == 0; }
-    double operator[](std::size_t index) const {
-        return isSingle_ ? double{singles_[index]} : doubles_[index];
-    }
-    double front() const { return (*this)[0]; }
-    void set(std::size_t index, double number) {
-        if (isSingle_)
-            singles_[index] = static_cast<float>(number);
-        else
-            doubles_[index] = number;
-    }
-    void push_back(double number) {
-        if (isSingle_)
-            singles_.push_back(static_cast<float>(number));
-        else
-            doubles_.push_back(number);
-    }
-    /// Room for so many in all.
-    void reserve(std::size_t count) {
-        if (isSingle_)
-            singles_.reserve(count);
-        else
-            doubles_.reserve(count);
-    }
-    std::vector<double> doubles() const {
-        return isSingle_ ? std::vector<double>(singles_.begin(), singles_.end()) : doubles_;
-    }
-    /// Takes them.
-    std::vector<float> floats() && {
-        return isSingle_ ? std::move(singles_) : std::vector<float>(doubles_.begin(), doubles_.end());
-    }
-
-  private:
-    bool isSingle_ = false;
-    std::vector<float> singles_;
-    std::vector<double> doubles_;
-};
 
 /// Numbers, or texts.
 struct UsdValue {
     UsdNumbers numbers;
     std::uint32_t components = 1;  ///< numbers of one element
     std::vector<std::string> texts;
+    bool isBlock = false;  ///< "None": there is no value, whatever weaker layers say
 
     bool empty() const { return numbers.empty() && texts.empty(); }
+    bool isThere() const { return isBlock || !empty(); }
 };
 
+/// An attribute; or a relationship, whose type is "rel" and whose texts are paths.
 struct UsdAttribute {
     std::string type;  ///< "float3[]"
     std::string name;  ///< "primvars:groom_id"
     UsdValue value;    ///< without a time; may be empty
     std::map<double, UsdValue> samples;
     std::string interpolation;  ///< "vertex" …, or empty
+    std::string displayName;    ///< for people; may be empty
     double elementSize = 1;
+
+    bool hasValue() const { return value.isThere() || !samples.empty(); }
 };
 
+/// Time of a layer in that of whoever brings it in: t · scale + offset.
+struct UsdTimeOffset {
+    double offset = 0, scale = 1;
+};
+
+/// What brings a prim in: of the same layers, or of a file.
+struct UsdArc {
+    std::string asset;  ///< as the layer names the file; empty: of the same layers
+    std::string path;   ///< of the prim; empty: the default one
+    UsdTimeOffset time;
+    std::string from;  ///< the layer that says so (UsdFiles)
+
+    bool isSame(const UsdArc& other) const { return asset == other.asset && path == other.path; }
+};
+
+/// Arcs of one kind as a layer edits them.
+struct UsdArcs {
+    bool isExplicit = false;  ///< `items` are all there are; otherwise they are put before or behind
+    std::vector<UsdArc> items, appended, deleted;
+
+    bool empty() const { return items.empty() && appended.empty() && deleted.empty() && !isExplicit; }
+    /// In order of strength.
+    std::vector<UsdArc> all() const;
+    /// What a weaker layer says is edited by what this one says.
+    void over(const UsdArcs& weaker);
+};
+
+struct UsdVariantSet;
+
 struct UsdPrim {
+    enum class Specifier : std::uint8_t { Def, Over, Class };
     std::string type, name;
+    Specifier specifier = Specifier::Over;
+    std::optional<bool> active, instanceable;
+    std::string displayName;  ///< for people; may be empty
     std::vector<UsdAttribute> attributes;
     std::vector<UsdPrim> children;
-    bool isOver = false;
+    UsdArcs inherits, references, payloads, specializes;
+    std::map<std::string, std::string> selections;  ///< variant of each set
+    std::vector<UsdVariantSet> variantSets;
+    bool hasClips = false;  ///< values that lie in other files, time by time
 
     const UsdAttribute* find(std::string_view attribute) const;
     UsdAttribute* find(std::string_view attribute);
+    const UsdPrim* child(std::string_view childName) const;
+    /// Whether other prims are needed to know what it is.
+    bool isComposed() const;
 };
 
-struct UsdStage {
+struct UsdVariantSet {
+    std::string name;
+    std::vector<UsdPrim> variants;  ///< by their names
+};
+
+using UsdMetadata = std::map<std::string, UsdValue, std::less<>>;  ///< upAxis, metersPerUnit …
+
+/// The metadata's first number.
+double usdNumber(const UsdMetadata& metadata, std::string_view name, double otherwise);
+
+/// One file.
+struct UsdLayer {
     UsdPrim root;
-    std::map<std::string, UsdValue, std::less<>> metadata;  ///< upAxis, metersPerUnit, timeCodesPerSecond …
-    std::vector<std::string> notFollowed;                   ///< other files that the layer is composed of
+    UsdMetadata metadata;
+    std::vector<UsdArc> subLayers;      ///< the strongest first
+    std::vector<std::string> repeated;  ///< properties and prims that stand twice, which USD refuses
+    std::vector<std::string> leftOut;   ///< what there is and is not read
 };
 
 /// A layer of text. Errors with the line.
-Result<UsdStage> readUsda(const std::string& file, std::string_view text);
+Result<UsdLayer> readUsda(const std::string& file, std::string_view text);
 /// A binary layer. Errors with the byte.
-Result<UsdStage> readUsdc(const std::string& file, std::span<const std::byte> bytes);
+Result<UsdLayer> readUsdc(const std::string& file, std::span<const std::byte> bytes);
+
+/// Prims without arcs, and what was made of these.
+struct UsdStage {
+    UsdPrim root;
+    UsdMetadata metadata;
+    std::vector<std::string> repeated;
+    std::vector<std::string> notFollowed;  ///< "payload "a.usd" of /groom: no such file"
+    std::vector<std::string> chosen;       ///< "variant "high" of "lod" of /groom"
+};
+
+/// The stage of a file, in text, binary or a package, composed of other files in `folder` (which may be
+/// empty: none are opened). Errors: no USD, damage in the file itself, a stage larger than is kept. What is
+/// wrong with other files is told by `notFollowed`.
+Result<UsdStage> openUsdStage(const std::string& file, std::vector<std::byte>&& bytes,
+                              const std::filesystem::path& folder);
 
 }  // namespace hairloom

@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// USD as text. What hair does not need is read over: dictionaries, relationships, variants that are not
-// chosen.
+// USD as text: layers. What hair does not need is read over: dictionaries, connections, splines.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <limits>
 
-#include "importers/usd_stage.h"
+#include "importers/usda_scanner.h"
 
 namespace hairloom {
-
-const UsdAttribute* UsdPrim::find(std::string_view attribute) const {
-    const auto found = std::ranges::find(attributes, attribute, &UsdAttribute::name);
-    return found == attributes.end() ? nullptr : &*found;
-}
-UsdAttribute* UsdPrim::find(std::string_view attribute) {
-    const auto found = std::ranges::find(attributes, attribute, &UsdAttribute::name);
-    return found == attributes.end() ? nullptr : &*found;
-}
-
 namespace {
 
 /// "float", "half3[]", "point3f": names of types end in the letter of their precision behind their size.
@@ -31,397 +18,340 @@ bool isSingle(std::string_view type) {
            type[type.size() - 2] <= '4';
 }
 
+UsdNumbers::Kind kindOf(std::string_view type) {
+    if (type.starts_with("int") || type.starts_with("uint") || type.starts_with("uchar"))
+        return UsdNumbers::Kind::Whole;
+    return isSingle(type) ? UsdNumbers::Kind::Single : UsdNumbers::Kind::Double;
+}
+
+bool cut(std::string& name, std::string_view ending) {
+    if (!name.ends_with(ending)) return false;
+    name.resize(name.size() - ending.size());
+    return true;
+}
+
+enum class ListEdit : std::uint8_t { Explicit, Front, Back, Delete, Reorder };
+
+std::optional<ListEdit> listEditOf(std::string_view word) {
+    if (word == "prepend") return ListEdit::Front;
+    if (word == "append" || word == "add") return ListEdit::Back;
+    if (word == "delete") return ListEdit::Delete;
+    if (word == "reorder") return ListEdit::Reorder;
+    return std::nullopt;
+}
+
 constexpr int kMaxDepth = 128;
 
 class Parser {
   public:
-    Parser(const std::string& file, std::string_view text) : file_(file), text_(text) {}
+    explicit Parser(std::string_view text) : in_(text) {}
 
-    Result<UsdStage> run() {
-        if (!text_.starts_with("#usda")) return error("is no USD text", "expected \"#usda 1.0\" first");
-        if (parseLayer()) return std::move(stage_);
-        return failIn(file_, Line{failedLine_}, problem_, expected_);
-    }
+    bool run() { return parseLayer(); }
+    UsdLayer take() { return std::move(layer_); }
+    tl::unexpected<Error> error(const std::string& file) const { return in_.error(file); }
 
   private:
-    tl::unexpected<Error> error(std::string what, std::string expected) const {
-        return failIn(file_, Line{line_}, std::move(what), std::move(expected));
-    }
+    bool found(const char* expected) { return in_.wrong(fmt::format("found {}", in_.shown()), expected); }
 
-    /// Remembers the first thing that was wrong; the parser's functions then return false up to run().
-    bool wrong(std::string what, std::string expected) {
-        if (problem_.empty()) {
-            problem_ = std::move(what);
-            expected_ = std::move(expected);
-            failedLine_ = line_;
+    // Metadata
+
+    /// "(offset = 10; scale = 2)" behind a file.
+    bool timeOffset(UsdTimeOffset& time) {
+        if (!in_.take('(')) return true;
+        while (!in_.take(')')) {
+            if (in_.atEnd()) return in_.wrong("the file ends behind a file's name", "expected ')'");
+            const std::string key(in_.word());
+            if (key.empty()) return found("expected offset or scale");
+            if (!in_.need('=')) return false;
+            UsdValue value;
+            if (!in_.value(value)) return false;
+            if (!value.numbers.empty() && key == "offset") time.offset = value.numbers.front();
+            if (!value.numbers.empty() && key == "scale") time.scale = value.numbers.front();
+            in_.take(',');
         }
-        return false;
+        return true;
     }
 
-    // Characters and words
+    /// "@file@</prim> (offset = 1)", "</prim>", a list of these, or None.
+    bool arcs(std::vector<UsdArc>& into) {
+        if (in_.nextWord() == "None") {
+            in_.word();
+            return true;
+        }
+        const bool isList = in_.take('[');
+        while (!isList || !in_.take(']')) {
+            UsdArc arc;
+            if (in_.peek() == '@' && !in_.takeAsset(arc.asset)) return false;
+            if (in_.peek() == '<' && !in_.takePath(arc.path)) return false;
+            if (arc.asset.empty() && arc.path.empty()) return found("expected a file or a path");
+            if (!timeOffset(arc.time)) return false;
+            into.push_back(std::move(arc));
+            if (!isList) return true;
+            if (!in_.take(',') && in_.peek() != ']') return found("expected ',' or ']'");
+        }
+        return true;
+    }
 
-    void skip() {
-        while (at_ < text_.size()) {
-            const char c = text_[at_];
-            if (c == '\n') ++line_;
-            if (c == '#') {
-                while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-            } else if (c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == ';') {
-                ++at_;
+    bool arcs(UsdArcs& into, ListEdit edit) {
+        std::vector<UsdArc> ignored;
+        if (edit == ListEdit::Explicit) into.isExplicit = true;
+        return arcs(edit == ListEdit::Back      ? into.appended
+                    : edit == ListEdit::Delete  ? into.deleted
+                    : edit == ListEdit::Reorder ? ignored
+                                                : into.items);
+    }
+
+    /// { string lod = "high" }
+    bool selections(std::map<std::string, std::string>& into) {
+        if (!in_.need('{')) return false;
+        while (!in_.take('}')) {
+            if (in_.word() != "string") return found("expected string NAME = \"VARIANT\"");
+            std::string set;
+            if (in_.peek() == '"' || in_.peek() == '\'') {
+                if (!in_.takeString(set)) return false;
             } else {
-                return;
+                set = in_.word();
             }
-        }
-    }
-    bool atEnd() {
-        skip();
-        return at_ >= text_.size();
-    }
-    char peek() {
-        skip();
-        return at_ < text_.size() ? text_[at_] : '\0';
-    }
-    bool take(char c) {
-        if (peek() != c) return false;
-        ++at_;
-        return true;
-    }
-    bool need(char c) {
-        return take(c) || wrong(fmt::format("found {}", shown()), fmt::format("expected '{}'", c));
-    }
-    std::string shown() {
-        if (atEnd()) return "the end";
-        return fmt::format("'{}'",
-                           std::string(text_.substr(at_, std::min<std::size_t>(12, text_.size() - at_))));
-    }
-    static bool isWordCharacter(char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-               c == ':' || c == '.' || static_cast<unsigned char>(c) >= 0x80;
-    }
-    std::string_view word() {
-        skip();
-        const std::size_t start = at_;
-        while (at_ < text_.size() && isWordCharacter(text_[at_])) ++at_;
-        return text_.substr(start, at_ - start);
-    }
-    /// The next word, left where it is.
-    std::string_view nextWord() {
-        const std::size_t at = at_, line = line_;
-        const std::string_view found = word();
-        at_ = at;
-        line_ = line;
-        return found;
-    }
-
-    bool takeString(std::string& into) {
-        const char quote = peek();
-        if (quote != '"' && quote != '\'') return wrong(fmt::format("found {}", shown()), "expected a text");
-        const std::string triple(3, quote);
-        const bool isLong = text_.substr(at_).starts_with(triple);
-        const std::string_view end =
-            isLong ? std::string_view(triple) : std::string_view(triple).substr(0, 1);
-        at_ += end.size();
-        while (at_ < text_.size() && !text_.substr(at_).starts_with(end)) {
-            if (text_[at_] == '\n') {
-                if (!isLong) return wrong("a text is not closed", "expected its quotation mark");
-                ++line_;
-            }
-            if (text_[at_] == '\\' && at_ + 1 < text_.size()) ++at_;
-            into += text_[at_++];
-        }
-        if (at_ >= text_.size()) return wrong("a text is not closed", "expected its quotation mark");
-        at_ += end.size();
-        return true;
-    }
-
-    /// @path@ or <path>
-    bool takeUntil(std::string_view close, std::string& into) {
-        const std::size_t end = text_.find(close, at_);
-        if (end == std::string_view::npos)
-            return wrong("a path is not closed", fmt::format("expected '{}'", close));
-        into = text_.substr(at_, end - at_);
-        at_ = end + close.size();
-        return true;
-    }
-    bool takeReference(std::string& into) {
-        if (take('<')) return takeUntil(">", into);
-        const std::string_view mark = text_.substr(at_).starts_with("@@@") ? "@@@" : "@";
-        at_ += mark.size();
-        if (!takeUntil(mark, into)) return false;
-        if (peek() == '<') {
-            std::string prim;
-            return takeReference(prim);
+            if (!in_.need('=') || !in_.takeString(into[set])) return false;
         }
         return true;
     }
 
-    // Values
-
-    bool number(UsdValue& value) {
-        const char* const begin = text_.data() + at_ + (peek() == '+' ? 1 : 0);
-        double parsed = 0;
-        const auto [end, code] = std::from_chars(begin, text_.data() + text_.size(), parsed);
-        if (code == std::errc::invalid_argument)
-            return wrong(fmt::format("found {}", shown()), "expected a number");
-        // Too large or too small for a double: what is not finite is found where it is used.
-        if (code == std::errc::result_out_of_range) parsed = std::numeric_limits<double>::infinity();
-        at_ = static_cast<std::size_t>(end - text_.data());
-        value.numbers.push_back(parsed);
-        return true;
-    }
-
-    bool scalar(UsdValue& value) {
-        const char c = peek();
-        if (c == '"' || c == '\'') {
-            value.texts.emplace_back();
-            return takeString(value.texts.back());
-        }
-        if (c == '@' || c == '<') {
-            value.texts.emplace_back();
-            return takeReference(value.texts.back());
-        }
-        if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_') {
-            const std::string_view name = word();
-            if (name == "true" || name == "True")
-                value.numbers.push_back(1);
-            else if (name == "false" || name == "False")
-                value.numbers.push_back(0);
-            else if (name == "inf")
-                value.numbers.push_back(std::numeric_limits<double>::infinity());
-            else if (name == "nan")
-                value.numbers.push_back(std::numeric_limits<double>::quiet_NaN());
-            else if (name != "None")
-                value.texts.emplace_back(name);
-            return true;
-        }
-        if (c == '-' && text_.substr(at_).starts_with("-inf")) {
-            at_ += 4;
-            value.numbers.push_back(-std::numeric_limits<double>::infinity());
-            return true;
-        }
-        return number(value);
-    }
-
-    /// A tuple, which may hold tuples (matrices).
-    bool tuple(UsdValue& value, int depth) {
-        if (depth > 4) return wrong("tuples lie in each other too deep", "expected a matrix at most");
-        if (!need('(')) return false;
-        while (!take(')')) {
-            if (!(peek() == '(' ? tuple(value, depth + 1) : scalar(value))) return false;
-            if (!take(',') && peek() != ')')
-                return wrong(fmt::format("found {}", shown()), "expected ',' or ')'");
-        }
-        return true;
-    }
-
-    bool element(UsdValue& value) {
-        const std::size_t before = value.numbers.size();
-        if (peek() == '(') {
-            if (!tuple(value, 0)) return false;
-        } else if (!scalar(value)) {
-            return false;
-        }
-        const auto size = static_cast<std::uint32_t>(value.numbers.size() - before);
-        if (size == 0) return true;
-        if (before == 0) value.components = size;
-        return size == value.components || wrong(fmt::format("an element of {} numbers", size),
-                                                 fmt::format("expected {}", value.components));
-    }
-
-    bool value(UsdValue& into) {
-        if (peek() == '{') return dictionary();
-        if (!take('[')) return element(into);
-        while (!take(']')) {
-            if (!element(into)) return false;
-            // Lists of lists are in no attribute of curves.
-            if (!take(',') && peek() != ']')
-                return wrong(fmt::format("found {}", shown()), "expected ',' or ']'");
-        }
-        return true;
-    }
-
-    /// Read over, whatever is in it.
-    bool dictionary() { return skipBlock('{', '}'); }
-
-    bool skipBlock(char open, char close) {
-        if (!need(open)) return false;
-        int depth = 1;
-        while (depth > 0) {
-            if (atEnd()) return wrong("the file ends inside a block", fmt::format("expected '{}'", close));
-            const char c = text_[at_];
-            std::string ignored;
-            if (c == '"' || c == '\'') {
-                if (!takeString(ignored)) return false;
-                continue;
-            }
-            if (c == '@') {
-                if (!takeReference(ignored)) return false;
-                continue;
-            }
-            depth += c == open ? 1 : c == close ? -1 : 0;
-            ++at_;
-        }
-        return true;
-    }
-
-    bool samples(UsdAttribute& attribute) {
-        if (!need('{')) return false;
-        while (!take('}')) {
-            UsdValue time;
-            if (!number(time) || !need(':')) return false;
-            UsdValue at;
-            if (isSingle(attribute.type)) at.numbers.keepSingle();
-            if (!value(at)) return false;
-            attribute.samples.insert_or_assign(time.numbers.front(), std::move(at));
-            if (!take(',') && peek() != '}')
-                return wrong(fmt::format("found {}", shown()), "expected ',' or '}'");
-        }
-        return true;
-    }
-
-    // Metadata, properties, prims
-
-    static bool isListWord(std::string_view name) {
-        return name == "prepend" || name == "append" || name == "add" || name == "delete" ||
-               name == "reorder";
-    }
-
-    /// "(key = value …)"; keys of prims that bring in other files are noted.
+    /// "(key = value …)": `use` takes what it knows of, with the edit that stands before, and says whether it
+    /// did.
     template <class Use>
     bool metadata(Use use) {
-        if (!take('(')) return true;
-        while (!take(')')) {
-            if (atEnd()) return wrong("the file ends inside metadata", "expected ')'");
-            if (peek() == '"' || peek() == '\'') {
+        if (!in_.take('(')) return true;
+        while (!in_.take(')')) {
+            if (in_.atEnd()) return in_.wrong("the file ends inside metadata", "expected ')'");
+            if (in_.peek() == '"' || in_.peek() == '\'') {
                 std::string comment;
-                if (!takeString(comment)) return false;
+                if (!in_.takeString(comment)) return false;
                 continue;
             }
-            std::string key(word());
-            if (isListWord(key)) key = word();
-            if (key.empty()) return wrong(fmt::format("found {}", shown()), "expected a name");
-            if (!take('=')) continue;
-            UsdValue found;
-            if (peek() == '{') {
-                if (!dictionary()) return false;
-            } else if (!value(found)) {
-                return false;
+            std::string key(in_.word());
+            const std::optional<ListEdit> edit = listEditOf(key);
+            if (edit) key = in_.word();
+            if (key.empty()) return found("expected a name");
+            if (!in_.take('=')) continue;
+            bool good = true;
+            if (!use(key, edit.value_or(ListEdit::Explicit), good)) {
+                UsdValue ignored;
+                good = in_.value(ignored);
             }
-            // Behind a reference there may be an offset in time.
-            if (peek() == '(' && !skipBlock('(', ')')) return false;
-            if (key == "references" || key == "payload" || key == "subLayers" || key == "inherits")
-                stage_.notFollowed.insert(stage_.notFollowed.end(), found.texts.begin(), found.texts.end());
-            use(key, std::move(found));
-            take(',');
+            if (!good) return false;
+            if (in_.peek() == '(' && !in_.skipBlock('(', ')')) return false;
+            in_.take(',');
         }
         return true;
     }
 
     bool parseLayer() {
-        if (!metadata(
-                [&](const std::string& key, UsdValue found) { stage_.metadata[key] = std::move(found); }))
-            return false;
-        while (!atEnd()) {
-            if (!prim(stage_.root, 0)) return false;
+        const auto use = [&](const std::string& key, ListEdit, bool& good) {
+            if (key == "subLayers") {
+                good = arcs(layer_.subLayers);
+            } else if (key == "relocates") {
+                layer_.leftOut.emplace_back("relocated prims are not followed");
+                return false;
+            } else if (in_.peek() == '{') {
+                return false;
+            } else {
+                UsdValue value;
+                good = in_.value(value);
+                layer_.metadata[key] = std::move(value);
+            }
+            return true;
+        };
+        if (!metadata(use)) return false;
+        while (!in_.atEnd()) {
+            if (in_.nextWord() == "reorder") {
+                if (!reorder()) return false;
+            } else if (!prim(layer_.root, 0)) {
+                return false;
+            }
         }
         return true;
     }
 
+    /// "reorder rootPrims = […]": the order that prims are listed in, which is no order of hair.
+    bool reorder() {
+        in_.word();
+        in_.word();
+        UsdValue ignored;
+        return in_.need('=') && in_.value(ignored);
+    }
+
+    // Prims
+
+    bool primMetadata(UsdPrim& prim_) {
+        const auto text = [&](std::string& into) {
+            UsdValue value;
+            const bool good = in_.value(value);
+            if (!value.texts.empty()) into = std::move(value.texts.front());
+            return good;
+        };
+        const auto flag = [&](std::optional<bool>& into) {
+            UsdValue value;
+            const bool good = in_.value(value);
+            if (!value.numbers.empty()) into = value.numbers.front() != 0;
+            return good;
+        };
+        return metadata([&](const std::string& key, ListEdit edit, bool& good) {
+            if (key == "active")
+                good = flag(prim_.active);
+            else if (key == "instanceable")
+                good = flag(prim_.instanceable);
+            else if (key == "displayName")
+                good = text(prim_.displayName);
+            else if (key == "references")
+                good = arcs(prim_.references, edit);
+            else if (key == "payload")
+                good = arcs(prim_.payloads, edit);
+            else if (key == "inherits")
+                good = arcs(prim_.inherits, edit);
+            else if (key == "specializes")
+                good = arcs(prim_.specializes, edit);
+            else if (key == "variants")
+                good = selections(prim_.selections);
+            else if (key == "clips")
+                prim_.hasClips = true;
+            else
+                return false;
+            return key != "clips";
+        });
+    }
+
     bool prim(UsdPrim& parent, int depth) {
-        if (depth > kMaxDepth)
-            return wrong("prims lie in each other too deep", fmt::format("expected {}", kMaxDepth));
-        const std::string_view specifier = word();
+        const std::string_view specifier = in_.word();
         if (specifier != "def" && specifier != "over" && specifier != "class")
-            return wrong(fmt::format("found '{}' {}", specifier, shown()), "expected def, over or class");
+            return in_.wrong(fmt::format("found '{}' {}", specifier, in_.shown()),
+                             "expected def, over or class");
         UsdPrim child;
-        child.isOver = specifier != "def";
-        if (peek() != '"' && peek() != '\'') child.type = word();
-        if (!takeString(child.name)) return false;
-        if (!metadata([](const std::string&, const UsdValue&) {})) return false;
-        if (!need('{')) return false;
-        while (!take('}')) {
-            if (atEnd()) return wrong("the file ends inside a prim", "expected '}'");
-            if (!item(child, depth)) return false;
-        }
+        if (specifier == "def") child.specifier = UsdPrim::Specifier::Def;
+        if (specifier == "class") child.specifier = UsdPrim::Specifier::Class;
+        if (in_.peek() != '"' && in_.peek() != '\'') child.type = in_.word();
+        if (!in_.takeString(child.name) || !primMetadata(child) || !body(child, depth)) return false;
+        if (parent.child(child.name) != nullptr) layer_.repeated.push_back("prim " + child.name);
         parent.children.push_back(std::move(child));
         return true;
     }
 
-    bool item(UsdPrim& prim_, int depth) {
-        const std::string_view first = nextWord();
-        if (first == "def" || first == "over" || first == "class") return prim(prim_, depth + 1);
-        if (first == "variantSet") return variantSet();
-        return property(prim_);
+    bool body(UsdPrim& prim_, int depth) {
+        if (depth > kMaxDepth)
+            return in_.wrong("prims lie in each other too deep", fmt::format("expected {}", kMaxDepth));
+        if (!in_.need('{')) return false;
+        while (!in_.take('}')) {
+            if (in_.atEnd()) return in_.wrong("the file ends inside a prim", "expected '}'");
+            const std::string_view first = in_.nextWord();
+            const bool isPrim = first == "def" || first == "over" || first == "class";
+            if (!(isPrim                  ? prim(prim_, depth + 1)
+                  : first == "variantSet" ? variantSet(prim_, depth + 1)
+                                          : property(prim_)))
+                return false;
+        }
+        return true;
     }
 
-    /// Which variant is chosen is composition's business; what is in one is told to be left out.
-    bool variantSet() {
-        word();
-        std::string name;
-        if (!takeString(name)) return false;
-        stage_.notFollowed.push_back("the variants \"" + name + "\"");
-        return need('=') && skipBlock('{', '}');
+    bool variantSet(UsdPrim& prim_, int depth) {
+        in_.word();
+        UsdVariantSet set;
+        if (!in_.takeString(set.name) || !in_.need('=') || !in_.need('{')) return false;
+        while (!in_.take('}')) {
+            if (in_.atEnd()) return in_.wrong("the file ends inside variants", "expected '}'");
+            UsdPrim variant;
+            if (!in_.takeString(variant.name) || !primMetadata(variant) || !body(variant, depth))
+                return false;
+            set.variants.push_back(std::move(variant));
+        }
+        prim_.variantSets.push_back(std::move(set));
+        return true;
+    }
+
+    // Properties
+
+    bool samples(UsdAttribute& attribute) {
+        if (!in_.need('{')) return false;
+        while (!in_.take('}')) {
+            UsdValue time, at;
+            at.numbers.keep(kindOf(attribute.type));
+            if (!in_.number(time) || !in_.need(':') || !in_.value(at)) return false;
+            attribute.samples.insert_or_assign(time.numbers.front(), std::move(at));
+            if (!in_.take(',') && in_.peek() != '}') return found("expected ',' or '}'");
+        }
+        return true;
     }
 
     bool property(UsdPrim& prim_) {
         UsdAttribute attribute;
-        std::string_view type = word();
+        std::string_view type = in_.word();
         while (type == "custom" || type == "uniform" || type == "varying" || type == "config" ||
-               isListWord(type))
-            type = word();
-        if (type.empty()) return wrong(fmt::format("found {}", shown()), "expected a property");
+               listEditOf(type))
+            type = in_.word();
+        if (type.empty()) return found("expected a property");
         attribute.type = type;
-        if (take('[')) {
-            if (!need(']')) return false;
+        if (in_.take('[')) {
+            if (!in_.need(']')) return false;
             attribute.type += "[]";
         }
-        attribute.name = word();
+        attribute.name = in_.word();
         const bool isSampled = cut(attribute.name, ".timeSamples");
-        const bool isConnection = cut(attribute.name, ".connect");
-        if (take('=')) {
-            if (isSingle(attribute.type)) attribute.value.numbers.keepSingle();
-            if (!(isSampled ? samples(attribute) : value(attribute.value))) return false;
+        const bool isRead = !cut(attribute.name, ".connect") && !attribute.name.empty();
+        if (in_.take('=')) {
+            attribute.value.numbers.keep(kindOf(attribute.type));
+            if (in_.nextWord() == "edit") {
+                layer_.leftOut.push_back("the edit of the array " + attribute.name + " is not followed");
+                in_.word();
+                if (!in_.skipBlock('[', ']')) return false;
+            } else if (cut(attribute.name, ".spline")) {
+                layer_.leftOut.push_back("the spline of " + attribute.name + " is not followed");
+                if (!in_.skipBlock('{', '}')) return false;
+            } else if (!(isSampled ? samples(attribute) : in_.value(attribute.value))) {
+                return false;
+            }
         }
-        const auto use = [&](const std::string& key, const UsdValue& found) {
-            if (key == "interpolation" && !found.texts.empty()) attribute.interpolation = found.texts.front();
-            if (key == "elementSize" && !found.numbers.empty()) attribute.elementSize = found.numbers.front();
+        const auto use = [&](const std::string& key, ListEdit, bool& good) {
+            if (key != "interpolation" && key != "elementSize" && key != "displayName") return false;
+            UsdValue value;
+            good = in_.value(value);
+            if (key == "interpolation" && !value.texts.empty()) attribute.interpolation = value.texts.front();
+            if (key == "displayName" && !value.texts.empty()) attribute.displayName = value.texts.front();
+            if (key == "elementSize" && !value.numbers.empty()) attribute.elementSize = value.numbers.front();
+            return true;
         };
         if (!metadata(use)) return false;
-        if (type != "rel" && !isConnection && !attribute.name.empty()) keep(prim_, std::move(attribute));
+        if (isRead) keep(prim_, std::move(attribute));
         return true;
     }
 
-    static bool cut(std::string& name, std::string_view ending) {
-        if (!name.ends_with(ending)) return false;
-        name.resize(name.size() - ending.size());
-        return true;
-    }
-
-    /// An attribute's value, samples and metadata may stand in several lines.
-    static void keep(UsdPrim& prim_, UsdAttribute attribute) {
-        const auto found = std::ranges::find(prim_.attributes, attribute.name, &UsdAttribute::name);
-        if (found == prim_.attributes.end()) {
+    /// An attribute's value, samples and metadata may stand in several lines, each of them once.
+    void keep(UsdPrim& prim_, UsdAttribute attribute) {
+        UsdAttribute* const found = prim_.find(attribute.name);
+        if (found == nullptr) {
             prim_.attributes.push_back(std::move(attribute));
             return;
         }
-        if (!attribute.value.empty()) found->value = std::move(attribute.value);
+        const bool valueTwice = found->value.isThere() && attribute.value.isThere();
+        const bool samplesTwice = !found->samples.empty() && !attribute.samples.empty();
+        if ((valueTwice || samplesTwice || found->type != attribute.type) && found->type != "rel")
+            layer_.repeated.push_back(attribute.name + " of " + prim_.name);
+        if (attribute.value.isThere()) found->value = std::move(attribute.value);
         if (!attribute.samples.empty()) found->samples = std::move(attribute.samples);
+        if (!attribute.displayName.empty()) found->displayName = std::move(attribute.displayName);
         if (!attribute.interpolation.empty()) found->interpolation = std::move(attribute.interpolation);
     }
 
-    const std::string& file_;
-    std::string_view text_;
-    std::size_t at_ = 0;
-    std::uint64_t line_ = 1;
-    std::string problem_, expected_;
-    std::uint64_t failedLine_ = 0;
-    UsdStage stage_;
+    UsdaScanner in_;
+    UsdLayer layer_;
 };
 
 }  // namespace
 
-Result<UsdStage> readUsda(const std::string& file, std::string_view text) {
-    return Parser(file, text).run();
+Result<UsdLayer> readUsda(const std::string& file, std::string_view text) {
+    if (!text.starts_with("#usda"))
+        return failIn(file, Line{1}, "is no USD text", "expected \"#usda 1.0\" first");
+    Parser parser(text);
+    if (!parser.run()) return parser.error(file);
+    return parser.take();
 }
 
 }  // namespace hairloom

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kBootstrap = 88;  ///< bytes
 constexpr std::string_view kStart = "PXR-USDC";
-constexpr int kOldest = 4, kNewest = 13;  ///< versions 0.N
+constexpr int kOldest = 4, kNewest = 16;  ///< versions 0.N
 constexpr std::uint32_t kEnd = 0xffffffffu;
 constexpr std::size_t kMaxFields = 4096;  ///< of one spec
 
@@ -259,6 +259,28 @@ const std::string& UsdcFile::token(std::uint64_t index) const {
 
 const std::string& UsdcFile::string(std::uint64_t index) const {
     return token(index < strings_.size() ? strings_[index] : tokens_.size());
+}
+
+std::string UsdcFile::pathText(std::uint64_t index) const {
+    constexpr std::size_t kMaxDepth = 256;
+    std::vector<const UsdcPath*> elements;
+    while (index < paths_.size() && elements.size() < kMaxDepth) {
+        elements.push_back(&paths_[static_cast<std::size_t>(index)]);
+        index = elements.back()->parent;
+    }
+    if (elements.empty()) return {};
+    elements.pop_back();  // the root
+    std::string text = elements.empty() ? "/" : "";
+    for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+        const std::string& name = token((*element)->token);
+        const bool isVariant = name.starts_with('{');
+        if ((*element)->isProperty)
+            text += '.';
+        else if (!isVariant && !text.ends_with('}'))
+            text += '/';
+        text += name;
+    }
+    return text;
 }
 
 }  // namespace hairloom

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The container of binary USD files ("crate", versions 0.4 to 0.13): tokens, paths, fields and specs. The
+// The container of binary USD files ("crate", versions 0.4 to 0.16): tokens, paths, fields and specs. The
 // layout is that of OpenUSD's pxr/usd/sdf/crateFile.cpp.
 
 #include <array>
@@ -18,6 +18,7 @@ struct UsdcValue {
     std::uint64_t bits = 0;
     bool isArray() const { return (bits >> 63u & 1u) != 0; }
     bool isInlined() const { return (bits >> 62u & 1u) != 0; }
+    bool isArrayEdit() const { return (bits >> 60u & 1u) != 0; }
     bool isCompressed() const { return (bits >> 61u & 1u) != 0; }
     std::uint8_t type() const { return static_cast<std::uint8_t>(bits >> 48u); }
     std::uint64_t payload() const { return bits & 0xffff'ffff'ffffu; }
@@ -38,7 +39,8 @@ struct UsdcPath {
 struct UsdcSpec {
     std::uint32_t path = 0, fieldSet = 0, type = 0;
 };
-inline constexpr std::uint32_t kUsdcAttribute = 1, kUsdcPrim = 6, kUsdcRoot = 7;
+inline constexpr std::uint32_t kUsdcAttribute = 1, kUsdcPrim = 6, kUsdcRoot = 7, kUsdcRelationship = 8,
+                               kUsdcVariant = 10, kUsdcVariantSet = 11;
 
 class UsdcFile {
   public:
@@ -55,6 +57,8 @@ class UsdcFile {
     /// Empty for an index that the file does not have.
     const std::string& token(std::uint64_t index) const;
     const std::string& string(std::uint64_t index) const;
+    /// "/groom/hair", "/groom{lod=high}hair"; empty for an index that the file does not have.
+    std::string pathText(std::uint64_t index) const;
 
     const std::string& name() const { return file_; }
     std::span<const std::byte> bytes() const { return bytes_; }

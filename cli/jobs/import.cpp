@@ -38,9 +38,11 @@ const std::map<std::string, RibbonOrder> kOrders{{"auto", RibbonOrder::Detect},
 
 StrandImportOptions strandOptions(const ImportOptions& options) {
     StrandImportOptions strands;
-    if (!options.unit.empty()) strands.metresPerUnit = metresPerUnit(options.unit);
+    strands.isUnitAsked = !options.unit.empty();
+    if (strands.isUnitAsked) strands.metresPerUnit = metresPerUnit(options.unit);
     strands.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     strands.frames = !options.record.empty();
+    strands.framesPerSecond = options.framesPerSecond;
     strands.ribbonSegments = options.segments;
     strands.ribbonOrder = kOrders.at(options.order);
     strands.ribbonParticle =

@@ -9,6 +9,7 @@
 
 #include "core/base/output_file.h"
 #include "core/cost/scene_run.h"
+#include "core/documents/guides_beside_hairs.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/levels/card_meshes.h"
@@ -60,6 +61,7 @@ std::vector<Vec3f> pointsOf(const Groom& whole, std::span<const std::uint32_t> s
 struct Moving {
     Groom first;
     std::vector<std::vector<Vec3f>> shapes;
+    std::vector<std::vector<Vec3f>> guides;  ///< where `shapes` are of hairs that follow: of what they follow
 };
 Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> strands, const Groom& guides,
                           const HairToExport& wanted, const FollowBindings* bindings) {
@@ -70,6 +72,7 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
         const Groom posed = posedGroom(guides, pointsOf(whole, strands, frame.positions_ws), frame.pose);
         std::vector<Vec3f> shape(posed.positions().begin(), posed.positions().end());
         if (hairs) {
+            moving.guides.push_back(guidePoints(guides, *bindings, posed.positions()));
             auto made = hairs->at(posed, frame);
             if (!made) return tl::unexpected(made.error());
             shape = std::move(*made);
@@ -87,6 +90,14 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
         moving.shapes.push_back(std::move(shape));
     }
     return moving;
+}
+
+/// Likewise of every frame.
+void putGuidesBeside(const Groom& guides, const FollowBindings& bindings, Moving& moving, Groom& shown) {
+    shown = guidesBesideHairs(guides, bindings, shown);
+    for (std::size_t f = 0; f < moving.shapes.size(); ++f)
+        moving.shapes[f].insert(moving.shapes[f].begin(), moving.guides[f].begin(), moving.guides[f].end());
+    if (!moving.shapes.empty()) shown.pointAttributes.set(attribute::kPosition, moving.shapes.front());
 }
 
 constexpr const char *kQuantised = "gltf-quantised", *kObj = "obj-cards", *kFbx = "fbx", *kUsd = "usda-cards";
@@ -229,10 +240,12 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         bindings = std::move(*bound);
     }
     StrandExportOptions exporting = options;
+    const bool marksGuides = isBaked && writer.marksGuides;
     if (!wanted.frames.empty()) {
         auto moving = movingHair(groom, strands, guides, wanted, isBaked ? &bindings : nullptr);
         if (!moving) return tl::unexpected(moving.error());
         shown = std::move(moving->first);
+        if (marksGuides) putGuidesBeside(guides, bindings, *moving, shown);
         if (moving->shapes.size() > 1) {
             exporting.frames = std::make_shared<const StrandFrames>(
                 StrandFrames{static_cast<double>(wanted.frames.front().framesPerSecond),
@@ -241,7 +254,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
     } else if (isBaked) {
         auto baked = bakeFollowHairs(guides, bindings);
         if (!baked) return tl::unexpected(baked.error());
-        shown = std::move(*baked);
+        shown = marksGuides ? guidesBesideHairs(guides, bindings, *baked) : std::move(*baked);
     }
     if (wanted.storms > 0) {
         const auto limits = safeLimits(guides, isBaked ? 0 : exporting.pointsPerStrand, wanted);
@@ -251,6 +264,12 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
     auto report = writer.holdsCards() ? writeCards(shown, wanted, writer, path, exporting)
                                       : writer.write(shown, path, exporting);
     if (report) report->safeLimits = exporting.safeLimits;
+    if (report && marksGuides)
+        report->findings.push_back(
+            {Severity::Info,
+             fmt::format("{} guides, flagged, and {} hairs with the guides that they follow",
+                         bindings.guideCount(), bindings.hairCount()),
+             "groom_guide", ""});
     if (report && !writer.holdsCards() && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {
         report->findings.push_back({Severity::Warning,
                                     fmt::format("{} follow hairs for each guide are left out", perGuide),

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/groom/file/project_file.h"
@@ -53,12 +55,18 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
         return opened;
     }
     StrandImportOptions options;
-    if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
+    options.isUnitAsked = !unit.empty();
+    if (options.isUnitAsked) options.metresPerUnit = metresPerUnit(unit);
     if (auto imported = importStrands(path, options)) {
         opened.groom = std::move(imported->groom);
         opened.format = imported->format;
         opened.findings = validate(opened.groom);
-        opened.findings.insert(opened.findings.end(), imported->warnings.begin(), imported->warnings.end());
+        for (const Finding& warning : imported->warnings) {
+            const auto isSame = [&](const Finding& other) {
+                return other.what == warning.what && other.where == warning.where;
+            };
+            if (std::ranges::none_of(opened.findings, isSame)) opened.findings.push_back(warning);
+        }
         for (const DroppedStrand& dropped : imported->dropped) {
             opened.findings.push_back({Severity::Error, std::string(dropReasonName(dropped.reason)),
                                        fmt::format("strand {}", dropped.strand),

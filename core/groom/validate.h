@@ -33,6 +33,9 @@ Status checkStructure(const Groom& groom);
 /// The part of validate() that concerns layers, spheres and settings; all of them errors.
 std::vector<Finding> validateSettings(const Groom& groom);
 
+/// The part of validate() that concerns widths no hair has: what Blender gives hair without any.
+std::vector<Finding> findThickHair(const Groom& groom);
+
 bool hasErrors(const std::vector<Finding>& findings);
 
 }  // namespace hairloom

@@ -50,14 +50,11 @@ void findSegments(const Groom& groom, std::vector<Finding>& findings) {
 void findRadii(const Groom& groom, std::vector<Finding>& findings) {
     const auto radii = groom.pointAttributes.view<float>(attribute::kRadius);
     Places negative;
-    Places thick;
     for (std::size_t p = 0; p < radii.size(); ++p) {
         if (radii[p] < 0) negative.other("point", p);
-        if (radii[p] > kLargestRadius) thick.other("point", p);
     }
     negative.report(findings, Severity::Error, "a radius is negative", "set the radius to 0 or more");
-    thick.report(findings, Severity::Warning, fmt::format("a radius is above {} m", kLargestRadius),
-                 "check the unit of the file that the strands came from; a hair has 25e-6 to 60e-6 m");
+    for (Finding& finding : findThickHair(groom)) findings.push_back(std::move(finding));
 }
 
 void findSize(const Groom& groom, std::vector<Finding>& findings) {
@@ -174,6 +171,18 @@ void findBinding(const Groom& groom, std::vector<Finding>& findings) {
         return;
     }
     findTriangleBindings(groom, roots, findings);
+}
+
+std::vector<Finding> findThickHair(const Groom& groom) {
+    const auto radii = groom.pointAttributes.view<float>(attribute::kRadius);
+    Places thick;
+    for (std::size_t p = 0; p < radii.size(); ++p) {
+        if (radii[p] > kLargestRadius) thick.other("point", p);
+    }
+    std::vector<Finding> findings;
+    thick.report(findings, Severity::Warning, fmt::format("a radius is above {} m", kLargestRadius),
+                 "check the unit of the file that the strands came from; a hair has 25e-6 to 60e-6 m");
+    return findings;
 }
 
 }  // namespace hairloom

@@ -110,10 +110,11 @@ Result<std::vector<std::string>> writeCardUsd(const cards::Chain& chain, const s
     std::string variants, materials;
     NamedImages images;
     std::size_t lod = 0;
+    NameGiver names(isLegalInUsd);
     for (const Level& level : chain.levels) {
         if (level.spec.kind == cards::LevelKind::strands) continue;
         const LevelArrays arrays = cards::arraysOf(level, chain.rig);
-        const std::string name = usdName(level.name);
+        const std::string name = names.give(level.name);
         LevelTextures textures = texturesOf(level, arrays, path.stem().string());
         variants += fmt::format("        \"LOD{}\" {{\n{}        }}\n", lod++, meshText(name, arrays));
         materials += materialText(name, level, textures);

@@ -60,8 +60,13 @@ TEST_F(AlembicData, BlendersCurvesOfEveryTypeComeIn) {
 }
 
 TEST_F(AlembicData, UnrealsAttributesFromTheRealLibrary) {
-    const Groom groom = read("reference_groom.abc");
+    StrandImportOptions metres;
+    metres.isUnitAsked = true;
+    const auto imported = importStrands(folder / "reference_groom.abc", metres);
+    ASSERT_TRUE(imported) << imported.error().message();
+    const Groom& groom = imported->groom;
     ASSERT_EQ(groom.strandCount(), 2u);
+    EXPECT_EQ(read("reference_groom.abc").strand(0)[3], Vec3f(0, 0.03f, 0.01f)) << "Unreal's own unit";
     EXPECT_EQ(groom.pointCount(), 8u);
     EXPECT_EQ(groom.strand(0)[3], Vec3f(0, 3, 1));
     const AttributeSet& strands = groom.strandAttributes;

@@ -18,7 +18,7 @@ LAST_FRAME = 3
 ROWS = [
     ("abc", "curves of every basis, animated", "Blender"),
     ("abc-unreal", "as abc, Unreal's groom schema", "Blender"),
-    ("usda", "BasisCurves, NurbsCurves, animated", "Pixar's usd-core"),
+    ("usda", "BasisCurves, NurbsCurves, HermiteCurves of composed stages, animated", "Pixar's usd-core"),
     ("usdc", "as usda", "Pixar's usd-core"),
     ("hair", "yes", "a reader of its own page"),
     ("tfx", "versions 3 and 4", "a reader of its own page"),

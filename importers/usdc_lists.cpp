@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lists in binary USD, and edits of lists: references, payloads, paths, layers, chosen variants.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "importers/usdc_types.h"
+#include "importers/usdc_values.h"
+
+namespace hairloom {
+
+using namespace usdc;
+
+Status UsdcValues::readOffset(UsdTimeOffset& time) {
+    const auto numbers = in_.readArray<double>(2, "an offset in time");
+    if (!numbers) return tl::unexpected(numbers.error());
+    time = {(*numbers)[0], (*numbers)[1]};
+    return {};
+}
+
+/// Its values stand elsewhere: names, and how far away they are.
+Status UsdcValues::skipDictionary() {
+    constexpr std::uint64_t kEntry = sizeof(std::uint32_t) + sizeof(std::uint64_t);
+    const auto count = in_.read<std::uint64_t>("the size of a dictionary");
+    if (!count) return tl::unexpected(count.error());
+    if (*count > in_.remaining() / kEntry)
+        return error(fmt::format("a dictionary of {} entries goes beyond the end of the file", *count));
+    return in_.seek(in_.position() + *count * kEntry, "the end of a dictionary");
+}
+
+Result<UsdArc> UsdcValues::item(std::uint8_t kind) {
+    UsdArc arc;
+    if (kind != PathListOp) {
+        const auto asset = in_.read<std::uint32_t>("the name of a file");
+        if (!asset) return tl::unexpected(asset.error());
+        arc.asset = file_.string(*asset);
+    }
+    const auto path = in_.read<std::uint32_t>("a path");
+    if (!path) return tl::unexpected(path.error());
+    arc.path = file_.pathText(*path);
+    // Of the root or of none: the default prim.
+    if (arc.path == "/") arc.path.clear();
+    if (kind == ReferenceListOp || ((kind == PayloadListOp || kind == Payload) && file_.isSince(8))) {
+        if (auto status = readOffset(arc.time); !status) return tl::unexpected(status.error());
+    }
+    if (kind == ReferenceListOp) {
+        if (auto status = skipDictionary(); !status) return tl::unexpected(status.error());
+    }
+    return arc;
+}
+
+Result<std::vector<UsdArc>> UsdcValues::items(std::uint8_t kind) {
+    const auto count = in_.read<std::uint64_t>("the length of a list");
+    if (!count) return tl::unexpected(count.error());
+    if (*count > in_.remaining() / sizeof(std::uint32_t))
+        return error(fmt::format("a list of {} goes beyond the end of the file", *count));
+    std::vector<UsdArc> arcs;
+    for (std::uint64_t i = 0; i < *count; ++i) {
+        auto arc = item(kind);
+        if (!arc) return tl::unexpected(arc.error());
+        if (!arc->asset.empty() || !arc->path.empty()) arcs.push_back(std::move(*arc));
+    }
+    return arcs;
+}
+
+Result<UsdArcs> UsdcValues::arcsOf(const UsdcValue& value) {
+    UsdArcs arcs;
+    const std::uint8_t kind = value.type();
+    if (value.isInlined() ||
+        (kind != PathListOp && kind != ReferenceListOp && kind != PayloadListOp && kind != Payload))
+        return arcs;
+    if (auto status = in_.seek(value.payload(), "references"); !status) return tl::unexpected(status.error());
+    if (kind == Payload) {
+        auto arc = item(kind);
+        if (!arc) return tl::unexpected(arc.error());
+        arcs.isExplicit = true;
+        if (!arc->asset.empty() || !arc->path.empty()) arcs.items.push_back(std::move(*arc));
+        return arcs;
+    }
+    const auto bits = in_.read<std::uint8_t>("an edit of a list");
+    if (!bits) return tl::unexpected(bits.error());
+    enum : std::uint8_t {
+        IsExplicit = 1,
+        Items = 2,
+        Added = 4,
+        Deleted = 8,
+        Ordered = 16,
+        Front = 32,
+        Back = 64
+    };
+    arcs.isExplicit = (*bits & IsExplicit) != 0;
+    // In the order in which they stand.
+    std::vector<UsdArc> ordered;
+    for (const auto& [bit, list] :
+         {std::pair(Items, &arcs.items), std::pair(Added, &arcs.appended), std::pair(Front, &arcs.items),
+          std::pair(Back, &arcs.appended), std::pair(Deleted, &arcs.deleted), std::pair(Ordered, &ordered)}) {
+        if ((*bits & bit) == 0) continue;
+        auto found = items(kind);
+        if (!found) return tl::unexpected(found.error());
+        list->insert(list->end(), found->begin(), found->end());
+    }
+    return arcs;
+}
+
+Result<std::vector<std::string>> UsdcValues::pathsOf(const UsdcValue& value) {
+    const auto arcs = arcsOf(value);
+    if (!arcs) return tl::unexpected(arcs.error());
+    std::vector<std::string> paths;
+    for (const UsdArc& arc : arcs->all()) paths.push_back(arc.path);
+    return paths;
+}
+
+Result<std::map<std::string, std::string>> UsdcValues::selectionsOf(const UsdcValue& value) {
+    std::map<std::string, std::string> selections;
+    if (value.isInlined() || value.type() != VariantSelectionMap) return selections;
+    if (auto status = in_.seek(value.payload(), "chosen variants"); !status)
+        return tl::unexpected(status.error());
+    const auto count = in_.read<std::uint64_t>("the number of chosen variants");
+    if (!count) return tl::unexpected(count.error());
+    if (*count > in_.remaining() / (2 * sizeof(std::uint32_t)))
+        return error(fmt::format("{} chosen variants go beyond the end of the file", *count));
+    const auto names = in_.readArray<std::uint32_t>(2 * *count, "chosen variants");
+    if (!names) return tl::unexpected(names.error());
+    for (std::size_t i = 0; i + 1 < names->size(); i += 2)
+        selections.emplace(file_.string((*names)[i]), file_.string((*names)[i + 1]));
+    return selections;
+}
+
+Result<std::vector<UsdArc>> UsdcValues::subLayersOf(const UsdcValue& names, const UsdcValue& times) {
+    std::vector<UsdArc> layers;
+    if (names.isInlined() || names.type() != StringVector) return layers;
+    if (auto status = in_.seek(names.payload(), "layers"); !status) return tl::unexpected(status.error());
+    const auto count = in_.read<std::uint64_t>("the number of layers");
+    if (!count) return tl::unexpected(count.error());
+    const auto indices = in_.readArray<std::uint32_t>(*count, "layers");
+    if (!indices) return tl::unexpected(indices.error());
+    for (const std::uint32_t index : *indices) layers.emplace_back().asset = file_.string(index);
+    if (times.isInlined() || times.type() != LayerOffsetVector) return layers;
+    if (auto status = in_.seek(times.payload(), "times of layers"); !status)
+        return tl::unexpected(status.error());
+    const auto offsets = in_.read<std::uint64_t>("the number of times of layers");
+    if (!offsets) return tl::unexpected(offsets.error());
+    for (std::size_t i = 0; i < std::min<std::uint64_t>(*offsets, layers.size()); ++i) {
+        if (auto status = readOffset(layers[i].time); !status) return tl::unexpected(status.error());
+    }
+    return layers;
+}
+
+std::vector<std::string> UsdcValues::tokensOf(const UsdcValue& value) {
+    std::vector<std::string> texts;
+    if (value.isInlined() || !in_.seek(value.payload(), "a list of names")) return texts;
+    const auto count = in_.read<std::uint64_t>("its length");
+    const auto indices =
+        count ? in_.readArray<std::uint32_t>(*count, "names") : Result<std::vector<std::uint32_t>>();
+    if (!count || !indices) return texts;
+    for (const std::uint32_t index : *indices) texts.push_back(file_.token(index));
+    return texts;
+}
+
+}  // namespace hairloom
