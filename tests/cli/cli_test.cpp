@@ -190,6 +190,16 @@ TEST_F(Cli, HairThatFallsThroughTheHeadIsSeen) {
               fallen["max_mesh_penetration_mm"]);
 }
 
+TEST_F(Cli, FittedSpheresGoWithTheHead) {
+    runJson(createArguments());
+    const auto fitted = runJson("spheres hair.hairloom --fit 6 -o on.hairloom");
+    EXPECT_EQ(fitted["on_bones"], 6);
+    const Outcome lost = run("spheres hair.hairloom --fit 6 --character none.glb -o off.hairloom");
+    EXPECT_EQ(lost.exitCode, 1);
+    EXPECT_THAT(lost.errors, HasSubstr("none.glb"));
+    EXPECT_FALSE(fs::exists(folder / "off.hairloom"));
+}
+
 TEST_F(Cli, OtherMethodsReportAndRecordAlike) {
     runJson(createArguments());
     const std::string scene = "simulate hair.hairloom --frames 10 --fps 30 --motion nod ";
