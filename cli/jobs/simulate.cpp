@@ -16,9 +16,9 @@
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/editing/document.h"
-#include "core/editing/penetration.h"
 #include "core/editing/take_shape.h"
 #include "core/groom/file/project_file.h"
+#include "core/live/drawn_depth.h"
 #include "core/simulation/frame_record.h"
 #include "core/simulation/rest_positions.h"
 #include "core/simulation/sag.h"
@@ -132,17 +132,26 @@ Report statsReport(const Groom& groom, const SimulationStats& stats) {
     return report;
 }
 
-/// How deep the points are in the head that they grow on; null without one, and for hair that is lost.
-void reportInsideMesh(const Groom& moved, Report& report) {
-    report["max_mesh_penetration_mm"] = report["share_inside_mesh"] = {};
-    const auto finite = [](const Vec3f& position) { return position.allFinite(); };
-    if (!moved.scalp || !std::ranges::all_of(moved.positions(), finite)) return;
-    const Skin skin(moved.scalp);
-    const editing::Penetration inside =
-        editing::penetrationOf(moved.offsets.view(), moved.positions(), {}, &skin);
-    report["max_mesh_penetration_mm"] = 1e3 * static_cast<double>(inside.worst);
-    report["share_inside_mesh"] = static_cast<double>(inside.points) /
-                                  static_cast<double>(std::max<std::size_t>(moved.pointCount(), 1));
+/// Looks at how deep hair is in the head; none without a head that encloses anything.
+std::optional<DrawnDepthMeter> depthMeter(const Groom& groom) {
+    if (!groom.scalp) return std::nullopt;
+    auto meter = DrawnDepthMeter::make(groom);
+    if (meter) return std::move(*meter);
+    log::warning("hair is not measured against the head: {}", meter.error().message());
+    return std::nullopt;
+}
+
+void reportDepth(const std::optional<DrawnDepthMeter>& meter, Report& report) {
+    for (const char* key : {"max_mesh_penetration_mm", "max_guide_penetration_mm", "authored_depth_mm",
+                            "share_inside_mesh", "deepest_frame"})
+        report[key] = {};
+    if (!meter) return;
+    const DrawnDepth depth = meter->result();
+    report["max_mesh_penetration_mm"] = 1e3 * depth.deepest;
+    report["max_guide_penetration_mm"] = 1e3 * depth.deepestGuide;
+    report["authored_depth_mm"] = 1e3 * depth.authored;
+    report["share_inside_mesh"] = depth.shareInside;
+    if (depth.deepestFrame) report["deepest_frame"] = *depth.deepestFrame;
 }
 
 Report sagReport(const Groom& groom, const Sag& sag) {
@@ -231,11 +240,13 @@ Result<Report> simulate(const SimulateOptions& options) {
     std::optional<RecordComparison> comparison;
     if (!options.against.empty()) comparison.emplace(options.against);
 
+    std::optional<DrawnDepthMeter> depth = depthMeter(*groom);
     Progress progress("simulating", options.frames);
     for (std::uint64_t frame = 1; frame <= options.frames; ++frame) {
         pose = (*motion)->poseAt(static_cast<float>(frame) / options.framesPerSecond);
         simulation->step(1.0f / options.framesPerSecond, pose);
         if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
+        if (depth) depth->add(frame, simulation->positions_ws(), simulation->velocities_ws(), inWorld(pose));
         if (recorder) {
             if (auto added = recorder->add(simulation->positions_ws(), inWorld(pose)); !added) {
                 return tl::unexpected(added.error());
@@ -260,10 +271,9 @@ Result<Report> simulate(const SimulateOptions& options) {
         if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
         report["record"] = options.record;
     }
-    const Groom moved = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
-    reportInsideMesh(moved, report);
+    reportDepth(depth, report);
     if (!options.output.empty()) {
-        Result<Groom> kept = moved;
+        Result<Groom> kept = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
         if (options.take) kept = take(*groom, simulation->positions_ws(), pose, report);
         if (!kept) return tl::unexpected(kept.error());
         if (auto saved = saveProject(*kept, options.output); !saved) return tl::unexpected(saved.error());

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <memory>
 
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/sphere_report.h"
+#include "core/animation/bone_near.h"
 #include "core/base/content_kind.h"
+#include "core/base/log.h"
+#include "core/documents/motions.h"
 #include "core/editing/sphere_parts.h"
 #include "core/groom/file/project_file.h"
 
@@ -17,10 +21,29 @@ struct SpheresOptions {
     std::string from;
     std::uint32_t fit = 0;
     double near = 0.08;
+    std::string character;
     std::uint64_t seed = 1;
     bool replace = false;
     std::string output;
 };
+
+/// Puts spheres on the bones of the groom's character. One that is named has to be there; without the one
+/// that the groom came from, they stay with the head as a whole.
+Status attach(std::vector<CollisionSphere>& spheres, const Groom& groom, const SpheresOptions& options) {
+    if (options.character.empty() && groom.characterFile.empty()) return {};
+    const auto actor = loadActor(options.character, groom);
+    if (!actor && !options.character.empty()) return tl::unexpected(actor.error());
+    if (!actor) {
+        log::warning(
+            "{}; the spheres are on no bone and stand still while a clip moves the head: name the file "
+            "with --character",
+            actor.error().message());
+        return {};
+    }
+    if ((*actor)->skeleton().empty()) return {};
+    for (CollisionSphere& sphere : spheres) sphere.bone = boneUnder(**actor, sphere.centre, sphere.radius);
+    return {};
+}
 
 Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOptions& options,
                                             Report& report) {
@@ -31,6 +54,9 @@ Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOpt
     if (options.near > 0) wanted.region = editing::facesNearHair(groom, static_cast<float>(options.near));
     auto fit = editing::fitSpheres(*groom.scalp, wanted);
     if (!fit) return tl::unexpected(inFile(fit.error(), options.input));
+    if (auto status = attach(fit->spheres, groom, options); !status) return tl::unexpected(status.error());
+    report["on_bones"] =
+        std::ranges::count_if(fit->spheres, [](const auto& one) { return !one.bone.empty(); });
     addFit(report, *fit);
     return std::move(fit->spheres);
 }
@@ -64,6 +90,9 @@ JobRun declare(CLI::App& job) {
     source.require_option(1);
     job.add_option("--near", options->near, "fit: how far from hair skin matters, metres; 0: all of it")
         ->check(CLI::Range(0.0, 10.0));
+    job.add_option(
+        "--character", options->character,
+        "fit: file with the skeleton whose bones carry the spheres, instead of the one the scalp came from");
     job.add_option("--seed", options->seed, "fit: of the places where the skin is looked at");
     job.add_flag("--replace", options->replace,
                  "Remove the spheres that are there; fit: but those of groups to collide with (create)");

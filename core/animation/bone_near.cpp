@@ -2,6 +2,7 @@
 #include "core/animation/bone_near.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace hairloom {
@@ -36,6 +37,21 @@ std::string boneNear(const Skeleton& skeleton, const Vec3f& point_ss) {
         if (parent != kNoBone) offer(parent, distanceToSegment(point_ss, joint(parent), joint(b)));
     }
     return nearest;
+}
+
+std::string boneUnder(const Actor& actor, const Vec3f& centre_ss, float radius) {
+    constexpr float kNear = 0.1f;  // of the radius
+    const auto positions = actor.mesh().positions();
+    const SkinWeights& skin = actor.skin();
+    std::vector<double> sums(actor.skeleton().bones().size(), 0.0);
+    for (std::size_t v = 0; v < skin.vertexCount(); ++v) {
+        if (std::abs((positions[v] - centre_ss).norm() - radius) > kNear * radius) continue;
+        for (std::size_t i = 0; i < skin.weights[v].size(); ++i)
+            sums[skin.bones[v][i]] += static_cast<double>(skin.weights[v][i]);
+    }
+    const auto most = std::ranges::max_element(sums);
+    if (most == sums.end() || !(*most > 0)) return boneNear(actor.skeleton(), centre_ss);
+    return actor.skeleton().bones()[static_cast<std::size_t>(most - sums.begin())].name;
 }
 
 }  // namespace hairloom

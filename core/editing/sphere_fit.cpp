@@ -230,11 +230,12 @@ Result<Samples> sample(const ScalpMesh& mesh, const SphereFitOptions& options) {
 Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& options) {
     if (options.count < 1 || options.count > kMaxSpheres)
         return fail(fmt::format("{} spheres", options.count), fmt::format("1 to {}", kMaxSpheres));
-    if (!(options.largestRadius >= kSmallestSphere && options.largestRadius <= kLargestSphere))
+    const bool isFree = options.largestRadius == 0;
+    if (!isFree && !(options.largestRadius >= kSmallestSphere && options.largestRadius <= kLargestSphere))
         return fail(fmt::format("a largest radius of {} m", options.largestRadius), "0.001 to 10 m");
     const auto samples = sample(mesh, options);
     if (!samples) return tl::unexpected(samples.error());
-    const auto largest = static_cast<double>(options.largestRadius);
+    const auto largest = static_cast<double>(isFree ? largestSphereIn(mesh.bounds()) : options.largestRadius);
     std::vector<Ball> candidates(std::min(kSeeds, samples->points.size()));
     parallelFor(candidates.size(), 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) candidates[i] = shrink(*samples, i, largest);
@@ -247,6 +248,13 @@ Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& opti
                            {}});
     }
     return measureSpheres(mesh, options.region, std::move(spheres));
+}
+
+float largestSphereIn(const Box3f& bounds) {
+    // The skin that is to be covered may be a patch, behind which a larger ball leaves the body on the other
+    // side.
+    constexpr float kOfAnyHead = 0.2f;
+    return std::clamp(bounds.sizes().minCoeff() / 2, kOfAnyHead, kLargestSphere);
 }
 
 SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vector<CollisionSphere> spheres) {

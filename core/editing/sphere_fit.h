@@ -12,9 +12,9 @@ namespace hairloom::editing {
 inline constexpr std::uint32_t kMaxSpheres = 64;  ///< of one fit
 
 struct SphereFitOptions {
-    std::uint32_t count = 12;    ///< spheres, 1 … kMaxSpheres
-    FaceSet region;              ///< ascending; the skin that is to be covered. Empty: all of the mesh
-    float largestRadius = 0.2f;  ///< metres
+    std::uint32_t count = 12;  ///< spheres, 1 … kMaxSpheres
+    FaceSet region;            ///< ascending; the skin that is to be covered. Empty: all of the mesh
+    float largestRadius = 0;   ///< metres; 0: as fits the mesh, largestSphereIn()
     std::uint64_t seed = 1;
 };
 
@@ -29,6 +29,10 @@ struct SphereFit {
 /// Spheres whose union lies as close to the skin as so many can: chosen among the largest that fit inside,
 /// then moved and resized by least squares. Errors: an empty mesh, options out of range.
 Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& options);
+
+/// The radius up to which spheres of a fit are sought: half of what the mesh measures where it is thinnest,
+/// or 0.2 m where that is more.
+float largestSphereIn(const Box3f& bounds);
 
 /// How well spheres cover the vertices of a region (all where it is empty).
 SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vector<CollisionSphere> spheres);

@@ -49,7 +49,7 @@ Result<std::vector<CollisionSphere>> fitPart(const ScalpMesh& mesh, const Sphere
     SphereFitOptions options;
     // A ball behind an open sheet touches nothing on its other side: without bounds it would be far larger
     // than the sheet.
-    options.largestRadius = std::clamp(box.diagonal().norm() / 2, kSmallestSphere, options.largestRadius);
+    options.largestRadius = std::clamp(box.diagonal().norm() / 2, kSmallestSphere, largestSphereIn(box));
     if (selectionArea(mesh, part.faces) < kTooSmallToSample) {
         return std::vector<CollisionSphere>{{{}, box.center(), options.largestRadius, {}}};
     }

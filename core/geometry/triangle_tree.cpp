@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace hairloom {
@@ -95,6 +97,15 @@ std::optional<TriangleTree::Hit> meet(const Vec3d& origin, const Vec3d& directio
     return TriangleTree::Hit{0, barycentric, origin + along * direction, along};
 }
 
+/// Under which a point sees a triangle, positive from behind (Van Oosterom and Strackee 1983).
+double solidAngle(const Vec3d& p, const Corners& corners) {
+    const Vec3d a = corners.a.cast<double>() - p, b = corners.b.cast<double>() - p,
+                c = corners.c.cast<double>() - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    const double below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    return 2 * std::atan2(a.dot(b.cross(c)), below);
+}
+
 /// Nodes that are still to be looked at, and how near they are at least.
 struct Pending {
     struct Entry {
@@ -116,7 +127,7 @@ struct Pending {
 
 }  // namespace
 
-TriangleTree::TriangleTree(std::span<const Corners> triangles) : order_(triangles.size()) {
+TriangleTree::TriangleTree(std::span<const Corners> triangles, Winding winding) : order_(triangles.size()) {
     if (triangles.empty()) return;
     std::iota(order_.begin(), order_.end(), 0u);
     std::vector<Vec3f> centres(triangles.size());
@@ -126,6 +137,7 @@ TriangleTree::TriangleTree(std::span<const Corners> triangles) : order_(triangle
     nodes_.reserve(2 * triangles.size() / kLeaf + 2);
     build(centres, 0, static_cast<std::uint32_t>(triangles.size()));
     for (std::size_t i = 0; i < order_.size(); ++i) corners_[i] = triangles[order_[i]];
+    if (winding == Winding::yes) sumDipoles();
 }
 
 void TriangleTree::build(std::span<const Vec3f> centres, std::uint32_t first, std::uint32_t count) {
@@ -149,6 +161,63 @@ void TriangleTree::build(std::span<const Vec3f> centres, std::uint32_t first, st
     nodes_[index].next = static_cast<std::uint32_t>(nodes_.size());
     nodes_[index].count = 0;
     build(centres, first + half, count - half);
+}
+
+void TriangleTree::sumDipoles() {
+    dipoles_.resize(nodes_.size());
+    // Children come after their parents.
+    for (std::size_t index = nodes_.size(); index-- > 0;) {
+        const Node& node = nodes_[index];
+        Dipole& sum = dipoles_[index];
+        sum = {Vec3d::Zero(), Vec3d::Zero(), 0, 0};
+        const auto add = [&](const Vec3d& centre, const Vec3d& normal, double area) {
+            sum.centre += area * centre;
+            sum.normal += normal;
+            sum.area += area;
+        };
+        if (node.count == 0) {
+            for (const std::size_t child : {index + 1, std::size_t{node.next}})
+                add(dipoles_[child].centre, dipoles_[child].normal, dipoles_[child].area);
+        }
+        for (std::uint32_t i = node.next; i < node.next + node.count; ++i) {
+            const Vec3d a = corners_[i].a.cast<double>(), b = corners_[i].b.cast<double>(),
+                        c = corners_[i].c.cast<double>();
+            const Vec3d normal = 0.5 * (b - a).cross(c - a);
+            add((a + b + c) / 3, normal, normal.norm());
+        }
+        const Vec3d low = node.low.head<3>().cast<double>(), high = node.high.head<3>().cast<double>();
+        sum.centre = sum.area > 0 ? Vec3d(sum.centre / sum.area) : Vec3d((low + high) / 2);
+        sum.radius = (sum.centre - low).cwiseAbs().cwiseMax((high - sum.centre).cwiseAbs()).norm();
+    }
+}
+
+double TriangleTree::windingNumber(const Vec3f& point) const {
+    assert(dipoles_.size() == nodes_.size());
+    if (nodes_.empty() || !point.allFinite()) return 0;
+    // Farther away than so many radii a node is one dipole (Barill et al. 2018, Eq. 18).
+    constexpr double kFar = 3;
+    const Vec3d p = point.cast<double>();
+    double fourPi = 0;
+    Pending pending;
+    pending.push(0, 0);
+    while (pending.count > 0) {
+        const std::uint32_t index = pending.pop().node;
+        const Node& node = nodes_[index];
+        const Dipole& dipole = dipoles_[index];
+        const Vec3d to = dipole.centre - p;
+        const double squared = to.squaredNorm();
+        if (squared > kFar * kFar * dipole.radius * dipole.radius) {
+            fourPi += to.dot(dipole.normal) / (squared * std::sqrt(squared));
+            continue;
+        }
+        if (node.count == 0) {
+            pending.pushBoth({index + 1, 0}, {node.next, 0});
+            continue;
+        }
+        for (std::uint32_t i = node.next; i < node.next + node.count; ++i)
+            fourPi += solidAngle(p, corners_[i]);
+    }
+    return fourPi / (4 * std::numbers::pi);
 }
 
 std::optional<TriangleTree::Hit> TriangleTree::closest(const Vec3f& point) const {

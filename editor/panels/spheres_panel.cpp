@@ -187,7 +187,7 @@ class SpheresPanel : public QWidget {
                 auto fit = editing::fitSpheres(*groom.scalp, options);
                 if (!fit || !actor) return fit;
                 for (CollisionSphere& sphere : fit->spheres)
-                    sphere.bone = boneNear(actor->skeleton(), sphere.centre);
+                    sphere.bone = boneUnder(*actor, sphere.centre, sphere.radius);
                 return fit;
             },
             [this](editing::SphereFit fit) {

@@ -173,11 +173,31 @@ TEST_F(Cli, HairThatFallsThroughTheHeadIsSeen) {
     const auto standing = runJson("simulate hair.hairloom --frames 1");
     EXPECT_LT(standing["max_mesh_penetration_mm"], 1);
     EXPECT_LT(standing["share_inside_mesh"], 0.01);
+    EXPECT_TRUE(standing["authored_depth_mm"].is_number());
     runJson("set hair.hairloom simulation.angularStiffness=0.01 simulation.restGravity=0 -o soft.hairloom");
     const auto fallen = runJson("simulate soft.hairloom --frames 60");  // among no spheres
     EXPECT_GT(fallen["max_mesh_penetration_mm"], 5);
     EXPECT_GT(fallen["share_inside_mesh"], 0.05);
     EXPECT_LT(fallen["share_inside_mesh"], 1);
+    EXPECT_EQ(fallen["max_mesh_penetration_mm"], fallen["max_guide_penetration_mm"]) << "no follow hairs";
+    EXPECT_GT(fallen["deepest_frame"], 5);
+    runJson("set soft.hairloom interpolation.followPerGuide=6 -o many.hairloom");
+    const auto many = runJson("simulate many.hairloom --frames 60");
+    EXPECT_EQ(many["max_guide_penetration_mm"], fallen["max_guide_penetration_mm"]);
+    EXPECT_GT(many["max_mesh_penetration_mm"], 5);
+    // Hair that swings out of the head again was in it all the same.
+    EXPECT_GE(runJson("simulate soft.hairloom --frames 90")["max_mesh_penetration_mm"],
+              fallen["max_mesh_penetration_mm"]);
+}
+
+TEST_F(Cli, FittedSpheresGoWithTheHead) {
+    runJson(createArguments());
+    const auto fitted = runJson("spheres hair.hairloom --fit 6 -o on.hairloom");
+    EXPECT_EQ(fitted["on_bones"], 6);
+    const Outcome lost = run("spheres hair.hairloom --fit 6 --character none.glb -o off.hairloom");
+    EXPECT_EQ(lost.exitCode, 1);
+    EXPECT_THAT(lost.errors, HasSubstr("none.glb"));
+    EXPECT_FALSE(fs::exists(folder / "off.hairloom"));
 }
 
 TEST_F(Cli, OtherMethodsReportAndRecordAlike) {

@@ -101,6 +101,7 @@ TEST_F(OperatorsCli, HairCollidesWithGroupsThatAreNoPartOfTheHead) {
     EXPECT_EQ(moved["nan_count"], 0);
     const auto fitted = runJson("spheres dressed.hairloom --fit 3 --replace -o more.hairloom");
     EXPECT_EQ(fitted["spheres"], 10) << "those of the group stay";
+    EXPECT_EQ(fitted["on_bones"], 3);
     const auto again = runJson("spheres more.hairloom --fit 2 --replace -o more.hairloom --force");
     EXPECT_EQ(again["spheres"], 9);
 

@@ -23,6 +23,21 @@ TEST(SphereFit, FitsASphericalHead) {
     EXPECT_LT(fit->worstBulge, 5e-4f);
 }
 
+TEST(SphereFit, FitsHeadsOfAnySize) {
+    // Robots and ogres: 1.2 m across.
+    const ScalpMesh ogre = test::meshOf(test::icosphereSoup(4, 0.6f));
+    SphereFitOptions options;
+    options.count = 1;
+    const auto fit = fitSpheres(ogre, options);
+    ASSERT_TRUE(fit) << fit.error().message();
+    EXPECT_NEAR(fit->spheres[0].radius, 0.6f, 3e-3f);
+    EXPECT_LT(fit->worstGap, 4e-3f);
+    options.largestRadius = 0.3f;  // as asked for
+    EXPECT_LE(fitSpheres(ogre, options)->spheres[0].radius, 0.3f);
+    options.largestRadius = 20;
+    EXPECT_FALSE(fitSpheres(ogre, options));
+}
+
 /// A head on a neck on shoulders, as three spheres that meet.
 ScalpMesh threeBalls() {
     PolygonSoup soup = test::icosphereSoup(4, 0.1f);
