@@ -2,11 +2,33 @@
 #pragma once
 // How a program that fails says so: a line for people, and an object for programs where they asked for one.
 
+#include <exception>
 #include <string>
+#include <utility>
 
 #include "core/base/result.h"
 
 namespace hairloom::cli {
+
+/// What was typed is wrong: the program ends with status 2.
+class WrongUsage : public std::exception {
+  public:
+    explicit WrongUsage(Error error) : error_(std::move(error)) {}
+    WrongUsage(std::string problem, std::string expected)
+        : error_{{}, {}, std::move(problem), std::move(expected)} {}
+    const Error& error() const { return error_; }
+    const char* what() const noexcept override { return error_.problem.c_str(); }
+
+  private:
+    Error error_;
+};
+
+/// The value of what was typed; throws WrongUsage where there is none.
+template <class T>
+T orWrongUsage(Result<T> typed) {
+    if (!typed) throw WrongUsage(std::move(typed.error()));
+    return std::move(*typed);
+}
 
 /// A line on standard error; with `json` also printErrorObject().
 void printError(const Error& error, bool json);

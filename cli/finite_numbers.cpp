@@ -35,7 +35,7 @@ void refuseNumbersThatAreNone(CLI::App& job) {
         const std::string type = option->get_type_name();
         const bool number = type.starts_with("FLOAT") || type.starts_with("INT") || type.starts_with("UINT");
         // In front of the checks of ranges, which take what is no number for 0.
-        if (number && option->get_delimiter() == '\0') option->check(finite);
+        if (number) option->check(finite);
     }
 }
 

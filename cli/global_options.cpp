@@ -16,6 +16,10 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& options) {
     app.add_flag("--profile", options.profile, "Print on standard error what the parts of the job took");
     app.add_flag("--force", options.force,
                  "Write also over an input, another kind of file, a read-only file, a device or a FIFO");
+    app.add_flag(
+        "--allow-unconfined", options.allowUnconfined,
+        "Read foreign files also where the process that reads them cannot be confined as this system "
+        "could (docs/security.md)");
 }
 
 }  // namespace hairloom::cli

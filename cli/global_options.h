@@ -13,6 +13,7 @@ struct GlobalOptions {
     bool quiet = false;
     bool profile = false;
     bool force = false;
+    bool allowUnconfined = false;
 };
 
 /// `options` outlives the parsing.

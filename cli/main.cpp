@@ -8,6 +8,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <memory>
 #include <string>
@@ -19,11 +20,13 @@
 #include "cli/global_options.h"
 #include "cli/help_format.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "core/base/log.h"
 #include "core/base/output_file.h"
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
 #include "core/base/write_rules.h"
+#include "importers/reader_security.h"
 
 namespace {
 
@@ -49,16 +52,21 @@ Report rounded(const Report& value) {
     return std::round(number * unit) / unit;
 }
 
-void printForPeople(const Report& exact) {
+/// Names may quote bytes of damaged files, which need not be valid UTF-8.
+std::string textOf(const Report& value) {
+    return value.is_string() ? value.get<std::string>()
+                             : value.dump(-1, ' ', false, Report::error_handler_t::replace);
+}
+
+void printForPeople(std::FILE* stream, const Report& exact) {
     const Report report = rounded(exact);
 
     for (const auto& [key, value] : report.items()) {
         if (value.is_array()) {
-            fmt::print("{}:{}\n", key, value.empty() ? " none" : "");
-            for (const auto& row : value)
-                fmt::print("  {}\n", row.is_string() ? row.get<std::string>() : row.dump());
+            fmt::print(stream, "{}:{}\n", key, value.empty() ? " none" : "");
+            for (const auto& row : value) fmt::print(stream, "  {}\n", textOf(row));
         } else {
-            fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+            fmt::print(stream, "{}: {}\n", key, textOf(value));
         }
     }
 }
@@ -87,10 +95,9 @@ int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine
     if (!report) return failWith(report.error(), json);
     try {
         if (json) {
-            // Names and messages may quote bytes of damaged files, which need not be valid UTF-8.
             fmt::print("{}\n", report->dump(2, ' ', false, Report::error_handler_t::replace));
         } else {
-            printForPeople(*report);
+            printForPeople(hairloom::cli::writesToStandardOutput() ? stderr : stdout, *report);
         }
     } catch (const std::system_error&) {
         // fmt's word for a stream that takes no more; flushOutput() has the reason.
@@ -99,13 +106,26 @@ int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine
     return kDone;
 }
 
+int failUsage(const hairloom::Error& error, bool json) {
+    hairloom::cli::printError(error, json);
+    return kWrongUsage;
+}
+
+/// "hairloom-cli set --help", of the job that was named, if one was.
+std::string helpOf(const CLI::App& app) {
+    std::string words = "hairloom-cli";
+    for (const CLI::App* job : app.get_subcommands()) words += " " + job->get_name();
+    return "see " + words + " --help";
+}
+
 /// What the parser says goes where it belongs: help and version are answers, all else is wrong usage.
 int endParsing(const CLI::App& app, const CLI::ParseError& error, bool json) {
-    const bool isAnswer = app.exit(error) == 0;
-    if (!isAnswer) {
-        if (json) hairloom::cli::printErrorObject({{}, {}, error.what(), "see --help"});
-        return kWrongUsage;
+    if (error.get_exit_code() != 0) {
+        std::string what = error.what();
+        std::ranges::replace(what, '\n', ' ');
+        return failUsage({{}, {}, what, helpOf(app)}, json);
     }
+    app.exit(error);
     if (const auto flushed = hairloom::cli::flushOutput(); !flushed) return failWith(flushed.error(), false);
     return kDone;
 }
@@ -135,15 +155,26 @@ int main(int argc, char** argv) {
         return endParsing(app, error, std::any_of(argv + 1, argv + argc, isJson));
     }
     hairloom::setWriteRules({options.force, true, "give another name, or --force"});
+    hairloom::cli::reportsAsJson(options.json);
+    hairloom::allowUnconfinedReaders(options.allowUnconfined);
     if (options.quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
     try {
         hairloom::setThreadCount(options.threads);
         const int exitCode = runChosenJob(jobs, joined(argc, argv), options.json);
         if (options.profile) printProfile();
         return exitCode;
+    } catch (const hairloom::cli::WrongUsage& error) {
+        return failUsage(error.error(), options.json);
     } catch (const std::bad_alloc&) {
-        return failWith({{}, {}, "out of memory", {}}, options.json);
+        return failWith(
+            {{}, {}, "the job needs more memory than there is", "a smaller input, or more memory"},
+            options.json);
     } catch (const std::exception& error) {
-        return failWith({{}, {}, error.what(), {}}, options.json);
+        return failWith(
+            {{},
+             {},
+             fmt::format("the job stopped at something unforeseen ({}); nothing was written", error.what()),
+             "please report it with the command and its input"},
+            options.json);
     }
 }

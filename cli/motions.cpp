@@ -2,18 +2,18 @@
 #include "cli/motions.h"
 
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/vectors.h"
 
 namespace hairloom::cli {
 
 Status setWind(Groom& groom, const std::string& wind) {
     if (wind.empty()) return {};
-    const auto velocity = parseVector(wind, "--wind");
-    if (!velocity) return tl::unexpected(velocity.error());
-    const float speed = velocity->norm();
+    const Vec3f velocity = orWrongUsage(parseVector(wind, "--wind"));
+    const float speed = velocity.norm();
     groom.simulation.windSpeed = speed;
     if (speed > 0) {
-        const Vec3f direction = *velocity / speed;
+        const Vec3f direction = velocity / speed;
         groom.simulation.windDirection = {direction.x(), direction.y(), direction.z()};
     }
     return {};

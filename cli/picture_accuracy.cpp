@@ -7,6 +7,7 @@
 #include "cli/accuracy_jobs.h"
 #include "cli/backend.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/progress.h"
 #include "cli/vectors.h"
 #include "core/live/picture_cost_report.h"
@@ -58,11 +59,7 @@ Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std:
     }
     if (!options.shading.empty()) measuring.view.fibre.model = kShadingModels.at(options.shading);
     std::pair<std::uint32_t, std::uint32_t> size = measuring.view.size.value_or(std::pair(640u, 640u));
-    if (!options.size.empty()) {
-        const auto parsed = parseSize(options.size);
-        if (!parsed) return tl::unexpected(parsed.error());
-        size = *parsed;
-    }
+    if (!options.size.empty()) size = orWrongUsage(parseSize(options.size));
     std::tie(measuring.picture.width, measuring.picture.height) = size;
     measuring.picture.frames = options.frames;
     measuring.repeats = repeats;

@@ -4,6 +4,7 @@
 #include <QTimer>
 
 #include "core/base/output_file.h"
+#include "editor/document/end_signals.h"
 #include "editor/shell/main_window.h"
 #include "editor/style/theme.h"
 
@@ -24,14 +25,24 @@ int main(int argc, char** argv) {
     parser.addPositionalArgument("file", QObject::tr("Project, head or hair to open"), "[file]");
     parser.process(application);
     applyTheme(application, Preferences().theme());
-    MainWindow window;
-    window.show();
-    if (const QStringList files = parser.positionalArguments(); !files.isEmpty()) window.open(files.first());
-    if (parser.isSet(quit)) {
-        QTimer::singleShot(0, &window, [&window] {
-            window.repaint();
-            QCoreApplication::quit();
+    EndSignals signals;
+    const int exitCode = [&] {
+        MainWindow window;
+        QObject::connect(&signals, &EndSignals::received, &window, [&window] {
+            window.autosave().keep();
+            QCoreApplication::exit();
         });
-    }
-    return QApplication::exec();
+        window.show();
+        if (const QStringList files = parser.positionalArguments(); !files.isEmpty())
+            window.open(files.first());
+        if (parser.isSet(quit)) {
+            QTimer::singleShot(0, &window, [&window] {
+                window.repaint();
+                QCoreApplication::quit();
+            });
+        }
+        return QApplication::exec();
+    }();
+    signals.endProcess();
+    return exitCode;
 }

@@ -60,12 +60,16 @@ class Child {
     pid_t id_;
 };
 
-/// Memory of a process that is in use, bytes; 0 where the system does not tell.
+/// Memory of a process and its children that is in use, bytes; 0 where the system does not tell.
 std::uint64_t residentBytes(pid_t process) {
     std::ifstream file(fmt::format("/proc/{}/statm", process));
     std::uint64_t total = 0, resident = 0;
     file >> total >> resident;
-    return file ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+    std::uint64_t bytes = file ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+    // What reads may be a child of what was started, in a namespace of its own.
+    std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", process));
+    for (pid_t child = 0; children >> child;) bytes += residentBytes(child);
+    return bytes;
 }
 
 struct Spawned {

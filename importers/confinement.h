@@ -1,36 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Takes from a process that parses foreign files all that parsing does not need: the network, writing, other
-// programs, and all files but those of one folder. On Linux by seccomp and Landlock, as far as the kernel has
-// them.
+// programs, other processes, and all files but those of one folder. docs/security.md says it for
+// administrators.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
 
 namespace hairloom {
 
-/// What confineProcess() could take from the process.
-struct Confinement {
-    bool systemCalls = false;  ///< network, writing, starting programs: refused (seccomp)
-    bool files = false;        ///< reading outside the folder: refused (Landlock)
-    int landlockVersion = 0;   ///< of the kernel's interface; 0 where there is none
+enum class LayerState : std::uint8_t {
+    Set,
+    Missing,  ///< this system or kernel has no such thing, or gives it to nobody
+    Failed,   ///< it is there and could not be set
+};
+std::string_view layerStateName(LayerState state);
+
+/// One thing that is taken from the process, by a means of its own.
+struct ConfinementLayer {
+    /// "memory": a limit of address space. "processes": other processes have no number here. "paths": only
+    /// the folder is there. "files": only the folder can be read, nothing written. "system_calls": few, and
+    /// with few arguments.
+    std::string name;
+    LayerState state = LayerState::Missing;
+    std::string why;  ///< of one that is not set
 };
 
-/// From now on the process reads files in `folder` and below it only, and writes to what is open as its
-/// output and errors. Cannot be taken back. Sanitizers need more than seccomp leaves: with them only files
-/// are refused.
-Confinement confineProcess(const std::filesystem::path& folder);
+struct Confinement {
+    std::vector<ConfinementLayer> layers;
+    int landlockVersion = 0;  ///< of the kernel's interface; 0 where there is none
+
+    bool isSet(std::string_view layer) const;
+    /// Names and reasons of the layers in that state; empty where there is none.
+    std::string namesOf(LayerState state) const;
+};
+
+/// From now on the process reads files in `folder` and below it only, writes to what is open as its output
+/// and errors, and has at most so much memory. Cannot be taken back. It may return in a process of its own,
+/// whose end the one that called it shares. Sanitizers need more memory and system calls than is left: with
+/// them those layers are missing. Call it before there are threads.
+Confinement confineProcess(const std::filesystem::path& folder, std::uint64_t memoryBytes);
 
 /// One thing that a confined process must not be able to do, and whether it could.
 struct ConfinementTrial {
-    std::string what;  ///< "network", "write", "other_files", "programs"
+    /// "network", "write", "other_files", "stat" (of a file outside), "programs", "signals" (to the process
+    /// below), "limits" (of it), "memory" (more than the limit), "code" (memory that is executed)
+    std::string what;
     bool isRefused = false;
 };
-/// Tries each of them; outside the folder of confineProcess() `outside` is an existing file.
-std::vector<ConfinementTrial> tryToEscape(const std::filesystem::path& folder,
-                                          const std::filesystem::path& outside);
+
+/// What is there to escape to, and harmless to try.
+struct ConfinementBait {
+    std::filesystem::path folder;   ///< of confineProcess()
+    std::filesystem::path outside;  ///< an existing file that does not lie in it
+    std::int64_t process = 0;       ///< another process of the same user
+    std::uint64_t memoryBytes = 0;  ///< of confineProcess()
+};
+/// Tries each of them.
+std::vector<ConfinementTrial> tryToEscape(const ConfinementBait& bait);
 
 }  // namespace hairloom

@@ -5,12 +5,19 @@
 
 namespace hairloom {
 
-Confinement confineProcess(const std::filesystem::path&) {
-    return {};
+Confinement confineProcess(const std::filesystem::path&, std::uint64_t) {
+    Confinement confinement;
+    for (const char* name : {"memory", "processes", "paths", "files", "system_calls"})
+        confinement.layers.push_back({name, LayerState::Missing, "not made use of on this system"});
+    return confinement;
 }
 
-std::vector<ConfinementTrial> tryToEscape(const std::filesystem::path&, const std::filesystem::path&) {
-    return {{"network", false}, {"write", false}, {"other_files", false}, {"programs", false}};
+std::vector<ConfinementTrial> tryToEscape(const ConfinementBait&) {
+    std::vector<ConfinementTrial> trials;
+    for (const char* what :
+         {"network", "write", "other_files", "stat", "signals", "limits", "memory", "code", "programs"})
+        trials.push_back({what, false});
+    return trials;
 }
 
 }  // namespace hairloom

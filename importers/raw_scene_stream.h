@@ -5,11 +5,15 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 
 #include "core/base/file.h"
 #include "importers/raw_scene.h"
 
 namespace hairloom {
+
+/// Begins the first warning of a scene whose reader lacked layers of confinement; their names follow.
+inline constexpr std::string_view kGuardWarning = "guard: ";
 
 /// The scene, or the reason why there is none.
 ByteWriter writeRawScene(const Result<RawScene>& scene);

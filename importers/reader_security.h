@@ -10,8 +10,13 @@
 
 namespace hairloom {
 
-/// As the mesh reader finds them by trying: "seccomp", "landlock", "landlock_version", and whether "network",
-/// "write", "other_files" and "programs" are refused. Errors: the reader cannot be run.
+/// As the mesh reader finds them by trying: "seccomp", "landlock", "landlock_version"; "layer_NAME" for each
+/// ConfinementLayer, set, missing or failed; "refuses_NAME" for each ConfinementTrial. Errors: the reader
+/// cannot be run.
 Result<std::vector<std::pair<std::string, std::string>>> readerSecurity();
+
+/// Reads foreign files also where a layer that this system has cannot be set. Set before anything is read.
+void allowUnconfinedReaders(bool allowed);
+bool areUnconfinedReadersAllowed();
 
 }  // namespace hairloom

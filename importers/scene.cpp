@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <mutex>
 #include <system_error>
 
 #include "core/base/file.h"
+#include "core/base/log.h"
 #include "core/base/write_rules.h"
 #include "importers/child_process.h"
 #include "importers/length_unit.h"
@@ -20,6 +22,7 @@
 #include "importers/ply_mesh.h"
 #include "importers/raw_scene.h"
 #include "importers/raw_scene_stream.h"
+#include "importers/reader_security.h"
 #include "importers/utf8.h"
 
 namespace hairloom {
@@ -64,11 +67,28 @@ bool startsWithUtf16Mark(const std::vector<std::byte>& bytes) {
     return (first == 0xff && second == 0xfe) || (first == 0xfe && second == 0xff);
 }
 
+/// Once in a run: it is of the machine, and of no file.
+void sayWhatTheGuardLacks(RawScene& scene) {
+    static std::once_flag said;
+    if (scene.warnings.empty() || !scene.warnings.front().starts_with(kGuardWarning)) return;
+    const std::string names = scene.warnings.front().substr(kGuardWarning.size());
+    scene.warnings.erase(scene.warnings.begin());
+    std::call_once(said, [&] {
+        log::warning(
+            "the process that reads foreign files runs without {}; `hairloom-cli devices --security` "
+            "says what holds",
+            names);
+    });
+}
+
 Result<RawScene> readInChild(const std::filesystem::path& path, MeshFormat format) {
-    const auto output = runChild("the mesh reader", meshReaderProgram(),
-                                 {std::string(name(format)), std::filesystem::absolute(path).string()}, {});
+    std::vector<std::string> arguments{std::string(name(format)), std::filesystem::absolute(path).string()};
+    if (areUnconfinedReadersAllowed()) arguments.emplace_back("--allow-unconfined");
+    const auto output = runChild("the mesh reader", meshReaderProgram(), arguments, {});
     if (!output) return tl::unexpected(output.error());
-    return readRawScene(path.string(), *output);
+    auto scene = readRawScene(path.string(), *output);
+    if (scene) sayWhatTheGuardLacks(*scene);
+    return scene;
 }
 
 Result<RawScene> readRaw(const std::filesystem::path& path, MeshFormat format) {

@@ -56,12 +56,8 @@ float unlikelihood(const Size& size, float scale) {
     return std::abs(std::log(found * scale / usual));
 }
 
-}  // namespace
-
-std::optional<Finding> implausibleSize(std::span<const std::uint32_t> offsets,
-                                       std::span<const Vec3f> positions, float metresPerUnit) {
-    const Size size = measure(offsets, positions);
-    if (isPlausible(size, 1.0f)) return std::nullopt;
+/// Of those in which the size is plausible the one nearest to a usual head; null where there is none.
+const LengthUnit* fittingUnit(const Size& size, float metresPerUnit) {
     const LengthUnit* best = nullptr;
     float bestScale = 0;
     for (const LengthUnit& unit : lengthUnits()) {
@@ -71,13 +67,36 @@ std::optional<Finding> implausibleSize(std::span<const std::uint32_t> offsets,
         best = &unit;
         bestScale = scale;
     }
+    return best;
+}
+
+}  // namespace
+
+Error tooFar(const FarPoint& far, std::span<const std::uint32_t> offsets, std::span<const Vec3f> positions,
+             float metresPerUnit) {
+    Error error;
+    error.problem =
+        fmt::format("strand {} has its point {} {:.4g} m from the origin", far.strand, far.point, far.metres);
+    error.expected = fmt::format("expected all points within {} m", kFarthestPoint);
+    const Size size = measure(offsets, positions);
+    const LengthUnit* const unit = isPlausible(size, 1.0f) ? nullptr : fittingUnit(size, metresPerUnit);
+    error.expected += unit != nullptr ? fmt::format("; the unit {} would fit the strands", unit->name)
+                                      : "; mend the strand, scale the file or move it to the origin";
+    return error;
+}
+
+std::optional<Finding> implausibleSize(std::span<const std::uint32_t> offsets,
+                                       std::span<const Vec3f> positions, float metresPerUnit) {
+    const Size size = measure(offsets, positions);
+    if (isPlausible(size, 1.0f)) return std::nullopt;
+    const LengthUnit* const best = fittingUnit(size, metresPerUnit);
     Finding finding{
         Severity::Warning, fmt::format("strands are {:.4g} m long (median)", size.length), "size", {}};
     if (size.spread > 0) finding.what += fmt::format(" and their roots spread over {:.4g} m", size.spread);
     finding.what += ", which is implausible for hair";
-    finding.fix =
-        best ? fmt::format("the unit {} would fit: strands of {:.4g} m", best->name, size.length * bestScale)
-             : "none of the units m, dm, cm, mm and inch fits; scale the file";
+    finding.fix = best ? fmt::format("the unit {} would fit: strands of {:.4g} m", best->name,
+                                     size.length * static_cast<float>(best->metres) / metresPerUnit)
+                       : "none of the units m, dm, cm, mm and inch fits; scale the file";
     return finding;
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 #include "core/base/file.h"
 #include "importers/attribute_units.h"
@@ -94,6 +95,9 @@ class Cleaner {
         reportRepairs();
     }
 
+    /// The first point of the strands that were kept, or of their frames, that is too far away for hair.
+    const std::optional<FarPoint>& far() const { return far_; }
+
   private:
     void keep(std::size_t strand, std::uint32_t begin, std::uint32_t end) {
         const std::uint32_t source =
@@ -118,10 +122,19 @@ class Cleaner {
             return drop(DropReason::ZeroLength);
         }
         if (kept < end - begin) noteRepair(source, end - begin - kept);
+        lookFar(source, std::span<const Vec3f>(raw_.positions).subspan(start, kept));
         if (!raw_.rootUvs.empty()) raw_.rootUvs[offsets_.size() - 1] = raw_.rootUvs[strand];
         if (!raw_.thicknessScale.empty())
             raw_.thicknessScale[offsets_.size() - 1] = raw_.thicknessScale[strand];
         offsets_.push_back(static_cast<std::uint32_t>(written_));
+    }
+
+    void lookFar(std::uint32_t strand, std::span<const Vec3f> points) {
+        for (std::size_t p = 0; p < points.size() && !far_; ++p) {
+            const float reach = points[p].cwiseAbs().maxCoeff();
+            // Frames may hold what is no number, too.
+            if (!(reach <= kFarthestPoint)) far_ = FarPoint{strand, static_cast<std::uint32_t>(p), reach};
+        }
     }
 
     void compactAttributes() {
@@ -133,6 +146,10 @@ class Cleaner {
         for (std::vector<Vec3f>& frame : raw_.frames) {
             remove(droppedPoints_, frame, 1);
             for (Vec3f& position : frame) position = toMetresYUp(position, options_, raw_.mirrorZ);
+            for (std::size_t s = 0; s + 1 < offsets_.size() && frame.size() == written_; ++s) {
+                lookFar(static_cast<std::uint32_t>(s),
+                        std::span<const Vec3f>(frame).subspan(offsets_[s], offsets_[s + 1] - offsets_[s]));
+            }
         }
     }
 
@@ -177,6 +194,7 @@ class Cleaner {
     RawStrands& raw_;
     const StrandImportOptions& options_;
     std::vector<std::uint32_t> offsets_{0};
+    std::optional<FarPoint> far_;
     std::vector<std::uint32_t> droppedStrands_, droppedPoints_;  ///< of the file, ascending
     std::size_t written_ = 0;
     std::size_t repairedStrands_ = 0;
@@ -396,7 +414,8 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
     if (!raw) return tl::unexpected(raw.error());
     const StrandImportOptions options = stated(*raw, asked);
     layersFromParts(*raw);
-    Cleaner(*raw, options).run();
+    Cleaner cleaner(*raw, options);
+    cleaner.run();
     std::sort(raw->dropped.begin(), raw->dropped.end(),
               [](const DroppedStrand& a, const DroppedStrand& b) { return a.strand < b.strand; });
     if (raw->offsets.size() < 2) {
@@ -406,6 +425,9 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
                                   dropReasonName(raw->dropped.front().reason)),
                       "expected strands of two or more finite points");
     }
+    if (cleaner.far())
+        return tl::unexpected(
+            inFile(tooFar(*cleaner.far(), raw->offsets, raw->positions, options.metresPerUnit), file));
     if (options.scalp && options.scalp->triangleCount() > 0) {
         if (!raw->rootFirst) orientToScalp(*raw, *options.scalp);
         if (auto near = checkRootDistance(*raw, *options.scalp, options.metresPerUnit); !near)

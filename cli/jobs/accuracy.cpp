@@ -9,8 +9,10 @@
 #include "cli/accuracy_jobs.h"
 #include "cli/backend.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/motions.h"
+#include "cli/outputs.h"
 #include "cli/picture_accuracy.h"
 #include "cli/progress.h"
 #include "core/accuracy/compare_reports.h"
@@ -50,7 +52,7 @@ std::vector<std::string> pointsToTry(const Groom& groom) {
 Result<GridAxis> parseVariation(const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
-        return fail(fmt::format("--vary is '{}'", text), "expected FIELD=VALUE,VALUE,…");
+        throw WrongUsage(fmt::format("--vary is '{}'", text), "expected FIELD=VALUE,VALUE,…");
     }
     std::vector<std::string> values;
     for (std::size_t at = equals; at != std::string::npos;) {
@@ -283,9 +285,12 @@ JobRun declare(CLI::App& job) {
     });
     return [options](const std::string& commandLine) {
         if (!options->compared.empty()) return compareFolders(options->compared);
-        if (!options->picture.wanted) return accuracy(*options, commandLine);
-        return pictureAccuracy(options->picture, options->motion.input, options->view, options->repeats,
-                               options->output, commandLine);
+        return withOutputFolder(options->output, [&] {
+            return options->picture.wanted
+                       ? pictureAccuracy(options->picture, options->motion.input, options->view,
+                                         options->repeats, options->output, commandLine)
+                       : accuracy(*options, commandLine);
+        });
     };
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "benchmarks/benchmark.h"
+#include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -41,25 +42,20 @@ std::string whoTakes(const std::string& option) {
     return names;
 }
 
-Status checkOptions(const BenchOptions& options) {
+void checkOptions(const BenchOptions& options) {
     const Benchmark& benchmark = benchmarkOf(options.name);
     for (const std::string& option : options.given) {
         if (std::ranges::find(benchmark.takes, option) != benchmark.takes.end()) continue;
-        return fail(fmt::format("`bench {}` takes no {}", options.name, option),
-                    fmt::format("expected it with {}", whoTakes(option)));
+        throw WrongUsage(fmt::format("`bench {}` takes no {}", options.name, option),
+                         fmt::format("expected it with {}", whoTakes(option)));
     }
-    return {};
 }
 
 Result<Report> bench(const BenchOptions& options, const std::string& commandLine) {
-    if (auto status = checkOptions(options); !status) return tl::unexpected(status.error());
+    checkOptions(options);
     benchmarks::Options measuring = options.measuring;
     measuring.commandLine = commandLine;
-    if (!options.size.empty()) {
-        const auto size = parseSize(options.size);
-        if (!size) return tl::unexpected(size.error());
-        measuring.size = *size;
-    }
+    if (!options.size.empty()) measuring.size = orWrongUsage(parseSize(options.size));
     std::unique_ptr<Progress> progress;
     measuring.progress = [&](std::string_view what, std::size_t done, std::size_t total) {
         if (!progress) progress = std::make_unique<Progress>(std::string(what), total);
@@ -137,7 +133,9 @@ JobRun declare(CLI::App& job) {
         }
     });
     return [options](const std::string& commandLine) {
-        return withOutputs({{options->markdown}}, [&] { return bench(*options, commandLine); });
+        return withOutputFolder(options->output, [&] {
+            return withOutputs({{options->markdown}}, [&] { return bench(*options, commandLine); });
+        });
     };
 }
 

@@ -7,6 +7,7 @@
 #include "cli/accuracy_jobs.h"
 #include "cli/backend.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/motions.h"
 #include "cli/outputs.h"
@@ -57,11 +58,7 @@ class FrameTimer {
   public:
     static Result<FrameTimer> make(std::uint32_t device, const std::string& size, const HeadMotion& motion) {
         std::pair<std::uint32_t, std::uint32_t> pixels(1920, 1080);
-        if (!size.empty()) {
-            const auto parsed = parseSize(size);
-            if (!parsed) return tl::unexpected(parsed.error());
-            pixels = *parsed;
-        }
+        if (!size.empty()) pixels = orWrongUsage(parseSize(size));
         auto gpu = GpuBackend::make(std::nullopt, device);
         if (!gpu) return tl::unexpected(gpu.error());
         return FrameTimer(std::move(*gpu), pixels, motion);

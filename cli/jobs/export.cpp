@@ -7,6 +7,7 @@
 
 #include "cli/card_options.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -51,7 +52,7 @@ struct Asked {
 };
 Result<Asked> findAsked(const ExportOptions& options) {
     if (options.format.empty() && options.target.empty())
-        return fail("neither --format nor --target is given", "expected one of them");
+        throw WrongUsage("neither --format nor --target is given", "expected one of them");
     const StrandWriter& writer = options.format.empty() ? preferredWriter(options.target, hairWriters())
                                                         : strandWriter(options.format, hairWriters());
     if (options.target.empty()) return Asked{&writer, &writer.targets.front()};
@@ -62,7 +63,8 @@ Result<Asked> findAsked(const ExportOptions& options) {
         if (findTarget(other, options.target) != nullptr)
             formats += (formats.empty() ? "" : ", ") + other.name;
     }
-    return fail(fmt::format("{} does not read {}", options.target, options.format), "expected " + formats);
+    throw WrongUsage(fmt::format("{} does not read {}", options.target, options.format),
+                     "expected " + formats);
 }
 
 /// Writes the report beside the file, if that is one.
@@ -82,7 +84,7 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
     if (options.certify) wanted.storms = CertificateOptions{}.storms;
     if (options.record.empty()) return wanted;
     if (options.frames.size() != 2 || options.frames[1] < options.frames[0])
-        return fail("--frames goes backwards or is not two numbers", "FIRST,LAST");
+        throw WrongUsage("--frames goes backwards or is not two numbers", "FIRST,LAST");
     wanted.firstFrame = options.frames[0];
     for (std::uint64_t number = options.frames[0]; number <= options.frames[1]; ++number) {
         auto frame = readFrame(options.record, groom, number);
@@ -95,8 +97,8 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
 Result<Report> exportAsPage(const ExportOptions& options) {
     if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
         !options.record.empty() || options.what == "hairs")
-        return fail("--target, --unit, --up, --points, --record and --what hairs say nothing of a page",
-                    "it plays a runtime asset in metres, Y up, which draws follow hairs itself");
+        throw WrongUsage("--target, --unit, --up, --points, --record and --what hairs say nothing of a page",
+                         "it plays a runtime asset in metres, Y up, which draws follow hairs itself");
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     HairToExport wanted;
@@ -179,10 +181,13 @@ JobRun declare(CLI::App& job) {
                    "File to write, or the folder of a page; the report goes beside a file")
         ->required();
     return [options](const std::string&) {
-        if (options->format == kWebFormat) return exportAsPage(*options);
+        if (options->format == kWebFormat)
+            return withOutputFolder(
+                options->output, [&] { return exportAsPage(*options); }, ReadBack::Yes);
         const std::string companion = companionOf(options->output);
-        return withOutputs({{options->output}, {companion, content::kJson}},
-                           [&] { return exportAsset(*options); });
+        return withOutputs(
+            {{options->output}, {companion, content::kJson}}, [&] { return exportAsset(*options); },
+            ReadBack::Yes);
     };
 }
 

@@ -25,7 +25,7 @@ Result<Report> replay(const GroomOptions& options) {
     const Stopwatch watch;
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    const auto text = readTextFile(options.script);
+    const auto text = readTextFile(options.script, kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
     const auto script = parseDocumentScript(options.script, *text);
     if (!script) return tl::unexpected(script.error());

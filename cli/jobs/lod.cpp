@@ -5,6 +5,7 @@
 #include "cli/card_options.h"
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "core/base/stopwatch.h"
 #include "core/levels/level_report.h"
@@ -54,7 +55,9 @@ JobRun declare(CLI::App& job) {
     addCardOptions(job, options->budget);
     job.add_option("--directions", options->budget.chain.directions, "Directions that levels are judged from")
         ->check(CLI::Range(1, 360));
-    return [options](const std::string& commandLine) { return run(*options, commandLine); };
+    return [options](const std::string& commandLine) {
+        return withOutputFolder(options->output, [&] { return run(*options, commandLine); });
+    };
 }
 
 }  // namespace

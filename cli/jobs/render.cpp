@@ -8,6 +8,7 @@
 
 #include "cli/backend.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/live_shots.h"
 #include "cli/motions.h"
@@ -61,6 +62,7 @@ struct RenderJobOptions {
     bool temporal = false;
     std::string exr;
     std::vector<std::string> aovs;
+    std::vector<std::string> imageFolders;
     std::string animation;
     std::string strip;
     std::uint32_t milliseconds = 40;
@@ -99,11 +101,7 @@ const std::map<std::string, render::Transparency> kTransparency{
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view) {
     render::RenderOptions picture;
     std::pair<std::uint32_t, std::uint32_t> size = view.size.value_or(std::pair(1024u, 1024u));
-    if (!options.size.empty()) {
-        const auto parsed = parseSize(options.size);
-        if (!parsed) return tl::unexpected(parsed.error());
-        size = *parsed;
-    }
+    if (!options.size.empty()) size = orWrongUsage(parseSize(options.size));
     std::tie(picture.width, picture.height) = size;
     const AntiAliasing& aa = kAntiAliasing.at(options.antiAliasing);
     picture.samples = aa.samples;
@@ -158,12 +156,13 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
     }
     if (options.frames.empty()) return std::vector<Shot>{{options.frame, 0}};
     if (options.frames.size() > 3 || options.frames.size() < 2) {
-        return fail("--frames takes first, last and step", "FIRST,LAST[,STEP]");
+        throw WrongUsage("--frames takes first, last and step", "FIRST,LAST[,STEP]");
     }
     const std::uint64_t step = options.frames.size() == 3 ? options.frames[2] : 1;
     if (step == 0 || options.frames[1] < options.frames[0] ||
         (options.frames[1] - options.frames[0]) / step >= kMaxShots) {
-        return fail("--frames that go backwards, stand still or are more than 10000");
+        throw WrongUsage("--frames goes backwards, stands still or is more than 10000 pictures",
+                         "FIRST,LAST[,STEP]");
     }
     std::vector<Shot> shots;
     for (std::uint64_t f = options.frames[0]; f <= options.frames[1]; f += step) shots.push_back({f, 0});
@@ -308,7 +307,7 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
 Result<Report> renderToFile(const RenderJobOptions& options) {
     ViewFile view;
     if (!options.view.empty()) {
-        auto read = readViewFile(options.view);
+        auto read = readViewFile(options.view, {options.imageFolders.begin(), options.imageFolders.end()});
         if (!read) return tl::unexpected(read.error());
         view = std::move(*read);
     }
@@ -372,7 +371,12 @@ JobRun declare(CLI::App& job) {
     job.add_option("--size", options->size, "Pixels WxH; 1024x1024 where neither this nor the view says");
     job.add_option("--camera", options->camera, "From where")
         ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter"}));
-    job.add_option("--view", options->view, "JSON file with camera, lights, head and hair");
+    auto* view = job.add_option("--view", options->view, "JSON file with camera, lights, head and hair");
+    job.add_option("--images", options->imageFolders,
+                   "Folders that the view may name images in, beside its own, with commas between")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->needs(view);
     job.add_option(
            "--hide", options->hiddenGroups,
            "Groups of the head mesh to leave out of the picture, NAME or BEGINNING*, with commas between")

@@ -5,6 +5,7 @@
 
 #include "cli/advice_report.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/field_rows.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
@@ -35,14 +36,15 @@ Status addAssignment(const std::string& assignment, nlohmann::json& document) {
     const std::size_t equals = assignment.find('=');
     const std::string path = assignment.substr(0, equals);
     if (equals == std::string::npos || path.find('.') == std::string::npos)
-        return fail(fmt::format("'{}' sets nothing", assignment), "expected SECTION.FIELD=VALUE");
+        throw WrongUsage(fmt::format("'{}' sets nothing", assignment), "expected SECTION.FIELD=VALUE");
     nlohmann::json* at = &document;
     std::size_t begin = 0;
     for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
         at = &(*at)[path.substr(begin, dot - begin)];
         begin = dot + 1;
         if (!at->is_null() && !at->is_object())
-            return fail(fmt::format("'{}' is within what another sets", assignment), "expected one of them");
+            throw WrongUsage(fmt::format("'{}' is within what another sets", assignment),
+                             "expected one of them");
     }
     const std::string text = assignment.substr(equals + 1);
     nlohmann::json value = nlohmann::json::parse(text, nullptr, false);

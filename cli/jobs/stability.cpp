@@ -8,6 +8,7 @@
 #include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "core/base/file.h"
 #include "core/base/output_file.h"
@@ -198,7 +199,9 @@ JobRun declare(CLI::App& job) {
     job.add_option("--steps-at-rest", options->stepsAtRest, "Substeps of the case at rest")
         ->check(CLI::Range(8, 100'000'000));
     return [options](const std::string& commandLine) {
-        return options->groom.empty() ? stability(*options, commandLine) : certificateOf(*options);
+        return withOutputFolder(options->output, [&] {
+            return options->groom.empty() ? stability(*options, commandLine) : certificateOf(*options);
+        });
     };
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <system_error>
 
+#include "core/base/regular_file.h"
 #include "core/base/write_rules.h"
 
 namespace hairloom {
@@ -35,12 +36,7 @@ template <class Container>
 Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t maxBytes) {
     const std::string name = path.string();
     std::error_code code;
-    const auto status = std::filesystem::status(path, code);
-    if (!std::filesystem::exists(status)) return failIn(name, {}, "no such file", "expected a readable file");
-    if (std::filesystem::is_directory(status)) return failIn(name, {}, "is a folder", "expected a file");
-    // Opening a FIFO waits for somebody to write to it.
-    if (!std::filesystem::is_regular_file(status))
-        return failIn(name, {}, "is a device or a FIFO", "expected a file");
+    if (auto status = checkIsFile(path); !status) return tl::unexpected(status.error());
     const FileHandle file = openFile(path, "rb");
     if (!file) return failIn(name, {}, fmt::format("cannot be read: {}", systemMessage(errno)));
     const std::uint64_t size = std::filesystem::file_size(path, code);
@@ -60,6 +56,17 @@ Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t max
 }
 
 }  // namespace
+
+Status checkIsFile(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    std::error_code code;
+    const auto status = std::filesystem::status(path, code);
+    if (!std::filesystem::exists(status)) return failIn(name, {}, "no such file", "expected a readable file");
+    if (std::filesystem::is_directory(status)) return failIn(name, {}, "is a folder", "expected a file");
+    if (!std::filesystem::is_regular_file(status))
+        return failIn(name, {}, "is a device or a FIFO", "expected a file");
+    return {};
+}
 
 Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::uint64_t maxBytes) {
     return readWhole<std::vector<std::byte>>(path, maxBytes);

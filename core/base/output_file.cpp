@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <system_error>
 
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/output_batch.h"
 #include "core/base/temporary_file.h"
 #include "core/base/write_rules.h"
 #include "core/base/written_files.h"
@@ -24,19 +26,26 @@ tl::unexpected<Error> notWritten(const fs::path& path, const Error& why) {
                   why.expected.empty() ? "expected a writable folder with free space" : why.expected);
 }
 
-/// Whether rules allow content of `kind` (empty where unknown yet) in place of what has the name.
-Status mayReplace(const fs::path& path, const FileState& state, std::string_view kind, Replacing replacing) {
+constexpr const char* kStandardOutput = "-";
+
+/// Whether rules allow content of `kind` (empty where unknown yet) in place of what has the name; `target` is
+/// behind links.
+Status mayReplace(const fs::path& path, const fs::path& target, std::string_view kind, Replacing replacing) {
+    const FileState state = fileState(target);
     const auto refuse = [&](std::string what) {
         return failIn(path.string(), {}, std::move(what), writeRules().instead);
     };
     if (!state.exists) return {};
     if (state.folder) return failIn(path.string(), {}, "is a folder", "expected the name of a file");
     if (writeRules().force || replacing == Replacing::Anything) return {};
+    if (state.device == kFifo && isPipeAllowed(path)) return {};
     if (!state.device.empty()) return refuse(fmt::format("is {}", state.device));
     if (state.readOnly) return refuse("is read-only");
-    const InputState input = inputState(state);
+    const InputState input = inputState(target, state);
     if (input == InputState::ChangedSince) return refuse("was changed by another program since it was read");
     if (kind.empty()) return {};
+    if (input == InputState::ChangedSinceWritten && kind == content::kProject)
+        return refuse("was changed by another program since it was written");
     if (input == InputState::AsRead && kind != content::kProject)
         return refuse("is what was read, and would be replaced");
     const std::string_view there = contentKind(readBeginning(path, kContentKindBytes));
@@ -50,30 +59,75 @@ bool isTemporaryName(std::string_view name) {
 
 }  // namespace
 
-struct OutputFile::Impl {
+namespace {
+
+/// Content that is to take a place.
+struct Coming {
+    Coming() = default;
+    Coming(const Coming&) = delete;
+    Coming& operator=(const Coming&) = delete;
+    virtual ~Coming() = default;
+
     fs::path path;    ///< as asked for
     fs::path target;  ///< behind links
     Replacing replacing = Replacing::SameKind;
     std::int64_t accessed = 0;  ///< the file that is replaced, before anybody looked at its kind
     std::vector<std::byte> beginning;
     std::optional<TemporaryFile> temporary;  ///< none for a device
+    std::vector<std::byte> held;             ///< all of it for a device: half of a file is never sent
+
+    Status mayReplace() const {
+        return hairloom::mayReplace(path, target, contentKind(beginning), replacing);
+    }
+    Status putInPlace();
 };
+
+}  // namespace
+
+struct OutputFile::Impl : Coming {};
 
 OutputFile::OutputFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 OutputFile::OutputFile(OutputFile&&) noexcept = default;
 OutputFile& OutputFile::operator=(OutputFile&&) noexcept = default;
 OutputFile::~OutputFile() = default;
 
+namespace {
+
+/// What waits for its batch, in order. Of a thread: a project that is saved meanwhile waits for nobody.
+struct Waiting {
+    bool open = false;
+    std::vector<std::unique_ptr<Coming>> files;
+};
+
+Waiting& waiting() {
+    static thread_local Waiting instance;
+    return instance;
+}
+
+/// The name behind links. Those of the system's own folders for open files lead to no name.
+Result<fs::path> targetOf(const fs::path& path) {
+    const std::string name = path.generic_string();
+    const bool isSystems = name.starts_with("/dev/") || name.starts_with("/proc/");
+    if (isSystems && !fileState(path).device.empty()) return path;
+    return followLinks(path);
+}
+
+}  // namespace
+
 Result<OutputFile> OutputFile::open(const fs::path& path, std::string_view kind, Replacing replacing) {
-    auto target = followLinks(path);
-    if (!target) return tl::unexpected(target.error());
-    const FileState state = fileState(*target);
-    if (auto status = mayReplace(path, state, kind, replacing); !status)
-        return tl::unexpected(status.error());
     auto impl = std::make_unique<Impl>();
     impl->path = path;
-    impl->target = std::move(*target);
     impl->replacing = replacing;
+    if (path == kStandardOutput && isPipeAllowed(path)) {
+        impl->target = path;
+        return OutputFile(std::move(impl));
+    }
+    auto target = targetOf(path);
+    if (!target) return tl::unexpected(target.error());
+    const FileState state = fileState(*target);
+    if (auto status = mayReplace(path, *target, kind, replacing); !status)
+        return tl::unexpected(status.error());
+    impl->target = std::move(*target);
     impl->accessed = state.accessed;
     if (state.device.empty()) {
         auto temporary = TemporaryFile::create(impl->target);
@@ -92,31 +146,78 @@ Status OutputFile::write(std::span<const std::byte> bytes) {
         const auto more = bytes.first(std::min(bytes.size(), kContentKindBytes - impl_->beginning.size()));
         impl_->beginning.insert(impl_->beginning.end(), more.begin(), more.end());
     }
-    const auto status =
-        impl_->temporary ? impl_->temporary->write(bytes) : writeThrough(impl_->target, bytes);
-    if (!status) return notWritten(impl_->path, status.error());
+    if (!impl_->temporary) {
+        impl_->held.insert(impl_->held.end(), bytes.begin(), bytes.end());
+        return {};
+    }
+    if (const auto status = impl_->temporary->write(bytes); !status)
+        return notWritten(impl_->path, status.error());
     return {};
 }
 
 Status OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes) {
-    if (!impl_->temporary)
-        return failIn(impl_->path.string(), {}, "cannot be written out of order", "expected a file");
+    if (!impl_->temporary) {
+        if (impl_->held.size() < offset + bytes.size())
+            impl_->held.resize(static_cast<std::size_t>(offset) + bytes.size());
+        std::memcpy(impl_->held.data() + offset, bytes.data(), bytes.size());
+        return {};
+    }
     if (auto status = impl_->temporary->writeAt(offset, bytes); !status)
         return notWritten(impl_->path, status.error());
     return {};
 }
 
-Status OutputFile::finish() {
-    if (!impl_->temporary) return {};
-    const std::string_view kind = contentKind(impl_->beginning);
-    if (auto status = mayReplace(impl_->path, fileState(impl_->target), kind, impl_->replacing); !status)
-        return status;
-    if (impl_->temporary->equalsTarget()) {
-        impl_->temporary.reset();
-    } else if (auto status = impl_->temporary->replaceTarget(impl_->accessed); !status) {
-        return notWritten(impl_->path, status.error());
+Status Coming::putInPlace() {
+    if (!temporary) {
+        if (auto status = writeThrough(target, held); !status) return notWritten(path, status.error());
+        return {};
     }
-    noteWritten(impl_->target);
+    if (temporary->equalsTarget()) {
+        temporary.reset();
+    } else if (auto status = temporary->replaceTarget(accessed); !status) {
+        return notWritten(path, status.error());
+    }
+    noteWritten(target);
+    return {};
+}
+
+Status OutputFile::finish() {
+    if (impl_->temporary) {
+        if (auto status = impl_->mayReplace(); !status) return status;
+    }
+    if (!waiting().open) return impl_->putInPlace();
+    if (impl_->temporary) {
+        if (auto status = impl_->temporary->flush(); !status) return notWritten(impl_->path, status.error());
+    }
+    waiting().files.push_back(std::move(impl_));
+    return {};
+}
+
+OutputBatch::OutputBatch() : isOuter_(!waiting().open) {
+    waiting().open = true;
+    if (isOuter_) allowManyFiles();
+}
+
+OutputBatch::~OutputBatch() {
+    if (!isOuter_) return;
+    waiting().open = false;
+    waiting().files.clear();
+}
+
+Status OutputBatch::commit() {
+    if (!isOuter_) return {};
+    const auto files = std::exchange(waiting().files, {});
+    for (const auto& file : files) {
+        if (!file->temporary) continue;
+        if (auto status = file->mayReplace(); !status) return status;
+    }
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const auto status = files[i]->putInPlace();
+        if (status) continue;
+        Error error = status.error();
+        if (i > 0) error.problem += fmt::format("; {} of {} files are in place", i, files.size());
+        return tl::unexpected(std::move(error));
+    }
     return {};
 }
 
@@ -136,12 +237,14 @@ Result<std::vector<std::string>> writeFiles(const fs::path& folder,
     std::error_code code;
     fs::create_directories(folder, code);
     if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    OutputBatch batch;
     std::vector<std::string> names;
     for (const auto& [name, text] : files) {
         if (auto status = writeFileAtomically(folder / name, text); !status)
             return tl::unexpected(status.error());
         names.push_back(name);
     }
+    if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
     return names;
 }
 

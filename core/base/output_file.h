@@ -40,7 +40,7 @@ class OutputFile {
     ~OutputFile();
 
     Status write(std::span<const std::byte> bytes);
-    /// Over what was written; not for devices.
+    /// Over what was written.
     Status writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
     /// Flushes file and folder to the disk and puts the content in place. Errors: as for open(), checked
     /// again.
@@ -61,7 +61,7 @@ Status writeFileAtomically(const std::filesystem::path& path, std::span<const st
 Status writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
 /// Makes the folder where it is missing and writes texts under names in it, each as writeFileAtomically()
-/// does; the names, in order. Stops at the first error.
+/// does: all of them or none. The names, in order.
 Result<std::vector<std::string>> writeFiles(const std::filesystem::path& folder,
                                             const std::vector<std::pair<std::string, std::string>>& files);
 

@@ -11,24 +11,19 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/file_version.h"
 #include "core/base/result.h"
 
 namespace hairloom {
 
-/// What a name stands for; links are followed.
-struct FileState {
-    bool exists = false;
-    bool folder = false;
-    std::string_view device;  ///< "a device", "a FIFO", "a socket", or empty
-    bool readOnly = false;
-    std::pair<std::uint64_t, std::uint64_t> identity;  ///< volume and number of the file
-    std::uint64_t bytes = 0;
-    std::int64_t changed = 0;   ///< time of the last change of content, in the system's ticks
-    std::int64_t accessed = 0;  ///< time of the last access
+inline constexpr std::string_view kFifo = "a FIFO";
 
-    bool sameContent(const FileState& other) const {
-        return identity == other.identity && bytes == other.bytes && changed == other.changed;
-    }
+/// What a name stands for; links are followed.
+struct FileState : FileVersion {
+    bool folder = false;
+    std::string_view device;  ///< "a device", kFifo, "a socket", or empty
+    bool readOnly = false;
+    std::int64_t accessed = 0;  ///< time of the last access
 };
 FileState fileState(const std::filesystem::path& path);
 
@@ -52,6 +47,8 @@ class TemporaryFile {
 
     Status write(std::span<const std::byte> bytes);
     Status writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
+    /// Onto the disk: that it is full shows here, at the latest.
+    Status flush();
     /// Whether the target has the same bytes.
     bool equalsTarget() const;
     /// Takes the target's place, which exists or not. A file that is replaced was last accessed at
@@ -64,8 +61,11 @@ class TemporaryFile {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Straight into a device or FIFO.
+/// Straight into a device or FIFO, all at once; "-" is standard output.
 Status writeThrough(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// As many files open at once as the system lets the process have.
+void allowManyFiles();
 
 /// Whether a process has the file open for writing as TemporaryFile does.
 bool isBeingWritten(const std::filesystem::path& temporary);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/random.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/xattr.h>
 #include <unistd.h>
@@ -40,7 +41,7 @@ struct Slot {
     int folder = -1;
     std::array<char, kMaxName + 1> name{};
 };
-std::array<Slot, 64> slots;  // NOLINT(readability-identifier-naming): the handler's
+std::array<Slot, 256> slots;  // NOLINT(readability-identifier-naming): the handler's
 
 Slot* takeSlot(int folder, const std::string& name) {
     for (Slot& slot : slots) {
@@ -168,7 +169,7 @@ std::int64_t nanoseconds(const timespec& time) {
 }
 
 std::string_view deviceName(mode_t mode) {
-    if (S_ISFIFO(mode)) return "a FIFO";
+    if (S_ISFIFO(mode)) return kFifo;
     if (S_ISSOCK(mode)) return "a socket";
     if (S_ISREG(mode) || S_ISDIR(mode)) return {};
     return "a device";
@@ -297,6 +298,11 @@ Status TemporaryFile::writeAt(std::uint64_t offset, std::span<const std::byte> b
     return {};
 }
 
+Status TemporaryFile::flush() {
+    if (fsync(impl_->file.number()) != 0) return systemError();
+    return {};
+}
+
 bool TemporaryFile::equalsTarget() const {
     const Descriptor old(
         openat(impl_->folder.number(), impl_->targetName.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
@@ -377,9 +383,17 @@ Status TemporaryFile::replaceTarget(std::int64_t accessed) {
 }
 
 Status writeThrough(const fs::path& path, std::span<const std::byte> bytes) {
+    if (path == "-") return writeAll(STDOUT_FILENO, bytes);
     const Descriptor device(open(path.c_str(), O_WRONLY | O_NOCTTY | O_APPEND | O_CLOEXEC));
     if (!device) return systemError();
     return writeAll(device.number(), bytes);
+}
+
+void allowManyFiles() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= limit.rlim_max) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 bool isBeingWritten(const fs::path& temporary) {
@@ -396,6 +410,10 @@ void removeTemporariesWhenEnded() {
         sigfillset(&action.sa_mask);
         sigaction(signal, &action, nullptr);
     }
+    // A limit on the size of files is an error like a full disk.
+    struct sigaction ignore {};
+    ignore.sa_handler = SIG_IGN;
+    sigaction(SIGXFSZ, &ignore, nullptr);
 }
 
 }  // namespace hairloom

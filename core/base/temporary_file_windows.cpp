@@ -57,7 +57,7 @@ struct Slot {
     std::array<wchar_t, 1024> path{};
     std::atomic<HANDLE> file{INVALID_HANDLE_VALUE};
 };
-std::array<Slot, 64> slots;  // NOLINT(readability-identifier-naming): the handler's
+std::array<Slot, 256> slots;  // NOLINT(readability-identifier-naming): the handler's
 
 Slot* takeSlot(const fs::path& path) {
     const std::wstring& text = path.native();
@@ -159,7 +159,7 @@ FileState fileState(const fs::path& path) {
     if (attributes == INVALID_FILE_ATTRIBUTES && !file) return state;
     state.exists = true;
     if (file && GetFileType(file.get()) != FILE_TYPE_DISK) {
-        state.device = GetFileType(file.get()) == FILE_TYPE_PIPE ? "a FIFO" : "a device";
+        state.device = GetFileType(file.get()) == FILE_TYPE_PIPE ? kFifo : "a device";
         return state;
     }
     state.folder = (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
@@ -252,6 +252,11 @@ Status TemporaryFile::writeAt(std::uint64_t offset, std::span<const std::byte> b
     return SetFilePointerEx(impl_->file.get(), end, nullptr, FILE_END) != 0 ? Status() : systemError();
 }
 
+Status TemporaryFile::flush() {
+    if (FlushFileBuffers(impl_->file.get()) == 0) return systemError();
+    return {};
+}
+
 bool TemporaryFile::equalsTarget() const {
     const Handle old = openExisting(impl_->target, GENERIC_READ);
     LARGE_INTEGER own{}, theirs{};
@@ -324,10 +329,13 @@ Status TemporaryFile::replaceTarget(std::int64_t) {
 }
 
 Status writeThrough(const fs::path& path, std::span<const std::byte> bytes) {
+    if (path == "-") return writeAll(GetStdHandle(STD_OUTPUT_HANDLE), bytes);
     const Handle device = openExisting(path, GENERIC_WRITE);
     if (!device) return systemError();
     return writeAll(device.get(), bytes);
 }
+
+void allowManyFiles() {}  // there is no such limit
 
 bool isBeingWritten(const fs::path& temporary) {
     const Handle file = openExisting(temporary, GENERIC_READ | GENERIC_WRITE, 0);

@@ -3,6 +3,8 @@
 
 #include <map>
 #include <mutex>
+#include <set>
+#include <system_error>
 #include <utility>
 
 #include "core/base/temporary_file.h"
@@ -11,12 +13,18 @@
 namespace hairloom {
 namespace {
 
-/// Files by identity: what was read, and what was written by the process itself.
+/// A file as it was when the process last had to do with it.
+struct KnownFile {
+    FileVersion version;
+    bool written = false;  ///< by the process itself
+};
+
 struct Known {
     std::mutex mutex;
     WriteRules rules;
-    std::map<std::pair<std::uint64_t, std::uint64_t>, FileState> read;
-    std::map<std::pair<std::uint64_t, std::uint64_t>, FileState> written;
+    /// By names without links. A name alone tells of a file that another has taken the place of.
+    std::map<std::filesystem::path, KnownFile> files;
+    std::set<std::filesystem::path> pipes;
 };
 
 Known& known() {
@@ -24,13 +32,32 @@ Known& known() {
     return instance;
 }
 
+std::filesystem::path keyOf(const std::filesystem::path& path) {
+    std::error_code code;
+    auto key = std::filesystem::weakly_canonical(path, code);
+    return code ? std::filesystem::absolute(path, code) : key;
+}
+
+/// The file behind another of its names, where it still has the name that it is known by.
+const KnownFile* byOtherName(const FileVersion& version) {
+    for (const auto& [path, file] : known().files) {
+        if (file.version.identity == version.identity && fileVersion(path).identity == version.identity)
+            return &file;
+    }
+    return nullptr;
+}
+
 }  // namespace
+
+FileVersion fileVersion(const std::filesystem::path& path) {
+    return fileState(path);
+}
 
 void setWriteRules(WriteRules rules) {
     const std::lock_guard lock(known().mutex);
     known().rules = std::move(rules);
-    known().read.clear();
-    known().written.clear();
+    known().files.clear();
+    known().pipes.clear();
 }
 
 const WriteRules& writeRules() {
@@ -39,25 +66,62 @@ const WriteRules& writeRules() {
 
 void noteInput(const std::filesystem::path& path) {
     if (!writeRules().keepInputs) return;
-    const FileState state = fileState(path);
+    const FileVersion version = fileVersion(path);
+    if (!version.exists) return;
     const std::lock_guard lock(known().mutex);
-    if (!known().written.contains(state.identity)) known().read.try_emplace(state.identity, state);
+    auto [file, isNew] = known().files.try_emplace(keyOf(path), KnownFile{version, false});
+    // What the process wrote is no input, unless somebody has changed it since.
+    if (!isNew && file->second.written && file->second.version != version) file->second = {version, false};
 }
 
-InputState inputState(const FileState& state) {
+void noteInput(const std::filesystem::path& path, const FileVersion& version) {
+    if (!writeRules().keepInputs) return;
+    const std::lock_guard lock(known().mutex);
+    known().files.insert_or_assign(keyOf(path), KnownFile{version, false});
+}
+
+void forgetInput(const std::filesystem::path& path) {
+    const std::lock_guard lock(known().mutex);
+    known().files.erase(keyOf(path));
+}
+
+FileVersion knownVersion(const std::filesystem::path& path) {
+    const std::lock_guard lock(known().mutex);
+    const auto found = known().files.find(keyOf(path));
+    return found == known().files.end() ? FileVersion{} : found->second.version;
+}
+
+bool isChangedByOthers(const std::filesystem::path& path) {
+    const FileVersion before = knownVersion(path);
+    const FileVersion now = fileVersion(path);
+    return before.exists && now.exists && now != before;
+}
+
+void allowPipe(const std::filesystem::path& path) {
+    const std::lock_guard lock(known().mutex);
+    known().pipes.insert(path);
+}
+
+bool isPipeAllowed(const std::filesystem::path& path) {
+    const std::lock_guard lock(known().mutex);
+    return known().pipes.contains(path);
+}
+
+InputState inputState(const std::filesystem::path& path, const FileVersion& version) {
     if (!writeRules().keepInputs) return InputState::NotRead;
     const std::lock_guard lock(known().mutex);
-    const auto found = known().read.find(state.identity);
-    if (found == known().read.end()) return InputState::NotRead;
-    return found->second.sameContent(state) ? InputState::AsRead : InputState::ChangedSince;
+    const auto found = known().files.find(keyOf(path));
+    const KnownFile* file = found == known().files.end() ? byOtherName(version) : &found->second;
+    if (file == nullptr) return InputState::NotRead;
+    if (file->version == version) return file->written ? InputState::NotRead : InputState::AsRead;
+    return file->written ? InputState::ChangedSinceWritten : InputState::ChangedSince;
 }
 
 void noteWritten(const std::filesystem::path& path) {
     if (!writeRules().keepInputs) return;
-    const FileState state = fileState(path);
+    const FileVersion version = fileVersion(path);
     const std::lock_guard lock(known().mutex);
-    known().read.erase(state.identity);
-    known().written.insert_or_assign(state.identity, state);
+    known().files.insert_or_assign(keyOf(path), KnownFile{version, true});
 }
 
 }  // namespace hairloom

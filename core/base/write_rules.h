@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/base/file_version.h"
 #include "core/base/result.h"
 
 namespace hairloom {
@@ -21,11 +22,27 @@ struct WriteRules {
     std::string instead = "give another name";
 };
 
-/// Set once, before anything is read or written.
+/// Set before anything is read or written; forgets what was.
 void setWriteRules(WriteRules rules);
 const WriteRules& writeRules();
 
-/// The process reads this file. readFile() and readTextFile() say so themselves.
+/// The process reads this file. readFile() and readTextFile() say so themselves. What it was when it was read
+/// first counts.
 void noteInput(const std::filesystem::path& path);
+/// The same of a file that was read as `version` once, whatever it is now.
+void noteInput(const std::filesystem::path& path, const FileVersion& version);
+/// It is read anew, or may be replaced whoever has changed it.
+void forgetInput(const std::filesystem::path& path);
+
+/// The file as this process has read or written it last; one that does not exist where it has not, or where
+/// inputs are not kept.
+FileVersion knownVersion(const std::filesystem::path& path);
+/// Somebody else has changed or replaced the file since this process read or wrote it. False where the file
+/// is gone.
+bool isChangedByOthers(const std::filesystem::path& path);
+
+/// Bytes written to this name may go through a FIFO, or, for "-", to standard output.
+void allowPipe(const std::filesystem::path& path);
+bool isPipeAllowed(const std::filesystem::path& path);
 
 }  // namespace hairloom

@@ -5,13 +5,18 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "core/base/temporary_file.h"
+#include "core/base/file_version.h"
 
 namespace hairloom {
 
-enum class InputState : std::uint8_t { NotRead, AsRead, ChangedSince };
-/// What noteInput() knows of the file.
-InputState inputState(const FileState& state);
+enum class InputState : std::uint8_t {
+    NotRead,
+    AsRead,
+    ChangedSince,         ///< read, and changed or replaced by somebody else since
+    ChangedSinceWritten,  ///< written by this process, and changed by somebody else since
+};
+/// What is known of the file at `path`, a name without links, whose version now is `version`.
+InputState inputState(const std::filesystem::path& path, const FileVersion& version);
 
 /// The process wrote this file: reading it back makes it no input.
 void noteWritten(const std::filesystem::path& path);

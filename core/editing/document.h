@@ -34,6 +34,9 @@ class Document {
     /// Errors: as loadProject() and saveProject().
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path);
     Status save(const std::filesystem::path& path);
+    /// What was groom() at this state() has been saved by somebody else's hand.
+    std::uint64_t state() const { return history_.state(); }
+    void noteSaved(std::uint64_t state) { savedState_ = state; }
     /// There is something that the last save() or open() does not have.
     bool isModified() const { return history_.state() != savedState_; }
 

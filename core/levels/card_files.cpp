@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/base/content_kind.h"
-#include "core/base/output_file.h"
+#include "core/base/output_batch.h"
 #include "core/cards/atlas_images.h"
 #include "core/render/png.h"
 
@@ -30,18 +29,13 @@ Result<std::vector<std::string>> writeTogether(
         if (!bytes) return tl::unexpected(bytes.error());
         files.emplace_back(files.front().first.parent_path() / name, std::move(*bytes));
     }
-    std::vector<OutputFile> outputs;
-    for (const auto& [to, bytes] : files) {
-        auto file = OutputFile::open(to, contentKind(bytes));
-        if (!file) return tl::unexpected(file.error());
-        if (auto status = file->write(bytes); !status) return tl::unexpected(status.error());
-        outputs.push_back(std::move(*file));
-    }
+    OutputBatch batch;
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-        if (auto status = outputs[i].finish(); !status) return tl::unexpected(status.error());
-        if (i > 0) names.push_back(files[i].first.filename().string());
+    for (const auto& [to, bytes] : files) {
+        if (auto status = writeFileAtomically(to, bytes); !status) return tl::unexpected(status.error());
+        if (&to != &files.front().first) names.push_back(to.filename().string());
     }
+    if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
     return names;
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/base/output_file.h"
+#include "core/base/output_batch.h"
 #include "core/cards/atlas_images.h"
 #include "core/charts/html_report.h"
 #include "core/charts/plot.h"
@@ -215,6 +215,7 @@ render::Image chainPicture(const Chain& chain) {
 Result<std::vector<std::string>> writeChain(const Chain& chain, const std::string& commandLine,
                                             std::span<const cards::Collider> colliders,
                                             const std::filesystem::path& folder) {
+    OutputBatch batch;
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const Level& level : chain.levels) rows.push_back(toJson(level));
     std::vector<std::pair<std::string, std::string>> texts{{"report.html", html(chain, commandLine)},
@@ -241,15 +242,19 @@ Result<std::vector<std::string>> writeChain(const Chain& chain, const std::strin
             if (auto status = write(name, image.image); !status) return tl::unexpected(status.error());
         }
     }
+    const auto inPlace = [&]() -> Result<std::vector<std::string>> {
+        if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
+        return std::move(*names);
+    };
     const auto isStrands = [](const Level& level) { return level.spec.kind == cards::LevelKind::strands; };
-    if (std::ranges::all_of(chain.levels, isStrands)) return names;
+    if (std::ranges::all_of(chain.levels, isStrands)) return inPlace();
     if (auto status = write("chain.png", chainPicture(chain)); !status) return tl::unexpected(status.error());
     const auto glb = cards::glbOf(chain, colliders);
     if (!glb) return tl::unexpected(glb.error());
     if (auto status = writeFileAtomically(folder / "levels.glb", *glb); !status)
         return tl::unexpected(status.error());
     names->push_back("levels.glb");
-    return names;
+    return inPlace();
 }
 
 }  // namespace hairloom

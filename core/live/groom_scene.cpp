@@ -41,15 +41,30 @@ render::Camera readCamera(JsonReader reader) {
 
 constexpr double kAnyRadiance = 1e6;
 
-Result<render::Environment> readEnvironment(JsonReader& reader, const std::filesystem::path& folder) {
+/// A view that came from elsewhere opens no other picture of this machine.
+Status checkLiesBeside(const std::filesystem::path& image,
+                       const std::vector<std::filesystem::path>& folders) {
+    std::error_code code;
+    const auto asked = std::filesystem::weakly_canonical(image, code);
+    for (const std::filesystem::path& folder : folders) {
+        const auto at = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, code);
+        if (!code && std::ranges::mismatch(at, asked).in1 == at.end()) return {};
+    }
+    return failIn(image.string(), {}, "is an image outside the folder of the view that names it",
+                  "put it beside the view, or name its folder with --images");
+}
+
+Result<render::Environment> readEnvironment(JsonReader& reader,
+                                            const std::vector<std::filesystem::path>& folders) {
     if (reader.has("radiance")) {
         const Vec3f radiance = reader.vector("radiance", 0, kAnyRadiance);
         return render::Environment::gradient(radiance, radiance);
     }
     if (reader.has("image")) {
-        const std::filesystem::path image = folder / reader.string("image");
+        const std::filesystem::path image = folders.front() / reader.string("image");
         const double scale = reader.has("scale") ? reader.number("scale", 0, kAnyRadiance) : 1;
         if (!reader.ok()) return render::Environment();
+        if (auto status = checkLiesBeside(image, folders); !status) return tl::unexpected(status.error());
         const auto pixels = image.extension() == ".exr" ? render::readExr(image) : render::readPng(image);
         if (!pixels) return tl::unexpected(pixels.error());
         return render::Environment::fromImage(*pixels, static_cast<float>(scale));
@@ -82,13 +97,13 @@ void readArea(JsonReader& reader, render::LightKind kind, render::Light& light) 
     light.halfUp_ws = halfHeight * facing.normalized().cross(across);
 }
 
-Status readLight(JsonReader& reader, const std::filesystem::path& folder, ViewFile& view) {
+Status readLight(JsonReader& reader, const std::vector<std::filesystem::path>& folders, ViewFile& view) {
     static constexpr std::array<std::string_view, 5> kKinds{"directional", "point", "environment",
                                                             "rectangle", "disc"};
     render::Light light;
     const std::size_t kind = reader.choice("type", kKinds);
     if (kind == 2) {
-        const auto environment = readEnvironment(reader, folder);
+        const auto environment = readEnvironment(reader, folders);
         if (!environment) return tl::unexpected(environment.error());
         view.environment.add(*environment);
         reader.finish();
@@ -165,7 +180,8 @@ bool hasSameStreaksAndDye(const HairMaterial& a, const HairMaterial& b) {
 
 }  // namespace
 
-Result<ViewFile> readViewFile(const std::string& path) {
+Result<ViewFile> readViewFile(const std::string& path,
+                              const std::vector<std::filesystem::path>& imageFolders) {
     const auto text = readTextFile(path, kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
     const auto document = parseJson(path, *text);
@@ -185,9 +201,10 @@ Result<ViewFile> readViewFile(const std::string& path) {
     }
     if (reader.has("lights")) {
         view.hasLights = true;
-        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+        std::vector<std::filesystem::path> folders{std::filesystem::path(path).parent_path()};
+        folders.insert(folders.end(), imageFolders.begin(), imageFolders.end());
         for (JsonReader& light : reader.objects("lights")) {
-            if (auto status = readLight(light, folder, view); !status) return tl::unexpected(status.error());
+            if (auto status = readLight(light, folders, view); !status) return tl::unexpected(status.error());
         }
     }
     if (reader.has("background")) view.background = reader.vector("background", 0, kAnyRadiance);

@@ -3,6 +3,7 @@
 // A groom as the renderer takes it.
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,7 +46,9 @@ struct ViewFile {
     std::optional<float> shadowBlur;      ///< pixels, likewise
     FibreView fibre;
 };
-Result<ViewFile> readViewFile(const std::string& path);
+/// A view names images in its own folder and below it, and in `imageFolders`.
+Result<ViewFile> readViewFile(const std::string& path,
+                              const std::vector<std::filesystem::path>& imageFolders = {});
 
 /// The hairstyle's material, and those of layers that have one of their own.
 struct StrandMaterials {

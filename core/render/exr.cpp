@@ -9,12 +9,12 @@
 #include <memory>
 
 #include "core/base/file.h"
+#include "core/render/picture_limits.h"
 
 namespace hairloom::render {
 namespace {
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30u;
-constexpr int kMaxSide = 16384;
 
 /// The library's own memory.
 struct Loaded {
@@ -71,8 +71,12 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     const auto& window = loaded.header.data_window;
     const std::int64_t width = std::int64_t{window.max_x} - window.min_x + 1;
     const std::int64_t height = std::int64_t{window.max_y} - window.min_y + 1;
-    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-        return failed("is no picture of up to 16384 pixels along a side");
+    if (width < 1 || height < 1) return failed("is a picture without pixels");
+    const auto channels = static_cast<std::uint64_t>(loaded.header.num_channels);
+    if (auto status = checkPictureSize(path, static_cast<std::uint64_t>(width),
+                                       static_cast<std::uint64_t>(height), (channels + 4) * sizeof(float));
+        !status)
+        return tl::unexpected(status.error());
     std::array<int, 4> places{channelNamed(loaded.header, "R"), channelNamed(loaded.header, "G"),
                               channelNamed(loaded.header, "B"), channelNamed(loaded.header, "A")};
     if (const int grey = channelNamed(loaded.header, "Y"); places[0] < 0 && grey >= 0)

@@ -7,13 +7,13 @@
 #include <cstring>
 
 #include "core/base/file.h"
+#include "core/render/picture_limits.h"
 #include "core/render/tone_map.h"
 
 namespace hairloom::render {
 namespace {
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{256} << 20u;
-constexpr std::uint32_t kMaxSide = 16384;
 
 Result<std::vector<std::byte>> encode(const std::filesystem::path& path, const Image& image) {
     auto file = encodePng(image);
@@ -137,7 +137,12 @@ Result<LinearImage> readPng(const std::filesystem::path& path) {
         return failIn(path.string(), {}, why, "a PNG");
     };
     if (png_image_begin_read_from_memory(&png, file->data(), file->size()) == 0) return failed(png.message);
-    if (png.width > kMaxSide || png.height > kMaxSide) return failed("an image of too many pixels");
+    // Bytes of the file's own pixels, and of the linear ones.
+    constexpr std::uint64_t kBytesPerPixel = 4 + 4 * sizeof(float);
+    if (auto status = checkPictureSize(path, png.width, png.height, kBytesPerPixel); !status) {
+        png_image_free(&png);
+        return tl::unexpected(status.error());
+    }
     png.format = PNG_FORMAT_RGBA;
     std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(png));
     if (png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr) == 0) return failed(png.message);

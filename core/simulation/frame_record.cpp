@@ -10,6 +10,7 @@
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
+#include "core/base/regular_file.h"
 #include "core/base/write_rules.h"
 
 namespace hairloom {
@@ -105,6 +106,7 @@ Status FrameRecorder::finish() {
 
 Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& groom, std::uint64_t index) {
     const std::string name = path.string();
+    if (auto status = checkIsFile(path); !status) return tl::unexpected(status.error());
     std::ifstream file(path, std::ios::binary);
     Header header;
     if (!file) return failIn(name, {}, "cannot be read", "expected a record of frames");

@@ -2,105 +2,172 @@
 #include "editor/document/autosave.h"
 
 #include <QCoreApplication>
-#include <QDateTime>
-#include <QDir>
-#include <QFileInfo>
-#include <QSettings>
-#include <QStandardPaths>
-#include <QUuid>
+#include <algorithm>
+#include <utility>
 
+#include "core/base/write_rules.h"
+#include "core/editing/document.h"
 #include "core/groom/file/project_file.h"
 #include "editor/document/words.h"
 
 namespace hairloom::editor {
 namespace {
 
-QString folder() {
-    const QString path = QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/recovery";
-    QDir().mkpath(path);
-    return path;
-}
-
-QString lockOf(const QString& file) {
-    return file + ".lock";
-}
-QString descriptionOf(const QString& file) {
-    return file + ".ini";
-}
-
-void removeAll(const QString& file) {
-    QFile::remove(file);
-    QFile::remove(descriptionOf(file));
-}
+/// Between the first change and the copy, as a share of what may be lost: writing takes time, too.
+constexpr double kShareOfInterval = 0.75;
+constexpr int kMinute_ms = 60'000, kRetry_ms = 10'000;
 
 }  // namespace
 
 Autosave::Autosave(QtDocument& document, const Preferences& preferences, QObject* parent)
-    : QObject(parent),
-      document_(document),
-      preferences_(preferences),
-      file_(folder() + "/" + QUuid::createUuid().toString(QUuid::WithoutBraces) + ".hairloom"),
-      lock_(std::make_unique<QLockFile>(lockOf(file_))) {
-    lock_->setStaleLockTime(0);  // the lock says that this program runs, however long it does
-    lock_->lock();
+    : QObject(parent), document_(document), preferences_(preferences) {
+    timer_.setSingleShot(true);
     connect(&timer_, &QTimer::timeout, this, &Autosave::saveNow);
-    connect(&document_, &QtDocument::changed, this, [this] { dirty_ = true; });
-    connect(&document_, &QtDocument::replaced, this, [this] {
-        finish();
-        removeAll(file_);
+    connect(&document_, &QtDocument::changed, this, &Autosave::changed);
+    connect(&document_, &QtDocument::titleChanged, this, [this] {
+        // A recovered document is unsaved without having been changed.
+        if (hasUnsaved() && !dirty_) changed();
     });
-    connect(&preferences_, &Preferences::changed, this, &Autosave::restart);
-    restart();
+    const auto begin = [this] {
+        // What was copied or is being copied is of a document that is gone, or that the project's file has.
+        ++generation_;
+        dirty_ = false;
+        timer_.stop();
+        if (place_ && !isWriting_) place_->removeCopy();
+        describe();
+        if (std::exchange(hasFailed_, false)) Q_EMIT upToDate();
+    };
+    connect(&document_, &QtDocument::replaced, this, begin);
+    connect(&document_, &QtDocument::saved, this, begin);
+    connect(&preferences_, &Preferences::changed, this, [this] {
+        timer_.stop();
+        if (preferences_.autosaveMinutes() == 0 && std::exchange(hasFailed_, false)) Q_EMIT upToDate();
+        schedule();
+    });
+    takePlace();
 }
 
 Autosave::~Autosave() {
     finish();
-    removeAll(file_);
+    if (place_ && keepsCopy_) place_->keepCopy();
 }
 
-void Autosave::restart() {
-    const int interval = preferences_.autosaveMinutes() * 60'000;
-    if (interval == timer_.interval() && timer_.isActive()) return;
-    timer_.stop();
-    if (interval > 0) timer_.start(interval);
+QString Autosave::file() const {
+    return place_ ? QString::fromStdString(place_->copy().string()) : QString();
+}
+
+std::vector<OpenDocument> Autosave::otherWindows() const {
+    return otherWindowsWith(document_.path());
+}
+
+std::vector<OpenDocument> Autosave::otherWindowsWith(const QString& project) const {
+    if (!place_ || project.isEmpty()) return {};
+    return place_->othersWith(project.toStdString());
+}
+
+void Autosave::takePlace() {
+    // Somebody may have cleared the folder.
+    if (place_ && !place_->isThere()) place_.reset();
+    if (place_) return;
+    if (auto taken = RecoveryPlace::take()) place_ = std::move(*taken);
+    describe();
+}
+
+OpenDocument Autosave::description() const {
+    const std::filesystem::path project = document_.path().toStdString();
+    return {project, document_.title().toStdString(), knownVersion(project), 0};
+}
+
+void Autosave::describe() {
+    // A folder that takes nothing fails with the copy, and then it is said.
+    if (place_) static_cast<void>(place_->describe(description()));
+}
+
+void Autosave::pause(bool paused) {
+    isPaused_ = paused;
+    schedule();
+}
+
+bool Autosave::hasUnsaved() const {
+    return document_.isModified() || document_.editing().stroke() != nullptr;
+}
+
+void Autosave::changed() {
+    dirty_ = true;
+    schedule();
+}
+
+void Autosave::schedule() {
+    const int interval = preferences_.autosaveMinutes() * kMinute_ms;
+    if (interval == 0 || !dirty_ || timer_.isActive() || isWriting_ || isPaused_) return;
+    timer_.start(hasFailed_ ? std::min(kRetry_ms, interval) : static_cast<int>(kShareOfInterval * interval));
 }
 
 void Autosave::saveNow() {
-    if (!dirty_ || !document_.isModified()) return;
-    finish();
+    if (!dirty_ || isWriting_ || isPaused_) return;
+    if (!hasUnsaved()) {
+        // Everything was taken back.
+        dirty_ = false;
+        return;
+    }
+    takePlace();
     dirty_ = false;
-    QSettings description(descriptionOf(file_), QSettings::IniFormat);
-    description.setValue("document", document_.path());
-    description.setValue("name", document_.title());
-    writer_ = std::thread([this, groom = document_.groom(), file = file_] {
-        if (const auto saved = saveProject(groom, file.toStdString()); !saved) {
-            QMetaObject::invokeMethod(this,
-                                      [this, words = errorText(saved.error())] { Q_EMIT failed(words); });
+    isWriting_ = true;
+    timer_.stop();
+    if (writer_.joinable()) writer_.join();
+    writer_ = std::thread([this, generation = generation_, groom = document_.groom(), of = description()] {
+        Status status;
+        {
+            const std::lock_guard lock(writing_);
+            if (place_) {
+                status = place_->describe(of);
+                // A copy that somebody has changed is nobody's work.
+                forgetInput(place_->copy());
+                if (status) status = saveProject(groom, place_->copy());
+            } else if (const auto place = RecoveryPlace::take(); !place) {
+                status = tl::unexpected(place.error());
+            } else {
+                status = failIn(recoveryFolder().string(), {}, "could not be written");
+            }
         }
+        QMetaObject::invokeMethod(this, [this, generation, status] { written(generation, status); });
     });
+}
+
+void Autosave::written(quint64 generation, const Status& status) {
+    isWriting_ = false;
+    if (generation != generation_) {
+        if (place_) place_->removeCopy();
+        schedule();
+        return;
+    }
+    hasFailed_ = !status;
+    if (status) {
+        Q_EMIT upToDate();
+    } else {
+        dirty_ = true;
+        Q_EMIT failed(tr("No copy of unsaved work: %1. Make room or change the folder's rights, or save the "
+                         "project; it is tried again every %n seconds",
+                         nullptr, kRetry_ms / 1000)
+                          .arg(errorText(status.error())));
+    }
+    schedule();
 }
 
 void Autosave::finish() {
     if (writer_.joinable()) writer_.join();
+    // The writer's last word waits in the queue.
+    QCoreApplication::sendPostedEvents(this, QEvent::MetaCall);
 }
 
-QList<Recovery> Autosave::recoveries() {
-    QList<Recovery> found;
-    const QDir recovery(folder());
-    for (const QFileInfo& file : recovery.entryInfoList({"*.hairloom"}, QDir::Files, QDir::Time)) {
-        QLockFile lock(lockOf(file.filePath()));
-        lock.setStaleLockTime(0);
-        if (!lock.tryLock(0)) continue;
-        const QSettings description(descriptionOf(file.filePath()), QSettings::IniFormat);
-        found.append({file.filePath(), description.value("document").toString(),
-                      description.value("name").toString(), file.lastModified()});
+void Autosave::keep() {
+    finish();
+    if (hasUnsaved()) {
+        dirty_ = true;
+        saveNow();
+        finish();
     }
-    return found;
-}
-
-void Autosave::discard(const Recovery& recovery) {
-    removeAll(recovery.file);
-    QFile::remove(lockOf(recovery.file));
+    keepsCopy_ = hasUnsaved();
 }
 
 }  // namespace hairloom::editor

@@ -1,59 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A copy of what is unsaved, written every few minutes beside nothing of the user's, and offered again when
-// the program did not end as it should.
+// A copy of what is unsaved, written within a minute beside nothing of the user's, and offered again when the
+// program did not end as it should.
 
-#include <QDateTime>
-#include <QLockFile>
 #include <QTimer>
-#include <memory>
+#include <mutex>
 #include <optional>
 #include <thread>
 
+#include "core/documents/recovery.h"
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
 
 namespace hairloom::editor {
-
-/// What a program that ended badly left behind.
-struct Recovery {
-    QString file;          ///< the copy
-    QString documentPath;  ///< the project it is a copy of; may be empty
-    QString name;
-    QDateTime when;
-};
 
 class Autosave : public QObject {
     Q_OBJECT
 
   public:
     Autosave(QtDocument& document, const Preferences& preferences, QObject* parent = nullptr);
-    /// A proper end: takes the copy away.
+    /// A proper end: takes the copy away, unless keep() was called.
     ~Autosave() override;
 
-    /// Copies whose program no longer runs, the newest first.
-    static QList<Recovery> recoveries();
-    static void discard(const Recovery& recovery);
-
-    /// Writes now, on a thread of its own, if there is something unsaved that was not written yet.
+    /// Writes on a thread of its own, if there is something unsaved that was not written yet.
     void saveNow();
-    /// Waits for the writing that is under way.
+    /// Waits for the writing that is under way, and for what it says.
     void finish();
-    const QString& file() const { return file_; }
+    /// The program ends and nobody has been asked: writes what is unsaved, and leaves it.
+    void keep();
+    /// The question was answered: a proper end takes the copy away again.
+    void dismiss() { keepsCopy_ = false; }
+    /// The project is being saved: no copy is begun. What is locked by writing() no copy is written in.
+    void pause(bool paused);
+    std::mutex& writing() { return writing_; }
+
+    /// The copy, which need not exist; empty where there is no place for one.
+    QString file() const;
+    /// Other windows that have the document's project open.
+    std::vector<OpenDocument> otherWindows() const;
+    std::vector<OpenDocument> otherWindowsWith(const QString& project) const;
 
   Q_SIGNALS:
+    /// No copy could be written; it is tried again.
     void failed(const QString& message);
+    /// The copy has what is unsaved, or nothing is.
+    void upToDate();
 
   private:
-    void restart();
+    void takePlace();
+    OpenDocument description() const;
+    void describe();
+    void changed();
+    void schedule();
+    void written(quint64 generation, const Status& status);
+    bool hasUnsaved() const;
 
     QtDocument& document_;
     const Preferences& preferences_;
-    QString file_;
-    std::unique_ptr<QLockFile> lock_;
+    std::optional<RecoveryPlace> place_;
     QTimer timer_;
     std::thread writer_;
-    bool dirty_ = false;
+    std::mutex writing_;
+    bool isWriting_ = false, isPaused_ = false;
+    bool dirty_ = false;      ///< changed since the copy that was written or is being written
+    bool hasFailed_ = false;  ///< the last one did
+    bool keepsCopy_ = false;
+    quint64 generation_ = 0;  ///< a copy of an earlier one is not wanted any more
 };
 
 }  // namespace hairloom::editor

@@ -26,7 +26,7 @@ Preferences::Preferences(QObject* parent)
       orbitStyle_(readChoice("orbitStyle", OrbitStyle::Maya, 2)),
       tabletCurve_(std::clamp(QSettings().value("tabletCurve", 1.0).toDouble(), 0.25, 4.0)),
       simulateOn_(readChoice("simulateOn", SimulateOn::Automatic, 3)),
-      autosaveMinutes_(std::clamp(QSettings().value("autosaveMinutes", 3).toInt(), 0, 60)) {}
+      autosaveMinutes_(std::clamp(QSettings().value("autosaveMinutes", 1).toInt(), 0, 60)) {}
 
 template <class T>
 void Preferences::store(const char* key, T& member, T value) {

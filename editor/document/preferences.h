@@ -32,7 +32,7 @@ class Preferences : public QObject {
     /// Where hair is simulated while it plays; Automatic: where it was measured to be faster.
     SimulateOn simulateOn() const { return simulateOn_; }
     void setSimulateOn(SimulateOn where);
-    /// Minutes between copies for crash recovery, 0 … 60; 0 never.
+    /// Minutes of work that a crash may cost at most, 0 … 60; 0 keeps no copies.
     int autosaveMinutes() const { return autosaveMinutes_; }
     void setAutosaveMinutes(int minutes);
 

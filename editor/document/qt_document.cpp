@@ -63,7 +63,7 @@ void QtDocument::open(Groom groom, const QString& path, const QString& name) {
     editing_ = std::move(opened);
     watch();
     restored_ = false;
-    path_ = path;
+    path_ = path.isEmpty() ? path : QFileInfo(path).absoluteFilePath();
     name_ = name;
     Q_EMIT replaced();
     Q_EMIT changed(editing::Part::Everything);
@@ -92,12 +92,12 @@ quint64 QtDocument::nextMergeKey() {
     return ++last;
 }
 
-Status QtDocument::save(const QString& path) {
-    if (auto status = editing_->save(path.toStdString()); !status) return status;
-    path_ = path;
+void QtDocument::noteSaved(const QString& path, quint64 state) {
+    editing_->noteSaved(state);
+    path_ = QFileInfo(path).absoluteFilePath();
     restored_ = false;
+    Q_EMIT saved();
     Q_EMIT titleChanged();
-    return {};
 }
 
 QString QtDocument::stepName(int step) const {

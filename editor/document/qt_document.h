@@ -33,7 +33,7 @@ class QtDocument : public QObject {
     /// Neither a head nor hair.
     bool isEmpty() const { return !groom().scalp && groom().strandCount() == 0; }
 
-    /// The project file; empty before the first save.
+    /// The project file, absolute; empty before the first save.
     const QString& path() const { return path_; }
     /// File name, or what the document was made from.
     QString title() const;
@@ -54,8 +54,9 @@ class QtDocument : public QObject {
     /// One that was never used.
     static quint64 nextMergeKey();
 
-    /// Writes the project and takes `path` as its file.
-    Status save(const QString& path);
+    /// The project as it was at that state of editing() is in the file at `path`, which is the document's
+    /// now.
+    void noteSaved(const QString& path, quint64 state);
 
     /// While changed() is said: the strands that changed, where nothing but the places of their points did.
     std::span<const std::uint32_t> movedStrands() const { return moved_; }
@@ -78,6 +79,8 @@ class QtDocument : public QObject {
     void historyChanged();
     /// Another groom has been opened; changed() follows.
     void replaced();
+    /// noteSaved() was called; titleChanged() follows.
+    void saved();
     /// Path, name or modification.
     void titleChanged();
 

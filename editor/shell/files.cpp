@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/base/file.h"
+#include "core/base/write_rules.h"
 #include "core/documents/hair_import.h"
 #include "core/documents/head_import.h"
 #include "core/documents/head_transfer.h"
@@ -16,7 +17,6 @@
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/project_file.h"
 #include "core/operations/stack.h"
-#include "editor/document/autosave.h"
 #include "editor/fields/length_text.h"
 #include "importers/mesh_format.h"
 
@@ -136,21 +136,43 @@ std::filesystem::path samplesFolder() {
 }
 
 void DocumentFiles::open(const QString& path, std::function<void()> done) {
+    Opening opening = Opening::AsItself;
+    if (mayOpen_ && looksLikeProject(path.toStdString())) opening = mayOpen_(path);
+    if (opening != Opening::Not) openFile(path, opening, std::move(done));
+}
+
+void DocumentFiles::reload() {
+    openFile(document_.path(), Opening::AsItself, {});
+}
+
+bool DocumentFiles::mayShow(quint64 before, const QString& name) {
+    const bool changed = document_.isModified() && document_.editing().state() != before;
+    if (!changed || !mayReplace_ || mayReplace_()) return true;
+    messages_.say(QObject::tr("%1 was not opened").arg(name));
+    return false;
+}
+
+void DocumentFiles::openFile(const QString& path, Opening opening, std::function<void()> done) {
     const QString name = QFileInfo(path).fileName();
     tasks_.run<std::pair<Opened, FileKind>>(
         QObject::tr("Opening %1").arg(name),
         [path](TaskControl&) -> Result<std::pair<Opened, FileKind>> {
             const FileKind kind = kindOf(path);
             const std::string file = path.toStdString();
+            // What it was when it was opened before does not count any more.
+            forgetInput(file);
             auto opened = kind == FileKind::Project   ? openProject(file)
                           : kind == FileKind::Strands ? openedStrands(hairloom::importStrands(file))
                                                       : readHead(file, {});
             if (!opened) return tl::unexpected(opened.error());
             return std::pair(std::move(*opened), kind);
         },
-        [this, path, name, done = std::move(done)](std::pair<Opened, FileKind> opened) {
+        [this, path, name, opening, before = document_.editing().state(),
+         done = std::move(done)](std::pair<Opened, FileKind> opened) {
+            if (!mayShow(before, name)) return;
             const bool isUnclear = opened.first.isUnclear;
-            show(std::move(opened.first), opened.second == FileKind::Project ? path : QString(), name);
+            const bool hasFile = opened.second == FileKind::Project && opening == Opening::AsItself;
+            show(std::move(opened.first), hasFile ? path : QString(), name);
             preferences_.addRecentFile(path);
             if (done) done();
             if (isUnclear && unclearHead_) unclearHead_(path);
@@ -162,7 +184,8 @@ void DocumentFiles::openHead(const QString& path, const HeadImportOptions& optio
     tasks_.run<Opened>(
         QObject::tr("Opening %1").arg(name),
         [file = path.toStdString(), options](TaskControl&) { return readHead(file, options); },
-        [this, path, name](Opened opened) {
+        [this, path, name, before = document_.editing().state()](Opened opened) {
+            if (!mayShow(before, name)) return;
             show(std::move(opened), {}, name);
             preferences_.addRecentFile(path);
         });
@@ -184,7 +207,9 @@ void DocumentFiles::openSample(const QString& name) {
             opened.groom = std::move(*groom);
             return opened;
         },
-        [this, name](Opened opened) { show(std::move(opened), {}, name); });
+        [this, name, before = document_.editing().state()](Opened opened) {
+            if (mayShow(before, name)) show(std::move(opened), {}, name);
+        });
 }
 
 void DocumentFiles::importStrands(const QString& path, const StrandImportOptions& options) {
@@ -244,23 +269,29 @@ void DocumentFiles::transferTo(const QString& path) {
         });
 }
 
-void DocumentFiles::openRecovered(const QString& file, const QString& documentPath, const QString& name) {
+void DocumentFiles::openRecovered(const RecoveryCopy& copy) {
+    const QString name = QString::fromStdString(copy.of.name);
     tasks_.run<Opened>(
         QObject::tr("Recovering %1").arg(name),
-        [file](TaskControl&) { return openProject(file.toStdString()); },
-        [this, file, documentPath, name](Opened opened) {
-            document_.restore(std::move(opened.groom), documentPath, name);
+        [file = copy.file](TaskControl&) { return openProject(file.string()); },
+        [this, copy, name, before = document_.editing().state()](Opened opened) {
+            if (!mayShow(before, name)) return;
+            // Saving asks where the project is no longer what the copy began with.
+            FileVersion base = copy.of.base;
+            base.exists = true;
+            if (!copy.of.project.empty()) noteInput(copy.of.project, base);
+            document_.restore(std::move(opened.groom), QString::fromStdString(copy.of.project.string()),
+                              name);
             player_.setActor(std::move(opened.actor));
             messages_.say(QObject::tr("%1 is back as it was; save it to keep it").arg(name));
-            recovered_ = file;
+            recovered_ = copy;
         });
 }
 
 void DocumentFiles::discardRecovered() {
-    for (const Recovery& recovery : Autosave::recoveries()) {
-        if (recovery.file == recovered_) Autosave::discard(recovery);
-    }
-    recovered_.clear();
+    if (!recovered_) return;
+    if (auto removed = removeRecoveryCopy(*recovered_); !removed) messages_.warn(errorText(removed.error()));
+    recovered_.reset();
 }
 
 }  // namespace hairloom::editor

@@ -4,9 +4,11 @@
 
 #include <QString>
 #include <filesystem>
+#include <optional>
 
 #include "core/animation/actor.h"
 #include "core/documents/head_import.h"
+#include "core/documents/recovery.h"
 #include "editor/document/messages.h"
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
@@ -24,6 +26,13 @@ enum class FileKind {
 /// From the beginning of the file, and the name where that does not tell. OBJ may be either: it is a head
 /// where it has faces that are no ribbons of hair.
 FileKind kindOf(const QString& path);
+
+/// How a project is opened that somebody else has to do with, too.
+enum class Opening {
+    AsItself,
+    AsCopy,  ///< what it holds, with no file of its own
+    Not,
+};
 
 /// For file dialogs: all that opens, hair of other programs alone, and heads alone.
 QString openFilter();
@@ -43,6 +52,12 @@ class DocumentFiles {
     /// Project or head, opened as the document; hair as it is, without a head. `done` is called when it is
     /// there.
     void open(const QString& path, std::function<void()> done = {});
+    /// The project of the document as it is on the disk.
+    void reload();
+    /// Asked before a project is opened.
+    void onProject(std::function<Opening(const QString& path)> call) { mayOpen_ = std::move(call); }
+    /// Asked where the document has changed while another was read: whether it may go.
+    void onChangedMeanwhile(std::function<bool()> call) { mayReplace_ = std::move(call); }
     /// A head taken out of its file by these options.
     void openHead(const QString& path, const HeadImportOptions& options);
     /// Called when a head was opened whose size, axis or groups look wrong.
@@ -54,11 +69,11 @@ class DocumentFiles {
     /// The hair of the document onto the head of the file.
     void transferTo(const QString& path);
     /// What a crash left.
-    void openRecovered(const QString& file, const QString& documentPath, const QString& name);
+    void openRecovered(const RecoveryCopy& copy);
     /// The document was saved: the copy that it came from has served.
     void discardRecovered();
     /// Another document is there.
-    void forgetRecovered() { recovered_.clear(); }
+    void forgetRecovered() { recovered_.reset(); }
 
   private:
     struct Opened;
@@ -66,6 +81,9 @@ class DocumentFiles {
     static Result<Opened> readHead(const std::string& path, const HeadImportOptions& options);
     static Result<Opened> openProject(const std::string& path);
     static Result<Opened> openedStrands(Result<ImportedStrands> imported);
+    void openFile(const QString& path, Opening opening, std::function<void()> done);
+    /// Whether what was read may take the document's place, which was in that state when reading began.
+    bool mayShow(quint64 before, const QString& name);
     void show(Opened opened, const QString& path, const QString& name);
 
     QtDocument& document_;
@@ -74,7 +92,9 @@ class DocumentFiles {
     Tasks& tasks_;
     Messages& messages_;
     std::function<void(const QString& path)> unclearHead_;
-    QString recovered_;  ///< copy that the document came from; empty where it came from none
+    std::function<Opening(const QString& path)> mayOpen_;
+    std::function<bool()> mayReplace_;
+    std::optional<RecoveryCopy> recovered_;  ///< that the document came from
 };
 
 std::filesystem::path samplesFolder();

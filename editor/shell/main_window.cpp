@@ -4,11 +4,9 @@
 #include <QApplication>
 #include <QCloseEvent>
 #include <QDragEnterEvent>
-#include <QFileDialog>
 #include <QFileInfo>
 #include <QGridLayout>
 #include <QMenuBar>
-#include <QMessageBox>
 #include <QMimeData>
 #include <QScreen>
 #include <QSettings>
@@ -16,11 +14,7 @@
 #include <QToolButton>
 #include <algorithm>
 
-#include "core/base/file.h"
-#include "core/editing/document.h"
-#include "editor/dialogs/head_dialog.h"
-#include "editor/dialogs/import_dialog.h"
-#include "editor/document/words.h"
+#include "core/base/write_rules.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/files.h"
 #include "editor/style/icons.h"
@@ -78,6 +72,8 @@ MainWindow::MainWindow()
     // Along the side there is room for the whole names of all panels.
     setTabPosition(Qt::RightDockWidgetArea, QTabWidget::East);
     resize(QSize(1440, 900).boundedTo(screen()->availableSize()));
+    // Inputs and what others write are kept as on the command line.
+    if (!writeRules().keepInputs) setWriteRules({false, true, tr("give another name").toStdString()});
 
     viewport_ = new Viewport(document_, preferences_);
     tools_.fill({document_, preferences_, messages_, player_, *viewport_});
@@ -104,6 +100,9 @@ MainWindow::MainWindow()
     restoreLayout();
 
     connect(&document_, &QtDocument::replaced, this, [this] { files_.forgetRecovered(); });
+    connect(&document_, &QtDocument::saved, this, [this] { files_.discardRecovered(); });
+    files_.onProject([this](const QString& path) { return mayOpenProject(path); });
+    files_.onChangedMeanwhile([this] { return mayLeaveDocument(); });
     files_.onUnclearHead([this](const QString& path) { showHeadDialog(path); });
     connect(start_, &StartPage::openRequested, this, &MainWindow::chooseAndOpen);
     connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);
@@ -114,7 +113,11 @@ MainWindow::MainWindow()
         theme = preferences_.theme();
         applyTheme(*qApp, theme);
     });
-    connect(autosave_.get(), &Autosave::failed, &messages_, &Messages::warn);
+    connect(autosave_.get(), &Autosave::failed, status_, &StatusLine::setStanding);
+    connect(autosave_.get(), &Autosave::upToDate, status_, [this] { status_->setStanding({}); });
+    // The session may end the program before anybody answers.
+    connect(
+        qApp, &QGuiApplication::commitDataRequest, this, [this] { autosave_->keep(); }, Qt::DirectConnection);
     connect(viewport_, &Viewport::keyPressed, this, &MainWindow::runShortcut);
     connect(viewport_, &Viewport::hintChanged, this, [this] {
         const Tool* tool = viewport_->tool();
@@ -231,103 +234,10 @@ void MainWindow::showPage() {
     for (const PanelInfo& info : panels()) panel(info.id)->widget()->setEnabled(!empty);
     for (QAction* tool : toolGroup_->actions()) tool->setEnabled(!empty);
     for (const char* id :
-         {"file.save", "file.saveAs", "file.saveScript", "file.import", "file.export", "play.toggle",
-          "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
+         {"file.save", "file.saveAs", "file.revert", "file.saveScript", "file.import", "file.export",
+          "play.toggle", "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
         actions_->get(id).setEnabled(!empty);
     }
-}
-
-bool MainWindow::mayLeaveDocument() {
-    if (!document_.isModified()) return true;
-    Unsaved answer = unsaved_;
-    if (answer == Unsaved::Ask) {
-        const auto button = QMessageBox::question(
-            this, tr("Unsaved changes"), tr("Save the changes to %1?").arg(document_.title()),
-            QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
-        answer = button == QMessageBox::Save      ? Unsaved::Save
-                 : button == QMessageBox::Discard ? Unsaved::Discard
-                                                  : Unsaved::Keep;
-    }
-    if (answer == Unsaved::Save) return save();
-    return answer == Unsaved::Discard;
-}
-
-void MainWindow::newDocument() {
-    if (!mayLeaveDocument()) return;
-    document_.open({}, {}, {});
-}
-
-void MainWindow::open(const QString& path) {
-    const bool ontoHead = document_.groom().scalp && kindOf(path) == FileKind::Strands;
-    if (!ontoHead) {
-        if (mayLeaveDocument()) files_.open(path);
-        return;
-    }
-    ImportDialog dialog(document_, tasks_, path, this);
-    if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
-}
-
-void MainWindow::showHeadDialog(const QString& path) {
-    auto* dialog = new HeadDialog(tasks_, preferences_, path, this);
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
-    connect(dialog, &QDialog::accepted, this, [this, dialog, path] {
-        if (mayLeaveDocument()) files_.openHead(path, dialog->options());
-    });
-    dialog->open();
-}
-
-void MainWindow::chooseAndOpen() {
-    const QString path = QFileDialog::getOpenFileName(this, tr("Open"), {}, openFilter());
-    if (!path.isEmpty()) open(path);
-}
-
-void MainWindow::chooseAndImport() {
-    const QString path = QFileDialog::getOpenFileName(this, tr("Import hair"), {}, strandFilter());
-    if (path.isEmpty()) return;
-    ImportDialog dialog(document_, tasks_, path, this);
-    if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
-}
-
-bool MainWindow::saveTo(const QString& path) {
-    if (auto saved = document_.save(path); !saved) {
-        messages_.warn(errorText(saved.error()));
-        return false;
-    }
-    preferences_.addRecentFile(path);
-    files_.discardRecovered();
-    messages_.say(tr("%1 saved").arg(QFileInfo(path).fileName()));
-    return true;
-}
-
-bool MainWindow::save() {
-    return document_.path().isEmpty() ? saveAs() : saveTo(document_.path());
-}
-
-bool MainWindow::saveAs() {
-    const QString name = document_.path().isEmpty()
-                             ? QFileInfo(document_.title()).completeBaseName() + ".hairloom"
-                             : document_.path();
-    const QString path =
-        QFileDialog::getSaveFileName(this, tr("Save"), name, tr("Hairloom projects (*.hairloom)"));
-    return !path.isEmpty() && saveTo(path);
-}
-
-bool MainWindow::saveScriptTo(const QString& path) {
-    const auto script = document_.editing().script();
-    const Status saved =
-        script ? writeFileAtomically(path.toStdString(), *script) : Status(tl::unexpected(script.error()));
-    if (!saved) {
-        messages_.warn(tr("No script: %1").arg(errorText(saved.error())));
-        return false;
-    }
-    messages_.say(tr("%1: %Ln steps", nullptr, document_.doneSteps()).arg(QFileInfo(path).fileName()));
-    return true;
-}
-
-void MainWindow::chooseAndSaveScript() {
-    const QString name = QFileInfo(document_.title()).completeBaseName() + ".json";
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save script"), name, tr("Scripts (*.json)"));
-    if (!path.isEmpty()) saveScriptTo(path);
 }
 
 void MainWindow::fillRecentMenu() {
@@ -352,10 +262,11 @@ bool MainWindow::runShortcut(int key, Qt::KeyboardModifiers modifiers) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    if (!mayLeaveDocument()) {
+    if (isSaving_ || !mayLeaveDocument()) {
         event->ignore();
         return;
     }
+    autosave_->dismiss();
     QSettings settings;
     settings.setValue(kGeometry, saveGeometry());
     settings.setValue(kLayout, saveState(kLayoutVersion));
@@ -380,6 +291,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
 void MainWindow::changeEvent(QEvent* event) {
     QMainWindow::changeEvent(event);
     if (event->type() == QEvent::PaletteChange) viewport_->redraw();
+    if (event->type() == QEvent::ActivationChange && isActiveWindow()) lookAtDisk();
 }
 
 }  // namespace hairloom::editor

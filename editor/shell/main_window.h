@@ -30,11 +30,13 @@ class MainWindow : public QMainWindow {
     DocumentFiles& files() { return files_; }
     Actions& actions() { return *actions_; }
     StatusLine& statusLine() { return *status_; }
+    Autosave& autosave() { return *autosave_; }
     QDockWidget* panel(const QString& id) const;
 
     /// Opens a file of any kind; hair goes onto the head that is there, after a look at it.
     void open(const QString& path);
-    /// False where the user cancelled or writing failed.
+    /// Writes the project on a thread of its own and keeps the window alive meanwhile. Asks where others have
+    /// to do with the file. False where the user cancelled or writing failed.
     bool saveTo(const QString& path);
     /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself.
     void showHeadDialog(const QString& path);
@@ -78,12 +80,20 @@ class MainWindow : public QMainWindow {
     void chooseAndImport();
     bool save();
     bool saveAs();
+    /// Whether a file may be replaced that other windows may have open.
+    bool mayReplaceFile(const QString& path);
+    Status write(const QString& path);
+    Opening mayOpenProject(const QString& path);
+    void reload();
+    /// Says what other programs and windows have done to the project's file, once each time.
+    void lookAtDisk();
     void chooseAndSaveScript();
     /// True where the document may go.
     bool mayLeaveDocument();
     bool runShortcut(int key, Qt::KeyboardModifiers modifiers);
 
     void frameSelection();
+    void showSecurity();
 
     Preferences preferences_;
     Prices prices_;
@@ -105,6 +115,9 @@ class MainWindow : public QMainWindow {
     QActionGroup* toolGroup_;
     QByteArray firstLayout_;
     Unsaved unsaved_ = Unsaved::Ask;
+    bool isSaving_ = false;
+    FileVersion toldOf_;              ///< the change of the project's file that was told of
+    std::size_t toldWindows_ = 0;     ///< other windows on the project that were told of
     std::optional<bool> shownEmpty_;  ///< what showPage() has made of the document
 };
 

@@ -16,7 +16,9 @@
 #include "editor/document/words.h"
 #include "editor/overlays/overlay_mode.h"
 #include "editor/shell/main_window.h"
+#include "editor/shell/questions.h"
 #include "editor/style/icons.h"
+#include "importers/reader_security.h"
 
 namespace hairloom::editor {
 namespace {
@@ -75,6 +77,14 @@ void MainWindow::addFileActions() {
     add({"file.saveAs", tr("Save &as…"), "", tr("Writes the project to another file"),
          QKeySequence("Ctrl+Shift+S")},
         [this] { saveAs(); });
+    add({"file.revert",
+         tr("Re&vert to saved"),
+         "",
+         tr("Opens the project again as it is in its file; asks before it drops changes"),
+         {}},
+        [this] {
+            if (mayLeaveDocument()) reload();
+        });
     add({"file.saveScript",
          tr("Save s&cript…"),
          "",
@@ -305,6 +315,29 @@ void MainWindow::addHelpActions() {
                                tr("<p><b>Hairloom %1</b></p><p>Hairstyles for games. GPL-3.0-or-later.</p>")
                                    .arg(QCoreApplication::applicationVersion()));
         }));
+    menu->addAction(&actions_->add({"help.security",
+                                    tr("&Guard of foreign files…"),
+                                    "",
+                                    tr("Tries what the process that reads files of other programs cannot do"),
+                                    {}},
+                                   [this] { showSecurity(); }));
+}
+
+void MainWindow::showSecurity() {
+    using Rows = std::vector<std::pair<std::string, std::string>>;
+    tasks_.run<Rows>(
+        tr("Trying the guard"), [](TaskControl&) { return readerSecurity(); },
+        [this](const Rows& rows) {
+            auto* box =
+                new QMessageBox(QMessageBox::Information, tr("Guard of foreign files"),
+                                tr("Meshes of other programs are read in a process of their own. On this "
+                                   "system it was tried what that process cannot do:"),
+                                QMessageBox::Close, this);
+            box->setObjectName("security");
+            box->setInformativeText(securityText(rows));
+            box->setAttribute(Qt::WA_DeleteOnClose);
+            box->open();
+        });
 }
 
 }  // namespace hairloom::editor

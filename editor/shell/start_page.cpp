@@ -12,6 +12,7 @@
 #include "editor/fields/blocks.h"
 #include "editor/fields/field.h"
 #include "editor/shell/files.h"
+#include "editor/shell/questions.h"
 #include "editor/style/icons.h"
 
 namespace hairloom::editor {
@@ -136,24 +137,31 @@ void StartPage::fillRecent() {
 }
 
 void StartPage::fillRecoveries() {
-    for (const Recovery& recovery : Autosave::recoveries()) {
+    for (const RecoveryCopy& copy : recoveryCopies()) {
+        if (copy.isOlder) continue;
         auto* row = new QWidget;
         auto* layout = new QHBoxLayout(row);
         layout->setContentsMargins(0, 0, 0, 0);
-        auto* restore = card(tr("Unsaved work: %1, %2")
-                                 .arg(recovery.name, QLocale().toString(recovery.when, QLocale::ShortFormat)),
-                             "warning", tr("Brings back what was not saved when the program ended"));
+        QString title =
+            tr("Unsaved work: %1, %2").arg(QString::fromStdString(copy.of.name), timeText(copy.when));
+        QString tip = tr("Brings back what was not saved when the program ended");
+        if (copy.isProjectChanged) {
+            title = tr("%1 (the project was saved elsewhere since)").arg(title);
+            tip += tr(". The project was saved by another program or window since; the copy lacks that");
+        }
+        auto* restore = card(title, "warning", tip);
         restore->setObjectName("recover");
         auto* discard = new QPushButton(tr("Discard"));
+        discard->setObjectName("discardRecovery");
         discard->setToolTip(tr("Deletes the copy for good"));
         layout->addWidget(restore, 1);
         layout->addWidget(discard);
-        connect(restore, &QPushButton::clicked, this, [this, recovery] {
-            files_.openRecovered(recovery.file, recovery.documentPath, recovery.name);
-        });
-        connect(discard, &QPushButton::clicked, row, [row, recovery] {
-            Autosave::discard(recovery);
-            row->deleteLater();
+        connect(restore, &QPushButton::clicked, this, [this, copy] { files_.openRecovered(copy); });
+        connect(discard, &QPushButton::clicked, row, [row, copy, restore] {
+            if (const auto removed = removeRecoveryCopy(copy); !removed)
+                restore->setText(errorText(removed.error()));
+            else
+                row->deleteLater();
         });
         recoveries_->addWidget(row);
     }
@@ -162,6 +170,8 @@ void StartPage::fillRecoveries() {
 void StartPage::fillLeftOvers() {
     QStringList folders;
     for (const QString& path : preferences_.recentFiles()) folders += QFileInfo(path).path();
+    if (const auto recovery = recoveryFolder(); !recovery.empty())
+        folders += QString::fromStdString(recovery.string());
     folders.removeDuplicates();
     for (const QString& folder : folders) {
         for (const LeftOver& leftOver : findLeftOvers(folder.toStdString())) addLeftOver(leftOver);

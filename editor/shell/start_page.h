@@ -6,7 +6,7 @@
 #include <QWidget>
 
 #include "core/base/output_file.h"
-#include "editor/document/autosave.h"
+#include "core/documents/recovery.h"
 #include "editor/document/preferences.h"
 #include "editor/shell/files.h"
 
@@ -27,7 +27,7 @@ class StartPage : public QWidget {
   private:
     void fillRecent();
     void fillRecoveries();
-    /// Files that killed runs left beside recent ones.
+    /// Files that killed runs left beside recent ones and recovery copies.
     void fillLeftOvers();
     void addLeftOver(const LeftOver& leftOver);
 

@@ -20,6 +20,7 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
       messages_(messages),
       player_(player),
       viewport_(viewport),
+      standing_(new QLabel),
       message_(new QLabel),
       counts_(new QLabel),
       head_(new QLabel),
@@ -43,6 +44,11 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     counts_->setToolTip(tr("Strands and points of the document, and how many strands are selected"));
     frameTime_->setToolTip(tr("Milliseconds for the last picture, and for the last frame of the simulation"));
     device_->setToolTip(tr("What draws the pictures"));
+    standing_->setObjectName("standing");
+    standing_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    standing_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    standing_->hide();
+    addWidget(standing_, 1);
     addWidget(message_, 1);
     addWidget(progress_);
     addWidget(cancel_);
@@ -108,6 +114,14 @@ void StatusLine::say(const QString& text, bool isWarning) {
     message_->setStyleSheet(isWarning ? QStringLiteral("QLabel { color: %1; }").arg(colours.bad.name())
                                       : QString());
     fade_.start(isWarning ? 20'000 : 8000);
+}
+
+void StatusLine::setStanding(const QString& warning) {
+    standing_->setText(warning);
+    standing_->setToolTip(warning);
+    standing_->setStyleSheet(
+        QStringLiteral("QLabel { color: %1; }").arg(themeColours(preferences_.theme()).bad.name()));
+    standing_->setVisible(!warning.isEmpty());
 }
 
 void StatusLine::setHint(const QString& hint) {

@@ -27,6 +27,9 @@ class StatusLine : public QStatusBar {
     StatusLine(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
                Player& player, Viewport& viewport, QWidget* parent = nullptr);
     QString message() const { return message_->text(); }
+    /// A warning that stands until it is taken back by an empty one.
+    void setStanding(const QString& warning);
+    QString standing() const { return standing_->text(); }
     /// What the active tool says to do; stands when nothing else is said.
     void setHint(const QString& hint);
 
@@ -43,6 +46,7 @@ class StatusLine : public QStatusBar {
     Messages& messages_;
     Player& player_;
     Viewport& viewport_;
+    QLabel* standing_;
     QLabel* message_;
     QLabel* counts_;
     QLabel* head_;

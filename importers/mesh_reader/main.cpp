@@ -7,9 +7,6 @@
 #include <fcntl.h>
 #include <io.h>
 #include <windows.h>
-#else
-#include <sys/resource.h>
-#include <unistd.h>
 #endif
 
 #include <fmt/format.h>
@@ -36,25 +33,14 @@ namespace hairloom {
 namespace {
 
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30u;
+constexpr std::uint64_t kAddressSpace = std::uint64_t{3} << 29u;  // 1.5 GiB
+constexpr std::string_view kAllowUnconfined = "--allow-unconfined";
 
 /// A crash ends the process without a report or a dialogue.
 void prepareForTheWorst() {
 #ifdef _WIN32
     SetErrorMode(SEM_FAILCRITICALERRORS | SEM_NOGPFAULTERRORBOX);
     _setmode(_fileno(stdout), _O_BINARY);
-#else
-    const rlimit noCoreFile{0, 0};
-    setrlimit(RLIMIT_CORE, &noCoreFile);
-#endif
-}
-
-/// On Windows the parent's job object has the limit. Sanitizers reserve terabytes of address space; there the
-/// parent's watch over resident memory is the only limit.
-void limitMemory() {
-#if !defined(_WIN32) && !defined(HAIRLOOM_ADDRESS_SANITIZER) && !defined(__SANITIZE_THREAD__)
-    constexpr rlim_t kAddressSpace = rlim_t{3} << 29u;
-    const rlimit limit{kAddressSpace, kAddressSpace};
-    setrlimit(RLIMIT_AS, &limit);
 #endif
 }
 
@@ -71,9 +57,25 @@ Result<RawScene> readGuarded(const char* file, MeshFormat format) {
     }
 }
 
-/// After this only the file's folder can be read, and nothing written but the answer.
-void confine(const char* file) {
-    confineProcess(std::filesystem::path(LimitedFolder(file).path()));
+/// The scene, read where only the file's folder can be read, and nothing written but the answer. What this
+/// system lacks to make it so is the first warning.
+Result<RawScene> readConfined(const char* file, MeshFormat format, bool allowUnconfined) {
+    std::error_code code;
+    // Links that lead to the file lie in folders that are gone in a moment.
+    const std::string target = std::filesystem::weakly_canonical(file, code).string();
+    const Confinement confinement = confineProcess(LimitedFolder(file).path(), kAddressSpace);
+    const std::string failed = confinement.namesOf(LayerState::Failed);
+    if (!failed.empty() && !allowUnconfined) {
+        return fail("is not read, since the process that reads it could not be confined: " + failed,
+                    "mend that, or read it all the same with --allow-unconfined");
+    }
+    auto scene = readGuarded(code ? file : target.c_str(), format);
+    const std::string missing = confinement.namesOf(LayerState::Missing);
+    if (scene && !(missing + failed).empty()) {
+        const std::string names = missing + (missing.empty() || failed.empty() ? "" : ", ") + failed;
+        scene->warnings.insert(scene->warnings.begin(), std::string(kGuardWarning) + names);
+    }
+    return scene;
 }
 
 bool writeOut(std::span<const std::byte> bytes) {
@@ -81,30 +83,33 @@ bool writeOut(std::span<const std::byte> bytes) {
 }
 
 /// Lines "NAME VALUE": what the kernel could take from the process, and what it then could not do.
-int trySecurity(const char* folder, const char* outside) {
-    const Confinement confinement = confineProcess(folder);
-    std::string lines = fmt::format("seccomp {}\nlandlock {}\nlandlock_version {}\n", confinement.systemCalls,
-                                    confinement.files, confinement.landlockVersion);
-    for (const ConfinementTrial& trial : tryToEscape(folder, outside))
+int trySecurity(const char* folder, const char* outside, const char* process) {
+    const Confinement confinement = confineProcess(folder, kAddressSpace);
+    std::string lines =
+        fmt::format("seccomp {}\nlandlock {}\nlandlock_version {}\n", confinement.isSet("system_calls"),
+                    confinement.isSet("files"), confinement.landlockVersion);
+    for (const ConfinementLayer& layer : confinement.layers)
+        lines += fmt::format("layer_{} {}\n", layer.name, layerStateName(layer.state));
+    const ConfinementBait bait{folder, outside, std::strtoll(process, nullptr, 10), kAddressSpace};
+    for (const ConfinementTrial& trial : tryToEscape(bait))
         lines += fmt::format("refuses_{} {}\n", trial.what, trial.isRefused);
     return writeOut(std::as_bytes(std::span(lines))) ? 0 : 1;
 }
 
 int run(int count, char** arguments) {
-    if (count == 4 && std::string_view(arguments[1]) == "--security")
-        return trySecurity(arguments[2], arguments[3]);
-    const auto format = count == 3 ? meshFormatNamed(arguments[1]) : std::nullopt;
+    if (count == 5 && std::string_view(arguments[1]) == "--security")
+        return trySecurity(arguments[2], arguments[3], arguments[4]);
+    const bool allowUnconfined = count == 4 && arguments[3] == kAllowUnconfined;
+    const auto format = count == 3 || allowUnconfined ? meshFormatNamed(arguments[1]) : std::nullopt;
     if (!format || *format == MeshFormat::Obj || *format == MeshFormat::Ply) {
         std::fputs(
-            "usage: hairloom-mesh-reader stl|fbx|gltf|glb FILE > SCENE\n"
-            "       hairloom-mesh-reader --security FOLDER FILE_OUTSIDE\n",
+            "usage: hairloom-mesh-reader stl|fbx|gltf|glb FILE [--allow-unconfined] > SCENE\n"
+            "       hairloom-mesh-reader --security FOLDER FILE_OUTSIDE PROCESS\n",
             stderr);
         return 2;
     }
     prepareForTheWorst();
-    limitMemory();
-    confine(arguments[2]);
-    const ByteWriter answer = writeRawScene(readGuarded(arguments[2], *format));
+    const ByteWriter answer = writeRawScene(readConfined(arguments[2], *format, allowUnconfined));
     return writeOut(answer.bytes()) ? 0 : 1;
 }
 

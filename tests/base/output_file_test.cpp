@@ -8,6 +8,8 @@
 
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
+#include "core/base/held_file.h"
+#include "core/base/output_batch.h"
 #include "core/base/write_rules.h"
 
 #ifndef _WIN32
@@ -134,6 +136,76 @@ TEST_F(OutputFileTest, AProjectThatSomebodyElseChangedMeanwhileIsKept) {
     put("p.hairloom", "HAIRLOOM theirs");
     EXPECT_THAT(writeError("p.hairloom", "HAIRLOOM ours"), HasSubstr("changed by another program"));
     EXPECT_EQ(get("p.hairloom"), "HAIRLOOM theirs");
+}
+
+TEST_F(OutputFileTest, WhatAnotherPutInItsPlaceIsSeenByTheName) {
+    setWriteRules({.keepInputs = true});
+    put("p.hairloom", "HAIRLOOM one");
+    ASSERT_TRUE(readFile(folder / "p.hairloom"));
+    EXPECT_FALSE(isChangedByOthers(folder / "p.hairloom"));
+    put("beside", "HAIRLOOM theirs");
+    fs::rename(folder / "beside", folder / "p.hairloom");
+    EXPECT_TRUE(isChangedByOthers(folder / "p.hairloom"));
+    EXPECT_THAT(writeError("p.hairloom", "HAIRLOOM ours"), HasSubstr("changed by another program"));
+    forgetInput(folder / "p.hairloom");
+    EXPECT_EQ(writeError("p.hairloom", "HAIRLOOM ours"), "");
+    EXPECT_FALSE(isChangedByOthers(folder / "p.hairloom"));
+    put("p.hairloom", "HAIRLOOM theirs again");
+    EXPECT_TRUE(isChangedByOthers(folder / "p.hairloom"));
+    EXPECT_THAT(writeError("p.hairloom", "HAIRLOOM ours"), HasSubstr("since it was written"));
+}
+
+TEST_F(OutputFileTest, AFreedNumberOfAFileIsNoInput) {
+    setWriteRules({.keepInputs = true});
+    put("a.txt", "words");
+    ASSERT_TRUE(readFile(folder / "a.txt"));
+    fs::rename(folder / "a.txt", folder / "b.txt");
+    put("a.txt", "other words, which another program wrote");
+    EXPECT_EQ(writeError("b.txt", "mine"), "") << "it is not what has the name that was read";
+}
+
+TEST_F(OutputFileTest, OfSeveralFilesAllComeOrNone) {
+    put("a.txt", "old");
+    {
+        const OutputBatch batch;
+        EXPECT_EQ(writeError("a.txt", "new"), "");
+        EXPECT_EQ(writeError("b.txt", "new"), "");
+    }
+    EXPECT_EQ(get("a.txt"), "old");
+    EXPECT_EQ(filesInFolder(), 1u);
+    {
+        OutputBatch batch;
+        EXPECT_EQ(writeError("a.txt", "new"), "");
+        EXPECT_EQ(writeError("b.txt", "new"), "");
+        EXPECT_EQ(get("a.txt"), "old");
+        fs::create_directories(folder / "b.txt");
+        const auto status = batch.commit();
+        ASSERT_FALSE(status);
+        EXPECT_THAT(status.error().message(), HasSubstr("is a folder"));
+    }
+    EXPECT_EQ(get("a.txt"), "old");
+    fs::remove(folder / "b.txt");
+    EXPECT_EQ(filesInFolder(), 1u);
+    OutputBatch batch;
+    EXPECT_EQ(writeError("a.txt", "new"), "");
+    ASSERT_TRUE(writeFiles(folder, {{"c.txt", "one"}, {"d.txt", "two"}}));
+    EXPECT_FALSE(fs::exists(folder / "c.txt")) << "a batch inside is part of the outer one";
+    ASSERT_TRUE(batch.commit());
+    EXPECT_EQ(get("a.txt"), "new");
+    EXPECT_EQ(get("d.txt"), "two");
+    EXPECT_EQ(filesInFolder(), 3u);
+}
+
+TEST_F(OutputFileTest, AHeldFileIsHeldByOneAndGoesWithIt) {
+    {
+        auto held = HeldFile::hold(folder / "held");
+        ASSERT_TRUE(held);
+        EXPECT_FALSE(HeldFile::hold(folder / "held"));
+    }
+    EXPECT_EQ(filesInFolder(), 0u);
+    put("held", "of a program that was killed");
+    EXPECT_TRUE(HeldFile::hold(folder / "held"));
+    EXPECT_EQ(filesInFolder(), 0u);
 }
 
 TEST_F(OutputFileTest, HardLinksStayLinks) {

@@ -84,6 +84,8 @@ TEST_F(NoFileHarmed, ErrorsAreAnObjectForPrograms) {
     EXPECT_TRUE(error["expected"].is_string());
     const Outcome usage = run("import --json");
     EXPECT_EQ(usage.exitCode, 2);
+    EXPECT_THAT(usage.errors, testing::StartsWith("error: "));
+    EXPECT_THAT(usage.errors, HasSubstr("hairloom-cli import --help"));
     EXPECT_TRUE(usage.json()["error"]["place"].is_null());
     EXPECT_THAT(usage.json()["error"]["what"].get<std::string>(), HasSubstr("required"));
 }
@@ -97,7 +99,8 @@ TEST_F(NoFileHarmed, NumbersThatAreNoneAreRefusedOnEveryOption) {
         EXPECT_EQ(run("simulate g.hairloom --frames " + number).exitCode, 2) << number;
         EXPECT_EQ(run("render g.hairloom -o p.png --exposure " + number).exitCode, 2) << number;
         EXPECT_EQ(run("--threads " + number + " info g.hairloom").exitCode, 2) << number;
-        EXPECT_NE(run("simulate g.hairloom --frames 2 --wind " + number + ",0,0").exitCode, 0) << number;
+        EXPECT_EQ(run("simulate g.hairloom --frames 2 --wind " + number + ",0,0").exitCode, 2) << number;
+        EXPECT_EQ(run("bench place --strands 10," + number).exitCode, 2) << number;
     }
     EXPECT_EQ(run("simulate g.hairloom --frames 2 --fps 6e1").exitCode, 0);
 }
@@ -115,7 +118,124 @@ TEST_F(NoFileHarmed, WhatAKilledRunLeftIsListedAndRemovedWhenAsked) {
     EXPECT_EQ(run("clean none").exitCode, 1);
 }
 
+TEST_F(NoFileHarmed, WrongUsageIsToldAlikeEverywhere) {
+    for (const std::string arguments :
+         {"", "nonsense", "set", "set g.hairloom nothing -o h.hairloom",
+          "render g.hairloom -o p.png --size 0x9", "render g.hairloom -o p.png --size big",
+          "render g.hairloom -o p.png --frames 1,2", "export g.hairloom -o a.hair",
+          "export g.hairloom --target maya --format obj-c4d -o a.obj", "bench io --size 9x9",
+          "accuracy g.hairloom -o acc --vary substeps", "info", "info g.hairloom --points",
+          "simulate g.hairloom --frames 2 --wind 1,2", "groom g.hairloom -o h.hairloom"}) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.errors;
+        EXPECT_THAT(outcome.errors, testing::StartsWith("error: ")) << arguments;
+        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+        EXPECT_EQ(outcome.output, "") << arguments;
+        const Outcome object = run(arguments + " --json");
+        EXPECT_EQ(object.exitCode, 2) << arguments;
+        EXPECT_TRUE(object.json()["error"]["what"].is_string()) << arguments;
+        EXPECT_FALSE(fs::exists(folder / "acc")) << arguments;
+    }
+}
+
+TEST_F(NoFileHarmed, PointsBeyondAKilometreAreRefusedWithTheUnitThatFits) {
+    std::ofstream(folder / "far.obj") << "v 0 0 0\nv 0 .1 0\nv 0 .2 0\nv 0 1e38 0\nl 1 2\nl 3 4\n";
+    expectRefused("import far.obj -o h.hairloom", "strand 1");
+    std::ofstream millimetres(folder / "mm.obj");
+    for (int s = 0; s < 60; ++s)
+        millimetres << "v " << s << " 1700 0\nv " << s << " 1500 0\nl " << 2 * s + 1 << ' ' << 2 * s + 2
+                    << '\n';
+    millimetres.close();
+    expectRefused("import mm.obj -o h.hairloom", "the unit mm would fit");
+    EXPECT_EQ(runJson("import mm.obj --unit mm -o h.hairloom")["strands"], 60);
+}
+
+TEST_F(NoFileHarmed, FoldersAreTriedBeforeTheWorkAndGetAllOrNothing) {
+    std::ofstream(folder / "taken") << "a file";
+    expectRefused("stability g.hairloom -o taken", "taken");
+    EXPECT_EQ(readText(folder / "taken"), "a file");
+    fs::create_directories(folder / "cert");
+    fs::create_directories(folder / "cert/certificate.json");
+    expectRefused("stability g.hairloom --storms 2 -o cert", "is a folder");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder / "cert"), fs::directory_iterator()), 1);
+    EXPECT_EQ(run("stability nothing.hairloom -o new/deep").exitCode, 1);
+    EXPECT_FALSE(fs::exists(folder / "new"));
+}
+
+TEST_F(NoFileHarmed, TheFolderOfCopiesOfUnsavedWorkIsLookedThrough) {
+    const fs::path data = folder / "data";
+    const fs::path recovery = data / "Hairloom/Hairloom/recovery";
+    fs::create_directories(recovery);
+#ifdef _WIN32
+    _putenv_s("APPDATA", data.string().c_str());
+#else
+    setenv("XDG_DATA_HOME", data.c_str(), 1);
+#endif
+    fs::copy_file(folder / "g.hairloom", recovery / "0123.hairloom");
+    std::ofstream(recovery / ".9.hairloom.0123456789abc.hairloom-part") << "half";
+    auto found = runJson("clean");
+    ASSERT_EQ(found["copies"].size(), 1u);
+    EXPECT_EQ(found["left_overs"].size(), 1u);
+    EXPECT_EQ(runJson("clean --remove")["removed"], 1);
+    found = runJson("clean --remove --copies");
+    EXPECT_EQ(found["removed"], 1);
+    EXPECT_TRUE(fs::is_empty(recovery));
 #ifndef _WIN32
+    unsetenv("XDG_DATA_HOME");
+#endif
+}
+
+TEST_F(NoFileHarmed, LargeScriptsAreRefusedBeforeTheyAreRead) {
+    std::ofstream(folder / "s.json").put('[');
+    fs::resize_file(folder / "s.json", std::uintmax_t{1} << 31u);
+    expectRefused("groom g.hairloom --script s.json -o h.hairloom", "expected at most 8388608");
+}
+
+#ifndef _WIN32
+
+TEST_F(NoFileHarmed, FifosAreNoInputsOfRecords) {
+    ASSERT_EQ(std::system(("mkfifo '" + (folder / "fifo").string() + "'").c_str()), 0);
+    expectRefused("simulate g.hairloom --frames 2 --against fifo", "is a device or a FIFO");
+    expectRefused("export g.hairloom --format abc --record fifo --frames 0,1 -o a.abc",
+                  "is a device or a FIFO");
+    expectRefused("groom g.hairloom --script fifo -o h.hairloom", "is a device or a FIFO");
+}
+
+TEST_F(NoFileHarmed, AFullLimitOfFilesIsAnErrorWithWords) {
+    const std::string command =
+        "cd '" + folder.string() +
+        "' && ( ulimit -f 8; '" HAIRLOOM_CLI
+        "' set g.hairloom simulation.windSpeed=1 -o h.hairloom ) > /dev/null 2> errors.txt";
+    const int status = std::system(command.c_str());
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status;
+    EXPECT_THAT(readText(folder / "errors.txt"), HasSubstr("File too large"));
+    EXPECT_FALSE(fs::exists(folder / "h.hairloom"));
+}
+
+TEST_F(NoFileHarmed, AFileGoesThroughAPipeWhereNothingIsReadBack) {
+    const std::string cli = "'" HAIRLOOM_CLI "' ";
+    const auto shell = [&](const std::string& command) {
+        const int status = std::system(("cd '" + folder.string() + "' && " + command).c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    };
+    const std::string set = cli + "set g.hairloom simulation.windSpeed=1 -o ";
+    EXPECT_EQ(shell(set + "h.hairloom > /dev/null"), 0);
+    const std::string written = readText(folder / "h.hairloom");
+    EXPECT_EQ(shell(set + "- > piped.hairloom 2> said.txt"), 0);
+    EXPECT_EQ(readText(folder / "piped.hairloom"), written);
+    EXPECT_THAT(readText(folder / "said.txt"), HasSubstr("changed"));
+    EXPECT_EQ(shell(set + "/dev/stdout 2> /dev/null | cat > through.hairloom"), 0);
+    EXPECT_EQ(readText(folder / "through.hairloom"), written);
+    EXPECT_EQ(shell("mkfifo fifo && { cat fifo > read.hairloom & " + set + "fifo > /dev/null; wait; }"), 0);
+    EXPECT_EQ(readText(folder / "read.hairloom"), written);
+    EXPECT_EQ(shell(set + "- --json > object.json 2> /dev/null"), 2);
+    EXPECT_THAT(readText(folder / "object.json"), HasSubstr("standard output"));
+    EXPECT_EQ(shell(cli + "export g.hairloom --format hair -o - > none.hair 2> /dev/null"), 2);
+    EXPECT_EQ(readText(folder / "none.hair"), "");
+    EXPECT_EQ(shell(set + "- > /dev/full 2> said.txt"), 1);
+    EXPECT_THAT(readText(folder / "said.txt"), HasSubstr("cannot be written"));
+    EXPECT_FALSE(fs::exists(folder / "-"));
+}
 
 TEST_F(NoFileHarmed, DevicesAndReadOnlyFilesStay) {
     expectRefused("export g.hairloom --format hair -o /dev/null", "is a device");

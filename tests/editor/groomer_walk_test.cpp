@@ -6,7 +6,6 @@
 #include <QListWidget>
 #include <QMenu>
 #include <QPainter>
-#include <QStandardPaths>
 #include <QToolButton>
 #include <QTreeWidget>
 
@@ -193,9 +192,7 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
     viewport().look(render::View::Front);
     drag({at(onHead(0, 0.05f, 0.08f)), at(onHead(0.03f, 0.07f, 0.08f))});
     const auto unsaved = hash();
-    ASSERT_TRUE(saveProject(groom(), (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) +
-                                      "/recovery/killed.hairloom")
-                                         .toStdString()));
+    ASSERT_TRUE(saveProject(groom(), recoveryFolder() / "killed.hairloom"));
     trigger("file.new");
     auto* recover = window->findChild<QPushButton*>("recover");
     ASSERT_TRUE(recover);
@@ -203,7 +200,7 @@ TEST_F(GroomerWalkTest, FromABodyInDecimetresToAHairstyleWithAFringeAndABraid) {
     finishWork();
     EXPECT_EQ(hash(), unsaved);
     ASSERT_TRUE(window->saveTo(inFolder("recovered.hairloom")));
-    EXPECT_TRUE(Autosave::recoveries().isEmpty());
+    EXPECT_TRUE(recoveryCopies().empty());
 
     // Out.
     ExportDialog out(document(), parts().preferences, parts().tasks, parts().messages, parts().player);

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
     qputenv("XDG_DATA_HOME", home.path().toUtf8());
     qputenv("XDG_CACHE_HOME", home.path().toUtf8());
 #ifdef _WIN32
-    // Windows asks no environment variable for these folders.
+    qputenv("APPDATA", home.path().toUtf8());
+    // Windows asks no environment variable for the other folders.
     QStandardPaths::setTestModeEnabled(true);
     QSettings::setDefaultFormat(QSettings::IniFormat);
     QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, home.path());

@@ -12,7 +12,6 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QSpinBox>
-#include <QStandardPaths>
 #include <QTabBar>
 #include <QToolBar>
 #include <QToolButton>
@@ -220,18 +219,16 @@ TEST_F(ShellTest, AfterACrashTheWorkIsOffered) {
     change("Specular", changed);
     const auto unsaved = hash();
     // A copy whose program is gone: its lock is not held.
-    ASSERT_TRUE(saveProject(groom(), (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) +
-                                      "/recovery/crashed.hairloom")
-                                         .toStdString()));
-    const QList<Recovery> found = Autosave::recoveries();
-    ASSERT_EQ(found.size(), 1);
+    ASSERT_TRUE(saveProject(groom(), recoveryFolder() / "crashed.hairloom"));
+    const auto found = recoveryCopies();
+    ASSERT_EQ(found.size(), 1u);
     trigger("file.new");
-    files().openRecovered(found[0].file, {}, "crashed");
+    files().openRecovered(found[0]);
     finishWork();
     EXPECT_EQ(hash(), unsaved);
     EXPECT_TRUE(window->isWindowModified());
-    Autosave::discard(found[0]);
-    EXPECT_TRUE(Autosave::recoveries().isEmpty());
+    EXPECT_TRUE(removeRecoveryCopy(found[0]));
+    EXPECT_TRUE(recoveryCopies().empty());
 }
 
 TEST_F(ShellTest, AutosaveKeepsWhatIsUnsavedUntilTheProgramEndsProperly) {
@@ -254,7 +251,7 @@ TEST_F(ShellTest, AutosaveKeepsWhatIsUnsavedUntilTheProgramEndsProperly) {
         const auto copy = loadProject(file.toStdString());
         ASSERT_TRUE(copy) << copy.error().message();
         EXPECT_EQ(contentHash(*copy), contentHash(edited.groom()));
-        EXPECT_TRUE(Autosave::recoveries().isEmpty()) << "the program still runs";
+        EXPECT_TRUE(recoveryCopies().empty()) << "the program still runs";
     }
     EXPECT_FALSE(QFile::exists(file));
 }

@@ -90,18 +90,16 @@ TEST_F(SplintersTest, ANewSphereIsTheSelectedOne) {
 
 TEST_F(SplintersTest, ARecoveryIsGoneOnceItsDocumentIsSaved) {
     // A copy whose program is gone: its lock is not held.
-    ASSERT_TRUE(saveProject(groom(), (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) +
-                                      "/recovery/left.hairloom")
-                                         .toStdString()));
-    ASSERT_EQ(Autosave::recoveries().size(), 1);
+    ASSERT_TRUE(saveProject(groom(), recoveryFolder() / "left.hairloom"));
+    ASSERT_EQ(recoveryCopies().size(), 1u);
     trigger("file.new");
     auto* recover = window->findChild<QPushButton*>("recover");
     ASSERT_TRUE(recover);
     recover->click();
     finishWork();
-    EXPECT_EQ(Autosave::recoveries().size(), 1) << "not before it is kept elsewhere";
+    EXPECT_EQ(recoveryCopies().size(), 1u) << "not before it is kept elsewhere";
     ASSERT_TRUE(window->saveTo(inFolder("kept.hairloom")));
-    EXPECT_TRUE(Autosave::recoveries().isEmpty());
+    EXPECT_TRUE(recoveryCopies().empty());
     trigger("file.new");
     EXPECT_FALSE(window->findChild<QPushButton*>("recover"));
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Several files that come together or not at all.
+
+#include "core/base/output_file.h"
+
+namespace hairloom {
+
+/// While it lives, what this thread writes waits beside its places, and commit() puts all of it there. What
+/// is not committed is taken away. A second one inside it does nothing of its own.
+class OutputBatch {
+  public:
+    OutputBatch();
+    OutputBatch(const OutputBatch&) = delete;
+    OutputBatch& operator=(const OutputBatch&) = delete;
+    ~OutputBatch();
+
+    /// Errors: one that may not or cannot be put in place; nothing is in place then, unless the disk itself
+    /// fails on the way, and then the error says so.
+    Status commit();
+
+  private:
+    bool isOuter_ = false;
+};
+
+}  // namespace hairloom

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opening, saving and leaving, with the questions that these ask.
+#include <QEventLoop>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMessageBox>
+#include <thread>
+
+#include "core/base/output_file.h"
+#include "core/base/write_rules.h"
+#include "core/editing/document.h"
+#include "core/groom/file/project_file.h"
+#include "editor/dialogs/head_dialog.h"
+#include "editor/dialogs/import_dialog.h"
+#include "editor/document/words.h"
+#include "editor/shell/files.h"
+#include "editor/shell/main_window.h"
+#include "editor/shell/questions.h"
+
+namespace hairloom::editor {
+
+bool MainWindow::mayLeaveDocument() {
+    if (!document_.isModified()) return true;
+    Unsaved answer = unsaved_;
+    if (answer == Unsaved::Ask) {
+        const auto button = QMessageBox::question(
+            this, tr("Unsaved changes"), tr("Save the changes to %1?").arg(document_.title()),
+            QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
+        answer = button == QMessageBox::Save      ? Unsaved::Save
+                 : button == QMessageBox::Discard ? Unsaved::Discard
+                                                  : Unsaved::Keep;
+    }
+    if (answer == Unsaved::Save) return save();
+    return answer == Unsaved::Discard;
+}
+
+void MainWindow::newDocument() {
+    if (!mayLeaveDocument()) return;
+    document_.open({}, {}, {});
+}
+
+void MainWindow::open(const QString& path) {
+    const bool ontoHead = document_.groom().scalp && kindOf(path) == FileKind::Strands;
+    if (!ontoHead) {
+        if (mayLeaveDocument()) files_.open(path);
+        return;
+    }
+    ImportDialog dialog(document_, tasks_, path, this);
+    if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
+}
+
+void MainWindow::showHeadDialog(const QString& path) {
+    auto* dialog = new HeadDialog(tasks_, preferences_, path, this);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog, path] {
+        if (mayLeaveDocument()) files_.openHead(path, dialog->options());
+    });
+    dialog->open();
+}
+
+void MainWindow::chooseAndOpen() {
+    const QString path = QFileDialog::getOpenFileName(this, tr("Open"), {}, openFilter());
+    if (!path.isEmpty()) open(path);
+}
+
+void MainWindow::chooseAndImport() {
+    const QString path = QFileDialog::getOpenFileName(this, tr("Import hair"), {}, strandFilter());
+    if (path.isEmpty()) return;
+    ImportDialog dialog(document_, tasks_, path, this);
+    if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
+}
+
+bool MainWindow::mayReplaceFile(const QString& path) {
+    const std::filesystem::path file = path.toStdString();
+    if (!document_.path().isEmpty() && isSameProject(file, document_.path().toStdString())) return true;
+    const auto windows = autosave_->otherWindowsWith(path);
+    return windows.empty() || askToReplaceOpenProject(this, path, windows);
+}
+
+/// The document may be drawn and played meanwhile; what people do waits.
+Status MainWindow::write(const QString& path) {
+    Status written;
+    QEventLoop loop;
+    isSaving_ = true;
+    autosave_->pause(true);
+    std::thread writer([this, &written, &loop, groom = document_.groom(), file = path.toStdString()] {
+        {
+            const std::lock_guard lock(autosave_->writing());
+            written = saveProject(groom, file);
+        }
+        QMetaObject::invokeMethod(&loop, &QEventLoop::quit, Qt::QueuedConnection);
+    });
+    loop.exec(QEventLoop::ExcludeUserInputEvents);
+    writer.join();
+    isSaving_ = false;
+    return written;
+}
+
+bool MainWindow::saveTo(const QString& path) {
+    if (isSaving_) return false;
+    if (const std::filesystem::path file = path.toStdString(); isChangedByOthers(file)) {
+        switch (askAboutChangedProject(this, path)) {
+            case ChangedAnswer::SaveAs:
+                return saveAs();
+            case ChangedAnswer::Overwrite:
+                noteInput(file, fileVersion(file));
+                break;
+            case ChangedAnswer::Reload:
+                reload();
+                return false;
+            case ChangedAnswer::Cancel:
+                return false;
+        }
+    }
+    if (!mayReplaceFile(path)) return false;
+    const quint64 state = document_.editing().state();
+    messages_.say(tr("Saving %1").arg(QFileInfo(path).fileName()));
+    const Status written = write(path);
+    if (written) document_.noteSaved(path, state);
+    autosave_->pause(false);
+    if (!written) {
+        messages_.warn(errorText(written.error()));
+        return false;
+    }
+    preferences_.addRecentFile(path);
+    messages_.say(tr("%1 saved").arg(QFileInfo(path).fileName()));
+    return true;
+}
+
+bool MainWindow::save() {
+    return document_.path().isEmpty() ? saveAs() : saveTo(document_.path());
+}
+
+bool MainWindow::saveAs() {
+    const QString name = document_.path().isEmpty()
+                             ? QFileInfo(document_.title()).completeBaseName() + ".hairloom"
+                             : document_.path();
+    const QString path =
+        QFileDialog::getSaveFileName(this, tr("Save"), name, tr("Hairloom projects (*.hairloom)"));
+    return !path.isEmpty() && saveTo(path);
+}
+
+bool MainWindow::saveScriptTo(const QString& path) {
+    const auto script = document_.editing().script();
+    const Status saved =
+        script ? writeFileAtomically(path.toStdString(), *script) : Status(tl::unexpected(script.error()));
+    if (!saved) {
+        messages_.warn(tr("No script: %1").arg(errorText(saved.error())));
+        return false;
+    }
+    messages_.say(tr("%1: %Ln steps", nullptr, document_.doneSteps()).arg(QFileInfo(path).fileName()));
+    return true;
+}
+
+void MainWindow::chooseAndSaveScript() {
+    const QString name = QFileInfo(document_.title()).completeBaseName() + ".json";
+    const QString path = QFileDialog::getSaveFileName(this, tr("Save script"), name, tr("Scripts (*.json)"));
+    if (!path.isEmpty()) saveScriptTo(path);
+}
+
+Opening MainWindow::mayOpenProject(const QString& path) {
+    for (const RecoveryCopy& copy : recoveryCopies()) {
+        const bool isOfIt =
+            !copy.of.project.empty() && !copy.isOlder && isSameProject(copy.of.project, path.toStdString());
+        if (!isOfIt) continue;
+        const WaitingAnswer answer = askAboutWaitingCopy(this, path, copy);
+        if (answer == WaitingAnswer::Cancel) return Opening::Not;
+        if (answer == WaitingAnswer::Recover) {
+            files_.openRecovered(copy);
+            return Opening::Not;
+        }
+        break;
+    }
+    const auto windows = autosave_->otherWindowsWith(path);
+    if (windows.empty()) return Opening::AsItself;
+    switch (askAboutOpenProject(this, path, windows)) {
+        case ElsewhereAnswer::Open:
+            return Opening::AsItself;
+        case ElsewhereAnswer::OpenCopy:
+            return Opening::AsCopy;
+        case ElsewhereAnswer::Cancel:
+            break;
+    }
+    return Opening::Not;
+}
+
+void MainWindow::reload() {
+    if (document_.path().isEmpty()) return messages_.say(tr("This document was never saved"));
+    files_.reload();
+}
+
+void MainWindow::lookAtDisk() {
+    const std::filesystem::path file = document_.path().toStdString();
+    if (file.empty() || isSaving_) return;
+    const QString name = document_.title();
+    if (const FileVersion now = fileVersion(file); isChangedByOthers(file) && now != toldOf_) {
+        toldOf_ = now;
+        return messages_.warn(tr("%1 was saved by another program or window: saving asks what to do, File ▸ "
+                                 "Revert to saved opens theirs")
+                                  .arg(name));
+    }
+    const std::size_t windows = autosave_->otherWindows().size();
+    if (windows > toldWindows_)
+        messages_.warn(
+            tr("%1 is open in another window, too: each is told before it overwrites the other").arg(name));
+    toldWindows_ = windows;
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/shell/questions.h"
+
+#include <QAbstractButton>
+#include <QCoreApplication>
+#include <QDateTime>
+#include <QFileInfo>
+#include <QLocale>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QStringList>
+#include <chrono>
+
+#include "editor/document/words.h"
+
+namespace hairloom::editor {
+namespace {
+
+QString tr(const char* text) {
+    return QCoreApplication::translate("Questions", text);
+}
+
+/// The buttons of a question in order; the last one is what Escape means.
+struct Choice {
+    const char* name;
+    QString label;
+    QString tip;
+    QMessageBox::ButtonRole role;
+};
+
+/// Which of the choices was made.
+int ask(QWidget* parent, const QString& title, const QString& text, const QString& more,
+        std::initializer_list<Choice> choices) {
+    QMessageBox box(QMessageBox::Warning, title, text, QMessageBox::NoButton, parent);
+    box.setInformativeText(more);
+    std::vector<QAbstractButton*> buttons;
+    for (const Choice& choice : choices) {
+        QPushButton* const button = box.addButton(choice.label, choice.role);
+        button->setObjectName(choice.name);
+        button->setToolTip(choice.tip);
+        buttons.push_back(button);
+    }
+    box.setDefaultButton(static_cast<QPushButton*>(buttons.front()));
+    box.setEscapeButton(buttons.back());
+    box.exec();
+    for (std::size_t i = 0; i < buttons.size(); ++i) {
+        if (box.clickedButton() == buttons[i]) return static_cast<int>(i);
+    }
+    return static_cast<int>(buttons.size()) - 1;
+}
+
+QString nameOf(const QString& path) {
+    return QFileInfo(path).fileName();
+}
+
+QString processesOf(const std::vector<OpenDocument>& windows) {
+    QStringList processes;
+    for (const OpenDocument& window : windows) processes += QString::number(window.process);
+    processes.removeDuplicates();
+    return processes.join(", ");
+}
+
+}  // namespace
+
+QString securityText(const std::vector<std::pair<std::string, std::string>>& rows) {
+    QStringList lines;
+    for (const auto& [name, value] : rows) {
+        const QString shown = labelOf(QString::fromStdString(name).section('_', 1).replace('_', ' '));
+        if (name.starts_with("layer_"))
+            lines += tr("Layer “%1”: %2").arg(shown, QString::fromStdString(value));
+        if (name.starts_with("refuses_"))
+            lines += (value == "true" ? tr("%1: refused") : tr("%1: NOT refused")).arg(shown);
+    }
+    return lines.join('\n');
+}
+
+QString timeText(std::filesystem::file_time_type time) {
+    // Both clocks at once: libstdc++ 12 has no conversion between them.
+    const auto ago = std::filesystem::file_time_type::clock::now() - time;
+    const auto ago_ms = std::chrono::duration_cast<std::chrono::milliseconds>(ago).count();
+    return QLocale().toString(QDateTime::currentDateTime().addMSecs(-ago_ms), QLocale::ShortFormat);
+}
+
+ChangedAnswer askAboutChangedProject(QWidget* parent, const QString& path) {
+    const QString when = QLocale().toString(QFileInfo(path).lastModified(), QLocale::ShortFormat);
+    const int choice =
+        ask(parent, tr("Changed on disk"), tr("%1 was saved by another program or window.").arg(nameOf(path)),
+            tr("It was saved at %1, after you opened or saved it here. Overwriting it loses what was saved "
+               "there.")
+                .arg(when),
+            {{"changedSaveAs", tr("Save &as…"), tr("Keeps both: writes yours to another file"),
+              QMessageBox::AcceptRole},
+             {"changedOverwrite", tr("&Overwrite"), tr("Keeps yours alone"), QMessageBox::DestructiveRole},
+             {"changedReload", tr("&Reload"), tr("Keeps theirs alone: opens the file again, and drops yours"),
+              QMessageBox::DestructiveRole},
+             {"changedCancel", tr("Cancel"), tr("Saves nothing"), QMessageBox::RejectRole}});
+    return static_cast<ChangedAnswer>(choice);
+}
+
+ElsewhereAnswer askAboutOpenProject(QWidget* parent, const QString& path,
+                                    const std::vector<OpenDocument>& windows) {
+    const int choice =
+        ask(parent, tr("Open in another window"), tr("%1 is open in another window.").arg(nameOf(path)),
+            tr("Process %1 has it. If both save, each is told before it overwrites the other.")
+                .arg(processesOf(windows)),
+            {{"elsewhereOpen", tr("&Open anyway"), tr("Opens the same file in this window, too"),
+              QMessageBox::AcceptRole},
+             {"elsewhereCopy", tr("Open a &copy"), tr("Opens what it holds; saving asks for another name"),
+              QMessageBox::ActionRole},
+             {"elsewhereCancel", tr("Cancel"), tr("Opens nothing"), QMessageBox::RejectRole}});
+    return static_cast<ElsewhereAnswer>(choice);
+}
+
+bool askToReplaceOpenProject(QWidget* parent, const QString& path, const std::vector<OpenDocument>& windows) {
+    return ask(parent, tr("Open in another window"), tr("%1 is open in another window.").arg(nameOf(path)),
+               tr("Process %1 has it. That window is told when it saves; what the file holds now is "
+                  "replaced.")
+                   .arg(processesOf(windows)),
+               {{"replaceOverwrite", tr("&Overwrite"), tr("Replaces the file"), QMessageBox::DestructiveRole},
+                {"replaceCancel", tr("Cancel"), tr("Saves nothing"), QMessageBox::RejectRole}}) == 0;
+}
+
+WaitingAnswer askAboutWaitingCopy(QWidget* parent, const QString& path, const RecoveryCopy& copy) {
+    QString more = tr("A copy from %1 has what was not saved when the program ended. Opening the saved "
+                      "project keeps the copy; the start page shows it.")
+                       .arg(timeText(copy.when));
+    if (copy.isProjectChanged)
+        more += ' ' + tr("The project was saved by another program or window since; the copy lacks that.");
+    const int choice = ask(
+        parent, tr("Unsaved work"), tr("There is unsaved work on %1.").arg(nameOf(path)), more,
+        {{"waitingRecover", tr("&Recover"), tr("Brings back what was not saved"), QMessageBox::AcceptRole},
+         {"waitingOpen", tr("&Open the saved project"), tr("Opens the project as it is in its file"),
+          QMessageBox::ActionRole},
+         {"waitingCancel", tr("Cancel"), tr("Opens nothing"), QMessageBox::RejectRole}});
+    return static_cast<WaitingAnswer>(choice);
+}
+
+}  // namespace hairloom::editor

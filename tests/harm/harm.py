@@ -1,0 +1,272 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tries to harm: damaged files, kills, limits on file sizes, wrong command lines, ends of the window.
+
+A fall is a crash, a hang, an error without words, a file that is neither the old nor the new one, or a success that is none. Everything
+happens in a folder of the run; the seed repeats it. `./dev harm` builds first.
+"""
+
+import argparse
+import hashlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+TIMEOUT_S = 60
+FORMATS = {"hair": "hair", "tfx": "tfx", "abc": "abc", "usda": "usda", "usdc": "usdc", "obj-lines": "obj", "obj-c4d": "obj", "ply": "ply",
+           "runtime": "hairrt"}
+
+
+class Harm:
+    def __init__(self, bin_folder, root, folder, seed, deadline):
+        self.cli = str(bin_folder / "hairloom-cli")
+        self.window = str(bin_folder / "hairloom")
+        self.root, self.folder, self.deadline = root, folder, deadline
+        self.random = random.Random(seed)
+        self.falls, self.counts = [], {}
+        self.environment = dict(os.environ, XDG_DATA_HOME=str(folder / "data"), XDG_CONFIG_HOME=str(folder / "config"),
+                                XDG_CACHE_HOME=str(folder / "cache"))
+
+    def run(self, *arguments, **more):
+        return subprocess.run([self.cli, *map(str, arguments)], cwd=self.folder, env=self.environment, capture_output=True, text=True,
+                              errors="replace", timeout=TIMEOUT_S, **more)
+
+    def must(self, *arguments):
+        done = self.run(*arguments)
+        if done.returncode != 0:
+            sys.exit(f"harm: {' '.join(map(str, arguments))}: {done.stderr}")
+
+    def count(self, part):
+        self.counts[part] = self.counts.get(part, 0) + 1
+
+    def fall(self, part, what, arguments):
+        self.falls.append((part, what, " ".join(map(str, arguments))))
+        print(f"FALL {part}: {what}: {' '.join(map(str, arguments))}", flush=True)
+
+    def judge(self, part, arguments, codes=(0, 1), **more):
+        """Runs a job and holds its end to what docs/cli.md promises; None where it fell."""
+        self.count(part)
+        try:
+            done = self.run(*arguments, **more)
+        except subprocess.TimeoutExpired:
+            self.fall(part, f"did not end within {TIMEOUT_S} s", arguments)
+            return None
+        if done.returncode not in codes:
+            self.fall(part, f"ended with {done.returncode}: {done.stderr.strip()[-200:]}", arguments)
+            return None
+        errors = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
+        if done.returncode != 0 and len(errors) != 1:
+            self.fall(part, f"{len(errors)} lines with error: {done.stderr.strip()[-200:]!r}", arguments)
+            return None
+        bare = ("std::bad_alloc", "[json.exception", "basic_string", "vector::")
+        if errors and any(errors[0][len("error: "):].startswith(word) for word in bare):
+            self.fall(part, f"a library's words alone: {errors[0]}", arguments)
+            return None
+        return done
+
+    # --- what is harmed
+
+    def make_files(self):
+        """One small file of each kind; the job that reads it."""
+        head = self.root / "samples/bust/bust.glb"
+        self.must("create", "--mesh", head, "--scalp", "material:scalp", "--count", 60, "--placement", "dart", "--length", 0.1, "--points", 8, "--seed", 3,
+                  "-o", "g.hairloom")
+        self.must("simulate", "g.hairloom", "--frames", 3, "--motion", "nod", "--record", "g.frames")
+        self.must("stack", "g.hairloom", "--keep", "stack.json")
+        (self.folder / "script.json").write_text('[{"op": "lengthen", "factor": 1.1}]' if self.knows("lengthen") else "[]")
+        (self.folder / "motion.json").write_text('{"keys": [{"t": 0}, {"t": 1, "translate": [0, 0.1, 0]}]}')
+        shutil.copy(head, self.folder / "bust.glb")
+        kinds = [("g.hairloom", ("info",)), ("g.hairloom", ("validate",)), ("bust.glb", ("validate",)),
+                 ("g.frames", ("export", "g.hairloom", "--format", "abc", "--frames", "0,1", "--force", "-o", "f.abc", "--record")),
+                 ("stack.json", ("stack", "g.hairloom", "-o", "s.hairloom", "--force", "--from")),
+                 ("script.json", ("groom", "g.hairloom", "-o", "s.hairloom", "--force", "--script")),
+                 ("motion.json", ("simulate", "g.hairloom", "--frames", "2", "--motion"))]
+        for name, suffix in FORMATS.items():
+            extra = ("--points", 8) if name == "tfx" else ()
+            self.must("export", "g.hairloom", "--format", name, *extra, "--force", "-o", f"{name}.{suffix}")
+            kinds.append((f"{name}.{suffix}", ("import", "-o", "i.hairloom", "--force")))
+        return kinds
+
+    def knows(self, operation):
+        return f'"{operation}"' in self.run("groom", "--list", "--json").stdout
+
+    def damage(self, data):
+        data = bytearray(data)
+        for _ in range(self.random.choice((1, 1, 2, 8, 64))):
+            if not data:
+                break
+            at = self.random.randrange(len(data))
+            way = self.random.randrange(6)
+            if way == 0:
+                data[at] ^= 1 << self.random.randrange(8)
+            elif way == 1:
+                del data[at:]
+            elif way == 2:
+                data[at:at + 4] = self.random.choice((b"\xff\xff\xff\xff", b"\0\0\0\0", b"\xff\xff\xff\x7f", b"\0\0\x80\x7f", b"\0\0\xc0\x7f"))
+            elif way == 3:
+                del data[at:at + self.random.randrange(1, 64)]
+            elif way == 4:
+                begin = self.random.randrange(len(data))
+                data[at:at] = data[begin:begin + self.random.randrange(1, 256)]
+            else:
+                data[at:at] = self.random.choice((b"nan", b"-inf", b"1e39", b"-1", b"99999999999", b"\"", b"[", b"]", b"{", b"\n"))
+        return bytes(data)
+
+    def late(self):
+        return time.monotonic() > self.deadline
+
+    # --- the parts
+
+    def damaged_files(self, kinds, number):
+        for i in range(number):
+            if self.late():
+                break
+            source, job = kinds[i % len(kinds)]
+            path = self.folder / ("damaged" + Path(source).suffix)
+            path.write_bytes(self.damage((self.folder / source).read_bytes()))
+            for output in ("i.hairloom", "s.hairloom", "f.abc"):
+                (self.folder / output).unlink(missing_ok=True)
+            done = self.judge("damaged files", (*job, path.name))
+            if done is None:
+                continue
+            for output in ("i.hairloom", "s.hairloom"):
+                if (self.folder / output).exists():
+                    if done.returncode != 0:
+                        self.fall("damaged files", "failed and left a file", (*job, path.name))
+                    self.judge("damaged files", ("info", output), codes=(0,))
+
+    def kills(self, number):
+        """Whatever the moment, a project is the old one or the new one, and what is left is found."""
+        new = ("set", "g.hairloom", "simulation.windSpeed=3", "-o", "k.hairloom")
+        self.must(*new)
+        after = self.digest("k.hairloom")
+        before = self.digest("g.hairloom")
+        begin = time.monotonic()
+        self.must(*new)
+        usual = time.monotonic() - begin
+        for _ in range(number):
+            if self.late():
+                break
+            self.count("kills")
+            shutil.copy(self.folder / "g.hairloom", self.folder / "k.hairloom")
+            job = subprocess.Popen([self.cli, *new], cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(self.random.uniform(0, 1.2 * usual))
+            job.send_signal(self.random.choice((signal.SIGKILL, signal.SIGTERM)))
+            job.wait()
+            if self.digest("k.hairloom") not in (before, after):
+                self.fall("kills", "the project is neither the old nor the new one", new)
+            self.must("clean", "--remove")
+            left = [name for name in os.listdir(self.folder) if name.endswith(("hairloom-part", "hairloom-whole"))]
+            if left:
+                self.fall("kills", f"left {left}", new)
+
+    def digest(self, name):
+        return hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
+
+    def limits(self, number):
+        """A limit on the size of files stops writing anywhere, as a full disk and a quota do."""
+        import resource
+        jobs = (("set", "g.hairloom", "simulation.windSpeed=3", "-o", "l.hairloom"), ("export", "g.hairloom", "--format", "usda", "-o", "l.usda"),
+                ("simulate", "g.hairloom", "--frames", "5", "--record", "l.frames"), ("stability", "g.hairloom", "--storms", "1", "-o", "l"))
+        outputs = ("l.hairloom", "l.usda", "l.usda.report.json", "l.frames", "l")
+        for i in range(number):
+            if self.late():
+                break
+            for output in outputs:
+                path = self.folder / output
+                shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+            bytes_ = int(10 ** self.random.uniform(1, 5.5))
+            job = jobs[i % len(jobs)]
+            done = self.judge("limits of files", job, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_)))
+            if done is None or done.returncode == 0:
+                continue
+            for output in outputs:
+                if (self.folder / output).exists() and (output != "l.usda" or not output.endswith(".json")):
+                    self.fall("limits of files", f"failed at {bytes_} bytes and left {output}", job)
+
+    def command_lines(self, number):
+        """Words that no job knows, numbers that are none, options without a value."""
+        helps = self.run("--help").stdout
+        jobs = [line.split()[0] for line in helps.splitlines() if line.startswith("  ") and line.split() and line.split()[0].islower()]
+        jobs = [job for job in jobs if self.run(job, "--help").returncode == 0]
+        options = {job: [word.split(",")[-1] for line in self.run(job, "--help").stdout.splitlines() for word in line.split()[:1]
+                         if word.startswith("-")] for job in jobs}
+        values = ("nan", "inf", "-1", "1e99", "", "x,y", "1,nan", "0x0", "99999999999999999999", "ÿ", "-", "--", "none.hairloom", "/dev/null", ".")
+        for _ in range(number):
+            if self.late():
+                break
+            job = self.random.choice(jobs)
+            if job in ("bench", "stability", "accuracy", "reference", "peers"):
+                continue  # these would measure for minutes where the words happen to be right
+            arguments = [job]
+            for _ in range(self.random.randrange(4)):
+                arguments.append(self.random.choice(options[job] or ["--nothing"]))
+                if self.random.random() < 0.8:
+                    arguments.append(self.random.choice(values))
+            if self.random.random() < 0.5:
+                arguments.insert(1, self.random.choice(("g.hairloom", "none.hairloom", "stack.json", ".")))
+            arguments = [word for word in arguments if word != "--force"]
+            self.judge("command lines", arguments, codes=(0, 1, 2))
+
+    def windows(self, number):
+        """The window ends at any moment; the project it had open stays as it was."""
+        if not os.environ.get("DISPLAY") or not os.path.exists(self.window):
+            print("window ends: skipped, no display or no hairloom", flush=True)
+            return
+        shutil.copy(self.folder / "g.hairloom", self.folder / "w.hairloom")
+        before = self.digest("w.hairloom")
+        for _ in range(number):
+            if self.late():
+                break
+            self.count("window ends")
+            window = subprocess.Popen([self.window, "w.hairloom"], cwd=self.folder, env=dict(self.environment, HAIRLOOM_VIEWPORT="none"),
+                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(self.random.uniform(0.1, 4))
+            sent = self.random.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGHUP))
+            window.send_signal(sent)
+            try:
+                code = window.wait(timeout=TIMEOUT_S)
+            except subprocess.TimeoutExpired:
+                window.kill()
+                self.fall("window ends", f"did not end after signal {sent}", ())
+                continue
+            if code != -sent:
+                self.fall("window ends", f"ended with {code} after signal {sent}", ())
+            if self.digest("w.hairloom") != before:
+                self.fall("window ends", "the project has changed", ())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--bin", type=Path, default=Path("build/release/bin"), help="folder of the programs")
+    parser.add_argument("--files", type=int, default=2500)
+    parser.add_argument("--kills", type=int, default=200)
+    parser.add_argument("--limits", type=int, default=80)
+    parser.add_argument("--lines", type=int, default=500)
+    parser.add_argument("--windows", type=int, default=20)
+    parser.add_argument("--minutes", type=float, default=60, help="then each part ends, however far it is")
+    parser.add_argument("--seed", type=int, default=1)
+    asked = parser.parse_args()
+    root = Path(__file__).resolve().parents[2]
+    with tempfile.TemporaryDirectory(prefix="hairloom-harm-") as folder:
+        harm = Harm(asked.bin.resolve(), root, Path(folder), asked.seed, time.monotonic() + 60 * asked.minutes)
+        kinds = harm.make_files()
+        harm.kills(asked.kills)
+        harm.limits(asked.limits)
+        harm.command_lines(asked.lines)
+        harm.windows(asked.windows)
+        harm.damaged_files(kinds, asked.files)
+    for part, count in harm.counts.items():
+        fallen = sum(1 for fall in harm.falls if fall[0] == part)
+        print(f"{part}: {count} runs, {fallen} falls")
+    return 1 if harm.falls else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
