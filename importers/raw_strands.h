@@ -20,6 +20,12 @@ struct RawAttribute {
     std::vector<std::int32_t> whole;  ///< of the others
 };
 
+/// An object or group of a file that strands come in (importers/strand_parts.h).
+struct StrandPart {
+    std::string path;  ///< "/groom/brows", in the file
+    std::string name;  ///< what people call it, where the file says so
+};
+
 struct RawStrands {
     std::string format;
     std::vector<std::uint32_t> offsets{0};  ///< as in Groom
@@ -35,8 +41,11 @@ struct RawStrands {
     std::optional<Vec3f> defaultColour;  ///< linear RGB for all points
     bool rootFirst = true;               ///< false where the format does not say which end is the root
     bool mirrorZ = false;                ///< the file is left-handed by a negated Z
-    std::vector<RawAttribute> attributes;      ///< what else the file has; no two of one name and domain
-    std::vector<std::string> groupNames;       ///< of the attribute "group"
+    std::vector<RawAttribute> attributes;  ///< what else the file has; no two of one name and domain
+    std::vector<std::string> groupNames;   ///< of the attribute "group"
+    std::vector<std::string> layerNames;   ///< of the attribute "layer", where the file has parts
+    std::vector<StrandPart> parts;
+    std::vector<std::uint32_t> partOfStrand;   ///< of all strands, or of none
     std::vector<std::vector<Vec3f>> frames;    ///< `positions` at each time where the strands move
     float framesPerSecond = 0;                 ///< of them
     std::optional<float> statedMetresPerUnit;  ///< where the file says it; goes before the option

@@ -10,6 +10,7 @@
 
 #include "core/base/file.h"
 #include "importers/raw_strands.h"
+#include "importers/strand_parts.h"
 #include "importers/strand_roots.h"
 #include "importers/strand_size.h"
 
@@ -279,6 +280,8 @@ Groom makeFrom(RawStrands& raw, float metresPerUnit) {
     if (!raw.thicknessScale.empty())
         groom.strandAttributes.set("thickness_scale", std::move(raw.thicknessScale));
     takeAttributes(raw, groom);
+    if (!raw.layerNames.empty()) groom.layers.clear();
+    for (const std::string& name : raw.layerNames) groom.layers.emplace_back().name = name;
     if (raw.defaultColour) groom.material.rootColour = groom.material.tipColour = *raw.defaultColour;
     return groom;
 }
@@ -363,6 +366,7 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
     auto raw = readRaw(file, std::move(bytes), asked, path);
     if (!raw) return tl::unexpected(raw.error());
     const StrandImportOptions options = stated(*raw, asked);
+    layersFromParts(*raw);
     Cleaner(*raw, options).run();
     std::sort(raw->dropped.begin(), raw->dropped.end(),
               [](const DroppedStrand& a, const DroppedStrand& b) { return a.strand < b.strand; });

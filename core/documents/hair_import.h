@@ -16,8 +16,8 @@ namespace hairloom {
 Result<ImportedStrands> importHairFor(const Groom& groom, const std::string& path,
                                       StrandImportOptions options);
 
-/// Puts strands, group names and scalp selection of `hair` in place of the groom's; settings, layers and
-/// spheres stay.
+/// Puts strands, group names and scalp selection of `hair` in place of the groom's, and its layers where it
+/// has several; settings and spheres stay.
 void replaceHair(Groom& groom, const Groom& hair);
 
 /// The operation "import" of a script (JSON) that does both. It holds the file's absolute path, not the file.
