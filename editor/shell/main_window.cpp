@@ -105,6 +105,7 @@ MainWindow::MainWindow()
 
     connect(&document_, &QtDocument::replaced, this, [this] { files_.forgetRecovered(); });
     files_.onUnclearHead([this](const QString& path) { showHeadDialog(path); });
+    files_.onMissingHead([this](const QString& file) { askForHead(file); });
     connect(start_, &StartPage::openRequested, this, &MainWindow::chooseAndOpen);
     connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&document_, &QtDocument::changed, this, &MainWindow::showPage);
@@ -274,6 +275,26 @@ void MainWindow::showHeadDialog(const QString& path) {
         if (mayLeaveDocument()) files_.openHead(path, dialog->options());
     });
     dialog->open();
+}
+
+void MainWindow::askForHead(const QString& missing) {
+    auto* question =
+        new QMessageBox(QMessageBox::Question, tr("Head not found"),
+                        tr("The file of the head, %1, is not there any more. Without it the hairstyle "
+                           "has neither skeleton nor clips.")
+                            .arg(missing),
+                        QMessageBox::NoButton, this);
+    question->setObjectName("missingHead");
+    question->setAttribute(Qt::WA_DeleteOnClose);
+    QAbstractButton* find = question->addButton(tr("Find it…"), QMessageBox::AcceptRole);
+    find->setObjectName("findHead");
+    question->addButton(tr("Go on without"), QMessageBox::RejectRole);
+    connect(find, &QAbstractButton::clicked, this, [this, missing] {
+        const QString path = QFileDialog::getOpenFileName(
+            this, tr("Find %1").arg(QFileInfo(missing).fileName()), {}, headFilter());
+        if (!path.isEmpty()) files_.findHead(path);
+    });
+    question->open();
 }
 
 void MainWindow::chooseAndOpen() {
