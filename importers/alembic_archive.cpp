@@ -136,14 +136,6 @@ void convertHalves(std::span<const std::byte> bytes, std::vector<To>& values) {
 
 }  // namespace
 
-double AlembicTimes::at(std::uint32_t sample) const {
-    const std::size_t count = times.size();
-    // Acyclic samples have all their times; a cycle of the largest number marks them.
-    if (sample < count) return times[sample];
-    if (cycle > 1e300) return times.back();
-    return times[sample % count] + cycle * static_cast<double>(sample / count);
-}
-
 const AlembicProperty* findProperty(const std::vector<AlembicProperty>& properties, std::string_view name) {
     const auto found = std::ranges::find(properties, name, &AlembicProperty::name);
     return found == properties.end() ? nullptr : &*found;
@@ -181,7 +173,7 @@ Status AlembicArchive::readTables(const std::vector<OgawaNode>& children) {
     }
     ByteReader samplings(file_.name(), *times);
     while (samplings.remaining() > 0) {
-        AlembicTimes sampling;
+        SampleTimes sampling;
         const auto most = samplings.read<std::uint32_t>("time samplings");
         const auto cycle = most ? samplings.read<double>("time samplings") : tl::unexpected(most.error());
         const auto count =
@@ -267,9 +259,36 @@ Result<std::vector<AlembicProperty>> AlembicArchive::propertiesIn(OgawaNode node
     return properties;
 }
 
-const AlembicTimes& AlembicArchive::times(std::uint32_t timeSampling) const {
-    static const AlembicTimes still;
+const SampleTimes& AlembicArchive::times(std::uint32_t timeSampling) const {
+    static const SampleTimes still;
     return timeSampling < times_.size() ? times_[timeSampling] : still;
+}
+
+SampleMoment AlembicArchive::momentOf(const AlembicProperty& property, double seconds) const {
+    const SampleTimes& times = this->times(property.timeSampling);
+    if (!property.moves() || !times.ascend(property.samples)) return {};
+    return hairloom::momentAt(times, property.samples, seconds);
+}
+
+Result<AlembicObject> AlembicArchive::objectAt(std::string_view path) const {
+    AlembicObject object = top();
+    std::string_view rest = path;
+    while (!rest.empty()) {
+        rest.remove_prefix(rest.front() == '/' ? 1 : 0);
+        const std::string_view name = rest.substr(0, rest.find('/'));
+        rest.remove_prefix(name.size());
+        if (name.empty()) continue;
+        auto inside = children(object);
+        if (!inside) return tl::unexpected(inside.error());
+        const auto found = std::ranges::find_if(*inside, [&](const AlembicObject& child) {
+            return child.path == fmt::format("{}/{}", object.path, name);
+        });
+        if (found == inside->end())
+            return file_.error(object.node, fmt::format("names an object {}", path),
+                               "there is none of that path");
+        object = std::move(*found);
+    }
+    return object;
 }
 
 Result<std::span<const std::byte>> AlembicArchive::sample(const AlembicProperty& property,
@@ -277,15 +296,15 @@ Result<std::span<const std::byte>> AlembicArchive::sample(const AlembicProperty&
     if (property.kind == AlembicProperty::Kind::Compound)
         return file_.error(property.node, property.name + " is a compound", "expected values");
     if (property.samples == 0) return std::span<const std::byte>();
-    const auto parts = file_.group(property.node);
-    if (!parts) return tl::unexpected(parts.error());
     // Of an array, data and its dimensions by turns.
-    const std::size_t stride = property.kind == AlembicProperty::Kind::Array ? 2 : 1;
-    const std::size_t part = storedIndex(property, index) * stride;
-    if (part >= parts->size())
+    const std::uint64_t stride = property.kind == AlembicProperty::Kind::Array ? 2 : 1;
+    const auto stored = file_.childCount(property.node);
+    if (!stored) return tl::unexpected(stored.error());
+    const std::uint64_t part = storedIndex(property, index) * stride;
+    if (part >= *stored)
         return file_.error(property.node, fmt::format("{} has no sample {}", property.name, index),
-                           fmt::format("it stores {}", parts->size() / stride));
-    const auto bytes = file_.data((*parts)[part]);
+                           fmt::format("it stores {}", *stored / stride));
+    const auto bytes = file_.data(file_.child(property.node, part));
     if (!bytes) return bytes;
     return bytes->size() < kKeyBytes ? std::span<const std::byte>() : bytes->subspan(kKeyBytes);
 }

@@ -12,6 +12,7 @@
 
 #include "core/base/result.h"
 #include "importers/ogawa.h"
+#include "importers/sample_times.h"
 
 namespace hairloom {
 
@@ -46,19 +47,14 @@ struct AlembicProperty {
     std::uint32_t firstChanged = 0, lastChanged = 0;
     std::uint32_t timeSampling = 0;
     OgawaNode node;
+
+    bool moves() const { return lastChanged > 0 && samples > 1; }
 };
 
 struct AlembicObject {
     std::string path;
     AlembicMetadata metadata;
     OgawaNode node;
-};
-
-/// Seconds of the samples: `times` repeat after `cycle`.
-struct AlembicTimes {
-    double cycle = 1;
-    std::vector<double> times{0.0};
-    double at(std::uint32_t sample) const;
 };
 
 class AlembicArchive {
@@ -74,7 +70,12 @@ class AlembicArchive {
     /// Of a compound.
     Result<std::vector<AlembicProperty>> properties(const AlembicProperty& compound) const;
     /// 0 seconds for a number that the file does not have.
-    const AlembicTimes& times(std::uint32_t timeSampling) const;
+    const SampleTimes& times(std::uint32_t timeSampling) const;
+    /// Where a time lies among the property's samples, of which there is one at least; the first sample where
+    /// nothing changes or its times do not ascend.
+    SampleMoment momentOf(const AlembicProperty& property, double seconds) const;
+    /// The object of that path, "/a/b".
+    Result<AlembicObject> objectAt(std::string_view path) const;
 
     /// Sample `index`, the last one where there are fewer, as numbers; empty where there is no sample.
     /// Errors: text, bytes that are no whole number of elements.
@@ -95,7 +96,7 @@ class AlembicArchive {
     OgawaNode top_;
     AlembicMetadata metadata_;
     std::vector<AlembicMetadata> shared_;
-    std::vector<AlembicTimes> times_;
+    std::vector<SampleTimes> times_;
 };
 
 /// The property of that name, or none.

@@ -1,92 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Curves of Alembic files, in Ogawa's container: the schemas AbcGeom_Curve_v1 and _v2 below transforms of any
-// kind.
+// kind, instances of them, too, where they are visible.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <set>
 
-#include "importers/alembic_archive.h"
+#include "importers/alembic_curves.h"
 #include "importers/alembic_unreal.h"
 #include "importers/curve_set.h"
+#include "importers/obj_text.h"
+#include "importers/strand_parts.h"
 
 namespace hairloom {
 namespace {
 
-constexpr int kMaxDepth = 64;
-
-bool startsWith(const AlembicMetadata& metadata, std::string_view key, std::string_view value) {
-    const auto found = metadata.find(key);
-    return found != metadata.end() && found->second.starts_with(value);
-}
-
-std::string valueOf(const AlembicMetadata& metadata, std::string_view key) {
-    const auto found = metadata.find(key);
-    return found == metadata.end() ? std::string() : found->second;
-}
-
-/// One operation of a transform: its kind in the upper four bits, and its numbers.
-Result<Eigen::Affine3d> operation(int kind, std::span<const double> values) {
-    using Eigen::AngleAxisd;
-    using Eigen::Vector3d;
-    constexpr double kRadians = M_PI / 180;
-    Eigen::Affine3d result = Eigen::Affine3d::Identity();
-    const auto axis = [&](const Vector3d& direction, double degrees) {
-        if (direction.norm() > 0) result.rotate(AngleAxisd(degrees * kRadians, direction.normalized()));
-    };
-    switch (kind) {
-        case 0:
-            result.scale(Vector3d(values[0], values[1], values[2]));
-            break;
-        case 1:
-            result.translate(Vector3d(values[0], values[1], values[2]));
-            break;
-        case 2:
-            axis(Vector3d(values[0], values[1], values[2]), values[3]);
-            break;
-        // Points are rows there: the matrix is the transpose of ours.
-        case 3:
-            result.matrix() = Eigen::Map<const Eigen::Matrix4d>(values.data());
-            break;
-        default:
-            axis(Vector3d::Unit(kind - 4), values[0]);
-            break;
-    }
-    return result;
-}
-
-/// A sample of a transform of the schema AbcGeom_Xform.
-Result<Eigen::Affine3d> transformAt(const AlembicArchive& archive,
-                                    const std::vector<AlembicProperty>& properties, const std::string& path,
-                                    std::uint32_t sample) {
-    constexpr std::array<std::size_t, 7> kNumbers{3, 3, 4, 16, 1, 1, 1};
-    Eigen::Affine3d result = Eigen::Affine3d::Identity();
-    const AlembicProperty* const ops = findProperty(properties, ".ops");
-    const AlembicProperty* const vals = findProperty(properties, ".vals");
-    if (ops == nullptr || vals == nullptr) return result;
-    const auto kinds = archive.integers(*ops, 0);
-    if (!kinds) return tl::unexpected(kinds.error());
-    const auto values = archive.doubles(*vals, sample);
-    if (!values) return tl::unexpected(values.error());
-    std::size_t at = 0;
-    for (const std::int64_t op : *kinds) {
-        const auto kind = static_cast<std::size_t>(op >> 4);
-        if (op < 0 || kind >= kNumbers.size())
-            return fail(fmt::format("{}: a transform has an operation {}", path, op),
-                        "expected kinds 0 to 6");
-        if (at + kNumbers[kind] > values->size())
-            return fail(fmt::format("{}: a transform has {} numbers", path, values->size()),
-                        "expected as many as its operations take");
-        const auto one = operation(static_cast<int>(kind), std::span(*values).subspan(at, kNumbers[kind]));
-        if (!one) return one;
-        result = result * *one;
-        at += kNumbers[kind];
-    }
-    if (!result.matrix().allFinite()) return fail(path + ": a transform is not finite", "expected numbers");
-    return result;
-}
+/// Of all curves together, which instances make many from few, and of all frames.
+constexpr std::uint64_t kMaxPoints = 200'000'000, kMaxFramePoints = 1'000'000'000;
 
 CurveAttribute::Scope scopeOf(const AlembicMetadata& metadata) {
     using Scope = CurveAttribute::Scope;
@@ -98,34 +32,35 @@ CurveAttribute::Scope scopeOf(const AlembicMetadata& metadata) {
     return Scope::Unknown;
 }
 
-/// What leads from an object to the file: a transform of each level, with its samples.
-struct Level {
-    std::string path;
-    std::vector<AlembicProperty> xform;
-    std::uint32_t samples = 1;
-    bool inherits = true;
-};
-
 class Reader {
   public:
-    Reader(const AlembicArchive& archive, const std::string& file, bool frames)
-        : archive_(archive), file_(file), frames_(frames) {}
+    Reader(const AlembicArchive& archive, const std::string& file, const StrandImportOptions& options)
+        : archive_(archive), file_(file), options_(options) {}
 
     /// All that is needed of the archive.
     Status readAll() {
-        if (auto status = visit(archive_.top(), {}, 0); !status)
-            return tl::unexpected(inFile(status.error(), file_));
-        if (curves_.empty()) return failIn(file_, {}, "has no curves", "expected hair as curves");
+        const auto told = [&](const Error& error) { return tl::unexpected(inFile(error, file_)); };
+        auto all = findCurves(archive_);
+        if (!all) return told(all.error());
+        found_ = std::move(all->curves);
+        hidden_ = std::move(all->hidden);
+        strands_.warnings = std::move(all->warnings);
+        if (found_.empty()) return noCurves();
+        if (auto status = findTimes(); !status) return told(status.error());
+        for (const AlembicCurves& found : found_) {
+            if (auto status = readCurves(found); !status) return told(status.error());
+        }
+        if (hidden_.size() > 0) reportHidden();
         return {};
     }
 
     Result<RawStrands> strands() {
         narrowWholeNumbers(curves_, strands_.warnings);
-        std::size_t frames = 0;
-        for (const CurveSet& set : curves_) frames = std::max(frames, set.frames.size());
         for (CurveSet& set : curves_) {
-            if (auto status = appendCurves(file_, std::move(set), frames, strands_); !status)
+            const std::string path = set.path;
+            if (auto status = appendCurves(file_, std::move(set), frameCount_, strands_); !status)
                 return tl::unexpected(status.error());
+            endPart(strands_, path, partNames_[path]);
         }
         adoptAttributes(strands_);
         strands_.format = "Alembic";
@@ -133,86 +68,109 @@ class Reader {
     }
 
   private:
-    Status visit(const AlembicObject& object, const std::vector<Level>& above, int depth) {
-        if (depth > kMaxDepth)
-            return fail(object.path + " lies too deep", fmt::format("expected {} levels", kMaxDepth));
-        const auto properties = archive_.properties(object);
-        if (!properties) return tl::unexpected(properties.error());
-        std::vector<Level> levels = above;
-        if (const AlembicProperty* const xform = findProperty(*properties, ".xform")) {
-            if (auto status = addLevel(object, *xform, levels); !status) return status;
+    Status noCurves() const {
+        if (!hidden_.empty())
+            return failIn(file_, {},
+                          fmt::format("all its {} objects of curves are hidden, as {}", hidden_.size(),
+                                      hidden_.front()),
+                          "expected visible hair: show it where it was made, and export it again");
+        return failIn(file_, {}, "has no curves", "expected hair as curves");
+    }
+
+    void reportHidden() {
+        strands_.warnings.push_back(
+            fileWarning(hidden_.size() == 1
+                            ? "hair that is hidden was left out"
+                            : fmt::format("{} objects of hair that are hidden were left out", hidden_.size()),
+                        hidden_.front(), "show it where it was made, and export it again"));
+    }
+
+    static bool isText(const AlembicProperty& property) {
+        return property.pod == AlembicPod::String && property.samples > 0;
+    }
+
+    /// The times of the record, whose first is that of the strands, too.
+    Status findTimes() {
+        std::vector<MovingProperty> moving;
+        std::set<std::pair<std::uint32_t, std::uint32_t>> known;
+        const auto add = [&](const std::string& path, const AlembicProperty* property) {
+            if (property == nullptr || !property->moves()) return;
+            if (!known.emplace(property->timeSampling, property->samples).second) return;
+            moving.push_back({&archive_.times(property->timeSampling), property->samples, path});
+        };
+        for (const AlembicCurves& found : found_) {
+            add(found.path, findProperty(found.properties, "P"));
+            for (const AlembicLevel& level : found.inherited.levels)
+                add(level.path, hairloom::valuesOf(level));
         }
-        const AlembicProperty* const geometry = findProperty(*properties, ".geom");
-        if (geometry != nullptr && (startsWith(object.metadata, "schema", "AbcGeom_Curve_v") ||
-                                    startsWith(geometry->metadata, "schema", "AbcGeom_Curve_v"))) {
-            if (auto status = readCurves(object, *geometry, levels); !status) return status;
+        if (moving.empty()) return {};
+        const auto stated = parseNumber(valueOf(archive_.metadata(), "FramesPerTimeUnit"));
+        const bool isRate = stated && *stated > 0 && *stated <= 1000;
+        start_ = moving.front().times->at(0);
+        for (const MovingProperty& property : moving) start_ = std::min(start_, property.times->at(0));
+        std::uint32_t samples = 0;
+        for (const MovingProperty& property : moving) samples = std::max(samples, property.samples);
+        if (!options_.frames) {
+            strands_.warnings.push_back(
+                fileNote(fmt::format("the hair moves: {} samples in time; the first was taken", samples),
+                         "time", "import --record keeps all as a record of frames"));
+            return {};
         }
-        const auto children = archive_.children(object);
-        if (!children) return tl::unexpected(children.error());
-        for (const AlembicObject& child : *children) {
-            if (auto status = visit(child, levels, depth + 1); !status) return status;
-        }
+        auto times = recordTimes(moving, isRate ? *stated : 0, static_cast<double>(options_.framesPerSecond));
+        if (!times) return tl::unexpected(times.error());
+        times_ = std::move(*times);
+        frameCount_ = times_.seconds.size();
+        strands_.framesPerSecond = static_cast<float>(times_.framesPerSecond);
+        strands_.isResampled = times_.isResampled;
+        if (!times_.words.empty()) strands_.warnings.push_back(fileNote(times_.words, "time"));
         return {};
     }
 
-    Status addLevel(const AlembicObject& object, const AlembicProperty& xform, std::vector<Level>& levels) {
-        auto properties = archive_.properties(xform);
-        if (!properties) return tl::unexpected(properties.error());
-        Level level{object.path, std::move(*properties), 1, true};
-        if (const AlembicProperty* const vals = findProperty(level.xform, ".vals"))
-            level.samples = std::max(1u, changes(*vals));
-        if (const AlembicProperty* const inherits = findProperty(level.xform, ".inherits")) {
-            const auto value = archive_.integers(*inherits, 0);
-            if (!value) return tl::unexpected(value.error());
-            level.inherits = value->empty() || value->front() != 0;
-        }
-        if (!level.inherits) levels.clear();
-        levels.push_back(std::move(level));
-        return {};
+    /// The sample of a property that stands at the first time.
+    std::uint32_t first(const AlembicProperty& property) const {
+        return archive_.momentOf(property, start_).nearest();
     }
 
-    /// Samples in time that are worth reading: of what stays, the first.
-    static std::uint32_t changes(const AlembicProperty& property) {
-        constexpr std::uint32_t kMaxFrames = 100'000;
-        return property.lastChanged == 0 ? std::min(property.samples, 1u)
-                                         : std::min(property.samples, kMaxFrames);
+    Result<std::vector<float>> pointsAt(const AlembicProperty& property, double seconds) {
+        const SampleMoment moment = archive_.momentOf(property, seconds);
+        auto before = archive_.floats(property, moment.before);
+        if (!before || moment.share == 0) return before;
+        const auto after = archive_.floats(property, moment.after);
+        if (!after) return tl::unexpected(after.error());
+        if (after->size() != before->size())
+            return fail(fmt::format("{} has {} numbers at one time and {} at the next", property.name,
+                                    before->size(), after->size()),
+                        "expected as many points at all times");
+        const auto share = static_cast<float>(moment.share);
+        for (std::size_t i = 0; i < before->size(); ++i) (*before)[i] += share * ((*after)[i] - (*before)[i]);
+        return before;
     }
 
-    Result<Eigen::Affine3d> toFile(const std::vector<Level>& levels, std::uint32_t sample) const {
-        Eigen::Affine3d result = Eigen::Affine3d::Identity();
-        for (const Level& level : levels) {
-            const auto one = transformAt(archive_, level.xform, level.path, sample);
-            if (!one) return one;
-            result = result * *one;
-        }
-        return result;
-    }
-
-    Result<std::vector<float>> pointsAt(const AlembicProperty& property, std::uint32_t sample) const {
-        if (property.extent != 3) return fail(property.name + " has no vectors of three", "expected points");
-        return archive_.floats(property, sample);
-    }
-
-    Status readCurves(const AlembicObject& object, const AlembicProperty& geometry,
-                      const std::vector<Level>& levels) {
-        const auto properties = archive_.properties(geometry);
-        if (!properties) return tl::unexpected(properties.error());
-        const AlembicProperty* const points = findProperty(*properties, "P");
-        const AlembicProperty* const counts = findProperty(*properties, "nVertices");
+    Status readCurves(const AlembicCurves& found) {
+        const AlembicProperty* const points = findProperty(found.properties, "P");
+        const AlembicProperty* const counts = findProperty(found.properties, "nVertices");
         if (points == nullptr || counts == nullptr)
-            return fail(object.path + " has no points or no counts", "expected P and nVertices");
+            return fail(found.path + " has no points or no counts", "expected P and nVertices");
         if (points->samples == 0) return {};
+        if (points->extent != 3) return fail(points->name + " has no vectors of three", "expected points");
         CurveSet set;
-        set.path = object.path;
-        if (auto status = readForm(*properties, *counts, set); !status) return status;
-        auto rest = pointsAt(*points, 0);
+        set.path = found.path;
+        if (auto status = readForm(found.properties, *counts, set); !status) return status;
+        auto rest = pointsAt(*points, start_);
         if (!rest) return tl::unexpected(rest.error());
         set.points = std::move(*rest);
-        const auto where = toFile(levels, 0);
+        points_ += set.points.size() / 3;
+        if (points_ > kMaxPoints)
+            return fail(fmt::format("its curves and their instances have more than {} points", kMaxPoints),
+                        "expected fewer");
+        if (points_ * frameCount_ > kMaxFramePoints)
+            return fail(fmt::format("{} frames of {} points are too many to keep", frameCount_, points_),
+                        "ask for fewer frames a second (--fps)");
+        const auto where = toFileAt(archive_, found.inherited.levels, start_);
         if (!where) return tl::unexpected(where.error());
         set.toFile = *where;
-        if (auto status = readFrames(*points, levels, set); !status) return status;
-        if (auto status = readAttributes(*properties, set); !status) return status;
+        if (auto status = readFrames(*points, found.inherited.levels, set); !status) return status;
+        if (auto status = readAttributes(found, set); !status) return status;
         curves_.push_back(std::move(set));
         return {};
     }
@@ -220,7 +178,7 @@ class Reader {
     /// Counts, basis, wrap and what NURBS have beside.
     Status readForm(const std::vector<AlembicProperty>& properties, const AlembicProperty& counts,
                     CurveSet& set) {
-        const auto numbers = archive_.integers(counts, 0);
+        const auto numbers = archive_.integers(counts, first(counts));
         if (!numbers) return tl::unexpected(numbers.error());
         for (const std::int64_t count : *numbers) {
             if (count < 0 || count > INT32_MAX)
@@ -229,7 +187,7 @@ class Reader {
         }
         std::vector<std::int64_t> type{1, 0, 0, 0};
         if (const AlembicProperty* const basis = findProperty(properties, "curveBasisAndType")) {
-            const auto values = archive_.integers(*basis, 0);
+            const auto values = archive_.integers(*basis, first(*basis));
             if (!values) return tl::unexpected(values.error());
             if (values->size() >= 3) type = *values;
         }
@@ -261,77 +219,76 @@ class Reader {
 
     Status readNurbs(const std::vector<AlembicProperty>& properties, CurveSet& set) {
         if (const AlembicProperty* const orders = findProperty(properties, ".orders")) {
-            const auto values = archive_.integers(*orders, 0);
+            const auto values = archive_.integers(*orders, first(*orders));
             if (!values) return tl::unexpected(values.error());
             for (const std::int64_t order : *values)
                 set.orders.push_back(static_cast<std::uint32_t>(order & 0xff));
         }
         if (const AlembicProperty* const knots = findProperty(properties, ".knots")) {
-            auto values = archive_.doubles(*knots, 0);
+            auto values = archive_.doubles(*knots, first(*knots));
             if (!values) return tl::unexpected(values.error());
             set.knots = std::move(*values);
         }
         for (const char* name : {"w", ".positionWeights"}) {
             const AlembicProperty* const weights = findProperty(properties, name);
             if (weights == nullptr || !set.weights.empty()) continue;
-            auto values = archive_.floats(*weights, 0);
+            auto values = archive_.floats(*weights, first(*weights));
             if (!values) return tl::unexpected(values.error());
             set.weights = std::move(*values);
         }
         return {};
     }
 
-    Status readFrames(const AlembicProperty& points, const std::vector<Level>& levels, CurveSet& set) {
-        std::uint32_t samples = changes(points);
-        bool moves = false;
-        for (const Level& level : levels) {
-            moves = moves || level.samples > 1;
-            samples = std::max(samples, level.samples);
-        }
-        if (samples < 2) return {};
-        if (!frames_) {
-            reportFrames(samples);
-            return {};
-        }
-        const AlembicTimes& times = archive_.times(points.timeSampling);
-        const double seconds = times.at(1) - times.at(0);
-        if (seconds > 0) strands_.framesPerSecond = static_cast<float>(1 / seconds);
-        for (std::uint32_t sample = 0; sample < samples; ++sample) {
-            auto frame = pointsAt(points, sample);
-            if (!frame) return tl::unexpected(frame.error());
-            set.frames.push_back(std::move(*frame));
-            if (!moves) continue;
-            const auto where = toFile(levels, sample);
+    Status readFrames(const AlembicProperty& points, const std::vector<AlembicLevel>& levels, CurveSet& set) {
+        const bool isCarried = std::ranges::any_of(levels, [](const AlembicLevel& level) {
+            const AlembicProperty* const values = hairloom::valuesOf(level);
+            return values != nullptr && values->moves();
+        });
+        for (const double seconds : times_.seconds) {
+            if (points.moves()) {
+                auto frame = pointsAt(points, seconds);
+                if (!frame) return tl::unexpected(frame.error());
+                set.frames.push_back(std::move(*frame));
+            }
+            if (!isCarried) continue;
+            const auto where = toFileAt(archive_, levels, seconds);
             if (!where) return tl::unexpected(where.error());
             set.frameToFile.push_back(*where);
         }
         return {};
     }
 
-    void reportFrames(std::uint32_t samples) {
-        if (std::exchange(framesReported_, true)) return;
-        strands_.warnings.push_back(
-            fileNote(fmt::format("the hair moves: {} samples in time; the first was taken", samples), "time",
-                     "import --record keeps all as a record of frames"));
-    }
-
-    Status readAttributes(const std::vector<AlembicProperty>& properties, CurveSet& set) {
+    Status readAttributes(const AlembicCurves& found, CurveSet& set) {
         for (const char* name : {"width", "uv"}) {
-            if (const AlembicProperty* const property = findProperty(properties, name)) {
+            if (const AlembicProperty* const property = findProperty(found.properties, name)) {
                 if (auto status = addAttribute(*property, set); !status) return status;
             }
         }
         for (const char* name : {".arbGeomParams", ".userProperties"}) {
-            const AlembicProperty* const compound = findProperty(properties, name);
+            const AlembicProperty* const compound = findProperty(found.properties, name);
             if (compound == nullptr || compound->kind != AlembicProperty::Kind::Compound) continue;
             const auto inside = archive_.properties(*compound);
             if (!inside) return tl::unexpected(inside.error());
             const bool ofCurves = std::string_view(name) == ".arbGeomParams";
             for (const AlembicProperty& property : *inside) {
+                if (property.name.ends_with("_AbcGeomScope")) continue;
                 // Properties of the object, such as Blender's resolution, are of no curve.
-                if (!ofCurves && property.kind != AlembicProperty::Kind::Array) continue;
+                const bool isOfObject = !ofCurves && property.kind != AlembicProperty::Kind::Array;
+                if (isOfObject && !isOfHair(property)) continue;
                 if (auto status = addAttribute(property, set); !status) return status;
             }
+        }
+        for (const auto& [name, property] : found.inherited.ofObjects) {
+            if (name == "groom_group_name" && isText(property)) {
+                auto text = archive_.text(property, first(property));
+                if (!text) return tl::unexpected(text.error());
+                partNames_[found.path] = *text;
+                continue;
+            }
+            const bool isKnown =
+                std::ranges::find(set.attributes, name, &CurveAttribute::name) != set.attributes.end();
+            if (isKnown) continue;
+            if (auto status = addAttribute(property, set); !status) return status;
         }
         return {};
     }
@@ -365,11 +322,11 @@ class Reader {
         const bool whole = values.pod < AlembicPod::Half;
         attribute.isFlag = values.pod <= AlembicPod::Uint8;
         if (whole) {
-            auto read = archive_.integers(values, 0);
+            auto read = archive_.integers(values, first(values));
             if (!read) return tl::unexpected(read.error());
             attribute.whole = std::move(*read);
         } else {
-            auto read = archive_.floats(values, 0);
+            auto read = archive_.floats(values, first(values));
             if (!read) return tl::unexpected(read.error());
             attribute.numbers = std::move(*read);
         }
@@ -384,7 +341,7 @@ class Reader {
     }
 
     Status expand(CurveAttribute& attribute, const AlembicProperty& indices) const {
-        const auto places = archive_.integers(indices, 0);
+        const auto places = archive_.integers(indices, first(indices));
         if (!places) return tl::unexpected(places.error());
         const std::size_t count = attribute.count(), components = attribute.components;
         std::vector<float> numbers;
@@ -408,9 +365,15 @@ class Reader {
 
     const AlembicArchive& archive_;
     const std::string& file_;
-    bool frames_;
-    bool framesReported_ = false;
+    const StrandImportOptions& options_;
+    std::vector<AlembicCurves> found_;
+    std::vector<std::string> hidden_;  ///< paths
+    std::uint64_t points_ = 0;
+    double start_ = 0;  ///< seconds
+    RecordTimes times_;
+    std::size_t frameCount_ = 0;
     std::vector<CurveSet> curves_;
+    std::map<std::string, std::string> partNames_;  ///< that objects give themselves, by path
     RawStrands strands_;
 };
 
@@ -429,7 +392,7 @@ Result<RawStrands> readAlembic(const std::string& file, std::vector<std::byte>&&
                       "expected Ogawa: export it again, or run abcconvert -toOgawa");
     const auto archive = AlembicArchive::open(file, bytes);
     if (!archive) return tl::unexpected(archive.error());
-    Reader reader(*archive, file, options.frames);
+    Reader reader(*archive, file, options);
     if (auto status = reader.readAll(); !status) return tl::unexpected(status.error());
     const bool isUnreal = hasUnrealSchema(*archive);
     std::vector<std::byte>().swap(bytes);

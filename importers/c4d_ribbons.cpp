@@ -1,206 +1,159 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hair that Cinema 4D wrote as flat ribbons (thesis §4.1, Figure 7): 2n vertices for a strand of n particles,
-// root to tip. There are n_v/(2n) strands; the thesis prints the inverse.
+// Hair that was written as polygons. Cinema 4D has flat ribbons (thesis §4.1, Figure 7): 2n vertices for a
+// strand of n particles, root to tip. There are n_v/(2n) strands; the thesis prints the inverse. Tubes of any
+// number of sides, and strands of unlike length, are other programs'.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <numeric>
+#include <limits>
 
 #include "importers/raw_strands.h"
+#include "importers/strand_mesh.h"
 
 namespace hairloom {
 namespace {
 
-constexpr std::array kOrders{RibbonOrder::Interleaved, RibbonOrder::EdgeAfterEdge, RibbonOrder::Around};
-
-/// Where a ribbon's vertices are, counted from its first.
-struct Rung {
-    std::uint32_t left;
-    std::uint32_t right;
-};
-Rung rungOf(RibbonOrder order, std::uint32_t particle, std::uint32_t particles) {
-    switch (order) {
-        case RibbonOrder::EdgeAfterEdge:
-            return {particle, particles + particle};
-        case RibbonOrder::Around:
-            return {particle, 2 * particles - 1 - particle};
-        case RibbonOrder::Interleaved:
-        case RibbonOrder::Detect:
-            break;
-    }
-    return {2 * particle, 2 * particle + 1};
-}
-std::uint32_t particleOf(RibbonOrder order, std::uint32_t vertex, std::uint32_t particles) {
-    switch (order) {
-        case RibbonOrder::EdgeAfterEdge:
-            return vertex % particles;
-        case RibbonOrder::Around:
-            return std::min(vertex, 2 * particles - 1 - vertex);
-        case RibbonOrder::Interleaved:
-        case RibbonOrder::Detect:
-            break;
-    }
-    return vertex / 2;
-}
-
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parents_(count) {
-        std::iota(parents_.begin(), parents_.end(), 0u);
-    }
-    std::uint32_t find(std::uint32_t element) {
-        while (parents_[element] != element) {
-            parents_[element] = parents_[parents_[element]];
-            element = parents_[element];
-        }
-        return element;
-    }
-    /// The lowest element represents its set.
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parents_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parents_;
-};
-
-std::span<const std::uint32_t> faceOf(const ObjStrandText& obj, std::size_t face) {
-    return std::span(obj.faceIndices)
-        .subspan(obj.faceOffsets[face], obj.faceOffsets[face + 1] - obj.faceOffsets[face]);
-}
-
-/// Vertices of each ribbon: all vertices that faces connect, which must be equally many runs of the file.
-Result<std::uint32_t> ribbonSizeFromFaces(const std::string& file, const ObjStrandText& obj) {
-    const auto count = static_cast<std::uint32_t>(obj.vertices.size());
-    DisjointSets sets(count);
-    for (std::size_t face = 0; face + 1 < obj.faceOffsets.size(); ++face) {
-        const auto corners = faceOf(obj, face);
-        for (std::size_t i = 1; i < corners.size(); ++i) sets.join(corners[0], corners[i]);
-    }
-    std::uint32_t size = 0;
-    std::uint32_t begin = 0;
-    for (std::uint32_t vertex = 1; vertex <= count; ++vertex) {
-        if (vertex < count && sets.find(vertex) == begin) continue;
-        if (vertex < count && sets.find(vertex) < begin) {
-            return failIn(file, {},
-                          fmt::format("faces join vertex {} with the ribbon of vertex {}", vertex + 1,
-                                      sets.find(vertex) + 1),
-                          "expected the vertices of each strand to follow each other");
-        }
-        const std::uint32_t found = vertex - begin;
-        if (size == 0) size = found;
-        if (found != size || found % 2 != 0 || found < 4) {
-            return failIn(
-                file, {},
-                fmt::format("faces connect vertices {} to {}: {} vertices", begin + 1, vertex, found),
-                size == found ? "expected ribbons of an even number of vertices, at least 4"
-                              : fmt::format("expected {} as in the first ribbon", size));
-        }
-        begin = vertex;
-    }
-    return size;
-}
-
-Result<std::uint32_t> ribbonSize(const std::string& file, const ObjStrandText& obj,
-                                 const StrandImportOptions& options) {
+/// Pieces of equal size, run after run of the vertices; faces belong to the run of their first corner.
+Result<StrandPieces> equalPieces(const std::string& file, const ObjStrandText& obj, std::uint32_t segments) {
     const std::size_t count = obj.vertices.size();
-    if (options.ribbonSegments == 0) {
-        if (!obj.faceLines.empty()) return ribbonSizeFromFaces(file, obj);
-        return failIn(file, {}, fmt::format("has {} vertices, but neither lines nor faces", count),
-                      "expected the number of segments of a strand to be given");
-    }
-    const std::uint64_t size = 2 * (std::uint64_t{options.ribbonSegments} + 1);
+    const std::uint64_t size = 2 * (std::uint64_t{segments} + 1);
     if (count % size != 0) {
         return failIn(
             file, {},
             fmt::format("{} vertices are not a multiple of {}, the vertices of a strand of {} segments",
-                        count, size, options.ribbonSegments),
+                        count, size, segments),
             fmt::format("{} are left over", count % size));
     }
-    return static_cast<std::uint32_t>(size);
-}
-
-/// The first face that does not lie between two neighbouring rungs; the number of faces where there is none.
-std::size_t firstMisfit(const ObjStrandText& obj, RibbonOrder order, std::uint32_t size) {
+    StrandPieces pieces;
+    for (std::uint32_t vertex = 0; vertex < count; ++vertex) {
+        pieces.vertices.push_back(vertex);
+        pieces.placeOf.push_back(static_cast<std::uint32_t>(vertex % size));
+        if ((vertex + 1) % size == 0) pieces.vertexOffsets.push_back(vertex + 1);
+    }
+    std::vector<std::uint32_t> counts(pieces.count(), 0);
+    const auto pieceOf = [&](std::size_t face) {
+        const std::uint32_t begin = obj.faceOffsets[face];
+        return static_cast<std::size_t>(obj.faceIndices[begin] / size);
+    };
     for (std::size_t face = 0; face < obj.faceLines.size(); ++face) {
-        std::uint32_t low = size;
-        std::uint32_t high = 0;
-        std::uint32_t ribbon = 0;
-        bool oneRibbon = true;
-        for (const std::uint32_t corner : faceOf(obj, face)) {
-            if (low == size) ribbon = corner / size;
-            oneRibbon = oneRibbon && corner / size == ribbon;
-            const std::uint32_t particle = particleOf(order, corner % size, size / 2);
-            low = std::min(low, particle);
-            high = std::max(high, particle);
-        }
-        if (!oneRibbon || high > low + 1) return face;
+        const auto begin = obj.faceIndices.begin() + obj.faceOffsets[face];
+        const auto end = obj.faceIndices.begin() + obj.faceOffsets[face + 1];
+        if (begin == end ||
+            std::any_of(begin, end, [&](std::uint32_t v) { return v / size != pieceOf(face); }))
+            return failIn(file, Line{obj.faceLines[face]},
+                          "this face does not lie between neighbouring cross-sections of one hair ribbon",
+                          fmt::format("expected ribbons of {} segments, or OBJ lines", segments));
+        ++counts[pieceOf(face)];
     }
-    return obj.faceLines.size();
+    for (const std::uint32_t faces : counts) pieces.faceOffsets.push_back(pieces.faceOffsets.back() + faces);
+    pieces.faces.resize(pieces.faceOffsets.back());
+    std::vector<std::uint32_t> next(pieces.faceOffsets.begin(), pieces.faceOffsets.end() - 1);
+    for (std::size_t face = 0; face < obj.faceLines.size(); ++face)
+        pieces.faces[next[pieceOf(face)]++] = static_cast<std::uint32_t>(face);
+    return pieces;
 }
 
-/// Sum of the rungs' lengths; a ribbon read in the right order is narrow.
-double totalWidth(const ObjStrandText& obj, RibbonOrder order, std::uint32_t size) {
-    double sum = 0;
-    for (std::size_t begin = 0; begin < obj.vertices.size(); begin += size) {
-        for (std::uint32_t particle = 0; particle < size / 2; ++particle) {
-            const Rung rung = rungOf(order, particle, size / 2);
-            const double width = (obj.vertices[begin + rung.left] - obj.vertices[begin + rung.right]).norm();
-            if (std::isfinite(width)) sum += width;
+class Maker {
+  public:
+    Maker(const ObjStrandText& obj, RibbonParticle particle) : obj_(obj), particle_(particle) {
+        raw_.rootFirst = false;
+    }
+
+    void add(std::span<const std::uint32_t> vertices, const StrandGrid& grid) {
+        const auto count = static_cast<std::uint32_t>(vertices.size());
+        const std::uint32_t rows = grid.rows(count);
+        std::vector<Vec3f> row(grid.sides);
+        for (std::uint32_t r = 0; r < rows; ++r) {
+            for (std::uint32_t column = 0; column < grid.sides; ++column)
+                row[column] = obj_.vertices[vertices[grid.vertexAt(r, column, rows)]];
+            addRow(row);
+        }
+        if (grid.aloneBefore() + grid.aloneAfter() > 0) addTips(vertices, grid);
+        raw_.offsets.push_back(static_cast<std::uint32_t>(raw_.positions.size()));
+        hasTubes_ = hasTubes_ || grid.sides > 2;
+    }
+
+    RawStrands finish() {
+        raw_.format = hasTubes_ ? "OBJ ribbons and tubes" : "Cinema 4D hair OBJ";
+        if (!hasTubes_) raw_.thickness.clear();
+        return std::move(raw_);
+    }
+
+  private:
+    /// A ribbon's particles are vertices of the file or midway; a tube's lie in its middle.
+    void addRow(std::span<const Vec3f> row) {
+        const bool isEdge = row.size() == 2 && particle_ == RibbonParticle::FirstEdge;
+        Vec3f middle = Vec3f::Zero();
+        for (const Vec3f& vertex : row) middle += vertex / static_cast<float>(row.size());
+        float radius = 0;
+        for (const Vec3f& vertex : row) radius += (vertex - middle).norm() / static_cast<float>(row.size());
+        raw_.positions.push_back(isEdge ? row[0] : middle);
+        raw_.thickness.push_back(2 * radius);
+    }
+
+    /// A vertex alone at an end is a particle where it lies beyond the last row, not in it as a lid's middle.
+    void addTips(std::span<const std::uint32_t> vertices, const StrandGrid& grid) {
+        const auto count = static_cast<std::uint32_t>(vertices.size());
+        const std::size_t begin = raw_.offsets.back();
+        for (std::uint32_t i = 0; i < grid.aloneBefore() + grid.aloneAfter(); ++i) {
+            const std::uint32_t place =
+                i < grid.aloneBefore() ? i : count - grid.aloneAfter() + i - grid.aloneBefore();
+            const Vec3f& vertex = obj_.vertices[vertices[place]];
+            const bool isRoot = grid.rowOf(place, count) == 0;
+            const std::size_t end = isRoot ? begin : raw_.positions.size() - 1;
+            if ((vertex - raw_.positions[end]).norm() <= 0.5f * raw_.thickness[end]) continue;
+            const auto at = static_cast<std::ptrdiff_t>(isRoot ? begin : raw_.positions.size());
+            raw_.positions.insert(raw_.positions.begin() + at, vertex);
+            raw_.thickness.insert(raw_.thickness.begin() + at, isRoot ? raw_.thickness[begin] : 0.0f);
         }
     }
-    return sum;
-}
 
-Result<RibbonOrder> findOrder(const std::string& file, const ObjStrandText& obj, std::uint32_t size,
-                              RibbonOrder asked) {
-    std::vector<RibbonOrder> fitting;
-    std::size_t farthest = 0;
-    for (const RibbonOrder order : kOrders) {
-        if (asked != RibbonOrder::Detect && asked != order) continue;
-        const std::size_t misfit = firstMisfit(obj, order, size);
-        farthest = std::max(farthest, misfit);
-        if (misfit == obj.faceLines.size()) fitting.push_back(order);
-    }
-    if (fitting.empty()) {
-        return failIn(file, Line{obj.faceLines[farthest]},
-                      "this face does not lie between neighbouring cross-sections of one hair ribbon",
-                      fmt::format("expected ribbons of {} segments, or OBJ lines", size / 2 - 1));
-    }
-    return *std::min_element(fitting.begin(), fitting.end(), [&](RibbonOrder a, RibbonOrder b) {
-        return totalWidth(obj, a, size) < totalWidth(obj, b, size);
-    });
-}
+    const ObjStrandText& obj_;
+    RibbonParticle particle_;
+    RawStrands raw_;
+    bool hasTubes_ = false;
+};
 
 }  // namespace
 
 Result<RawStrands> strandsFromRibbons(const std::string& file, const ObjStrandText& obj,
                                       const StrandImportOptions& options) {
-    const auto size = ribbonSize(file, obj, options);
-    if (!size) return tl::unexpected(size.error());
-    const auto order = findOrder(file, obj, *size, options.ribbonOrder);
-    if (!order) return tl::unexpected(order.error());
-
-    RawStrands raw;
-    raw.format = "Cinema 4D hair OBJ";
-    raw.rootFirst = false;
-    const std::uint32_t particles = *size / 2;
-    raw.positions.reserve(obj.vertices.size() / 2);
-    raw.offsets.reserve(obj.vertices.size() / *size + 1);
-    for (std::size_t begin = 0; begin < obj.vertices.size(); begin += *size) {
-        for (std::uint32_t particle = 0; particle < particles; ++particle) {
-            const Rung rung = rungOf(*order, particle, particles);
-            const Vec3f& left = obj.vertices[begin + rung.left];
-            const Vec3f& right = obj.vertices[begin + rung.right];
-            const bool centre = options.ribbonParticle == RibbonParticle::Centre;
-            raw.positions.push_back(centre ? Vec3f(0.5f * left + 0.5f * right) : left);
-        }
-        raw.offsets.push_back(static_cast<std::uint32_t>(raw.positions.size()));
+    RibbonOrder order = options.ribbonOrder;
+    std::uint32_t segments = options.ribbonSegments;
+    if (segments == 0 && obj.faceLines.empty()) {
+        const RibbonRun run = guessRibbons(obj.vertices, order);
+        if (run.segments == 0)
+            return failIn(file, {},
+                          fmt::format("has {} vertices, but neither lines nor faces", obj.vertices.size()),
+                          "expected the number of segments of a strand to be given");
+        segments = run.segments;
+        order = run.order;
     }
+    const auto pieces = segments > 0 ? equalPieces(file, obj, segments) : findPieces(file, obj);
+    if (!pieces) return tl::unexpected(pieces.error());
+    const auto grids =
+        segments > 0 ? findRibbons(file, obj, *pieces, order) : findGrids(file, obj, *pieces, order);
+    if (!grids) return tl::unexpected(grids.error());
+    Maker maker(obj, options.ribbonParticle);
+    for (std::size_t piece = 0; piece < pieces->count(); ++piece)
+        maker.add(pieces->verticesOf(piece), (*grids)[piece]);
+    RawStrands raw = maker.finish();
+    RibbonsFound found;
+    found.order = grids->front().order;
+    const bool isOneOrder = std::ranges::all_of(
+        *grids, [&](const StrandGrid& grid) { return grid.order == grids->front().order; });
+    if (!isOneOrder) found.order = RibbonOrder::Detect;
+    const auto [fewestSides, mostSides] = std::ranges::minmax(*grids, {}, &StrandGrid::sides);
+    found.sides = mostSides.sides;
+    found.fewestSides = fewestSides.sides;
+    found.fewestSegments = std::numeric_limits<std::uint32_t>::max();
+    for (std::size_t s = 0; s + 1 < raw.offsets.size(); ++s) {
+        const std::uint32_t n = raw.offsets[s + 1] - raw.offsets[s] - 1;
+        found.fewestSegments = std::min(found.fewestSegments, n);
+        found.mostSegments = std::max(found.mostSegments, n);
+    }
+    raw.ribbons = found;
     return raw;
 }
 

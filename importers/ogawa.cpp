@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::uint64_t kHeaderBytes = 16;
 constexpr std::uint64_t kCountBytes = 8;
+/// Children of groups that may be looked at again, as those of instances are: a second's work at most.
+constexpr std::uint64_t kReadAgain = 20'000'000;
 
 std::uint64_t readCount(std::span<const std::byte> bytes, std::uint64_t offset) {
     std::uint64_t value = 0;
@@ -48,17 +50,25 @@ Result<std::uint64_t> OgawaFile::countAt(std::uint64_t offset, std::uint64_t ele
     return count;
 }
 
+Result<std::uint64_t> OgawaFile::childCount(OgawaNode node) const {
+    if (node.isData()) return error(node, "is data", "expected a group");
+    if (node.offset() == 0) return std::uint64_t{0};
+    return countAt(node.offset(), kCountBytes);
+}
+
+OgawaNode OgawaFile::child(OgawaNode node, std::uint64_t index) const {
+    return {readCount(bytes_, node.offset() + kCountBytes * (index + 1))};
+}
+
 Result<std::vector<OgawaNode>> OgawaFile::group(OgawaNode node) const {
     std::vector<OgawaNode> children;
-    if (node.isData()) return error(node, "is data", "expected a group");
-    if (node.offset() == 0) return children;
-    if (++visited_ > bytes_.size() / kCountBytes)
-        return error(node, "groups refer to each other in a circle", "expected a tree");
-    const auto count = countAt(node.offset(), kCountBytes);
+    const auto count = childCount(node);
     if (!count) return tl::unexpected(count.error());
+    visited_ += 1 + *count;
+    if (visited_ > bytes_.size() / kCountBytes + kReadAgain)
+        return error(node, "groups refer to each other in a circle", "expected a tree");
     children.resize(static_cast<std::size_t>(*count));
-    for (std::size_t i = 0; i < children.size(); ++i)
-        children[i].reference = readCount(bytes_, node.offset() + kCountBytes * (i + 1));
+    for (std::size_t i = 0; i < children.size(); ++i) children[i] = child(node, i);
     return children;
 }
 

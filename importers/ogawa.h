@@ -25,9 +25,13 @@ class OgawaFile {
     static Result<OgawaFile> open(std::string file, std::span<const std::byte> bytes);
 
     OgawaNode root() const { return root_; }
-    /// The children; none of an empty group. Errors: data, a group beyond the end of the file, more groups
-    /// than the file has room for (they refer to each other in a circle).
+    /// The children; none of an empty group. Errors: data, a group beyond the end of the file, far more
+    /// groups than the file has room for (they refer to each other in a circle; instances are read again).
     Result<std::vector<OgawaNode>> group(OgawaNode node) const;
+    /// How many children there are. Errors: as group().
+    Result<std::uint64_t> childCount(OgawaNode node) const;
+    /// One of so many.
+    OgawaNode child(OgawaNode node, std::uint64_t index) const;
     /// Errors: a group, data beyond the end of the file.
     Result<std::span<const std::byte>> data(OgawaNode node) const;
 

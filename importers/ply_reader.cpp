@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strands of a PLY: lists of vertices in an element "strand", "line", "polyline" or "curve", or else edges,
-// which are chained. Other values of vertices come along by their names.
+// Strands of a PLY: lists of vertices in an element "strand", "line", "polyline" or "curve"; or else edges,
+// which are chained; or the vertices after one another, cut by a count a strand, by a number of the strand at
+// each vertex, or into equal strands. Other values of vertices come along by their names.
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 
 #include "importers/curve_set.h"
 #include "importers/ply_rows.h"
+#include "importers/points_per_strand.h"
 
 namespace hairloom {
 namespace {
@@ -22,8 +24,9 @@ bool isPly(std::span<const std::byte> bytes) {
 
 class Reader {
   public:
-    Reader(const std::string& file, std::span<const std::byte> bytes, const PlyHeader& header)
-        : file_(file), rows_(file, bytes, header), header_(header) {}
+    Reader(const std::string& file, std::span<const std::byte> bytes, const PlyHeader& header,
+           std::uint32_t pointsPerStrand)
+        : file_(file), rows_(file, bytes, header), header_(header), pointsPerStrand_(pointsPerStrand) {}
 
     /// All that is needed of the file's bytes.
     Status readAll() {
@@ -36,8 +39,7 @@ class Reader {
     }
 
     Result<RawStrands> strands() {
-        if (lines_.lineOffsets.size() < 2)
-            return failIn(file_, {}, "is a PLY without strands", "expected an element of strands or edges");
+        if (lines_.lineOffsets.size() < 2) return strandsOfRuns();
         const auto count = lines_.vertices.size();
         if (std::ranges::any_of(lines_.lineIndices, [&](std::uint32_t index) { return index >= count; }))
             return failIn(file_, {}, "a strand names a vertex that there is not",
@@ -61,6 +63,57 @@ class Reader {
     }
 
   private:
+    /// The vertices are the points of strand after strand.
+    Result<RawStrands> strandsOfRuns() {
+        if (hasFaces_ && offsets_.size() < 2)
+            return failIn(file_, {}, "is a PLY without strands: it has faces",
+                          "expected an element of strands or edges, or points alone");
+        RawStrands raw;
+        raw.format = "PLY strands";
+        raw.rootFirst = false;
+        raw.positions = std::move(lines_.vertices);
+        raw.attributes = std::move(attributes_);
+        if (offsets_.size() < 2) offsetsFromNumbers(raw);
+        if (offsets_.size() >= 2) {
+            if (offsets_.back() != raw.positions.size())
+                return failIn(file_, {}, fmt::format("its strands have {} points together", offsets_.back()),
+                              fmt::format("there are {} vertices", raw.positions.size()));
+            raw.offsets = std::move(offsets_);
+        } else {
+            auto runs = cutIntoStrands(file_, raw.positions, pointsPerStrand_);
+            if (!runs)
+                return failIn(file_, {}, "is a PLY without strands: it " + runs.error().problem,
+                              runs.error().expected);
+            noteRuns(*runs, raw);
+        }
+        takeColours(raw);
+        adoptAttributes(raw);
+        return raw;
+    }
+
+    /// Vertices that follow each other with the same number of a strand are one.
+    void offsetsFromNumbers(RawStrands& raw) {
+        constexpr std::array<std::string_view, 6> kNames{"strand_id", "strand_index", "strand",
+                                                         "hair_id",   "curve_id",     "line_id"};
+        const auto found = std::ranges::find_if(raw.attributes, [&](const RawAttribute& attribute) {
+            return std::ranges::find(kNames, attribute.name) != kNames.end();
+        });
+        if (found == raw.attributes.end()) return;
+        for (std::size_t i = 1; i < found->numbers.size(); ++i) {
+            if (found->numbers[i] != found->numbers[i - 1]) offsets_.push_back(static_cast<std::uint32_t>(i));
+        }
+        offsets_.push_back(static_cast<std::uint32_t>(raw.positions.size()));
+        columns_.erase(columns_.begin() + (found - raw.attributes.begin()));
+        raw.attributes.erase(found);
+    }
+
+    Status addCount(double count) {
+        if (!(count >= 0) || count != std::floor(count) || offsets_.back() + count > 4294967295.0)
+            return rows_.wrong(fmt::format("a strand of {} points", count), "expected a count");
+        offsets_.push_back(offsets_.back() + static_cast<std::uint32_t>(count));
+        return {};
+    }
+
     Status readElement(const PlyElement& element) {
         constexpr std::array<std::string_view, 5> kLists{"strand", "strands", "line", "polyline", "curve"};
         const bool isVertex = element.name == "vertex";
@@ -74,15 +127,24 @@ class Reader {
         }
         const auto list = element.find({"vertex_indices", "vertex_index", "indices"});
         const auto from = element.find({"vertex1"}), to = element.find({"vertex2"});
-        if (isList && (!list || !element.properties[*list].listSize))
+        const auto length =
+            list ? std::nullopt
+                 : element.find({"count", "num_points", "point_count", "points", "num_vertices",
+                                 "vertex_count", "vertices", "length", "size", "n"});
+        const std::size_t countAt = length.value_or(0);
+        const bool isCount = isList && length && !element.properties[countAt].listSize;
+        hasFaces_ = hasFaces_ || (element.name == "face" && element.count > 0);
+        if (isList && !isCount && (!list || !element.properties[*list].listSize))
             return rows_.wrong(fmt::format("'{}' has no vertex indices", element.name),
-                               "expected 'property list TYPE TYPE vertex_indices'");
+                               "expected 'property list TYPE TYPE vertex_indices', or a count of points");
         if (isEdge && (!from || !to)) return rows_.wrong("edges without vertex1 and vertex2");
         PlyRow row;
         for (std::uint64_t index = 0; index < element.count; ++index) {
             if (auto status = rows_.row(element, row); !status) return status;
             if (isVertex) addVertex(row);
-            if (isList) {
+            if (isCount) {
+                if (auto status = addCount(row.values[countAt]); !status) return status;
+            } else if (isList) {
                 if (auto status = addLine(row.lists[*list]); !status) return status;
             } else if (isEdge) {
                 hasEdges_ = true;
@@ -172,18 +234,21 @@ class Reader {
     const std::string& file_;
     PlyRows rows_;
     const PlyHeader& header_;
+    std::uint32_t pointsPerStrand_;
     ObjStrandText lines_;
+    std::vector<std::uint32_t> offsets_{0};  ///< of strands by counts
     std::array<std::optional<std::size_t>, 3> position_;
     std::vector<Column> columns_;           ///< of `attributes_`
     std::vector<RawAttribute> attributes_;  ///< of vertices
     bool hasEdges_ = false;
+    bool hasFaces_ = false;
 };
 
 Result<RawStrands> readPly(const std::string& file, std::vector<std::byte>&& bytes,
-                           const StrandImportOptions&) {
+                           const StrandImportOptions& options) {
     const auto header = readPlyHeader(file, bytes);
     if (!header) return tl::unexpected(header.error());
-    Reader reader(file, bytes, *header);
+    Reader reader(file, bytes, *header, options.pointsPerStrand);
     if (auto status = reader.readAll(); !status) return tl::unexpected(status.error());
     std::vector<std::byte>().swap(bytes);
     return reader.strands();

@@ -53,11 +53,13 @@ struct RawStrands {
     std::vector<std::uint32_t> partOfStrand;   ///< of all strands, or of none
     std::vector<std::vector<Vec3f>> frames;    ///< `positions` at each time where the strands move
     float framesPerSecond = 0;                 ///< of them
+    bool isResampled = false;                  ///< they lie between the file's samples
     std::optional<float> statedMetresPerUnit;  ///< where the file says it; goes before the option
     /// What the format takes for the unit where the file does not say; the option goes before it, where one
     /// was asked for.
     std::optional<float> assumedMetresPerUnit;
-    std::optional<UpAxis> statedUp;  ///< as well
+    std::optional<UpAxis> statedUp;       ///< as well
+    std::optional<RibbonsFound> ribbons;  ///< of hair written as polygons
     /// Settings, material, interpolation and spheres, of a file that has them; no strands.
     std::shared_ptr<const Groom> authored;
     std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out
@@ -74,14 +76,16 @@ inline Finding fileNote(std::string what, std::string where, std::string fix = {
 
 enum class Recognition : std::uint8_t {
     Signature,  ///< the file begins as no other format does, and holds strands alone
-    Guess,      ///< may be anything; asked after those with a signature
+    Structure,  ///< told by the whole file, of which all is to be given; asked after those with a signature
+    Guess,      ///< may be anything; asked last
 };
 
 /// A format that is read. One file NAME_reader.cpp of this folder: nameReader() says what it is.
 struct StrandReader {
     FileFormat format;
     Recognition recognition;
-    bool (*recognise)(std::span<const std::byte> bytes);  ///< from the first 256 bytes or more
+    /// From the first 256 bytes or more where the format has a signature, else from all of them.
+    bool (*recognise)(std::span<const std::byte> bytes);
     /// `file` is named in errors. The bytes are the reader's to let go once it has what it needs of them:
     /// beside a million strands they weigh.
     Result<RawStrands> (*read)(const std::string& file, std::vector<std::byte>&& bytes,

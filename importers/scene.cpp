@@ -149,6 +149,7 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
     if (auto status = validate(raw); !status) return tl::unexpected(status.error());
     cleanNames(raw);
     ImportedScene scene;
+    scene.statesUnit = raw.metresPerUnit > 0 && std::isfinite(raw.metresPerUnit);
     scene.metresPerUnit = convertToMetres(raw, options);
     if (auto status = validate(raw); !status) return tl::unexpected(status.error());
     const double metres = largestExtent(raw.soup);

@@ -28,6 +28,7 @@ struct ImportedScene {
     std::vector<std::string> warnings;
     std::string format;       ///< "obj", "ply", "stl", "fbx", "gltf", "glb"
     float metresPerUnit = 1;  ///< that the file's lengths were multiplied with
+    bool statesUnit = false;  ///< the file says it, and which axis is up
 };
 
 /// Reads a file by its content; its name plays no part. FBX, glTF and STL are read in a process of their

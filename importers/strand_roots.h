@@ -10,8 +10,9 @@ namespace hairloom {
 /// file's order stands. Metres, Y up.
 void orientToScalp(RawStrands& strands, const ScalpMesh& scalp);
 
-/// An error when the roots lie farther from the head than it is large, and half a metre at least, naming the
-/// unit of `--unit` that would put them on it. `strands` are in metres at `metresPerUnit`.
-Status checkRootDistance(const RawStrands& strands, const ScalpMesh& scalp, float metresPerUnit);
+/// An error when the roots lie farther from the head than it is large, and half a metre at least; a warning
+/// when they lie more than a centimetre away. Both name the unit and axis (`--unit`, `--up`) that would
+/// plainly put them onto it. `strands` are in metres and Y up as the options made them.
+Status checkRootDistance(RawStrands& strands, const ScalpMesh& scalp, const StrandImportOptions& options);
 
 }  // namespace hairloom

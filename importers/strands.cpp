@@ -22,7 +22,8 @@ namespace {
 /// Those with a signature first.
 std::vector<const StrandReader*> readersInOrder() {
     std::vector<const StrandReader*> readers;
-    for (const Recognition recognition : {Recognition::Signature, Recognition::Guess}) {
+    for (const Recognition recognition :
+         {Recognition::Signature, Recognition::Structure, Recognition::Guess}) {
         for (const StrandReader& reader : strandReaders()) {
             if (reader.recognition == recognition) readers.push_back(&reader);
         }
@@ -430,7 +431,7 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
             inFile(tooFar(*cleaner.far(), raw->offsets, raw->positions, options.metresPerUnit), file));
     if (options.scalp && options.scalp->triangleCount() > 0) {
         if (!raw->rootFirst) orientToScalp(*raw, *options.scalp);
-        if (auto near = checkRootDistance(*raw, *options.scalp, options.metresPerUnit); !near)
+        if (auto near = checkRootDistance(*raw, *options.scalp, options); !near)
             return tl::unexpected(inFile(near.error(), file));
     }
     repairAttributes(*raw);
@@ -447,6 +448,8 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
     if (raw->authored) takeSettings(*raw->authored, result);
     result.frames = std::move(raw->frames);
     result.framesPerSecond = raw->framesPerSecond;
+    result.isResampled = raw->isResampled;
+    result.ribbons = raw->ribbons;
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,9 +41,10 @@ struct StrandImportOptions {
     UpAxis up = UpAxis::Y;  ///< axis of the file that points up; Z up becomes (x, z, −y)
     RibbonOrder ribbonOrder = RibbonOrder::Detect;
     RibbonParticle ribbonParticle = RibbonParticle::FirstEdge;
-    bool frames = false;               ///< ImportedStrands::frames, too, for the formats that have them
-    float framesPerSecond = 0;         ///< of these, resampled in time; 0: as the file has them, if evenly
-    std::uint32_t ribbonSegments = 0;  ///< segments of each ribbon, n − 1; 0 finds it from the faces
+    bool frames = false;                ///< ImportedStrands::frames, too, for the formats that have them
+    float framesPerSecond = 0;          ///< of these, resampled in time; 0: as the file has them, if evenly
+    std::uint32_t ribbonSegments = 0;   ///< segments of each ribbon, n − 1; 0 finds it from the file
+    std::uint32_t pointsPerStrand = 0;  ///< of files that hold nothing but points; 0 finds it from these
     /// Where given, the end of a strand nearer to this mesh is its root, for the formats that do not say
     /// which end is (OBJ). It must be in metres and Y up. The groom is not bound to it; that is
     /// bindToScalp's.
@@ -68,6 +70,13 @@ struct DroppedStrand {
     DropReason reason;
 };
 
+/// How hair that was written as polygons was read.
+struct RibbonsFound {
+    RibbonOrder order = RibbonOrder::Detect;   ///< Detect where pieces have different ones
+    std::uint32_t fewestSides = 2, sides = 2;  ///< vertices of a cross-section; 2 of ribbons, more of tubes
+    std::uint32_t fewestSegments = 0, mostSegments = 0;
+};
+
 struct ImportedStrands {
     Groom groom;
     std::string format;  ///< "Yuksel hair", "TressFX 4", "TressFX 3", "OBJ lines", "Cinema 4D hair OBJ"
@@ -75,7 +84,9 @@ struct ImportedStrands {
     /// Positions of all points at each time of a file whose strands move, where the options ask for them.
     std::vector<std::vector<Vec3f>> frames;
     float framesPerSecond = 0;  ///< of frames
-    bool hasSettings = false;   ///< settings, material, interpolation and spheres are the file's
+    bool isResampled = false;   ///< frames lie between the file's samples
+    std::optional<RibbonsFound> ribbons;
+    bool hasSettings = false;  ///< settings, material, interpolation and spheres are the file's
     /// What was mended, ignored or looks wrong; Error where the file contradicts itself though it can be
     /// read.
     std::vector<Finding> warnings;

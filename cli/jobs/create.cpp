@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/documents.h"
+#include "cli/head_options.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/sphere_report.h"
@@ -31,9 +32,9 @@ struct CreateOptions {
     float length = 0.15f;
     std::uint32_t points = 16;
     std::uint64_t seed = 0;
-    std::string unit;
-    std::string up = "y";
-    std::vector<std::string> leaveOut, collideWith;
+    HeadOptions head;
+    std::string scalpMesh;
+    std::vector<std::string> collideWith;
     std::uint32_t colliderSpheres = HeadImportOptions().colliderSpheres;
     std::string mask;
     std::string output;
@@ -63,6 +64,21 @@ Result<Placement> place(const ScalpMesh& mesh, const FaceSet& faces, const Creat
                                          : placeDarts(mesh, faces, request);
 }
 
+/// Faces of the head that carry hair.
+Result<FaceSet> scalpOf(const ScalpMesh& mesh, const CreateOptions& options, const HeadImportOptions& taken) {
+    auto faces = selectFaces(mesh, options.scalp);
+    if (!faces || options.scalpMesh.empty()) return faces;
+    HeadImportOptions likewise = taken;
+    likewise.leaveOut.clear();
+    likewise.collideWith.clear();
+    likewise.guessUnit = likewise.guessUp = false;
+    const auto scalp = importHead(options.scalpMesh, likewise);
+    if (!scalp) return tl::unexpected(scalp.error());
+    auto onIt = facesOnSurface(mesh, *faces, scalp->scene.mesh);
+    if (!onIt) return tl::unexpected(inFile(onIt.error(), options.scalpMesh));
+    return onIt;
+}
+
 bool isPng(const std::string& path) {
     return contentKind(readBeginning(path, kContentKindBytes)) == content::kPng;
 }
@@ -76,13 +92,13 @@ Result<std::vector<float>> imageMask(const std::string& path, const ScalpMesh& m
 
 Result<Report> create(const CreateOptions& options) {
     const Stopwatch watch;
-    HeadImportOptions wanted{0, options.up == "z", options.leaveOut, options.collideWith,
-                             options.colliderSpheres};
-    if (!options.unit.empty()) wanted.metresPerUnit = static_cast<float>(metresPerUnit(options.unit));
+    HeadImportOptions wanted = headImportOptions(options.head);
+    wanted.collideWith = options.collideWith;
+    wanted.colliderSpheres = options.colliderSpheres;
     auto head = importHead(options.mesh, wanted);
     if (!head) return tl::unexpected(head.error());
     const auto mesh = std::make_shared<const ScalpMesh>(std::move(head->scene.mesh));
-    auto faces = selectFaces(*mesh, options.scalp);
+    auto faces = scalpOf(*mesh, options, head->taken);
     if (!faces) return tl::unexpected(faces.error());
     const double areaCm2 = selectionArea(*mesh, *faces) * 1e4;
     std::vector<float> mask;
@@ -100,8 +116,8 @@ Result<Report> create(const CreateOptions& options) {
     groom->scalpExpression = options.scalp;
     groom->spheres = head->colliders.spheres;
     // Skeleton and clips fit no head that was turned.
-    if (!wanted.zUp) groom->characterFile = options.mesh;
-    if (!options.unit.empty()) groom->characterMetresPerUnit = metresPerUnit(options.unit);
+    if (!head->taken.isTurned()) groom->characterFile = options.mesh;
+    groom->characterMetresPerUnit = head->taken.metresPerUnit;
     groom->interpolation.seed = options.seed;
     groom->placement = settingsOf(options, placement->roots.size());
     groom->scalpDensity = std::move(mask);
@@ -122,6 +138,7 @@ Result<Report> create(const CreateOptions& options) {
     for (const MeshRepair& repair : mesh->repairs()) {
         report["repairs"].push_back(Report{{"what", repair.what}, {"count", repair.count}});
     }
+    report["head"] = headReport(head->taken, head->words);
     report["seconds"] = watch.seconds();
     report["output"] = options.output;
     return report;
@@ -150,13 +167,11 @@ JobRun declare(CLI::App& job) {
     job.add_option("--length", options->length, "Strand length, metres")->check(CLI::Range(1e-4, 10.0));
     job.add_option("--points", options->points, "Points per strand")->check(CLI::Range(2, 1024));
     job.add_option("--seed", options->seed, "Seed of every random choice");
-    addUnitOption(job, options->unit);
-    job.add_option("--up", options->up, "Axis of the mesh file that points up")
-        ->check(CLI::IsMember({"y", "z"}));
-    job.add_option("--leave-out", options->leaveOut,
-                   "Groups of the mesh to do without, as helpers and joints: NAME or BEGINNING*, with commas "
-                   "between")
-        ->delimiter(',');
+    addHeadOptions(job, options->head);
+    job.add_option(
+        "--scalp-mesh", options->scalpMesh,
+        "Mesh of the scalp alone, in unit and place of the head: faces of the head that lie on it carry "
+        "hair, of those that --scalp names");
     auto* collide =
         job.add_option("--collide-with", options->collideWith,
                        "Groups likewise, named there or not, that are no part of the head, but that hair "

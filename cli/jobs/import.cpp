@@ -4,10 +4,13 @@
 #include <memory>
 
 #include "cli/documents.h"
+#include "cli/head_options.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
+#include "core/documents/hair_cleaning.h"
+#include "core/documents/hair_import.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
 #include "core/simulation/frame_record.h"
@@ -21,8 +24,12 @@ struct ImportOptions {
     std::string mesh;
     std::string scalp = "all";
     std::string unit;
-    std::string meshUnit;
+    HeadOptions head;
     std::string up = "y";
+    std::string guides;
+    bool clean = false;
+    HairCleaning cleaning;
+    std::uint32_t pointsPerStrand = 0;
     std::uint32_t segments = 0;
     std::string order = "auto";
     std::string particle = "edge";
@@ -43,6 +50,7 @@ StrandImportOptions strandOptions(const ImportOptions& options) {
     strands.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     strands.frames = !options.record.empty();
     strands.framesPerSecond = options.framesPerSecond;
+    strands.pointsPerStrand = options.pointsPerStrand;
     strands.ribbonSegments = options.segments;
     strands.ribbonOrder = kOrders.at(options.order);
     strands.ribbonParticle =
@@ -61,9 +69,9 @@ Status recordFrames(const ImportOptions& options, const ImportedStrands& importe
     if (imported.frames.empty())
         return failIn(options.file, {}, "has one time only", "expected strands that move for --record");
     constexpr float kUsualRate = 24;
-    const float rate = options.framesPerSecond > 0    ? options.framesPerSecond
-                       : imported.framesPerSecond > 0 ? imported.framesPerSecond
-                                                      : kUsualRate;
+    const float rate = imported.framesPerSecond > 0  ? imported.framesPerSecond
+                       : options.framesPerSecond > 0 ? options.framesPerSecond
+                                                     : kUsualRate;
     auto recorder = FrameRecorder::open(options.record, imported.groom, rate);
     if (!recorder) return tl::unexpected(recorder.error());
     for (const auto& frame : imported.frames) {
@@ -72,14 +80,67 @@ Status recordFrames(const ImportOptions& options, const ImportedStrands& importe
     return recorder->finish();
 }
 
+constexpr const char* orderName(RibbonOrder order) {
+    constexpr const char* kNames[] = {"mixed", "interleaved", "edges", "around"};
+    return kNames[static_cast<std::size_t>(order)];
+}
+
+Report ribbonReport(const RibbonsFound& found) {
+    return Report{{"order", orderName(found.order)},
+                  {"sides", found.sides},
+                  {"fewest_sides", found.fewestSides},
+                  {"segments", found.mostSegments},
+                  {"fewest_segments", found.fewestSegments}};
+}
+
+Report cleanReport(const CleanedHair& cleaned) {
+    return Report{{"repeated", cleaned.repeated}, {"short", cleaned.shorter},
+                  {"outliers", cleaned.outliers}, {"loops", cleaned.loops},
+                  {"broken", cleaned.broken},     {"turned", cleaned.turned},
+                  {"snapped", cleaned.snapped},   {"farthest_snap_mm", 1e3f * cleaned.farthestSnap},
+                  {"pushed_out", cleaned.pushed}};
+}
+
+/// The triangles between roots of hair that has just been bound.
+void triangulate(const ImportOptions& options, Groom& groom) {
+    auto triangulation = triangulateRoots(*groom.scalp, groom.scalpSelection, groom.rootBindings());
+    if (!triangulation) {
+        log::warning("{}: roots have no triangulation: {}", options.file, triangulation.error().message());
+        return;
+    }
+    groom.triangulation = std::move(*triangulation);
+    if (groom.triangulation.triangles.empty())
+        log::warning("{}: no three roots make a triangle", options.file);
+}
+
+/// Guides of a file of their own, behind the hairs.
+Status addGuides(const ImportOptions& options, const StrandImportOptions& strandsAs, Groom& groom,
+                 Report& report) {
+    StrandImportOptions still = strandsAs;
+    still.frames = false;
+    auto guides = importStrands(options.guides, still);
+    if (!guides) return tl::unexpected(guides.error());
+    logFindings(options.guides, guides->warnings);
+    const std::size_t hairs = groom.strandCount();
+    appendGuides(groom, guides->groom);
+    report["strands"] = groom.strandCount();
+    report["points"] = groom.pointCount();
+    report["guides"] = groom.strandCount() - hairs;
+    return {};
+}
+
 Result<Report> import(const ImportOptions& options) {
     StrandImportOptions strandsAs = strandOptions(options);
     std::shared_ptr<const ScalpMesh> mesh;
     FaceSet faces;
+    HeadImportOptions taken;
+    Report head;
     if (!options.mesh.empty()) {
-        auto scene = importSceneWithUnit(options.mesh, options.meshUnit);
-        if (!scene) return tl::unexpected(scene.error());
-        mesh = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
+        auto imported = importHead(options.mesh, headImportOptions(options.head));
+        if (!imported) return tl::unexpected(imported.error());
+        taken = imported->taken;
+        head = headReport(taken, imported->words);
+        mesh = std::make_shared<const ScalpMesh>(std::move(imported->scene.mesh));
         auto selected = selectFaces(*mesh, options.scalp);
         if (!selected) return tl::unexpected(selected.error());
         faces = std::move(*selected);
@@ -100,25 +161,34 @@ Result<Report> import(const ImportOptions& options) {
     }
     report["format"] = imported->format;
     report["warnings"] = toReport(imported->warnings);
+    if (imported->ribbons) report["ribbons"] = ribbonReport(*imported->ribbons);
+    if (!options.guides.empty()) {
+        if (auto added = addGuides(options, strandsAs, groom, report); !added)
+            return tl::unexpected(added.error());
+    }
     if (mesh && groom.strandCount() > 0) {
+        report["head"] = std::move(head);
         report["root_distance"] = bindingReport(bindToScalp(groom, mesh, std::move(faces)));
         groom.scalpExpression = options.scalp;
-        groom.characterFile = options.mesh;
-        if (!options.meshUnit.empty()) groom.characterMetresPerUnit = metresPerUnit(options.meshUnit);
-        if (auto triangulation = triangulateRoots(*mesh, groom.scalpSelection, groom.rootBindings())) {
-            groom.triangulation = std::move(*triangulation);
-            if (groom.triangulation.triangles.empty())
-                log::warning("{}: no three roots make a triangle", options.file);
-        } else {
-            log::warning("{}: roots have no triangulation: {}", options.file,
-                         triangulation.error().message());
-        }
+        // Skeleton and clips fit no head that was turned.
+        if (!taken.isTurned()) groom.characterFile = options.mesh;
+        groom.characterMetresPerUnit = taken.metresPerUnit;
     }
+    if (options.clean) {
+        const auto cleaned = cleanHair(groom, options.cleaning);
+        if (!cleaned) return tl::unexpected(inFile(cleaned.error(), options.file));
+        report["cleaned"] = cleanReport(*cleaned);
+        report["strands"] = groom.strandCount();
+        report["points"] = groom.pointCount();
+    }
+    if (groom.scalp) triangulate(options, groom);
     if (!options.record.empty()) {
         if (auto recorded = recordFrames(options, *imported); !recorded)
             return tl::unexpected(recorded.error());
         report["record"] = options.record;
         report["frames"] = imported->frames.size();
+        report["fps"] = imported->framesPerSecond;
+        report["resampled_fps"] = imported->isResampled ? Report(imported->framesPerSecond) : Report(nullptr);
     }
     if (auto saved = saveProject(groom, options.output); !saved) return tl::unexpected(saved.error());
     report["output"] = options.output;
@@ -133,11 +203,13 @@ JobRun declare(CLI::App& job) {
     job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
     job.add_option("--scalp", options->scalp, "Faces of the mesh that carry hair, as for create");
     addUnitOption(job, options->unit);
-    addUnitOption(job, options->meshUnit, "--mesh-unit", "the head mesh");
+    addHeadOptions(job, options->head, "mesh-");
     job.add_option("--up", options->up, "Axis that points up in the hair file")
         ->check(CLI::IsMember({"y", "z"}));
-    job.add_option("--segments", options->segments,
-                   "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces")
+    job.add_option(
+           "--segments", options->segments,
+           "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces, or from the distances "
+           "between its vertices where it has none")
         ->check(CLI::Range(0, 65535));
     job.add_option("--order", options->order, "Vertex order of a Cinema 4D OBJ")
         ->check(CLI::IsMember({"auto", "interleaved", "edges", "around"}));
@@ -148,6 +220,24 @@ JobRun declare(CLI::App& job) {
     job.add_option("--fps", options->framesPerSecond, "Frames per second of the record; 0 as the file says")
         ->check(CLI::Range(0.0, 1000.0))
         ->needs(record);
+    job.add_option(
+           "--points-per-strand", options->pointsPerStrand,
+           "Points of each strand in a file that holds nothing but points; 0 finds them from the distances "
+           "between these")
+        ->check(CLI::Range(0, 65536));
+    auto* guides =
+        job.add_option("--guides", options->guides,
+                       "Guides of the same hair in a file of their own: they come behind its strands, "
+                       "which then follow them");
+    auto* clean =
+        job.add_flag("--clean", options->clean,
+                     "Make reconstructed hair usable: outliers, loops and jumps out, strands turned, roots "
+                     "snapped to the scalp, kept out of the head, resampled");
+    clean->excludes(record);
+    guides->excludes(record);
+    job.add_option("--points", options->cleaning.points, "Points of each strand after --clean")
+        ->check(CLI::Range(2, 1024))
+        ->needs(clean);
     job.add_option("-o,--output", options->output, "Project to write")->required();
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "cli/advice_report.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "core/base/file.h"
+#include "core/base/log.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
 #include "hairloom/asset.h"
@@ -29,6 +31,18 @@ Report scalpReport(const Groom& groom) {
                   {"selected_triangles", groom.scalpSelection.size()},
                   {"selected_area_cm2", selectionArea(*groom.scalp, groom.scalpSelection) * 1e4},
                   {"character", groom.characterFile}};
+}
+
+/// Files that the project names and that are not there.
+Report missingFiles(const std::string& path, const Groom& groom) {
+    Report rows = Report::array();
+    std::error_code code;
+    if (groom.characterFile.empty() || std::filesystem::exists(groom.characterFile, code)) return rows;
+    const std::string fix = "put it beside the project, or name it: set GROOM --character FILE -o GROOM";
+    log::warning("{}: its head's file {} is not there, and with it skeleton and clips; {}", path,
+                 groom.characterFile, fix);
+    rows.push_back(Report{{"what", "character"}, {"file", groom.characterFile}, {"fix", fix}});
+    return rows;
 }
 
 /// What an asset for games has that a groom has not; null for other files.
@@ -74,6 +88,7 @@ Result<Report> info(const std::string& path, const std::string& unit) {
     }
     report["advice"] = adviceReport(groom, runtime::kUsualFrame);
     if (groom.scalp) report["scalp"] = scalpReport(groom);
+    report["missing"] = missingFiles(path, groom);
     return report;
 }
 

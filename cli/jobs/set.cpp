@@ -13,6 +13,7 @@
 #include "core/base/file.h"
 #include "core/documents/dye_mask.h"
 #include "core/documents/hair_preset.h"
+#include "core/documents/motions.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
 #include "hairloom/presets.h"
@@ -27,6 +28,7 @@ struct SetOptions {
     std::string from;
     std::string dyeImage;
     std::string dyeAttribute;
+    std::string character;
     std::string output;
     bool list = false;
 };
@@ -106,6 +108,13 @@ Result<Report> set(const SetOptions& options) {
             return tl::unexpected(status.error());
         ++changed;
     }
+    if (!options.character.empty()) {
+        // Read now, so that no project names what is no head.
+        const auto actor = loadActor(options.character, *groom);
+        if (!actor) return tl::unexpected(actor.error());
+        groom->characterFile = options.character;
+        ++changed;
+    }
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
     return Report{{"changed", changed},
                   {"advice", adviceReport(*groom, runtime::kUsualFrame)},
@@ -152,6 +161,8 @@ JobRun declare(CLI::App& job) {
     job.add_option("--dye-attribute", options->dyeAttribute,
                    "Strand attribute of numbers, 0 to 1, that says how much of the dye a strand takes")
         ->excludes(image);
+    job.add_option("--character", options->character,
+                   "File of the head, where the project does not find it any more: mesh, skeleton and clips");
     job.add_option("--from", options->from, "JSON file of sections with fields");
     auto* output = job.add_option("-o,--output", options->output, "Project to write");
     job.final_callback([listing, input, output] {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/documents.h"
+#include "cli/head_options.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
@@ -17,15 +18,16 @@ constexpr float kFar_m = 0.005f;  ///< roots that were farther off are named
 constexpr std::size_t kNamed = 100;
 
 struct TransferOptions {
-    std::string input, head, unit, output;
+    std::string input, to, output;
+    HeadOptions head;
 };
 
 Result<Report> transferHair(const TransferOptions& options) {
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    const float unit = options.unit.empty() ? 0 : metresPerUnit(options.unit);
-    const auto transfer = transferToFile(*groom, options.head, unit);
-    if (!transfer) return tl::unexpected(inFile(transfer.error(), options.input));
+    const auto done = transferToFile(*groom, options.to, headImportOptions(options.head));
+    if (!done) return tl::unexpected(inFile(done.error(), options.input));
+    const Transfer* const transfer = &done->transfer;
     if (transfer->baked)
         log::warning("{}: its operators name places on the old head; the hair as it is is all there is now",
                      options.input);
@@ -40,6 +42,7 @@ Result<Report> transferHair(const TransferOptions& options) {
         if (transfer->distances[s] > kFar_m)
             report["strands_named"].push_back(Report{{"strand", s}, {"mm", 1e3f * transfer->distances[s]}});
     }
+    report["head"] = headReport(done->taken, done->words);
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
     report["output"] = options.output;
     return report;
@@ -48,8 +51,8 @@ Result<Report> transferHair(const TransferOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<TransferOptions>();
     job.add_option("groom", options->input, "Hair that grows on a head")->required();
-    job.add_option("--to", options->head, "Head to put it on, upright and looking the same way")->required();
-    addUnitOption(job, options->unit);
+    job.add_option("--to", options->to, "Head to put it on")->required();
+    addHeadOptions(job, options->head);
     job.add_option("-o,--output", options->output, "Project to write")->required();
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}}, [&] { return transferHair(*options); });

@@ -20,6 +20,10 @@ Result<ImportedStrands> importHairFor(const Groom& groom, const std::string& pat
 /// has several; settings and spheres stay.
 void replaceHair(Groom& groom, const Groom& hair);
 
+/// Puts guides behind the strands of a groom; all others become hairs that are not simulated. Attributes that
+/// one of both lacks are zeros there; radii are the material's.
+void appendGuides(Groom& groom, const Groom& guides);
+
 /// The operation "import" of a script (JSON) that does both. It holds the file's absolute path, not the file.
 std::string importRecord(const std::string& path, const StrandImportOptions& options);
 

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "core/animation/bone_near.h"
+#include "core/base/log.h"
 #include "core/documents/open.h"
 #include "core/editing/sphere_parts.h"
 #include "core/geometry/selection.h"
@@ -17,16 +19,34 @@ namespace {
 
 /// A human, bust or head is higher than deep; one that is deeper by this lies.
 constexpr float kLies = 1.15f;
+/// A surface, and no head that lies.
+constexpr float kFlat = 0.1f;
 
 bool isHelper(std::string name) {
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
     return name.find("helper") != std::string::npos || name.find("joint") != std::string::npos;
 }
 
+/// As the options turn a head; quarters are exact.
+Mat3f turnOf(const HeadImportOptions& options) {
+    Mat3f up = Mat3f::Identity();
+    if (options.zUp) up << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+    if (options.turnDegrees == 0) return up;
+    constexpr float kQuarter = 90;
+    float sine = std::sin(radians(options.turnDegrees)), cosine = std::cos(radians(options.turnDegrees));
+    if (std::fmod(options.turnDegrees, kQuarter) == 0) {
+        sine = std::round(sine);
+        cosine = std::round(cosine);
+    }
+    Mat3f turn;
+    turn << cosine, 0, sine, 0, 1, 0, -sine, 0, cosine;
+    return turn * up;
+}
+
 /// The triangles with what their corners and faces have; normals are computed anew.
-PolygonSoup soupOf(const ScalpMesh& mesh, const FaceSet& faces, bool zUp) {
+PolygonSoup soupOf(const ScalpMesh& mesh, const FaceSet& faces, const Mat3f& turn) {
     PolygonSoup soup;
-    for (const Vec3f& p : mesh.positions()) soup.positions.push_back(zUp ? Vec3f(p.x(), p.z(), -p.y()) : p);
+    for (const Vec3f& p : mesh.positions()) soup.positions.emplace_back(turn * p);
     std::vector<std::uint32_t> newGroups(mesh.groupNames().size(), 0);
     std::vector<std::uint8_t> used(mesh.groupNames().size(), 0);
     for (const std::uint32_t face : faces) {
@@ -64,7 +84,7 @@ HeadGuess guessHead(const ImportedScene& scene) {
     const double largest = static_cast<double>(size.maxCoeff());
     if (const LengthUnit* fits = fittingUnit(largest); implausibleSize(largest, 1) && fits)
         guess.unit = fits->name;
-    guess.zUp = size.z() > kLies * size.y();
+    guess.zUp = size.z() > kLies * size.y() && size.y() > kFlat * size.z();
     return guess;
 }
 
@@ -78,7 +98,7 @@ Result<ScalpMesh> partOfHead(const ScalpMesh& mesh, const HeadImportOptions& opt
         return fail("all groups are left out", "keep at least one");
     if (faces.empty())
         return fail("no head is left: all groups are left out or to collide with", "keep at least one");
-    return ScalpMesh::make(soupOf(mesh, faces, options.zUp));
+    return ScalpMesh::make(soupOf(mesh, faces, turnOf(options)));
 }
 
 Result<editing::SphereFit> fitColliders(const ScalpMesh& mesh, const Skeleton& skeleton,
@@ -92,7 +112,7 @@ Result<editing::SphereFit> fitColliders(const ScalpMesh& mesh, const Skeleton& s
     }
     const auto faces = facesOfGroups(mesh, options.collideWith);
     if (!faces) return tl::unexpected(faces.error());
-    const auto clothes = ScalpMesh::make(soupOf(mesh, *faces, options.zUp));
+    const auto clothes = ScalpMesh::make(soupOf(mesh, *faces, turnOf(options)));
     if (!clothes) return tl::unexpected(clothes.error());
     std::vector<editing::SpherePart> parts;
     for (std::uint32_t face = 0; face < clothes->triangleCount(); ++face) {
@@ -117,21 +137,62 @@ SkinWeights weightsOf(const SkinWeights& all, std::span<const std::uint32_t> ver
     return some;
 }
 
+namespace {
+
+/// Unit and axis that neither the file nor the options say, with a word for each.
+Status guessInto(const std::string& path, ImportedHead& head) {
+    const HeadGuess guess = guessHead(head.scene);
+    HeadImportOptions& options = head.taken;
+    if (guess.zUp && options.guessUp && head.scene.statesUnit)
+        head.words.emplace_back("is deeper than high, though its format has Y up; --up z turns it");
+    if (head.scene.statesUnit) return {};
+    if (options.guessUnit && options.metresPerUnit == 0 && !guess.unit.empty()) {
+        options.metresPerUnit = metresPerUnit(guess.unit);
+        const Vec3f size = head.scene.mesh.bounds().sizes();
+        head.words.push_back(
+            fmt::format("states no unit; {0} were taken, since metres would make it {1:.3g} m "
+                        "large; --unit m takes metres",
+                        guess.unit, size.maxCoeff()));
+        auto scene = importScene(path, {options.metresPerUnit});
+        if (!scene) return tl::unexpected(scene.error());
+        head.scene = std::move(*scene);
+    }
+    if (options.guessUp && guess.zUp) {
+        options.zUp = true;
+        head.words.emplace_back("is deeper than high: its Z axis was taken as up; --up y leaves it as it is");
+    }
+    return {};
+}
+
+}  // namespace
+
 Result<ImportedHead> importHead(const std::string& path, const HeadImportOptions& options) {
     MeshImportOptions asRead;
     if (options.metresPerUnit > 0) asRead.metresPerUnit = options.metresPerUnit;
-    auto scene = importSceneLoud(path, asRead);
+    auto scene = importScene(path, asRead);
     if (!scene) return tl::unexpected(scene.error());
-    ImportedHead head{std::move(*scene), {}};
-    if (options.keepsMesh()) return head;
-    if (options.zUp) {
+    ImportedHead head{std::move(*scene), {}, options, {}};
+    if (options.guessUnit || options.guessUp) {
+        if (auto status = guessInto(path, head); !status) return tl::unexpected(status.error());
+    }
+    for (const std::vector<std::string>* words : {&head.scene.warnings, &head.words}) {
+        for (const std::string& word : *words) log::warning("{}: {}", path, word);
+    }
+    const HeadImportOptions& taken = head.taken;
+    if (taken.keepsMesh()) return head;
+    if (taken.isTurned()) {
+        if (!head.scene.clips.empty()) {
+            head.words.push_back(
+                fmt::format("is turned, so that its {} clips are left out", head.scene.clips.size()));
+            log::warning("{}: {}", path, head.words.back());
+        }
         head.scene.skeleton = {};
         head.scene.clips.clear();
         head.scene.skin = {};
     }
-    auto part = partOfHead(head.scene.mesh, options);
+    auto part = partOfHead(head.scene.mesh, taken);
     if (!part) return tl::unexpected(inFile(part.error(), path));
-    auto colliders = fitColliders(head.scene.mesh, head.scene.skeleton, options);
+    auto colliders = fitColliders(head.scene.mesh, head.scene.skeleton, taken);
     if (!colliders) return tl::unexpected(inFile(colliders.error(), path));
     head.colliders = std::move(*colliders);
     head.scene.skin = weightsOf(head.scene.skin, part->sourceVertices());

@@ -15,14 +15,19 @@ namespace hairloom {
 struct HeadImportOptions {
     float metresPerUnit = 0;  ///< of a file that states none; 0: metres
     bool zUp = false;         ///< the file's Z axis becomes Y
+    float turnDegrees = 0;    ///< about the vertical then, from +Z towards +X
+    /// Of a file that states neither: what is not said above is found by size and shape, and told.
+    bool guessUnit = false, guessUp = false;
+    bool guessTurn = false;  ///< by the head that hair comes from, in transferToFile()
     /// Groups, NAME or BEGINNING*, that are not shown and carry no hair.
     std::vector<std::string> leaveOut;
     /// Groups likewise, named among those above or not, that spheres are fitted to.
     std::vector<std::string> collideWith;
     std::uint32_t colliderSpheres = 12;  ///< for all of them, 1 … editing::kMaxPartSpheres
 
+    bool isTurned() const { return zUp || turnDegrees != 0; }
     /// The mesh stays as the file has it.
-    bool keepsMesh() const { return !zUp && leaveOut.empty() && collideWith.empty(); }
+    bool keepsMesh() const { return !isTurned() && leaveOut.empty() && collideWith.empty(); }
 };
 
 /// What the size, shape and names in a file tell about it.
@@ -52,10 +57,12 @@ SkinWeights weightsOf(const SkinWeights& all, std::span<const std::uint32_t> ver
 
 struct ImportedHead {
     ImportedScene scene;
-    editing::SphereFit colliders;  ///< none where nothing is named to collide with
+    editing::SphereFit colliders;    ///< none where nothing is named to collide with
+    HeadImportOptions taken;         ///< with what was guessed
+    std::vector<std::string> words;  ///< what was guessed, and how to have it otherwise
 };
-/// Reads a file. Skeleton and clips stay unless the head is turned. Errors: those of importScene(),
-/// partOfHead() and fitColliders().
+/// Reads a file; its warnings and what was guessed go to the log. Skeleton and clips stay unless the head is
+/// turned. Errors: those of importScene(), partOfHead() and fitColliders().
 Result<ImportedHead> importHead(const std::string& path, const HeadImportOptions& options);
 
 }  // namespace hairloom

@@ -1,45 +1,93 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/documents/head_transfer.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/documents/open.h"
+#include "core/base/log.h"
 #include "core/groom/file/json_reader.h"
+#include "core/operations/head_turn.h"
 
 namespace hairloom {
 namespace {
 
 constexpr double kMaxMetresPerUnit = 1e6;
 
+constexpr std::string_view kUpAxes[] = {"y", "z"};
+
 RunOperation readTransfer(JsonReader& reader) {
     const std::string path = reader.string("file");
-    const auto unit = static_cast<float>(reader.number("metresPerUnit", 0, kMaxMetresPerUnit, "m"));
-    return [path, unit](Groom& groom) -> Result<std::size_t> {
-        const auto transfer = transferToFile(groom, path, unit);
+    HeadImportOptions options;
+    options.metresPerUnit = static_cast<float>(reader.number("metresPerUnit", 0, kMaxMetresPerUnit, "m"));
+    // Scripts of before have none of these.
+    if (reader.has("up")) options.zUp = reader.choice("up", kUpAxes) == 1;
+    if (reader.has("turnDegrees"))
+        options.turnDegrees = static_cast<float>(reader.number("turnDegrees", -360, 360, "°"));
+    if (reader.has("leaveOut")) options.leaveOut = reader.strings("leaveOut");
+    return [path, options](Groom& groom) -> Result<std::size_t> {
+        const auto transfer = transferToFile(groom, path, options);
         if (!transfer) return tl::unexpected(transfer.error());
         return groom.strandCount();
     };
 }
 
-}  // namespace
-
-Result<Transfer> transferToFile(Groom& groom, const std::string& path, float metresPerUnit) {
-    MeshImportOptions options;
-    if (metresPerUnit > 0) options.metresPerUnit = metresPerUnit;
-    auto scene = importSceneLoud(path, options);
-    if (!scene) return tl::unexpected(scene.error());
-    auto transfer = transferTo(groom, std::make_shared<const ScalpMesh>(std::move(scene->mesh)));
-    if (!transfer) return transfer;
-    groom.characterFile = path;
-    groom.characterMetresPerUnit = metresPerUnit;
-    return transfer;
+Result<Transfer> putOn(Groom& groom, const ScalpMesh& head) {
+    return transferTo(groom, std::make_shared<const ScalpMesh>(head));
 }
 
-std::string transferRecord(const std::string& path, float metresPerUnit) {
+}  // namespace
+
+Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options) {
+    auto head = importHead(path, options);
+    if (!head) return tl::unexpected(head.error());
+    FileTransfer done{{}, head->taken, std::move(head->words)};
+    Groom moved = groom;
+    auto transfer = putOn(moved, head->scene.mesh);
+    if (!transfer) return tl::unexpected(transfer.error());
+    if (isBeyondScale(transfer->fit)) {
+        const float old = groom.scalp->bounds().sizes().maxCoeff(),
+                    now = head->scene.mesh.bounds().sizes().maxCoeff();
+        return failIn(
+            path, {},
+            fmt::format("is {:.3g} m large, where the head that the hair grows on has {:.3g} m", now, old),
+            "expected heads that differ by no more than five times: say its unit (--unit m, dm, cm, mm or "
+            "inch)");
+    }
+    if (options.guessTurn && options.turnDegrees == 0) {
+        const HeadTurn turn = nearestTurn(groom, head->scene.mesh, transfer->fit);
+        if (turn.degrees != 0) {
+            done.taken.turnDegrees = static_cast<float>(turn.degrees);
+            done.taken.guessUnit = done.taken.guessUp = false;
+            done.words.push_back(
+                fmt::format("looks another way than the head that the hair grows on: it was turned by {}°, "
+                            "which brings it from "
+                            "{:.3g} to {:.3g} mm (mean); --turn 0 leaves it as it is",
+                            turn.degrees, 1e3f * turn.unturned, 1e3f * turn.distance));
+            log::warning("{}: {}", path, done.words.back());
+            head = importHead(path, done.taken);
+            if (!head) return tl::unexpected(head.error());
+            moved = groom;
+            transfer = putOn(moved, head->scene.mesh);
+            if (!transfer) return tl::unexpected(transfer.error());
+        }
+    }
+    done.transfer = std::move(*transfer);
+    // Skeleton and clips fit no head that was turned.
+    if (!done.taken.isTurned()) moved.characterFile = path;
+    moved.characterMetresPerUnit = done.taken.metresPerUnit;
+    groom = std::move(moved);
+    return done;
+}
+
+std::string transferRecord(const std::string& path, const HeadImportOptions& taken) {
     const nlohmann::ordered_json record{{"op", "transfer"},
                                         {"file", std::filesystem::absolute(path).string()},
-                                        {"metresPerUnit", readableDecimal(metresPerUnit)}};
+                                        {"metresPerUnit", readableDecimal(taken.metresPerUnit)},
+                                        {"up", kUpAxes[taken.zUp ? 1 : 0]},
+                                        {"turnDegrees", readableDecimal(taken.turnDegrees)},
+                                        {"leaveOut", taken.leaveOut}};
     return record.dump();
 }
 

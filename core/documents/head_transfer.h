@@ -4,17 +4,25 @@
 
 #include <string>
 
+#include "core/documents/head_import.h"
 #include "core/operations/script.h"
 #include "core/operations/transfer.h"
 
 namespace hairloom {
 
-/// Puts the groom onto the head of the file, which becomes its character. `metresPerUnit` 0: as the file
-/// states. Errors: those of importScene() and transferTo().
-Result<Transfer> transferToFile(Groom& groom, const std::string& path, float metresPerUnit = 0);
+struct FileTransfer {
+    Transfer transfer;
+    HeadImportOptions taken;         ///< with what was guessed
+    std::vector<std::string> words;  ///< what was guessed, and how to have it otherwise
+};
+
+/// Puts the groom onto the head of the file, which becomes its character unless it is turned. What is guessed
+/// goes to the log. Errors, which leave the groom as it was: those of importHead() and transferTo(), heads
+/// that are none of one size.
+Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options);
 
 /// The operation "transfer" of a script (JSON) that does it. It holds the file's absolute path, not the file.
-std::string transferRecord(const std::string& path, float metresPerUnit);
+std::string transferRecord(const std::string& path, const HeadImportOptions& taken);
 ScriptExtension transferExtension();
 
 }  // namespace hairloom

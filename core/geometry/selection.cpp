@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core/base/file.h"
+#include "core/geometry/closest_point.h"
 
 namespace hairloom {
 namespace {
@@ -226,6 +227,28 @@ Result<FaceSet> facesOfGroups(const ScalpMesh& mesh, std::span<const std::string
     for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t)
         if (wanted[mesh.triangleGroups()[t]]) faces.push_back(t);
     return faces;
+}
+
+Result<FaceSet> facesOnSurface(const ScalpMesh& mesh, const FaceSet& faces, const ScalpMesh& surface) {
+    constexpr float kOn_m = 0.005f;
+    const SurfaceTree tree(surface);
+    FaceSet on;
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const std::uint32_t face : faces) {
+        const Triangle& corners = mesh.triangles()[face];
+        const Vec3f middle =
+            (mesh.positions()[corners[0]] + mesh.positions()[corners[1]] + mesh.positions()[corners[2]]) / 3;
+        const SurfaceTree::Hit hit = tree.closest(middle);
+        nearest = std::min(nearest, hit.distance);
+        const bool facesAlike =
+            mesh.triangleNormal(face).dot(surface.triangleNormal(hit.surface.triangle)) > 0;
+        if (hit.distance <= kOn_m && facesAlike) on.push_back(face);
+    }
+    if (on.empty())
+        return fail(
+            fmt::format("no face of the head lies on this scalp; the nearest is {:.3g} m away", nearest),
+            "expected a scalp in the unit and place of the head, facing outwards");
+    return on;
 }
 
 FaceSet growSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings) {

@@ -22,6 +22,10 @@ Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression);
 /// Errors: no group of a name (with the names there are).
 Result<FaceSet> facesOfGroups(const ScalpMesh& mesh, std::span<const std::string> names);
 
+/// Of `faces` those that lie on another surface: their middle within five millimetres of it, facing as it
+/// does. Error: none does, with how far away the nearest is.
+Result<FaceSet> facesOnSurface(const ScalpMesh& mesh, const FaceSet& faces, const ScalpMesh& surface);
+
 FaceSet growSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings);
 FaceSet shrinkSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings);
 FaceSet invertSelection(const ScalpMesh& mesh, const FaceSet& faces);

@@ -2,6 +2,7 @@
 #include "core/groom/groom_hash.h"
 
 #include <bit>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/base/hash.h"
@@ -87,7 +88,8 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     hashFields(hasher, groom.placement);
     hashFields(hasher, groom.simulation);
     hasher.text(groom.scalpExpression);
-    hasher.text(groom.characterFile);
+    // Where it lies is no part of what it is.
+    hasher.text(std::filesystem::path(groom.characterFile).filename().string());
     hasher.real(static_cast<double>(groom.characterMetresPerUnit));
 }
 

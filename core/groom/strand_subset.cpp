@@ -34,6 +34,11 @@ Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands) {
         for (std::uint32_t p = groom.offsets[strand]; p < groom.offsets[strand + 1]; ++p) points.push_back(p);
         offsets.push_back(static_cast<std::uint32_t>(points.size()));
     }
+    return strandsOf(groom, strands, std::move(offsets), points);
+}
+
+Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands,
+                std::vector<std::uint32_t> offsets, std::span<const std::uint32_t> points) {
     Groom some = groom;
     some.offsets = CowArray<std::uint32_t>(std::move(offsets));
     some.pointAttributes = chosen(groom.pointAttributes, points);

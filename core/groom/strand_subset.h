@@ -15,6 +15,11 @@ namespace hairloom {
 /// is of all roots, goes.
 Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands);
 
+/// The same of some points of each strand, in any order: strand s of the result has
+/// points[offsets[s] … offsets[s + 1]) of the groom's. At least two each.
+Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands,
+                std::vector<std::uint32_t> offsets, std::span<const std::uint32_t> points);
+
 /// The layer of each strand; the first where the groom says none.
 std::vector<std::uint32_t> layersOfStrands(const Groom& groom);
 

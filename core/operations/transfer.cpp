@@ -18,7 +18,6 @@ constexpr std::size_t kGrain = 256;
 constexpr std::size_t kFitted = 2000;  ///< places of the scalp that the fit looks at, at most
 constexpr int kRounds = 60;
 constexpr float kClearance = 0.0005f;  ///< metres
-constexpr float kMinScale = 0.2f, kMaxScale = 5;
 
 Vec3f apply(const HeadFit& fit, const Vec3f& point) {
     return fit.scale * point + fit.shift;
@@ -54,7 +53,7 @@ HeadFit leastSquares(std::span<const Vec3f> from, std::span<const Vec3f> to) {
         own += a.squaredNorm();
     }
     HeadFit fit;
-    fit.scale = std::clamp(own > 0 ? static_cast<float>(both / own) : 1.0f, kMinScale, kMaxScale);
+    fit.scale = std::clamp(own > 0 ? static_cast<float>(both / own) : 1.0f, kMinHeadScale, kMaxHeadScale);
     fit.shift = (meanTo - static_cast<double>(fit.scale) * meanFrom).cast<float>();
     return fit;
 }

@@ -12,6 +12,9 @@
 
 namespace hairloom {
 
+/// What a fit scales at most.
+inline constexpr float kMinHeadScale = 0.2f, kMaxHeadScale = 5;
+
 /// Heads of different size: x on the old one is scale · x + shift on the new one.
 struct HeadFit {
     float scale = 1;

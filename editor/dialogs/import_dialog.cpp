@@ -21,6 +21,10 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
       unit_(new QComboBox),
       up_(new QComboBox),
       segments_(new QSpinBox),
+      order_(new QComboBox),
+      particle_(new QComboBox),
+      points_(new QSpinBox),
+      form_(new QFormLayout),
       summary_(new QLabel),
       view_(new StrandPreview) {
     setWindowTitle(tr("Import %1").arg(QFileInfo(path).fileName()));
@@ -31,9 +35,8 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     layout->addWidget(view_, 1);
     auto* side = new QVBoxLayout;
     layout->addLayout(side);
-    auto* form = new QFormLayout;
-    form->setVerticalSpacing(8);
-    side->addLayout(form);
+    form_->setVerticalSpacing(8);
+    side->addLayout(form_);
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
     unit_->setObjectName("unit");
     unit_->setToolTip(
@@ -42,12 +45,36 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     up_->addItems({tr("Y up"), tr("Z up")});
     up_->setToolTip(tr("Axis of the file that points up. Hair that lies on its side needs the other."));
     segments_->setObjectName("segments");
-    segments_->setRange(0, 511);
+    segments_->setRange(0, 65535);
     segments_->setSpecialValueText(tr("found"));
     segments_->setToolTip(tr("Segments of each Cinema 4D ribbon; found from its faces where this is 0"));
-    form->addRow(tr("Unit"), unit_);
-    form->addRow(tr("Axis"), up_);
-    form->addRow(tr("Segments"), segments_);
+    order_->setObjectName("order");
+    order_->addItems(
+        {tr("Found"), tr("Left and right in turn"), tr("One edge, then the other"), tr("Around")});
+    order_->setToolTip(
+        tr("How the vertices of a Cinema 4D ribbon follow each other. In a wrong order strands "
+           "zigzag, or their tips lie where roots should"));
+    particle_->setObjectName("particle");
+    particle_->addItems({tr("First edge"), tr("Middle")});
+    particle_->setToolTip(
+        tr("Where the particles of a Cinema 4D ribbon are: on every second vertex, or between its "
+           "edges"));
+    points_->setObjectName("pointsPerStrand");
+    points_->setRange(0, 65536);
+    points_->setSpecialValueText(tr("found"));
+    points_->setToolTip(
+        tr("Points of each strand of a file that holds nothing but points; found from the distances "
+           "between them where this is 0"));
+    form_->addRow(tr("Unit"), unit_);
+    form_->addRow(tr("Axis"), up_);
+    form_->addRow(tr("Vertex order"), order_);
+    form_->addRow(tr("Particles"), particle_);
+    form_->addRow(tr("Segments"), segments_);
+    form_->addRow(tr("Points a strand"), points_);
+    auto* legend =
+        new QLabel(tr("<span style='color:%1'>●</span> root &nbsp; <span style='color:%2'>●</span> tip")
+                       .arg(StrandPreview::rootColour().name(), StrandPreview::tipColour().name()));
+    form_->addRow(QString(), legend);
     summary_->setWordWrap(true);
     summary_->setFixedWidth(240);
     summary_->setAlignment(Qt::AlignTop);
@@ -56,7 +83,13 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
                            tr("Takes the strands as shown; on a head they are bound to its scalp"));
     connect(unit_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(up_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
-    connect(segments_, &QSpinBox::valueChanged, this, &ImportDialog::read);
+    connect(order_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
+    connect(particle_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
+    for (QSpinBox* box : {segments_, points_}) {
+        box->setKeyboardTracking(false);
+        connect(box, &QSpinBox::valueChanged, this, &ImportDialog::read);
+    }
+    view_->markEnds(true);
     read();
 }
 
@@ -65,8 +98,30 @@ StrandImportOptions ImportDialog::options() const {
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
     options.ribbonSegments = static_cast<std::uint32_t>(segments_->value());
+    options.ribbonOrder = static_cast<RibbonOrder>(order_->currentIndex());
+    options.ribbonParticle = static_cast<RibbonParticle>(particle_->currentIndex());
+    options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
     return options;
 }
+
+namespace {
+
+/// "Vertex order: around; 12 segments"
+QString wordsFor(const RibbonsFound& found) {
+    const QString orders[] = {QObject::tr("mixed"), QObject::tr("left and right in turn"),
+                              QObject::tr("one edge, then the other"), QObject::tr("around")};
+    const QString order = found.sides > 2 && found.order == RibbonOrder::Interleaved
+                              ? QObject::tr("ring after ring")
+                              : orders[static_cast<std::size_t>(found.order)];
+    QString text = QObject::tr("<p>Vertex order: %1; ").arg(order);
+    text += found.fewestSegments == found.mostSegments
+                ? QObject::tr("%L1 segments</p>").arg(found.mostSegments)
+                : QObject::tr("%L1 to %L2 segments</p>").arg(found.fewestSegments).arg(found.mostSegments);
+    if (found.sides > 2) text += QObject::tr("<p>Tubes of %1 sides</p>").arg(found.sides);
+    return text;
+}
+
+}  // namespace
 
 void ImportDialog::read() {
     summary_->setText(tr("Reading…"));
@@ -74,38 +129,60 @@ void ImportDialog::read() {
     // A later change of the options supersedes what is being read.
     tasks_.cancel();
     tasks_.finish();
-    tasks_.run<std::pair<Groom, QString>>(
+    StrandImportOptions wanted = options();
+    tasks_.run<Preview>(
         tr("Reading %1").arg(QFileInfo(path_).fileName()),
-        [path = path_, options = options()](TaskControl&) -> Result<std::pair<Groom, QString>> {
-            auto imported = importStrands(path.toStdString(), options);
+        [path = path_, wanted, scalp = document_.groom().scalp](TaskControl&) -> Result<Preview> {
+            StrandImportOptions onHead = wanted;
+            onHead.scalp = scalp.get();
+            auto imported = importStrands(path.toStdString(), onHead);
+            Preview preview;
+            const bool asked = wanted.ribbonSegments > 0 || wanted.ribbonOrder != RibbonOrder::Detect;
+            preview.hasRibbons = asked;
+            preview.hasRuns = wanted.pointsPerStrand > 0;
             if (!imported) {
                 // Shown here instead of in the status line: options may mend it.
-                return std::pair(Groom(), errorText(imported.error()));
+                preview.text = errorText(imported.error());
+                preview.hasRibbons = preview.hasRuns = true;
+                return preview;
             }
-            QString text = QObject::tr("<p><b>%1</b></p><p>%L2 strands, %L3 points</p>")
+            preview.hasRibbons = asked || imported->ribbons.has_value();
+            preview.text = QObject::tr("<p><b>%1</b></p><p>%L2 strands, %L3 points</p>")
                                .arg(QString::fromStdString(imported->format).toHtmlEscaped())
                                .arg(imported->groom.strandCount())
                                .arg(imported->groom.pointCount());
+            if (imported->ribbons) preview.text += wordsFor(*imported->ribbons);
             const Vec3f size = imported->groom.bounds().sizes();
-            text += QObject::tr("<p>%1 × %2 × %3 m</p>")
-                        .arg(size.x(), 0, 'g', 3)
-                        .arg(size.y(), 0, 'g', 3)
-                        .arg(size.z(), 0, 'g', 3);
+            preview.text += QObject::tr("<p>%1 × %2 × %3 m</p>")
+                                .arg(size.x(), 0, 'g', 3)
+                                .arg(size.y(), 0, 'g', 3)
+                                .arg(size.z(), 0, 'g', 3);
             if (!imported->dropped.empty()) {
-                text += QObject::tr("<p>%L1 strands cannot be used.</p>").arg(imported->dropped.size());
+                preview.text +=
+                    QObject::tr("<p>%L1 strands cannot be used.</p>").arg(imported->dropped.size());
             }
             for (const Finding& finding : imported->warnings) {
-                text += "<p>" + QString::fromStdString(finding.what).toHtmlEscaped() + "</p>";
+                preview.text += "<p>" + QString::fromStdString(finding.what).toHtmlEscaped() + "</p>";
+                preview.hasRuns = preview.hasRuns || finding.where == "points";
             }
-            return std::pair(std::move(imported->groom), text);
+            preview.groom = std::move(imported->groom);
+            return preview;
         },
-        [self = QPointer(this)](std::pair<Groom, QString> found) {
-            if (!self) return;
-            self->preview_ = std::move(found.first);
-            self->summary_->setText(found.second);
-            self->take_->setEnabled(self->preview_.strandCount() > 0);
-            self->view_->show(self->preview_, self->document_.groom().scalp);
+        [self = QPointer(this)](Preview preview) {
+            if (self) self->show(std::move(preview));
         });
+}
+
+void ImportDialog::show(Preview preview) {
+    preview_ = std::move(preview.groom);
+    summary_->setText(preview.text);
+    // Choices that the file does not have are no choices.
+    for (QWidget* choice :
+         {static_cast<QWidget*>(order_), static_cast<QWidget*>(particle_), static_cast<QWidget*>(segments_)})
+        choice->setEnabled(preview.hasRibbons);
+    points_->setEnabled(preview.hasRuns);
+    take_->setEnabled(preview_.strandCount() > 0);
+    view_->show(preview_, document_.groom().scalp);
 }
 
 }  // namespace hairloom::editor

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Shows the strands of a file on the head before they are taken: in which unit, which axis up, and how the
-// ribbons of Cinema 4D are cut.
+// Shows the strands of a file on the head before they are taken, their roots and tips marked: in which unit,
+// which axis up, how the ribbons of Cinema 4D are cut, and how a run of points is.
 
 #include <QComboBox>
 #include <QDialog>
+#include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
@@ -28,7 +29,14 @@ class ImportDialog : public QDialog {
     const Groom& preview() const { return preview_; }
 
   private:
+    /// What was read, on its way from the task.
+    struct Preview {
+        Groom groom;
+        QString text;
+        bool hasRibbons = false, hasRuns = false;
+    };
     void read();
+    void show(Preview preview);
 
     QtDocument& document_;
     Tasks& tasks_;
@@ -36,6 +44,10 @@ class ImportDialog : public QDialog {
     QComboBox* unit_;
     QComboBox* up_;
     QSpinBox* segments_;
+    QComboBox* order_;
+    QComboBox* particle_;
+    QSpinBox* points_;
+    QFormLayout* form_;
     QLabel* summary_;
     StrandPreview* view_;
     QPushButton* take_;

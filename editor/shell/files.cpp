@@ -26,7 +26,9 @@ struct DocumentFiles::Opened {
     Groom groom;
     std::shared_ptr<const Actor> actor;
     QString note;            ///< for the status line
+    std::string record;      ///< of a transfer, for scripts
     float farthest = 0;      ///< metres between a root and the head that it was transferred to
+    QString missing;         ///< file of the head that is not there
     bool isUnclear = false;  ///< a head whose size, axis or groups look wrong
 };
 
@@ -46,7 +48,7 @@ Result<DocumentFiles::Opened> DocumentFiles::readHead(const std::string& path,
     opened.isUnclear = !guessHead(scene).isClear();
     opened.groom.scalp = std::make_shared<const ScalpMesh>(std::move(scene.mesh));
     // Skeleton and clips fit no head that was turned.
-    if (!options.zUp) opened.groom.characterFile = path;
+    if (!options.isTurned()) opened.groom.characterFile = path;
     opened.groom.characterMetresPerUnit = options.metresPerUnit;
     opened.groom.spheres = std::move(head->colliders.spheres);
     QStringList notes;
@@ -67,6 +69,11 @@ Result<DocumentFiles::Opened> DocumentFiles::openProject(const std::string& path
     if (!groom) return tl::unexpected(groom.error());
     Opened opened;
     opened.actor = actorOf(*groom);
+    const QString head = QString::fromStdString(groom->characterFile);
+    if (!head.isEmpty() && !QFileInfo::exists(head)) {
+        opened.missing = head;
+        opened.note = QObject::tr("the head's file %1 is not there, and with it its clips").arg(head);
+    }
     opened.groom = std::move(*groom);
     return opened;
 }
@@ -111,7 +118,12 @@ FileKind kindOf(const QString& path) {
     const std::string file = path.toStdString();
     if (looksLikeProject(file)) return FileKind::Project;
     if (looksLikeStrandFile(readBeginning(file, 256))) return FileKind::Strands;
-    if (!path.endsWith(".obj", Qt::CaseInsensitive)) return FileKind::Head;
+    const bool isMesh =
+        meshFormatOf(readBeginning(file, kMeshFormatHead), static_cast<std::uint64_t>(QFileInfo(path).size()))
+            .has_value();
+    const bool mayBeEither =
+        path.endsWith(".obj", Qt::CaseInsensitive) || path.endsWith(".ply", Qt::CaseInsensitive);
+    if (isMesh && !mayBeEither) return FileKind::Head;
     return hairloom::importStrands(file) ? FileKind::Strands : FileKind::Head;
 }
 
@@ -171,11 +183,13 @@ void DocumentFiles::openFile(const QString& path, Opening opening, std::function
          done = std::move(done)](std::pair<Opened, FileKind> opened) {
             if (!mayShow(before, name)) return;
             const bool isUnclear = opened.first.isUnclear;
+            const QString missing = opened.first.missing;
             const bool hasFile = opened.second == FileKind::Project && opening == Opening::AsItself;
             show(std::move(opened.first), hasFile ? path : QString(), name);
             preferences_.addRecentFile(path);
             if (done) done();
             if (isUnclear && unclearHead_) unclearHead_(path);
+            if (!missing.isEmpty() && missingHead_) missingHead_(missing);
         });
 }
 
@@ -188,6 +202,29 @@ void DocumentFiles::openHead(const QString& path, const HeadImportOptions& optio
             if (!mayShow(before, name)) return;
             show(std::move(opened), {}, name);
             preferences_.addRecentFile(path);
+        });
+}
+
+void DocumentFiles::findHead(const QString& path) {
+    const QString name = QFileInfo(path).fileName();
+    tasks_.run<Opened>(
+        QObject::tr("Reading %1").arg(name),
+        [file = path.toStdString(), groom = document_.groom()](TaskControl&) -> Result<Opened> {
+            Opened opened;
+            opened.groom = groom;
+            opened.groom.characterFile = file;
+            auto actor = loadActor({}, opened.groom);
+            if (!actor) return tl::unexpected(actor.error());
+            opened.actor = std::move(*actor);
+            return opened;
+        },
+        [this, name](Opened opened) {
+            Groom groom = document_.groom();
+            groom.characterFile = opened.groom.characterFile;
+            document_.perform(editing::replaceGroom(document_.editing().model(), std::move(groom),
+                                                    QObject::tr("Find %1").arg(name).toStdString()));
+            player_.setActor(std::move(opened.actor));
+            messages_.say(QObject::tr("%1 is the head's file again; save to keep it").arg(name));
         });
 }
 
@@ -248,10 +285,14 @@ void DocumentFiles::transferTo(const QString& path) {
         [file, groom = document_.groom()](TaskControl&) -> Result<Opened> {
             Opened opened;
             opened.groom = groom;
-            const auto transfer = transferToFile(opened.groom, file);
-            if (!transfer) return tl::unexpected(transfer.error());
-            opened.farthest = *std::ranges::max_element(transfer->distances);
-            if (transfer->baked) opened.note = QObject::tr("; operators are baked");
+            HeadImportOptions options;
+            options.guessUnit = options.guessUp = options.guessTurn = true;
+            const auto done = transferToFile(opened.groom, file, options);
+            if (!done) return tl::unexpected(done.error());
+            opened.record = transferRecord(file, done->taken);
+            opened.farthest = *std::ranges::max_element(done->transfer.distances);
+            if (done->transfer.baked) opened.note = QObject::tr("; operators are baked");
+            for (const std::string& word : done->words) opened.note += "; " + QString::fromStdString(word);
             return opened;
         },
         [this, name, file, before = document_.groom()](Opened opened) {
@@ -261,7 +302,7 @@ void DocumentFiles::transferTo(const QString& path) {
                 return messages_.warn(QObject::tr("The hair has changed meanwhile; transfer it again"));
             document_.perform(editing::replaceGroom(document_.editing().model(), std::move(opened.groom),
                                                     QObject::tr("Transfer to %1").arg(name).toStdString(),
-                                                    transferRecord(file, 0)));
+                                                    opened.record));
             messages_.say(
                 QObject::tr("On %1: the farthest root was %2 off the new head%3")
                     .arg(name, lengthText(static_cast<double>(opened.farthest), preferences_), opened.note));

@@ -62,6 +62,11 @@ class DocumentFiles {
     void openHead(const QString& path, const HeadImportOptions& options);
     /// Called when a head was opened whose size, axis or groups look wrong.
     void onUnclearHead(std::function<void(const QString& path)> call) { unclearHead_ = std::move(call); }
+    /// Called when a project was opened whose head's file is not there.
+    void onMissingHead(std::function<void(const QString& file)> call) { missingHead_ = std::move(call); }
+    /// The file of the document's head, which lies elsewhere than the project says: skeleton and clips come
+    /// from it, and the project remembers it once it is saved.
+    void findHead(const QString& path);
     /// A sample of samples/hairstyles, or the bare bust where the name is empty.
     void openSample(const QString& name);
     /// Strands with these options, bound to the head of the document if it has one, replacing its strands.
@@ -92,6 +97,7 @@ class DocumentFiles {
     Tasks& tasks_;
     Messages& messages_;
     std::function<void(const QString& path)> unclearHead_;
+    std::function<void(const QString& file)> missingHead_;
     std::function<Opening(const QString& path)> mayOpen_;
     std::function<bool()> mayReplace_;
     std::optional<RecoveryCopy> recovered_;  ///< that the document came from

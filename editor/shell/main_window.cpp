@@ -104,6 +104,7 @@ MainWindow::MainWindow()
     files_.onProject([this](const QString& path) { return mayOpenProject(path); });
     files_.onChangedMeanwhile([this] { return mayLeaveDocument(); });
     files_.onUnclearHead([this](const QString& path) { showHeadDialog(path); });
+    files_.onMissingHead([this](const QString& file) { askForHead(file); });
     connect(start_, &StartPage::openRequested, this, &MainWindow::chooseAndOpen);
     connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&document_, &QtDocument::changed, this, &MainWindow::showPage);

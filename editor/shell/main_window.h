@@ -40,6 +40,8 @@ class MainWindow : public QMainWindow {
     bool saveTo(const QString& path);
     /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself.
     void showHeadDialog(const QString& path);
+    /// A project names a file of its head that is not there.
+    void askForHead(const QString& missing);
     /// Writes the steps since the document was opened as a script. False, with a word in the status line,
     /// where one cannot be in it or writing failed.
     bool saveScriptTo(const QString& path);

@@ -58,6 +58,26 @@ void MainWindow::showHeadDialog(const QString& path) {
     dialog->open();
 }
 
+void MainWindow::askForHead(const QString& missing) {
+    auto* question =
+        new QMessageBox(QMessageBox::Question, tr("Head not found"),
+                        tr("The file of the head, %1, is not there any more. Without it the hairstyle "
+                           "has neither skeleton nor clips.")
+                            .arg(missing),
+                        QMessageBox::NoButton, this);
+    question->setObjectName("missingHead");
+    question->setAttribute(Qt::WA_DeleteOnClose);
+    QAbstractButton* find = question->addButton(tr("Find it…"), QMessageBox::AcceptRole);
+    find->setObjectName("findHead");
+    question->addButton(tr("Go on without"), QMessageBox::RejectRole);
+    connect(find, &QAbstractButton::clicked, this, [this, missing] {
+        const QString path = QFileDialog::getOpenFileName(
+            this, tr("Find %1").arg(QFileInfo(missing).fileName()), {}, headFilter());
+        if (!path.isEmpty()) files_.findHead(path);
+    });
+    question->open();
+}
+
 void MainWindow::chooseAndOpen() {
     const QString path = QFileDialog::getOpenFileName(this, tr("Open"), {}, openFilter());
     if (!path.isEmpty()) open(path);

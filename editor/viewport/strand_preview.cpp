@@ -72,7 +72,23 @@ void StrandPreview::paintEvent(QPaintEvent*) {
     }
     std::ranges::sort(order);
     for (const auto& [depth, s] : order) drawStrand(painter, s);
+    constexpr std::size_t kMostMarks = 400;
+    const std::size_t apart = std::max<std::size_t>(1, order.size() / kMostMarks);
+    for (std::size_t i = 0; marksEnds_ && i < order.size(); i += apart) drawEnds(painter, order[i].second);
     drawSpheres(painter);
+}
+
+void StrandPreview::drawEnds(QPainter& painter, std::size_t strand) const {
+    constexpr double kRadius_px = 2.5;
+    const auto points = strands_.strand(strand);
+    painter.setPen(Qt::NoPen);
+    for (const auto& [point, colour] :
+         {std::pair(points.back(), tipColour()), std::pair(points.front(), rootColour())}) {
+        const auto at = camera_.project(point, size());
+        if (!at) continue;
+        painter.setBrush(colour);
+        painter.drawEllipse(*at, kRadius_px, kRadius_px);
+    }
 }
 
 void StrandPreview::drawSpheres(QPainter& painter) const {

@@ -18,6 +18,11 @@ class StrandPreview : public QWidget {
     void show(const Groom& strands, std::shared_ptr<const ScalpMesh> head,
               std::vector<CollisionSphere> spheres = {});
 
+    /// Marks the root and the tip of each strand that is drawn.
+    void markEnds(bool on) { marksEnds_ = on; }
+    static QColor rootColour() { return {80, 200, 120}; }
+    static QColor tipColour() { return {235, 90, 80}; }
+
   protected:
     void paintEvent(QPaintEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
@@ -28,12 +33,14 @@ class StrandPreview : public QWidget {
   private:
     void frame();
     void drawSpheres(QPainter& painter) const;
+    void drawEnds(QPainter& painter, std::size_t strand) const;
     void drawStrand(QPainter& painter, std::size_t strand) const;
     QPolygonF projected(std::span<const Vec3f> points) const;
 
     Groom strands_;
     std::shared_ptr<const ScalpMesh> head_;
     std::vector<CollisionSphere> spheres_;
+    bool marksEnds_ = false;
     OrbitCamera camera_;
     QPointF last_px_;
 };

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "importers/mesh_reader/gltf_meshopt.h"
 #include "importers/mesh_reader/limited_folder.h"
 #include "importers/mesh_reader/tinygltf.h"
 
@@ -47,26 +48,31 @@ std::string_view jsonOf(std::span<const std::byte> bytes) {
     return textOf(bytes).substr(begin, length);
 }
 
-/// The file without the indices of compressed primitives, whose accessors have no bytes: tinygltf without
-/// draco refuses them, and with draco it trusts what a file says of it. Empty where there are none.
-std::vector<std::byte> withoutCompressedIndices(std::span<const std::byte> bytes) {
-    const std::string_view text = jsonOf(bytes);
-    if (text.find(kDraco) == std::string_view::npos) return {};
-    auto json = nlohmann::json::parse(text, nullptr, false);
-    if (!json.is_object() || !json.contains("meshes") || !json["meshes"].is_array()) return {};
-    for (auto& mesh : json["meshes"]) {
+/// Takes the indices of primitives away that draco compressed, whose accessors have no bytes: tinygltf
+/// without draco refuses them, and with draco it trusts what a file says of it. Returns whether there are
+/// any.
+bool dropCompressedIndices(nlohmann::json& gltf) {
+    if (!gltf.is_object() || !gltf.contains("meshes") || !gltf["meshes"].is_array()) return false;
+    bool isDropped = false;
+    for (auto& mesh : gltf["meshes"]) {
         if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
         for (auto& primitive : mesh["primitives"]) {
             if (!primitive.is_object() || !primitive.contains("extensions")) continue;
             if (primitive["extensions"].is_object() && primitive["extensions"].contains(kDraco))
-                primitive.erase("indices");
+                isDropped = primitive.erase("indices") > 0 || isDropped;
         }
     }
-    std::string changed = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return isDropped;
+}
+
+/// The file with another head.
+std::vector<std::byte> withJson(std::span<const std::byte> bytes, std::size_t textBytes,
+                                const nlohmann::json& gltf) {
+    std::string changed = gltf.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     ByteWriter out;
     if (isBinary(bytes)) {
         changed.resize((changed.size() + 3) / 4 * 4, ' ');
-        const auto rest = bytes.subspan(kBinaryHeader + kChunkHeader + text.size());
+        const auto rest = bytes.subspan(kBinaryHeader + kChunkHeader + textBytes);
         out.writeArray(bytes.first(8));
         out.write(static_cast<std::uint32_t>(kBinaryHeader + kChunkHeader + changed.size() + rest.size()));
         out.write(static_cast<std::uint32_t>(changed.size()));
@@ -110,20 +116,35 @@ bool isKnownExtension(std::string_view name) {
 #ifdef HAIRLOOM_HAS_DRACO
     if (name == kDraco) return true;
 #endif
-    if (name == "KHR_mesh_quantization") return true;
+    if (name == "KHR_mesh_quantization" || name == kMeshopt) return true;
     constexpr std::array<std::string_view, 7> kLooks{"KHR_materials_",   "KHR_texture_", "EXT_texture_",
                                                      "MSFT_texture_dds", "KHR_lights_",  "KHR_xmp",
                                                      "EXT_lights_"};
     return std::ranges::any_of(kLooks, [&](std::string_view look) { return name.starts_with(look); });
 }
 
-Status checkExtensions(const tinygltf::Model& model) {
-    for (const std::string& name : model.extensionsRequired) {
-        if (!isKnownExtension(name))
-            return fail(fmt::format("requires the extension {}, which is not read", name),
+Status checkExtensions(const nlohmann::json& gltf) {
+    if (!gltf.is_object() || !gltf.contains("extensionsRequired") || !gltf["extensionsRequired"].is_array())
+        return {};
+    for (const auto& name : gltf["extensionsRequired"]) {
+        if (name.is_string() && !isKnownExtension(name.get<std::string>()))
+            return fail(fmt::format("requires the extension {}, which is not read", name.get<std::string>()),
                         "expected a file exported without it");
     }
     return {};
+}
+
+/// What tinygltf can load; empty where that is the file itself. Errors: an extension that is required and not
+/// known.
+Result<std::vector<std::byte>> loadable(std::span<const std::byte> bytes) {
+    const std::string_view text = jsonOf(bytes);
+    const auto has = [&](std::string_view word) { return text.find(word) != text.npos; };
+    if (!has("extensionsRequired") && !has(kDraco) && !has(kMeshopt)) return std::vector<std::byte>();
+    auto gltf = nlohmann::json::parse(text, nullptr, false);
+    if (auto status = checkExtensions(gltf); !status) return tl::unexpected(status.error());
+    const bool isDropped = has(kDraco) && dropCompressedIndices(gltf);
+    const bool isFilled = has(kMeshopt) && fillFallbackBuffers(gltf);
+    return isDropped || isFilled ? withJson(bytes, text.size(), gltf) : std::vector<std::byte>();
 }
 
 /// tinygltf's first line without what it ends in.
@@ -222,8 +243,9 @@ GltfFile::GltfFile(GltfFile&&) noexcept = default;
 GltfFile::~GltfFile() = default;
 
 Result<GltfFile> GltfFile::load(const char* file, std::span<const std::byte> bytes) {
-    const std::vector<std::byte> changed = withoutCompressedIndices(bytes);
-    if (!changed.empty()) bytes = changed;
+    const auto changed = loadable(bytes);
+    if (!changed) return tl::unexpected(changed.error());
+    if (!changed->empty()) bytes = *changed;
     LimitedFolder folder(file);
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks(limitedCallbacks(folder));
@@ -243,7 +265,7 @@ Result<GltfFile> GltfFile::load(const char* file, std::span<const std::byte> byt
         return fail(fmt::format("refers to {}", folder.refused()),
                     "expected files in its own folder or below it");
     if (!loaded) return fail(firstLine(error.empty() ? warning : error));
-    if (auto status = checkExtensions(*model); !status) return tl::unexpected(status.error());
+    if (auto status = unpackMeshopt(*model); !status) return tl::unexpected(status.error());
     return GltfFile(std::move(model));
 }
 

@@ -7,6 +7,7 @@
 #include "core/base/profiler.h"
 #include "core/groom/file/archive.h"
 #include "core/groom/file/card_edits_json.h"
+#include "core/groom/file/character_path.h"
 #include "core/groom/file/json_reader.h"
 #include "core/groom/file/layers_json.h"
 #include "core/groom/file/operators_json.h"
@@ -178,6 +179,7 @@ Result<Groom> loadProject(const std::filesystem::path& path) {
     JsonReader head(archive->head(), name);
     const Counts counts = readHead(head, groom, scalp);
     if (auto status = head.status(); !status) return tl::unexpected(status.error());
+    groom.characterFile = findCharacter(groom.characterFile, path);
     const bool hasScalp = head.has("scalp");
     if (auto status = takeArrays(*archive, counts, groom, hasScalp ? &scalp : nullptr); !status) {
         return tl::unexpected(status.error());

@@ -5,6 +5,7 @@
 #include "core/base/profiler.h"
 #include "core/groom/file/archive.h"
 #include "core/groom/file/card_edits_json.h"
+#include "core/groom/file/character_path.h"
 #include "core/groom/file/json_reader.h"
 #include "core/groom/file/layers_json.h"
 #include "core/groom/file/operators_json.h"
@@ -27,7 +28,7 @@ Json scalpToJson(const ScalpMesh& scalp) {
             {"repairs", std::move(repairs)}};
 }
 
-Json headOf(const Groom& groom) {
+Json headOf(const Groom& groom, const std::filesystem::path& path) {
     Json head;
     head["strands"] = groom.strandCount();
     head["points"] = groom.pointCount();
@@ -40,7 +41,7 @@ Json headOf(const Groom& groom) {
     head["interpolation"] = toJson(groom.interpolation);
     head["placement"] = toJson(groom.placement);
     head["card_edits"] = toJson(groom.cardEdits);
-    head["character_file"] = groom.characterFile;
+    head["character_file"] = characterNameFor(groom.characterFile, path);
     head["character_metres_per_unit"] = readableDecimal(groom.characterMetresPerUnit);
     head["scalp_expression"] = groom.scalpExpression;
     if (groom.scalp) head["scalp"] = scalpToJson(*groom.scalp);
@@ -104,7 +105,7 @@ Status saveProject(const Groom& groom, const std::filesystem::path& path) {
     if (auto status = checkSavable(groom); !status) return refuse(status.error());
     ArchiveWriter writer{std::string(section::kKind), kProjectVersion};
     addArrays(writer, groom);
-    const auto file = writer.finish(headOf(groom));
+    const auto file = writer.finish(headOf(groom, path));
     if (!file) return refuse(file.error());
     return writeFileAtomically(path, *file);
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/head_options.h"
+
+#include <fmt/format.h>
+
+#include "cli/documents.h"
+
+namespace hairloom::cli {
+
+void addHeadOptions(CLI::App& job, HeadOptions& options, const std::string& prefix) {
+    const std::string dashes = "--" + prefix;
+    addUnitOption(job, options.unit, dashes + "unit", "the head mesh");
+    job.add_option(dashes + "up", options.up,
+                   "Axis of the mesh file that points up; found from the shape where the file states none")
+        ->check(CLI::IsMember({"y", "z"}));
+    job.add_option_function<float>(
+           "--turn",
+           [&options](float degrees) {
+               options.turn = degrees;
+               options.saysTurn = true;
+           },
+           "Degrees to turn the head about the vertical, from +Z towards +X, so that it looks along +Z")
+        ->check(CLI::Range(-360.0, 360.0));
+    job.add_option("--leave-out", options.leaveOut,
+                   "Groups of the mesh to do without, as helpers and joints: NAME or BEGINNING*, with commas "
+                   "between")
+        ->delimiter(',');
+}
+
+HeadImportOptions headImportOptions(const HeadOptions& options) {
+    HeadImportOptions wanted;
+    if (!options.unit.empty()) wanted.metresPerUnit = metresPerUnit(options.unit);
+    wanted.zUp = options.up == "z";
+    wanted.turnDegrees = options.turn;
+    wanted.leaveOut = options.leaveOut;
+    wanted.guessUnit = options.unit.empty();
+    wanted.guessUp = options.up.empty();
+    wanted.guessTurn = !options.saysTurn;
+    return wanted;
+}
+
+Report headReport(const HeadImportOptions& taken, const std::vector<std::string>& words) {
+    return Report{
+        {"up", taken.zUp ? "z" : "y"},
+        {"turn", taken.turnDegrees},
+        {"metres_per_unit", taken.metresPerUnit > 0 ? Report(taken.metresPerUnit) : Report(nullptr)},
+        {"left_out", taken.leaveOut},
+        {"warnings", words}};
+}
+
+}  // namespace hairloom::cli
