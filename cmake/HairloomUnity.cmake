@@ -74,4 +74,8 @@ function(hairloom_batches target)
         set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${target}_${chosen}")
     endforeach()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    # GCC takes a source that another includes for a header, whose types may not rest on unnamed namespaces.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    endif()
 endfunction()
