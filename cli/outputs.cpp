@@ -53,8 +53,8 @@ void takePipe(const std::string& path, std::size_t outputs, ReadBack readBack) {
     if (outputs > 1)
         throw WrongUsage(fmt::format("{} is a pipe, and this job writes {} files", path, outputs),
                          "expected the name of a file");
-    std::error_code code;
-    const bool isOutput = path == kStandardOutput || fs::equivalent(path, "/dev/stdout", code);
+    const bool isOutput =
+        path == kStandardOutput || fileVersion(path).identity == fileVersion("/dev/stdout").identity;
     if (isOutput && streams().json)
         throw WrongUsage("--json and the file would both go to standard output", "expected one of them");
     streams().fileIsOutput = isOutput;

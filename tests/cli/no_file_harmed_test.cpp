@@ -143,8 +143,8 @@ TEST_F(NoFileHarmed, PointsBeyondAKilometreAreRefusedWithTheUnitThatFits) {
     expectRefused("import far.obj -o h.hairloom", "strand 1");
     std::ofstream millimetres(folder / "mm.obj");
     for (int s = 0; s < 60; ++s)
-        millimetres << "v " << s << " 1700 0\nv " << s << " 1500 0\nl " << 2 * s + 1 << ' ' << 2 * s + 2
-                    << '\n';
+        millimetres << "v " << 4 * s << " 1700 0\nv " << 4 * s << " 1500 0\nl " << 2 * s + 1 << ' '
+                    << 2 * s + 2 << '\n';
     millimetres.close();
     expectRefused("import mm.obj -o h.hairloom", "the unit mm would fit");
     EXPECT_EQ(runJson("import mm.obj --unit mm -o h.hairloom")["strands"], 60);
