@@ -82,6 +82,8 @@ std::vector<StrandGrid> fittingGrids(const ObjStrandText& obj, const StrandPiece
     for (const RibbonOrder order :
          {RibbonOrder::Interleaved, RibbonOrder::EdgeAfterEdge, RibbonOrder::Around})
         tryOne({2, order, Alone::None});
+    // An order that somebody names is that of a ribbon's two edges.
+    if (asked != RibbonOrder::Detect) return found;
     for (std::uint32_t sides = 3; sides <= std::min(kMostSides, sizeOf(pieces, piece) / 2); ++sides) {
         for (const Alone alone : {Alone::None, Alone::LastAtTip, Alone::FirstAtRoot, Alone::FirstAndLast,
                                   Alone::LastTwo, Alone::LastAtRoot}) {

@@ -144,16 +144,28 @@ TEST(StrandTubes, WithoutFacesSegmentsAndOrderAreFoundByDistances) {
     for (const RibbonOrder order :
          {RibbonOrder::Interleaved, RibbonOrder::EdgeAfterEdge, RibbonOrder::Around}) {
         for (const std::size_t segments : {5u, 12u}) {
-            // Wider than a segment is long, and narrower.
-            for (const float width : {0.002f, 0.03f}) {
-                const auto imported = read(ribbonObj(9, segments, order, RibbonFaces::None, width));
-                if (!imported && width > 0.01f) continue;  // where the ribbon is as wide as strands are apart
-                ASSERT_TRUE(imported) << imported.error().message();
-                if (width > 0.01f && imported->ribbons->order != order) continue;
-                EXPECT_EQ(imported->ribbons->order, order);
-                ASSERT_EQ(imported->groom.strandCount(), 9u);
-                EXPECT_EQ(imported->groom.strand(4).back(), curlPoint(4, segments, segments + 1));
+            const std::size_t rows = segments + 1;
+            std::string text;
+            const auto left = [](std::size_t s, std::size_t r) {
+                const auto along = static_cast<float>(r);
+                return Vec3f(0.05f * static_cast<float>(s), -0.02f * along, 0.004f * std::sin(along));
+            };
+            for (std::size_t s = 0; s < 9; ++s) {
+                for (std::size_t v = 0; v < 2 * rows; ++v) {
+                    const bool isRight = order == RibbonOrder::Interleaved ? v % 2 == 1 : v >= rows;
+                    const std::size_t row = order == RibbonOrder::Interleaved         ? v / 2
+                                            : order == RibbonOrder::Around && isRight ? 2 * rows - 1 - v
+                                                                                      : v % rows;
+                    const Vec3f p = left(s, row) + Vec3f(isRight ? 0.003f : 0.0f, 0, 0);
+                    text += fmt::format("v {:.9g} {:.9g} {:.9g}\n", p.x(), p.y(), p.z());
+                }
             }
+            const auto imported = read(text);
+            ASSERT_TRUE(imported) << imported.error().message();
+            ASSERT_TRUE(imported->ribbons);
+            EXPECT_EQ(imported->ribbons->order, order);
+            ASSERT_EQ(imported->groom.strandCount(), 9u);
+            for (std::size_t r = 0; r < rows; ++r) EXPECT_EQ(imported->groom.strand(4)[r], left(4, r));
         }
     }
 }

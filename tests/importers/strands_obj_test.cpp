@@ -87,7 +87,7 @@ TEST(StrandsRibbons, RemaindersAreErrors) {
     ASSERT_FALSE(loose);
     EXPECT_THAT(loose.error().message(), HasSubstr("vertex 37 belongs to no face"));
 
-    const auto none = read(ribbonObj(3, 5, RibbonOrder::Interleaved, RibbonFaces::None));
+    const auto none = read(ribbonObj(1, 5, RibbonOrder::Interleaved, RibbonFaces::None));
     ASSERT_FALSE(none);
     EXPECT_THAT(none.error().message(), HasSubstr("number of segments"));
 }

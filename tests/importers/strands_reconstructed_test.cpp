@@ -369,7 +369,7 @@ TEST(StrandsText, TressFx2) {
         return read ? std::string() : read.error().message();
     };
     EXPECT_THAT(refusal(head + one), HasSubstr("numStrands says 2"));
-    EXPECT_THAT(refusal(head + one + "strand 1 numVerts 3 texcoord 0 0\n1 0 0\n"),
+    EXPECT_THAT(refusal(head + one + "strand 1 numVerts 3 texcoord 0 0\n1.000 0.000 0.000\n"),
                 HasSubstr("after 1 vertices"));
     EXPECT_THAT(refusal(head + "strand 0 numVerts 2 texcoord 0 0\n1 0 zero\n1 1 1\n"),
                 HasSubstr("test:7: 'zero' is no coordinate"));
