@@ -99,6 +99,26 @@ Asset::Result Asset::open(std::span<const std::byte> bytes) {
     return {asset, {}};
 }
 
+const Section* Asset::findSection(std::string_view kind) const {
+    const auto sections = table();
+    const auto found = std::find_if(sections.begin(), sections.end(), [&](const Section& section) {
+        return std::string_view(section.kind.data(), section.kind.size()) == kind;
+    });
+    return found == sections.end() ? nullptr : &*found;
+}
+
+template <class Record>
+bool Asset::isSound(const Section& section, std::string_view kind, std::string& problem) const {
+    if (std::string_view(section.kind.data(), section.kind.size()) != kind) return false;
+    if (findSection(kind) != &section)
+        problem = "stands twice";
+    else if (section.recordBytes != sizeof(Record) ||
+             section.bytes != std::uint64_t{section.count} * sizeof(Record))
+        problem = "has " + number(section.bytes) + " bytes for " + number(section.count) + " records of " +
+                  number(sizeof(Record));
+    return true;
+}
+
 template <class Record>
 bool Asset::take(const Section& section, std::string_view kind, std::span<const Record>& records,
                  std::string& problem) {
@@ -134,7 +154,9 @@ std::optional<AssetError> Asset::takeSection(const Section& section) {
         take(section, kFarRootShifts, farRootShifts, problem) || take(section, kRadii, radii, problem) ||
         take(section, kLayers, layers, problem) || take(section, kStrandLayers, strandLayers, problem) ||
         take(section, kSettings, settings, problem) || take(section, kValues, values, problem) ||
-        take(section, kText, texts, problem);
+        take(section, kText, texts, problem) || isSound<Attribute>(section, kAttributes, problem) ||
+        isSound<std::byte>(section, kAttributeValues, problem) ||
+        isSound<MeasuredLevel>(section, kLevelErrors, problem);
     if (!problem.empty()) return wrong(problem);
     if (!known && (section.flags & kRequired) != 0) {
         AssetError error = wrong("is needed and not known to this library");

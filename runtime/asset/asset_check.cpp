@@ -41,8 +41,9 @@ constexpr float kLargestArea = 1e12f;
 }  // namespace
 
 Problem Asset::checkContent() const {
-    for (const auto& check : {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp,
-                              &Asset::checkFollowHairs, &Asset::checkLayers, &Asset::checkSettings}) {
+    for (const auto& check :
+         {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp, &Asset::checkFollowHairs,
+          &Asset::checkLayers, &Asset::checkSettings, &Asset::checkAttributes, &Asset::checkLevels}) {
         if (Problem problem = (this->*check)()) return problem;
     }
     return std::nullopt;
@@ -230,6 +231,37 @@ Problem Asset::checkSettings() const {
         }
         if (setting.kind == ValueKind::ramp && (setting.count % 2 != 0 || setting.count > 2 * Ramp::kMaxKeys))
             return wrong("with a ramp of " + number(setting.count) + " numbers");
+    }
+    return std::nullopt;
+}
+
+Problem Asset::checkAttributes() const {
+    const std::size_t room = attributeValues().size();
+    for (const Attribute& attribute : attributes()) {
+        const auto wrong = [&](const std::string& words) {
+            return damaged(placeOf(&attribute), "an attribute " + words);
+        };
+        if (!inside(attribute.name, texts)) return wrong("without name");
+        if (attribute.type > AttributeType::float32 || attribute.components < 1 || attribute.components > 4)
+            return wrong("of a type that there is not");
+        if (attribute.firstByte % 4 != 0 || attribute.firstByte > room ||
+            bytesOf(attribute) * strands.size() > room - attribute.firstByte)
+            return wrong("whose values are not in the file");
+    }
+    return std::nullopt;
+}
+
+Problem Asset::checkLevels() const {
+    const auto errors = levelErrors();
+    if (errors.empty()) return std::nullopt;
+    if (errors.size() != kLevels)
+        return damaged(placeOf(errors.data()),
+                       number(errors.size()) + " levels of detail; expected " + number(kLevels));
+    for (const MeasuredLevel& error : errors) {
+        for (const float value : {error.still, error.head, error.wind}) {
+            if (!(value >= 0 && value <= kFarthest))
+                return damaged(placeOf(&error), "a level of detail whose error is no length");
+        }
     }
     return std::nullopt;
 }

@@ -6,7 +6,6 @@
 
 #include "asset/asset_points.h"
 #include "hairloom/asset.h"
-#include "hairloom/follow_recipe.h"
 
 namespace hairloom::runtime {
 
@@ -146,13 +145,23 @@ SimulationSettings Asset::simulation() const {
     return result;
 }
 
-FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) const {
-    if (hairCount() == 0) return {std::nullopt, "the asset has no follow hairs"};
+std::span<const std::byte> Asset::valuesOf(const Attribute& attribute) const {
+    return attributeValues().subspan(attribute.firstByte,
+                                     static_cast<std::size_t>(bytesOf(attribute)) * strands.size());
+}
+
+const Attribute* Asset::findAttribute(std::string_view name) const {
+    const auto all = attributes();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Attribute& a) { return nameOf(a) == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
     const Recipe& r = recipe[0];
     std::vector<std::uint32_t> ids;
     std::vector<Float3> rootsOfGuides, tips;
     std::vector<float> lengths;
-    std::vector<RootPlane> planes(strands.size(), RootPlane{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
     for (const Guide& guide : guides) {
         const auto points = std::span(rest.positions_ss)
                                 .subspan(rest.offsets[guide.strand],
@@ -161,8 +170,6 @@ FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) co
         rootsOfGuides.push_back(points.front());
         tips.push_back(points.back());
         lengths.push_back(lengthOf(points));
-        const Float3 normal = toFloat3(guide.normal), axis = toFloat3(guide.axis);
-        planes[guide.strand] = {axis, cross(normal, axis), normal};
     }
     std::vector<std::uint32_t> hairs(guides.size());
     for (std::size_t guide = 0; guide < hairs.size(); ++guide) hairs[guide] = hairsOf(guide);
@@ -186,6 +193,18 @@ FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) co
     for (auto& hair : drawn.guides) {
         for (std::uint32_t& guide : hair) guide = guides[guide].strand;
     }
+    return drawn;
+}
+
+FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) const {
+    if (hairCount() == 0) return {std::nullopt, "the asset has no follow hairs"};
+    const Recipe& r = recipe[0];
+    std::vector<RootPlane> planes(strands.size(), RootPlane{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    for (const Guide& guide : guides) {
+        const Float3 normal = toFloat3(guide.normal), axis = toFloat3(guide.axis);
+        planes[guide.strand] = {axis, cross(normal, axis), normal};
+    }
+    const DrawnHairs drawn = drawnHairs(rest, host);
     std::vector<Float3> shifts(hairCount());
     for (std::size_t hair = 0; hair < rootShifts.size(); ++hair)
         shifts[hair] = shiftDirection(planes, drawn.guides[hair], drawn.rootWeights[hair]) *

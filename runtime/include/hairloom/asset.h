@@ -12,6 +12,7 @@
 
 #include "hairloom/asset_format.h"
 #include "hairloom/follow.h"
+#include "hairloom/follow_recipe.h"
 #include "hairloom/settings.h"
 #include "hairloom/strands.h"
 
@@ -86,6 +87,15 @@ class Asset {
     /// A number of a setting, or `missing`.
     double numberOf(std::string_view name, double missing) const;
 
+    std::string_view nameOf(const asset::Attribute& attribute) const { return text(attribute.name); }
+    /// bytesOf() of each strand.
+    std::span<const std::byte> valuesOf(const asset::Attribute& attribute) const;
+    /// Null where there is none of that name.
+    const asset::Attribute* findAttribute(std::string_view name) const;
+
+    /// Which guides follow hairs take part of, by their numbers among the strands. Of an asset that has
+    /// hairs.
+    DrawnHairs drawnHairs(const Strands& strands, const Host& host = {}) const;
     /// Follow hairs, ready to be evaluated from all strands of strandsAtRest(). The error says why there are
     /// none.
     FollowHairs::Result followHairs(const Strands& strands, const Host& host = {}) const;
@@ -109,6 +119,17 @@ class Asset {
     std::span<const asset::Setting> settings;
     std::span<const double> values;
     std::span<const char> texts;
+    // What is looked for in the table each time: an asset has room for no more.
+    std::span<const asset::Attribute> attributes() const {
+        return recordsOf<asset::Attribute>(asset::kAttributes);
+    }
+    std::span<const std::byte> attributeValues() const {
+        return recordsOf<std::byte>(asset::kAttributeValues);
+    }
+    /// Of asset::kLevels levels, or none: nobody has measured them.
+    std::span<const asset::MeasuredLevel> levelErrors() const {
+        return recordsOf<asset::MeasuredLevel>(asset::kLevelErrors);
+    }
 
   private:
     const asset::Header& header() const { return *reinterpret_cast<const asset::Header*>(bytes_.data()); }
@@ -118,12 +139,23 @@ class Asset {
     bool take(const asset::Section& section, std::string_view kind, std::span<const Record>& records,
               std::string& problem);
     std::optional<AssetError> takeSection(const asset::Section& section);
+    const asset::Section* findSection(std::string_view kind) const;
+    template <class Record>
+    std::span<const Record> recordsOf(std::string_view kind) const {
+        const asset::Section* const section = findSection(kind);
+        if (!section) return {};
+        return {reinterpret_cast<const Record*>(bytes_.data() + section->offset), section->count};
+    }
+    template <class Record>
+    bool isSound(const asset::Section& section, std::string_view kind, std::string& problem) const;
     std::optional<AssetError> checkStrands() const;
     std::optional<AssetError> checkPoints() const;  ///< after checkStrands()
     std::optional<AssetError> checkScalp() const;
     std::optional<AssetError> checkLayers() const;
     std::optional<AssetError> checkFollowHairs() const;
     std::optional<AssetError> checkSettings() const;
+    std::optional<AssetError> checkAttributes() const;
+    std::optional<AssetError> checkLevels() const;
 
     std::span<const std::byte> bytes_;
 };

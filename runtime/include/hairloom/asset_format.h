@@ -53,7 +53,8 @@ inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots
                                   kSpheres = "SPHR", kRecipe = "FLLW", kGuides = "GUID", kGuideHairs = "GHRS",
                                   kGuideTriangles = "GTRI", kRootShifts = "SHFT", kFarRootShifts = "SHFX",
                                   kRadii = "RADI", kLayers = "LAYR", kStrandLayers = "SLYR",
-                                  kSettings = "SETT", kValues = "VALS", kText = "TEXT";
+                                  kSettings = "SETT", kValues = "VALS", kText = "TEXT", kAttributes = "ATTR",
+                                  kAttributeValues = "ATTV", kLevelErrors = "LVLE";
 
 /// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
 inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;
@@ -163,6 +164,28 @@ struct Setting {
     std::uint32_t unused;
 };
 static_assert(sizeof(Setting) == 16);
+
+enum class AttributeType : std::uint8_t { uint8 = 0, uint32 = 1, int32 = 2, float32 = 3 };
+/// Values of each strand, one strand after the other, from a byte of the section of attributes' values.
+struct Attribute {
+    Text name;
+    AttributeType type;
+    std::uint8_t components;  ///< 1 to 4
+    std::uint16_t unused;
+    std::uint32_t firstByte;  ///< a multiple of 4
+};
+static_assert(sizeof(Attribute) == 16);
+inline std::uint64_t bytesOf(const Attribute& attribute) {
+    return (attribute.type == AttributeType::uint8 ? 1u : 4u) * std::uint64_t{attribute.components};
+}
+
+/// Of a level of detail, the finest first; hairloom.h says what the numbers mean.
+struct MeasuredLevel {
+    float still, head, wind;
+    std::uint32_t unused;
+};
+static_assert(sizeof(MeasuredLevel) == 16);
+inline constexpr std::uint32_t kLevels = 5;
 
 /// Metres that 1 in the section of radii stands for.
 inline constexpr float kRadiusStep = 0x1p-24f;
