@@ -180,6 +180,21 @@ bool areGroups(std::span<const std::uint32_t> groups, std::span<const std::uint3
     return true;
 }
 
+/// Calls body(hair, first, count) for runs of hairs that follow each other: `hair` of all, `first` of those
+/// that are taken.
+template <class Body>
+void forTaken(const Host& host, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> taken,
+              const Body& body) {
+    if (taken.back() == groups.back()) {
+        forPieces(host, groups.back(), kHairsPerJob,
+                  [&](std::size_t begin, std::size_t end) { body(begin, begin, end - begin); });
+        return;
+    }
+    forPieces(host, groups.size() - 1, kGuidesPerJob, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) body(groups[g], taken[g], taken[g + 1] - taken[g]);
+    });
+}
+
 }  // namespace
 
 void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples) {
@@ -217,6 +232,11 @@ struct FollowHairs::Impl {
     /// A quantity of the guide's points as a row of points per hair.
     void fillRow(std::size_t guide, std::span<const Float3> values, float* row) const;
     void fillGuides(const GuideMotion& motion, const GuideRows& rows, std::size_t begin, std::size_t end);
+    /// Whether sizes fit.
+    bool takes(const GuideMotion& guides, std::span<const std::uint32_t> groups,
+               std::span<const std::uint32_t> taken) const;
+    GuideRows placeGuides(const GuideMotion& guides, const Host& host);
+    void sum(const GuideRows& rows, std::size_t first, std::size_t count, Float3* to) const;
 };
 
 FollowHairs::Impl::Impl(const FollowView& view)
@@ -268,6 +288,28 @@ void FollowHairs::Impl::fillGuides(const GuideMotion& motion, const GuideRows& r
     followKernels().fillWisps(rows, begin, end);
 }
 
+bool FollowHairs::Impl::takes(const GuideMotion& guides, std::span<const std::uint32_t> groups,
+                              std::span<const std::uint32_t> taken) const {
+    const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
+    return areGroups(groups, taken, hairs.size()) && guides.positions_ws.size() == guideOffsets.back() &&
+           fits(guides.velocities_ws.size(), guides.positions_ws.size()) &&
+           fits(guides.rootRotations_ws.size(), guideCount());
+}
+
+GuideRows FollowHairs::Impl::placeGuides(const GuideMotion& guides, const Host& host) {
+    const GuideRows rows{points,           rowFloats,    radii.data(), guides.wispSpread,
+                         positions.data(), wisps.data(), frames.data()};
+    forPieces(host, guideCount(), kGuidesPerJob,
+              [&](std::size_t begin, std::size_t end) { fillGuides(guides, rows, begin, end); });
+    return rows;
+}
+
+void FollowHairs::Impl::sum(const GuideRows& rows, std::size_t first, std::size_t count, Float3* to) const {
+    static_assert(sizeof(Float3) == 3 * sizeof(float));
+    followKernels().sumRows(rows, std::span<const HairBinding>(hairs).subspan(first, count),
+                            reinterpret_cast<float*>(to));
+}
+
 FollowHairs::FollowHairs(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 FollowHairs::FollowHairs(const FollowHairs& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 FollowHairs::FollowHairs(FollowHairs&&) noexcept = default;
@@ -310,31 +352,30 @@ bool FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws
 bool FollowHairs::evaluateSome(const GuideMotion& guides, std::span<const std::uint32_t> groups,
                                std::span<const std::uint32_t> taken, std::span<Float3> hairs_ws,
                                const Host& host) {
-    Impl& impl = *impl_;
-    const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
-    if (!areGroups(groups, taken, impl.hairs.size())) return false;
-    if (guides.positions_ws.size() != impl.guideOffsets.back() ||
-        !fits(guides.velocities_ws.size(), guides.positions_ws.size()) ||
-        !fits(guides.rootRotations_ws.size(), impl.guideCount()) ||
-        hairs_ws.size() != std::size_t{taken.back()} * impl.points)
+    if (!impl_->takes(guides, groups, taken) || hairs_ws.size() != std::size_t{taken.back()} * impl_->points)
         return false;
-    const GuideRows rows{impl.points,           impl.rowFloats,    impl.radii.data(), guides.wispSpread,
-                         impl.positions.data(), impl.wisps.data(), impl.frames.data()};
-    forPieces(host, impl.guideCount(), kGuidesPerJob,
-              [&](std::size_t begin, std::size_t end) { impl.fillGuides(guides, rows, begin, end); });
-    static_assert(sizeof(Float3) == 3 * sizeof(float));
-    auto* out = reinterpret_cast<float*>(hairs_ws.data());
-    const std::span<const HairBinding> hairs(impl.hairs);
-    const auto sum = [&](std::size_t first, std::size_t count, std::size_t to) {
-        followKernels().sumRows(rows, hairs.subspan(first, count), out + to * impl.points * 3);
-    };
-    if (taken.back() == hairs.size()) {
-        forPieces(host, hairs.size(), kHairsPerJob,
-                  [&](std::size_t begin, std::size_t end) { sum(begin, end - begin, begin); });
-        return true;
-    }
-    forPieces(host, groups.size() - 1, kGuidesPerJob, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end; ++g) sum(groups[g], taken[g + 1] - taken[g], taken[g]);
+    const GuideRows rows = impl_->placeGuides(guides, host);
+    forTaken(host, groups, taken, [&](std::size_t hair, std::size_t first, std::size_t count) {
+        impl_->sum(rows, hair, count, hairs_ws.data() + first * impl_->points);
+    });
+    return true;
+}
+
+bool FollowHairs::showSome(const GuideMotion& guides, std::span<const std::uint32_t> groups,
+                           std::span<const std::uint32_t> taken, Float3* hairs_ws, const Sink& sink,
+                           const Host& host) {
+    const std::size_t points = impl_->points;
+    if (points > kMaxShownPoints || !impl_->takes(guides, groups, taken)) return false;
+    const GuideRows rows = impl_->placeGuides(guides, host);
+    const std::size_t most = kMaxShownPoints / points;
+    forTaken(host, groups, taken, [&](std::size_t hair, std::size_t first, std::size_t count) {
+        std::array<Float3, kMaxShownPoints> here;
+        for (std::size_t done = 0; done < count; done += most) {
+            const std::size_t some = std::min(most, count - done);
+            Float3* const to = hairs_ws ? hairs_ws + (first + done) * points : here.data();
+            impl_->sum(rows, hair + done, some, to);
+            if (sink) sink(first + done, some, to);
+        }
     });
     return true;
 }

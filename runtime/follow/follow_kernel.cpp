@@ -9,6 +9,7 @@
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
 #include "follow/follow-inl.h"
+#include "follow/shown-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,7 +17,9 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 const FollowKernels& followKernelsOfTarget() {
-    static const FollowKernels kTable{fillWisps, sumRows};
+    constexpr bool kFused = HWY_NATIVE_FMA != 0;
+    static const FollowKernels kTable{kWidth,   kFused,  fillWisps,     sumRows,   tangents,
+                                      toHalves, toNorms, toSignedNorms, growBounds};
     return kTable;
 }
 

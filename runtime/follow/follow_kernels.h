@@ -40,11 +40,25 @@ struct GuideRows {
 };
 
 struct FollowKernels {
+    std::size_t width;  ///< floats of a vector
+    bool fused;         ///< multiplies and adds in one
     /// For guides [begin, end): takes their velocities from the first wisp row and fills the wisp rows: the
     /// centre, and the axes of the cross-section scaled by its radius.
     void (*fillWisps)(const GuideRows& guides, std::size_t begin, std::size_t end);
     /// Writes hairs.size() hairs to `positions`.
     void (*sumRows)(const GuideRows& guides, std::span<const HairBinding> hairs, float* positions);
+    /// Directions of unit length of the points of strands that follow each other, `perStrand` ≥ 2 points
+    /// each: from the point before to the point after. Upwards where these coincide.
+    void (*tangents)(const float* positions, std::size_t points, std::size_t perStrand, float* directions);
+    /// IEEE halves, to the nearest even, of `points` positions less `from`.
+    void (*toHalves)(const float* positions, std::size_t points, Float3 from, std::uint16_t* halves);
+    /// (value − from) scale, from 0 to 65,535, to the nearest; how many components were beyond.
+    std::uint32_t (*toNorms)(const float* positions, std::size_t points, Float3 from, Float3 scale,
+                             std::uint16_t* norms);
+    /// −1 … 1 to −32,767 … 32,767.
+    void (*toSignedNorms)(const float* values, std::size_t count, std::int16_t* norms);
+    /// Lowers and raises six values, a box, to the points that are finite.
+    void (*grow)(const float* positions, std::size_t points, float* low, float* high);
 };
 
 /// The kernels for the best instruction set of this machine.

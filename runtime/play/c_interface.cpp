@@ -1,65 +1,16 @@
 // SPDX-License-Identifier: MIT
-// hairloom.h: hands over to Asset and Instance, and lets nothing be thrown across.
-#include <algorithm>
-#include <cstring>
+// hairloom.h: instances and crowds. Hands over to Instance, and lets nothing be thrown across.
 #include <limits>
 #include <memory>
-#include <new>
 
-#include "hairloom/hairloom.h"
+#include "follow/follow_kernels.h"
+#include "play/c_words.h"
 #include "play/crowd.h"
-#include "play/instance.h"
 
+// The plain names are macros that tell sizes: in parentheses they are the functions of older programs.
 using namespace hairloom::runtime;
 
 namespace {
-
-static_assert(sizeof(Asset) <= sizeof(hl_asset) && alignof(Asset) <= alignof(hl_asset));
-static_assert(std::is_trivially_destructible_v<Asset> && std::is_trivially_copyable_v<Asset>);
-
-hl_code say(hl_error* error, hl_code code, std::uint64_t byte, std::string_view words) {
-    if (error) {
-        error->code = code;
-        error->byte = byte;
-        const std::size_t size = std::min(words.size(), sizeof error->words - 1);
-        std::memcpy(error->words, words.data(), size);
-        error->words[size] = 0;
-    }
-    return code;
-}
-
-hl_code say(hl_error* error, const AssetError& problem) {
-    const bool misaligned = problem.kind == AssetError::Kind::misaligned;
-    const hl_code code = problem.kind == AssetError::Kind::newer ? HL_NEWER
-                         : misaligned                            ? HL_BAD_VALUE
-                                                                 : HL_DAMAGED;
-    return say(error, code, misaligned ? HL_NO_PLACE : problem.byte, problem.words);
-}
-
-hl_code say(hl_error* error, const Outcome& refused) {
-    return refused ? say(error, refused->code, HL_NO_PLACE, refused->words)
-                   : say(error, HL_OK, HL_NO_PLACE, "");
-}
-
-/// Whatever is thrown inside comes out as a code.
-template <class Body>
-hl_code guarded(hl_error* error, const Body& body) {
-    try {
-        return body();
-    } catch (const std::bad_alloc&) {
-        return say(error, HL_NO_MEMORY, HL_NO_PLACE, "there is not enough memory");
-    } catch (const std::exception& thrown) {
-        return say(error, HL_NO_MEMORY, HL_NO_PLACE, thrown.what());
-    }
-}
-
-hl_code nullRefused(hl_error* error, const char* what) {
-    return say(error, HL_BAD_VALUE, HL_NO_PLACE, std::string_view(what));
-}
-
-const Asset& assetOf(const hl_asset* asset) {
-    return *std::launder(reinterpret_cast<const Asset*>(asset->inside));
-}
 
 Host hostOf(const hl_jobs* jobs) {
     Host host;
@@ -73,147 +24,102 @@ Host hostOf(const hl_jobs* jobs) {
     return host;
 }
 
+Host hostOf(const hl_host& given) {
+    Host host = hostOf(given.jobs);
+    if (given.log)
+        host.log = [log = given.log, user = given.user](std::string_view words) {
+            log(user, words.data(), words.size());
+        };
+    if (given.nanoseconds)
+        host.nanoseconds = [clock = given.nanoseconds, user = given.user] { return clock(user); };
+    return host;
+}
+
+hl_code makeInstance(const hl_asset* opened, uint32_t what, const Host& host, hl_instance** out,
+                     hl_error* error) {
+    if (what > (HL_HAIRS | HL_LEVELS))
+        return nullRefused(error, "neither HL_GUIDES nor a sum of HL_HAIRS and HL_LEVELS");
+    return withContent(opened, error, [&](const Asset& asset) {
+        Instance::Result made = Instance::make(asset, (what & HL_HAIRS) != 0, (what & HL_LEVELS) != 0, host);
+        if (!made.instance) return say(error, HL_DAMAGED, HL_NO_PLACE, made.error);
+        *out = new hl_instance{std::move(*made.instance)};
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+/// Reset and step: a frame of any version.
+template <class Body>
+hl_code withFrame(hl_instance* instance, const hl_frame* given, hl_error* error, const Body& body) {
+    if (!instance || !given) return nullRefused(error, "no instance or no frame");
+    return guarded(error, [&] {
+        hl_frame frame{};
+        if (const Outcome refused = takeIn(given, "hl_frame", kFirstFrame, frame)) return say(error, refused);
+        return say(error, body(instance->instance, frame));
+    });
+}
+
+hl_code readPlain(hl_instance* instance, bool hairs, hl_out positions, hl_out tangents, hl_out radii,
+                  hl_error* error) {
+    if (!instance) return nullRefused(error, "no instance");
+    return guarded(error, [&] {
+        hl_read read{};
+        read.hairs = hairs ? 1 : 0;
+        read.positions = positions;
+        read.tangents = tangents;
+        read.radii = radii;
+        return say(error, instance->instance.read(read, false));
+    });
+}
+
 }  // namespace
 
-hl_code hl_asset_open(hl_asset* asset, const void* bytes, size_t size, hl_error* error) {
-    if (!asset || !bytes) return nullRefused(error, "no asset or no bytes");
-    return guarded(error, [&] {
-        const Asset::Result opened = Asset::open({static_cast<const std::byte*>(bytes), size});
-        if (!opened.asset) return say(error, opened.error);
-        new (asset->inside) Asset(*opened.asset);
-        return say(error, HL_OK, HL_NO_PLACE, "");
-    });
+uint32_t hl_version(void) {
+    return HL_VERSION;
 }
 
-hl_code hl_asset_check(const hl_asset* asset, hl_error* error) {
-    if (!asset) return nullRefused(error, "no asset");
-    return guarded(error, [&] {
-        const auto problem = assetOf(asset).check();
-        return problem ? say(error, *problem) : say(error, HL_OK, HL_NO_PLACE, "");
-    });
-}
-
-hl_code hl_asset_describe(const hl_asset* opened, hl_asset_info* info, hl_error* error) {
-    if (!opened || !info) return nullRefused(error, "no asset or no place for its description");
-    return guarded(error, [&] {
-        const Asset& asset = assetOf(opened);
-        if (const auto problem = asset.checkContent()) return say(error, *problem);
-        *info = {};
-        info->major = asset.major();
-        info->minor = asset.minor();
-        info->guides = asset.strandCount();
-        info->guide_points = asset.pointCount();
-        info->hairs = asset.hairCount();
-        info->points_per_hair = info->hairs > 0 ? asset.recipe[0].pointsPerHair : 0;
-        info->bones = static_cast<std::uint32_t>(asset.bones.size());
-        info->spheres = static_cast<std::uint32_t>(asset.spheres.size());
-        info->scalp_vertices = static_cast<std::uint32_t>(asset.scalpVertices.size());
-        const Float3 low = asset.boundsMin_ss(), high = asset.boundsMax_ss();
-        std::memcpy(info->bounds_min, &low, sizeof low);
-        std::memcpy(info->bounds_max, &high, sizeof high);
-        info->greatest_error = static_cast<float>(asset.greatestError());
-        const InstanceMemory memory = instanceMemory(asset);
-        info->guides_memory = memory.guides + sizeof(hl_instance);
-        info->hairs_memory = memory.hairs;
-        info->thread_memory = memory.thread;
-        return say(error, HL_OK, HL_NO_PLACE, "");
-    });
-}
-
-hl_code hl_asset_bone(const hl_asset* opened, uint32_t bone, hl_bone* out, hl_error* error) {
-    if (!opened || !out) return nullRefused(error, "no asset or no place for the bone");
-    return guarded(error, [&] {
-        const Asset& asset = assetOf(opened);
-        if (bone >= asset.bones.size())
-            return say(error, HL_BAD_VALUE, HL_NO_PLACE,
-                       "bone " + std::to_string(bone) + " of " + std::to_string(asset.bones.size()));
-        if (const auto problem = asset.checkContent()) return say(error, *problem);
-        const asset::Bone& record = asset.bones[bone];
-        const std::string_view name = asset.text(record.name);
-        *out = {name.data(), name.size(), record.index, {}};
-        std::copy(std::begin(record.inverseBind), std::end(record.inverseBind), out->inverse_bind);
-        return say(error, HL_OK, HL_NO_PLACE, "");
-    });
-}
-
-hl_code hl_asset_scalp_sources(const hl_asset* opened, uint32_t* vertices, size_t count, hl_error* error) {
-    if (!opened || !vertices) return nullRefused(error, "no asset or no place for vertices");
-    const Asset& asset = assetOf(opened);
-    if (count != asset.scalpVertices.size())
-        return say(error, HL_WRONG_SIZE, HL_NO_PLACE, "another number of scalp vertices");
-    for (std::size_t v = 0; v < count; ++v) vertices[v] = asset.scalpVertices[v].source;
+hl_code hl_build_info(hl_build* out, hl_error* error) {
+    if (!out) return nullRefused(error, "no place for what was built");
+    if (const Outcome refused = checkSize<hl_build>("hl_build", out->size, sizeof(hl_build)))
+        return say(error, refused);
+    hl_build build{};
+    build.size = out->size;
+    build.version = HL_VERSION;
+    build.lanes = static_cast<std::uint32_t>(followKernels().width);
+    build.instruction_set = Engine::instructionSet();
+#if defined(__VERSION__)
+    build.compiler = __VERSION__;
+#else
+    build.compiler = "";
+#endif
+    build.fused = followKernels().fused ? 1 : 0;
+#if defined(HAIRLOOM_IMPLEMENTATION)
+    build.single_header = 1;
+#endif
+    giveBack(build, out, out->size);
     return say(error, HL_OK, HL_NO_PLACE, "");
-}
-
-hl_code hl_asset_layer(const hl_asset* opened, uint32_t layer, hl_layer* out, hl_error* error) {
-    if (!opened || !out) return nullRefused(error, "no asset or no place for the layer");
-    return guarded(error, [&] {
-        const Asset& asset = assetOf(opened);
-        if (layer >= asset.layerCount())
-            return say(error, HL_BAD_VALUE, HL_NO_PLACE,
-                       "layer " + std::to_string(layer) + " of " + std::to_string(asset.layerCount()));
-        if (const auto problem = asset.checkContent()) return say(error, *problem);
-        *out = {"", 0, 1, 0};
-        if (!asset.layers.empty()) {
-            const asset::Layer& record = asset.layers[layer];
-            const std::string_view name = asset.text(record.name);
-            *out = {name.data(), name.size(), record.density, record.ownMaterial};
-        }
-        return say(error, HL_OK, HL_NO_PLACE, "");
-    });
-}
-
-hl_code hl_asset_layers(const hl_asset* opened, uint32_t* layers, uint32_t* of_guides, size_t count,
-                        hl_error* error) {
-    if (!opened || !layers || (!of_guides && count > 0))
-        return nullRefused(error, "no asset or no place for layers");
-    return guarded(error, [&] {
-        const Asset& asset = assetOf(opened);
-        if (of_guides && count != asset.strandCount())
-            return say(
-                error, HL_WRONG_SIZE, HL_NO_PLACE,
-                "room for " + std::to_string(count) + " guides of " + std::to_string(asset.strandCount()));
-        if (const auto problem = asset.checkContent()) return say(error, *problem);
-        *layers = asset.layerCount();
-        for (std::size_t guide = 0; guide < count; ++guide) of_guides[guide] = asset.layerOf(guide);
-        return say(error, HL_OK, HL_NO_PLACE, "");
-    });
-}
-
-hl_code hl_asset_numbers(const hl_asset* opened, const char* name, double* values, size_t count,
-                         size_t* written, hl_error* error) {
-    if (!opened || !name || !written || (!values && count > 0))
-        return nullRefused(error, "no asset, name or place");
-    return guarded(error, [&] {
-        const Asset& asset = assetOf(opened);
-        if (const auto problem = asset.checkContent()) return say(error, *problem);
-        const asset::Setting* const setting = asset.findSetting(name);
-        if (!setting || setting->kind == asset::ValueKind::choice)
-            return say(error, HL_BAD_VALUE, HL_NO_PLACE,
-                       std::string("no numbers of the name '") + name + "'");
-        const auto found = asset.valuesOf(*setting);
-        *written = found.size();
-        if (count < found.size())
-            return say(error, HL_WRONG_SIZE, HL_NO_PLACE,
-                       "room for " + std::to_string(count) + " values of " + std::to_string(found.size()));
-        std::copy(found.begin(), found.end(), values);
-        return say(error, HL_OK, HL_NO_PLACE, "");
-    });
 }
 
 hl_code hl_instance_make(const hl_asset* opened, uint32_t what, const hl_jobs* jobs, hl_instance** out,
                          hl_error* error) {
     if (!opened || !out) return nullRefused(error, "no asset or no place for the instance");
-    if (what > (HL_HAIRS | HL_LEVELS))
-        return nullRefused(error, "neither HL_GUIDES nor a sum of HL_HAIRS and HL_LEVELS");
+    return guarded(error, [&] { return makeInstance(opened, what, hostOf(jobs), out, error); });
+}
+
+void hl_host_init(hl_host* host) {
+    if (!host) return;
+    *host = {};
+    host->size = sizeof(hl_host);
+}
+
+hl_code hl_instance_make_hosted(const hl_asset* opened, uint32_t what, const hl_host* given,
+                                hl_instance** out, hl_error* error) {
+    if (!opened || !given || !out)
+        return nullRefused(error, "no asset, no host or no place for the instance");
     return guarded(error, [&] {
-        const Asset& asset = assetOf(opened);
-        if (const auto problem = asset.checkContent()) return say(error, *problem);
-        Instance::Result made =
-            Instance::make(asset, (what & HL_HAIRS) != 0, (what & HL_LEVELS) != 0, hostOf(jobs));
-        if (!made.instance) return say(error, HL_DAMAGED, HL_NO_PLACE, made.error);
-        *out = new hl_instance{std::move(*made.instance)};
-        return say(error, HL_OK, HL_NO_PLACE, "");
+        hl_host host{};
+        if (const Outcome refused = takeIn(given, "hl_host", sizeof(hl_host), host))
+            return say(error, refused);
+        return makeInstance(opened, what, hostOf(host), out, error);
     });
 }
 
@@ -237,13 +143,13 @@ void hl_frame_init(hl_frame* frame) {
 }
 
 hl_code hl_instance_reset(hl_instance* instance, const hl_frame* frame, hl_error* error) {
-    if (!instance || !frame) return nullRefused(error, "no instance or no frame");
-    return guarded(error, [&] { return say(error, instance->instance.reset(*frame)); });
+    return withFrame(instance, frame, error,
+                     [](Instance& hair, const hl_frame& known) { return hair.reset(known); });
 }
 
 hl_code hl_instance_step(hl_instance* instance, const hl_frame* frame, hl_error* error) {
-    if (!instance || !frame) return nullRefused(error, "no instance or no frame");
-    return guarded(error, [&] { return say(error, instance->instance.step(*frame)); });
+    return withFrame(instance, frame, error,
+                     [](Instance& hair, const hl_frame& known) { return hair.step(known); });
 }
 
 hl_code hl_instance_set(hl_instance* instance, const char* name, const double* values, size_t count,
@@ -253,12 +159,43 @@ hl_code hl_instance_set(hl_instance* instance, const char* name, const double* v
     return guarded(error, [&] { return say(error, instance->instance.set(name, {values, count})); });
 }
 
-hl_code hl_instance_describe(const hl_instance* instance, hl_instance_info* info, hl_error* error) {
-    if (!instance || !info) return nullRefused(error, "no instance or no place for its description");
+hl_code hl_instance_describe_sized(const hl_instance* instance, hl_instance_info* out, size_t size,
+                                   hl_error* error) {
+    if (!instance || !out) return nullRefused(error, "no instance or no place for its description");
+    if (const Outcome refused = checkSize<hl_instance_info>("hl_instance_info", size, kFirstInstanceInfo))
+        return say(error, refused);
     return guarded(error, [&] {
-        *info = instance->instance.describe();
-        info->bytes += sizeof(hl_instance) - sizeof(Instance);
+        hl_instance_info info = instance->instance.describe();
+        info.bytes += sizeof(hl_instance) - sizeof(Instance);
+        giveBack(info, out, size);
         return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code(hl_instance_describe)(const hl_instance* instance, hl_instance_info* info, hl_error* error) {
+    return hl_instance_describe_sized(instance, info, kFirstInstanceInfo, error);
+}
+
+hl_code hl_instance_save(const hl_instance* instance, void* data, size_t bytes, size_t* written,
+                         hl_error* error) {
+    if (!instance || !written || (!data && bytes > 0))
+        return nullRefused(error, "no instance or no place for it");
+    return guarded(error, [&] {
+        const std::vector<std::byte> saved = instance->instance.save();
+        *written = saved.size();
+        if (!data) return say(error, HL_OK, HL_NO_PLACE, "");
+        if (bytes < saved.size())
+            return say(error, HL_WRONG_SIZE, HL_NO_PLACE,
+                       "room for " + std::to_string(bytes) + " bytes of " + std::to_string(saved.size()));
+        std::memcpy(data, saved.data(), saved.size());
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_instance_load(hl_instance* instance, const void* data, size_t bytes, hl_error* error) {
+    if (!instance || !data) return nullRefused(error, "no instance or no bytes");
+    return guarded(error, [&] {
+        return say(error, instance->instance.load({static_cast<const std::byte*>(data), bytes}));
     });
 }
 
@@ -273,14 +210,21 @@ hl_code hl_instance_time(hl_instance* instance, uint64_t (*nanoseconds)(void* us
     });
 }
 
-hl_code hl_instance_effect(const hl_instance* instance, uint32_t effect, hl_effect* out, hl_error* error) {
+hl_code hl_instance_effect_sized(const hl_instance* instance, uint32_t effect, hl_effect* out, size_t size,
+                                 hl_error* error) {
     static_assert(HL_EFFECT_COUNT == kEffectCount + 1);
     if (!instance || !out) return nullRefused(error, "no instance or no place for the effect");
+    if (const Outcome refused = checkSize<hl_effect>("hl_effect", size, kFirstEffect))
+        return say(error, refused);
     if (effect >= HL_EFFECT_COUNT) return nullRefused(error, "an effect that there is not");
     return guarded(error, [&] {
-        *out = instance->instance.describeEffect(effect);
+        giveBack(instance->instance.describeEffect(effect), out, size);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
+}
+
+hl_code(hl_instance_effect)(const hl_instance* instance, uint32_t effect, hl_effect* out, hl_error* error) {
+    return hl_instance_effect_sized(instance, effect, out, kFirstEffect, error);
 }
 
 hl_code hl_instance_offsets(const hl_instance* instance, uint32_t* offsets, size_t count, hl_error* error) {
@@ -294,34 +238,54 @@ uint64_t hl_instance_hash(const hl_instance* instance) {
 
 hl_code hl_instance_read_guides(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
                                 hl_error* error) {
-    if (!instance) return nullRefused(error, "no instance");
-    return guarded(error,
-                   [&] { return say(error, instance->instance.readGuides(positions, tangents, radii)); });
+    return readPlain(instance, false, positions, tangents, radii, error);
 }
 
 hl_code hl_instance_read_hairs(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
                                hl_error* error) {
-    if (!instance) return nullRefused(error, "no instance");
-    return guarded(error,
-                   [&] { return say(error, instance->instance.readHairs(positions, tangents, radii)); });
+    return readPlain(instance, true, positions, tangents, radii, error);
 }
 
-hl_code hl_asset_levels_memory(const hl_asset* opened, size_t* bytes, hl_error* error) {
-    if (!opened || !bytes) return nullRefused(error, "no asset or no place for the bytes");
+hl_code hl_instance_hair_numbers(const hl_instance* instance, uint32_t* numbers, size_t count,
+                                 hl_error* error) {
+    if (!instance || (!numbers && count > 0))
+        return nullRefused(error, "no instance or no place for numbers");
+    return guarded(error, [&] { return say(error, instance->instance.readHairNumbers({numbers, count})); });
+}
+
+void hl_read_init(hl_read* read) {
+    if (!read) return;
+    *read = {};
+    read->size = sizeof(hl_read);
+}
+
+hl_code hl_instance_read(hl_instance* instance, hl_read* given, hl_error* error) {
+    if (!instance || !given) return nullRefused(error, "no instance or nothing to read");
     return guarded(error, [&] {
-        const Asset& asset = assetOf(opened);
-        if (const auto problem = asset.checkContent()) return say(error, *problem);
-        *bytes = instanceMemory(asset).levels;
+        const std::size_t size = given->size;
+        hl_read read{};
+        if (const Outcome refused = takeIn(given, "hl_read", sizeof(hl_read), read))
+            return say(error, refused);
+        if (const Outcome refused = instance->instance.read(read)) return say(error, refused);
+        read.size = size;
+        giveBack(read, given, size);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }
 
-hl_code hl_instance_level(const hl_instance* instance, uint32_t level, hl_level* out, hl_error* error) {
+hl_code hl_instance_level_sized(const hl_instance* instance, uint32_t level, hl_level* out, size_t size,
+                                hl_error* error) {
     if (!instance || !out) return nullRefused(error, "no instance or no place for the level");
+    if (const Outcome refused = checkSize<hl_level>("hl_level", size, kFirstLevel))
+        return say(error, refused);
     if (!instance->instance.hasLevels()) return nullRefused(error, "the instance was made without HL_LEVELS");
     if (level >= HL_LEVEL_COUNT) return nullRefused(error, "a level that there is not");
-    *out = instance->instance.describeLevel(level);
+    giveBack(instance->instance.describeLevel(level), out, size);
     return say(error, HL_OK, HL_NO_PLACE, "");
+}
+
+hl_code(hl_instance_level)(const hl_instance* instance, uint32_t level, hl_level* out, hl_error* error) {
+    return hl_instance_level_sized(instance, level, out, kFirstLevel, error);
 }
 
 hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_share, hl_error* error) {
@@ -329,16 +293,38 @@ hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_
     return guarded(error, [&] { return say(error, instance->instance.setLevel(level, hair_share)); });
 }
 
+hl_code hl_rate(const hl_instance* instance, uint64_t (*nanoseconds)(void* user), void* user, float* speed,
+                hl_error* error) {
+    if (!instance || !nanoseconds || !speed) return nullRefused(error, "no instance, clock or place");
+    return guarded(error, [&] {
+        return say(error, instance->instance.measureSpeed([&] { return nanoseconds(user); }, *speed));
+    });
+}
+
 void hl_crowd_limits_init(hl_crowd_limits* limits) {
     if (!limits) return;
     *limits = {sizeof(hl_crowd_limits), 2, 0.7f, std::numeric_limits<float>::infinity(), 1};
 }
 
-hl_code hl_crowd_plan(const hl_crowd_limits* limits, hl_viewed* characters, size_t count,
-                      hl_crowd_report* report, hl_error* error) {
-    if (!limits || (!characters && count > 0)) return nullRefused(error, "no limits or no characters");
+hl_code hl_crowd_plan_sized(const hl_crowd_limits* given, hl_viewed* characters, size_t viewed_size,
+                            size_t count, hl_crowd_report* report, size_t report_size, hl_error* error) {
+    if (!given || (!characters && count > 0)) return nullRefused(error, "no limits or no characters");
     return guarded(error, [&] {
-        hl_crowd_report ignored;
-        return say(error, planCrowd(*limits, {characters, count}, report ? *report : ignored));
+        hl_crowd_limits limits{};
+        hl_crowd_report made{};
+        Outcome refused = takeIn(given, "hl_crowd_limits", kFirstLimits, limits);
+        if (!refused) refused = checkSize<hl_viewed>("hl_viewed", viewed_size, kFirstViewed);
+        if (!refused && viewed_size % alignof(hl_viewed) != 0)
+            refused = Refusal{HL_WRONG_SIZE, "characters that are not at multiples of 8 bytes"};
+        if (!refused && report)
+            refused = checkSize<hl_crowd_report>("hl_crowd_report", report_size, kFirstReport);
+        if (!refused) refused = planCrowd(limits, {characters, viewed_size, count}, made);
+        if (!refused && report) giveBack(made, report, report_size);
+        return say(error, refused);
     });
+}
+
+hl_code(hl_crowd_plan)(const hl_crowd_limits* limits, hl_viewed* characters, size_t count,
+                       hl_crowd_report* report, hl_error* error) {
+    return hl_crowd_plan_sized(limits, characters, kFirstViewed, count, report, kFirstReport, error);
 }

@@ -12,7 +12,7 @@ constexpr float kSpare = 0.75f;
 /// Halvings of the range of limits: to a 16 millionth of it.
 constexpr int kHalvings = 24;
 
-Outcome checkCrowd(const hl_crowd_limits& limits, std::span<const hl_viewed> characters) {
+Outcome checkCrowd(const hl_crowd_limits& limits, const Characters& characters) {
     const auto refuse = [](const char* what, double value, const char* expected) {
         return Refusal{HL_BAD_VALUE,
                        std::string(what) + " is " + std::to_string(value) + "; expected " + expected};
@@ -21,19 +21,17 @@ Outcome checkCrowd(const hl_crowd_limits& limits, std::span<const hl_viewed> cha
         if (value >= 0 && std::isfinite(value)) return std::nullopt;
         return refuse(what, value, "0 or more");
     };
-    if (limits.size != sizeof(hl_crowd_limits))
-        return Refusal{HL_WRONG_SIZE, std::to_string(limits.size) + " bytes of hl_crowd_limits; expected " +
-                                          std::to_string(sizeof(hl_crowd_limits))};
     if (Outcome refused = least("error_pixels", limits.error_pixels)) return refused;
     if (Outcome refused = least("hair_pixels", limits.hair_pixels)) return refused;
     if (!(limits.milliseconds >= 0)) return refuse("milliseconds", limits.milliseconds, "0 or more");
     if (!(limits.speed > 0) || !std::isfinite(limits.speed)) return refuse("speed", limits.speed, "above 0");
-    for (std::size_t c = 0; c < characters.size(); ++c) {
+    std::size_t number = 0;
+    for (const hl_viewed& character : characters) {
         // Words take memory: only where they are needed.
-        const auto who = [&] { return "character " + std::to_string(c) + " "; };
-        if (!characters[c].hair || !characters[c].hair->instance.hasLevels())
+        const auto who = [c = number++] { return "character " + std::to_string(c) + " "; };
+        if (!character.hair || !character.hair->instance.hasLevels())
             return Refusal{HL_BAD_VALUE, who() + "has no instance that was made with HL_LEVELS"};
-        if (Outcome refused = least("pixels_per_metre", characters[c].pixels_per_metre))
+        if (Outcome refused = least("pixels_per_metre", character.pixels_per_metre))
             return Refusal{refused->code, who() + refused->words};
     }
     return std::nullopt;
@@ -41,7 +39,7 @@ Outcome checkCrowd(const hl_crowd_limits& limits, std::span<const hl_viewed> cha
 
 struct CrowdPlan {
     const hl_crowd_limits& limits;
-    std::span<hl_viewed> characters;
+    Characters characters;
 
     float errorOf(const hl_viewed& character, std::uint32_t level) const {
         return character.hair->instance.predictedError(level) * character.pixels_per_metre;
@@ -89,7 +87,7 @@ struct CrowdPlan {
 
 }  // namespace
 
-Outcome planCrowd(const hl_crowd_limits& limits, std::span<hl_viewed> characters, hl_crowd_report& report) {
+Outcome planCrowd(const hl_crowd_limits& limits, Characters characters, hl_crowd_report& report) {
     if (Outcome refused = checkCrowd(limits, characters)) return refused;
     const CrowdPlan planner{limits, characters};
     const float errorPixels = planner.limitOfAll();

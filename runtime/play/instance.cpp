@@ -27,32 +27,6 @@ Matrix34 matrixAt(const float* values, std::size_t index) {
     return matrix;
 }
 
-/// Whether a value of `size` bytes of each of `count` points fits.
-Outcome fits(const hl_out& out, const char* what, std::size_t count, std::size_t size) {
-    if (!out.data) return std::nullopt;
-    if (out.stride < size) return wrongSize(std::string("bytes of stride of ") + what, out.stride, size);
-    if (out.bytes < size || (count > 0 && (out.bytes - size) / out.stride < count - 1))
-        return Refusal{HL_WRONG_SIZE,
-                       std::to_string(out.bytes) + " bytes for " + std::to_string(count) + " " + what};
-    return std::nullopt;
-}
-
-template <class T>
-void store(const hl_out& out, std::size_t index, const T& value) {
-    std::memcpy(static_cast<char*>(out.data) + index * out.stride, &value, sizeof value);
-}
-
-/// Of unit length, from the neighbours of a point; upwards where they coincide.
-Float3 tangentAt(std::span<const Float3> strand, std::size_t p) {
-    const Float3 along = strand[std::min(p + 1, strand.size() - 1)] - strand[p > 0 ? p - 1 : 0];
-    const float size = length(along);
-    return size > 1e-12f && std::isfinite(size) ? along * (1 / size) : Float3{0, 1, 0};
-}
-
-float between(float root, float tip, std::size_t p, std::size_t points) {
-    return root + (tip - root) * static_cast<float>(p) / static_cast<float>(points - 1);
-}
-
 /// `usual` where the asset has none, or one out of range.
 float numberWithin(const Asset& asset, std::string_view name, double min, double max, double usual) {
     const double value = asset.numberOf(name, usual);
@@ -82,11 +56,10 @@ std::size_t bytesOf(const Engine& engine) {
 /// More than a block's report takes.
 constexpr std::size_t kReportBytes = 1024;
 
-/// Of an instance of `hairPoints` points of hairs, beside its engine and its FollowHairs.
-std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t hairPoints) {
-    const std::size_t velocities = hairPoints > 0 ? points : 0;
+/// Of an instance beside its engine and its FollowHairs.
+std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t velocities) {
     return strands * (sizeof(RootFrame) + sizeof(Quat) + sizeof(std::uint32_t)) +
-           (points + velocities + hairPoints) * sizeof(Float3);
+           (points + velocities) * sizeof(Float3);
 }
 
 /// Of an engine at most, beside what threads work in; `strandsOf` counts strands by their points.
@@ -154,8 +127,7 @@ InstanceMemory instanceMemory(const Asset& asset) {
     return {guides,
             FollowHairs::bytesFor(strands, hairs, pointsPerHair) +
                 (asset.guides.size() + 1) * sizeof(std::uint32_t) +
-                (hasMaterials(asset) ? asset.guides.size() * 2 * sizeof(float) : 0) +
-                ownBytes(strands, points, hairs * pointsPerHair) - ownBytes(strands, points, 0),
+                (hasMaterials(asset) ? asset.guides.size() * 2 * sizeof(float) : 0) + points * sizeof(Float3),
             levels, thread};
 }
 
@@ -164,6 +136,10 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     Engine::Result made = Engine::make({strands.offsets, strands.positions_ss}, asset.simulation(), host);
     if (!made.engine) return {std::nullopt, std::move(made.error)};
     Instance instance(std::move(*made.engine), RootPoses(asset, strands), std::move(host));
+    instance.asset_ = std::uint64_t{asset::checksum(std::as_bytes(asset.strands))} << 32u |
+                      asset::checksum(asset.residuals);
+    const Float3 low = asset.boundsMin_ss(), high = asset.boundsMax_ss();
+    instance.pivot_ = {0, 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)};
     instance.roots_.resize(asset.strands.size());
     instance.turns_.resize(asset.strands.size());
     instance.restSpheres_.assign(asset.spheres.begin(), asset.spheres.end());
@@ -191,8 +167,6 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
             }
         }
         instance.velocities_.resize(instance.positions_.size());
-        instance.hairPositions_.resize(std::size_t{instance.hairs_->hairCount()} *
-                                       instance.hairs_->pointsPerHair());
     }
     instance.poses_.followHead(kIdentity34, instance.roots_);
     instance.engine_.reset(instance.roots_);
@@ -254,7 +228,6 @@ Outcome Instance::placeSpheres(const hl_frame& frame, FrameInput& input) {
 }
 
 Outcome Instance::place(const hl_frame& frame, FrameInput& input) {
-    if (frame.size != sizeof(hl_frame)) return wrongSize("bytes of hl_frame", frame.size, sizeof(hl_frame));
     if (frame.bones && frame.bone_count != poses_.boneCount())
         return wrongSize("bones", frame.bone_count, poses_.boneCount());
     // Last, since it is what read-outs look at: nothing is refused any more once it has begun to write.
@@ -275,7 +248,16 @@ Outcome Instance::reset(const hl_frame& frame) {
     takeTurns();
     asleep_ = false;
     if (levels_) resetLevel();
+    takeOrigin(frame);
+    ++changes_;
+    for (Shown& shown : shown_) shown.state = 0;
     return std::nullopt;
+}
+
+/// One that is no place stays where it was.
+void Instance::takeOrigin(const hl_frame& frame) {
+    const auto finite = [](double axis) { return std::isfinite(axis); };
+    if (std::all_of(frame.origin, frame.origin + 3, finite)) std::copy_n(frame.origin, 3, origin_.begin());
 }
 
 /// Roots that are no numbers stay where they were, and so does what is turned with them.
@@ -287,9 +269,11 @@ void Instance::takeTurns() {
 }
 
 Outcome Instance::step(const hl_frame& frame) {
+    if (frame.dt == 0) return std::nullopt;
     // Speeds of a shorter step are no numbers any more.
     if (!(frame.dt >= 1e-6f) || !std::isfinite(frame.dt))
-        return Refusal{HL_BAD_VALUE, "dt is " + std::to_string(frame.dt) + "; expected 0.000001 s or more"};
+        return Refusal{HL_BAD_VALUE,
+                       "dt is " + std::to_string(frame.dt) + "; expected 0, or 0.000001 s or more"};
     // Nothing wakes it: a step would leave every bit as it is.
     if (asleep_ && asBefore(frame)) return std::nullopt;
     FrameInput input;
@@ -300,6 +284,8 @@ Outcome Instance::step(const hl_frame& frame) {
     else
         engine_.step(input);
     remember(frame);
+    takeOrigin(frame);
+    ++changes_;
     const Engine* const engine = engineOfLevel();
     asleep_ = !(levels_ && levels_->fading) && (!engine || engine->asleep() == engine->strandCount());
     return std::nullopt;
@@ -309,8 +295,8 @@ bool Instance::asBefore(const hl_frame& frame) const {
     const auto same = [](const float* given, const auto& known) {
         return std::memcmp(given, known.data(), known.size() * sizeof(float)) == 0;
     };
-    return last_.known && frame.size == sizeof(hl_frame) && !frame.roots && !frame.scalp && !frame.spheres &&
-           frame.dt == last_.dt && std::equal(last_.origin.begin(), last_.origin.end(), frame.origin) &&
+    return last_.known && !frame.roots && !frame.scalp && !frame.spheres && frame.dt == last_.dt &&
+           std::equal(last_.origin.begin(), last_.origin.end(), frame.origin) &&
            same(frame.head ? frame.head : kIdentity34.data(), last_.head) &&
            (frame.wind != nullptr) == last_.hasWind && (!frame.wind || same(frame.wind, last_.wind)) &&
            (frame.bones ? frame.bone_count : 0) * 12 == last_.bones.size() &&
@@ -350,67 +336,6 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
     return std::nullopt;
 }
 
-Outcome Instance::readGuides(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
-    const std::size_t points = positions_.size();
-    if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
-    if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
-    if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
-    showPositions();
-    for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) {
-        const std::size_t first = offsets_[s], count = offsets_[s + 1] - first;
-        const auto strand = std::span<const Float3>(positions_).subspan(first, count);
-        for (std::size_t p = 0; p < count; ++p) {
-            if (positions.data) store(positions, first + p, strand[p]);
-            if (tangents.data) store(tangents, first + p, tangentAt(strand, p));
-            if (radii.data)
-                store(
-                    radii, first + p,
-                    radii_.own.empty() ? between(radii_.root, radii_.tip, p, count) : radii_.own[first + p]);
-        }
-    }
-    return std::nullopt;
-}
-
-Outcome Instance::readHairs(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
-    if (!hairs_)
-        return Refusal{HL_BAD_VALUE, "the instance was made without follow hairs, or the asset has none"};
-    const std::uint32_t hairs = hairsRead();
-    const std::size_t count = hairs_->pointsPerHair(), points = hairs * count;
-    if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
-    if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
-    if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
-    showPositions();
-    showVelocities();
-    const std::vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
-    hairs_->evaluateSome({positions_, velocities_, turns_}, hairGroups_, taken,
-                         std::span(hairPositions_).first(points), host_);
-    // Fewer hairs cover what all did.
-    const float wider = static_cast<float>(hairs_->hairCount()) / static_cast<float>(hairs);
-    const auto radiiOfHair = [&](std::size_t hair) -> std::array<float, 2> {
-        if (radii_.ofHairs.empty()) return {radii_.root, radii_.tip};
-        const auto next = std::upper_bound(taken.begin(), taken.end(), hair);
-        return radii_.ofHairs[static_cast<std::size_t>(next - taken.begin() - 1)];
-    };
-    const auto write = [&](std::size_t begin, std::size_t end) {
-        for (std::size_t hair = begin; hair < end; ++hair) {
-            const auto [root, tip] = radiiOfHair(hair);
-            const auto strand = std::span<const Float3>(hairPositions_).subspan(hair * count, count);
-            for (std::size_t p = 0; p < count; ++p) {
-                const std::size_t at = hair * count + p;
-                if (positions.data) store(positions, at, strand[p]);
-                if (tangents.data) store(tangents, at, tangentAt(strand, p));
-                if (radii.data) store(radii, at, between(root, tip, p, count) * wider);
-            }
-        }
-    };
-    constexpr std::size_t kHairsPerPiece = 512;
-    if (host_.parallelFor)
-        host_.parallelFor(hairs, kHairsPerPiece, std::cref(write));
-    else
-        write(0, hairs);
-    return std::nullopt;
-}
-
 Outcome Instance::readOffsets(std::span<std::uint32_t> offsets) const {
     if (offsets.size() != offsets_.size()) return wrongSize("offsets", offsets.size(), offsets_.size());
     std::copy(offsets_.begin(), offsets_.end(), offsets.begin());
@@ -431,10 +356,11 @@ hl_instance_info Instance::describe() const {
     info.left_roots = report.rejectedRoots;
     info.left_spheres = report.rejectedSpheres;
     info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() + (hairs_ ? hairs_->bytes() : 0) +
-                 ownBytes(roots_.size(), positions_.size(), hairPositions_.size()) +
+                 ownBytes(roots_.size(), positions_.size(), hairs_ ? velocities_.size() : 0) +
                  hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
-                 spheres_.size() * sizeof(Sphere) + bytesOfLevels();
+                 spheres_.size() * sizeof(Sphere) + bytesOfLevels() +
+                 (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3);
     return info;
 }
 

@@ -3,6 +3,7 @@
 // One character's hair as an asset has it: what hl_instance is.
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -41,11 +42,14 @@ class Instance {
     Outcome reset(const hl_frame& frame);
     Outcome step(const hl_frame& frame);
     Outcome set(std::string_view name, std::span<const double> values);
-    Outcome readGuides(const hl_out& positions, const hl_out& tangents, const hl_out& radii);
-    Outcome readHairs(const hl_out& positions, const hl_out& tangents, const hl_out& radii);
+    Outcome read(hl_read& read, bool wantsBounds = true);
+    Outcome readHairNumbers(std::span<std::uint32_t> numbers) const;
     Outcome readOffsets(std::span<std::uint32_t> offsets) const;
     hl_instance_info describe() const;
     std::uint64_t hash() const;
+    /// What steps change, as bytes, and back (saved.cpp).
+    std::vector<std::byte> save() const;
+    Outcome load(std::span<const std::byte> bytes);
     void setClock(const std::function<std::uint64_t()>& nanoseconds);
     hl_effect describeEffect(std::uint32_t effect) const;
 
@@ -59,6 +63,8 @@ class Instance {
     /// Of the next step and read-out; 0 where it sleeps and stays at its level.
     float predictedMilliseconds(std::uint32_t level, float hairShare) const;
     float rootRadius() const { return radii_.root; }
+    /// Of this machine, where 1 is that of predictions (measured.cpp).
+    Outcome measureSpeed(const std::function<std::uint64_t()>& nanoseconds, float& speed) const;
 
   private:
     /// How thick a strand is: by its points, or from root to tip.
@@ -72,9 +78,12 @@ class Instance {
 
     /// Levels of detail (instance_levels.cpp).
     struct Levels {
+        // Not in the class: clang does not find it there until the whole of Instance is read.
+        Levels();
         std::shared_ptr<const LevelSet> set;
         std::vector<Engine> engines;  ///< of levels 1 …, before the rigid one
         std::uint32_t level = 0;
+        float share = 0;                   ///< of the hairs that are read
         std::vector<std::uint32_t> taken;  ///< of the hairs that are read, as FollowHairs::evaluateSome()
         /// Where roots were last, all finite, and what they were measured from; none before the first step.
         std::vector<RootFrame> placed;
@@ -88,14 +97,15 @@ class Instance {
         std::vector<Float3> simulated, moved;   // of their points
     };
     void makeLevels(const Asset& asset, const Asset::Strands& strands);
-    void measureLevels(const Asset& asset, LevelSet& set);
+    void measureLevels(LevelSet& set);
     void resetLevel();
     void setSettingsOfLevels(const SimulationSettings& settings);
     void stepLevel(FrameInput& input);
     void placeRootsOfLevels();
     void holdMotion(const FrameInput& input);
-    /// The engine of the level; null where it is the rigid one.
-    Engine* engineOfLevel();
+    Engine* engineOfLevel() { return engineAt(level()); }
+    /// Null of the rigid level.
+    Engine* engineAt(std::uint32_t level);
     const Engine* engineOfLevel() const { return const_cast<Instance*>(this)->engineOfLevel(); }
     std::size_t bytesOfLevels() const;
     std::uint32_t hairsRead() const;
@@ -104,10 +114,20 @@ class Instance {
     void showPositions();
     void showVelocities();
 
+    /// What all values of a read go through (read.cpp).
+    struct Reading;
+    Outcome checkRead(const hl_read& read, std::size_t points) const;
+    std::uint64_t stateOf(bool hairs) const { return 2 * changes_ + (hairs ? 1 : 0); }
+    void readGuidesInto(Reading& reading);
+    void readHairsInto(Reading& reading);
+    void keepShown(Reading& reading);
+    std::size_t hairPoints() const;
+
     Outcome place(const hl_frame& frame, FrameInput& input);
     Outcome placeRoots(const hl_frame& frame);
     Outcome placeSpheres(const hl_frame& frame, FrameInput& input);
     void takeTurns();
+    void takeOrigin(const hl_frame& frame);
     bool asBefore(const hl_frame& frame) const;
     void remember(const hl_frame& frame);
 
@@ -133,7 +153,22 @@ class Instance {
         std::vector<float> bones;
     } last_;
     bool asleep_ = false;
-    std::vector<Float3> positions_, velocities_, hairPositions_;
+    std::vector<Float3> positions_, velocities_;
+    std::array<double, 3> origin_{};  // of the last frame
+    Float3 pivot_{};                  // that heads nod about where something is measured
+    std::uint64_t asset_ = 0;         // tells assets apart
+    std::uint64_t changes_ = 1;       // grows with all that changes what is read
+    /// What the last reads have shown, of guides and of hairs.
+    struct Shown {
+        std::uint64_t boundsOf = 0;  // state that the bounds are of
+        Float3 low{}, high{};
+        // Of those that asked for where points were before:
+        std::vector<Float3> positions;
+        std::array<double, 3> origin{};
+        std::uint64_t state = 0;  // of `positions`; 0: they are of no use
+        bool still = false;       // the last one found them where they were
+    };
+    std::array<Shown, 2> shown_;
 };
 
 struct Instance::Result {

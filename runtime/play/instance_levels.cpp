@@ -23,35 +23,12 @@ constexpr float kShownPoint = 1.2e-5f;
 constexpr float kReadPoint = 2.0e-6f;
 constexpr float kHairPoint = 3.2e-6f;
 
-// What levels are measured on: half a second of frames of 1/60 s.
-constexpr int kMeasuredFrames = 30;
-constexpr int kComparedEvery = 6;
-constexpr float kMeasuredWind = 3.0f;  ///< m/s
-enum class Measured { still, head, wind };
-
 /// Metres, of hair that was not stepped yet: nobody knows how it will move.
 constexpr float kUnknown = 1;
 
-/// Errors are said to be so much larger than those measured: other heads and winds have others.
-constexpr float kReserve = 1.5f;
-
-Matrix34 nodded(float seconds, Float3 pivot) {
-    const float angle = 0.25f * std::sin(7.85f * seconds), c = std::cos(angle), s = std::sin(angle);
-    return {1, 0, 0,  0,
-            0, c, -s, pivot.y - c * pivot.y + s * pivot.z,
-            0, s, c,  pivot.z - s * pivot.y - c * pivot.z};
-}
-
-float rootMeanSquare(std::span<const Float3> a, std::span<const Float3> b) {
-    double sum = 0;
-    for (std::size_t p = 0; p < a.size(); ++p) {
-        const Float3 apart = a[p] - b[p];
-        sum += static_cast<double>(dot(apart, apart));
-    }
-    return a.empty() ? 0 : static_cast<float>(std::sqrt(sum / static_cast<double>(a.size())));
-}
-
 }  // namespace
+
+Instance::Levels::Levels() = default;
 
 void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
     auto set = std::make_shared<LevelSet>(strands);
@@ -76,58 +53,16 @@ void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
     takeHairs(1);
     levels_->set = set;
     resetLevel();
-    measureLevels(asset, *set);
+    const auto known = asset.levelErrors();
+    static_assert(asset::kLevels == HL_LEVEL_COUNT);
+    for (std::size_t level = 0; level < known.size(); ++level)
+        set->errors[level] = {known[level].still, known[level].head, known[level].wind};
+    if (known.empty()) measureLevels(*set);
 }
 
-void Instance::measureLevels(const Asset& asset, LevelSet& set) {
-    const Float3 low = asset.boundsMin_ss(), high = asset.boundsMax_ss();
-    const Float3 pivot{0, 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)};
-    const auto play = [&](Instance& hair, Measured what, const auto& compare) {
-        for (int f = 1; f <= kMeasuredFrames; ++f) {
-            hl_frame frame;
-            hl_frame_init(&frame);
-            const float seconds = kUsualFrame * static_cast<float>(f);
-            const Matrix34 head = what == Measured::head ? nodded(seconds, pivot) : kIdentity34;
-            const std::array<float, 3> wind{what == Measured::wind ? kMeasuredWind : 0, 0, 0};
-            frame.time = static_cast<double>(seconds);
-            frame.head = head.data();
-            frame.wind = wind.data();
-            hair.asleep_ = false;  // so that it is stepped, and its motion held
-            hair.step(frame);
-            if (f % kComparedEvery == 0) {
-                hair.showPositions();
-                compare(static_cast<std::size_t>(f / kComparedEvery - 1));
-            }
-        }
-    };
-    for (const Measured what : {Measured::still, Measured::head, Measured::wind}) {
-        std::vector<std::vector<Float3>> finest(kMeasuredFrames / kComparedEvery);
-        Instance exact = *this;
-        play(exact, what, [&](std::size_t at) { finest[at] = exact.positions_; });
-        for (std::uint32_t level = 1; level < HL_LEVEL_COUNT; ++level) {
-            LevelError& error = set.errors[level];
-            Instance coarse = *this;
-            coarse.setLevel(level, 1);
-            coarse.levels_->fading = false;
-            float worst = 0;
-            play(coarse, what, [&](std::size_t at) {
-                const float apart = kReserve * rootMeanSquare(coarse.positions_, finest[at]);
-                if (what == Measured::still) worst = std::max(worst, apart);
-                const float speed = what == Measured::head ? coarse.levels_->motion : coarse.levels_->wind;
-                if (what != Measured::still && speed > 0)
-                    worst = std::max(worst, (apart - error.still) / speed);
-            });
-            float LevelError::*const part = what == Measured::still  ? &LevelError::still
-                                            : what == Measured::head ? &LevelError::head
-                                                                     : &LevelError::wind;
-            error.*part = std::max(worst, set.errors[level - 1].*part);
-        }
-    }
-}
-
-Engine* Instance::engineOfLevel() {
-    if (!levels_ || levels_->level == HL_LEVEL_FINEST) return &engine_;
-    return levels_->level == HL_LEVEL_RIGID ? nullptr : &levels_->engines[levels_->level - 1];
+Engine* Instance::engineAt(std::uint32_t number) {
+    if (number == HL_LEVEL_FINEST) return &engine_;
+    return number == HL_LEVEL_RIGID ? nullptr : &levels_->engines[number - 1];
 }
 
 void Instance::placeRootsOfLevels() {
@@ -275,6 +210,7 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
     Levels& levels = *levels_;
     takeHairs(hairShare);
     if (number == levels.level) return std::nullopt;
+    ++changes_;
     showPositions();
     showVelocities();
     levels.level = number;
@@ -315,7 +251,6 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
 
 hl_level Instance::describeLevel(std::uint32_t number) const {
     hl_level level{};
-    const LevelSet& set = *levels_->set;
     if (number == HL_LEVEL_FINEST) {
         level.guides = static_cast<std::uint32_t>(roots_.size());
         level.points = static_cast<std::uint32_t>(positions_.size());
@@ -326,7 +261,7 @@ hl_level Instance::describeLevel(std::uint32_t number) const {
         level.points = engine.pointCount();
         level.substeps = engine.settings().substeps;
     }
-    const LevelError& error = set.errors[number];
+    const LevelError error = levels_ ? levels_->set->errors[number] : LevelError{};
     level.error_still = error.still;
     level.error_head = error.head;
     level.error_wind = error.wind;
@@ -335,7 +270,7 @@ hl_level Instance::describeLevel(std::uint32_t number) const {
         kPointSubstep * static_cast<float>(level.points) * static_cast<float>(level.substeps) +
         kRootPose * static_cast<float>(roots_.size()) +
         (level.points == 0 || number == HL_LEVEL_FINEST ? kReadPoint : kShownPoint) * points;
-    if (hairs_) level.milliseconds += kHairPoint * static_cast<float>(hairPositions_.size());
+    if (hairs_) level.milliseconds += kHairPoint * static_cast<float>(hairPoints());
     return level;
 }
 
@@ -348,7 +283,7 @@ float Instance::predictedError(std::uint32_t number) const {
 
 float Instance::predictedMilliseconds(std::uint32_t number, float hairShare) const {
     if (asleep_ && number == levels_->level) return 0;
-    const float hairs = hairs_ ? kHairPoint * static_cast<float>(hairPositions_.size()) : 0;
+    const float hairs = hairs_ ? kHairPoint * static_cast<float>(hairPoints()) : 0;
     return describeLevel(number).milliseconds - hairs * (1 - hairShare);
 }
 
@@ -359,6 +294,11 @@ std::uint32_t Instance::hairsRead() const {
 
 /// Of each guide at least one, where it has any.
 void Instance::takeHairs(float share) {
+    if (share != levels_->share) {
+        ++changes_;
+        shown_[1].state = 0;
+    }
+    levels_->share = share;
     levels_->taken.assign(hairGroups_.size(), 0);
     for (std::size_t g = 0; g + 1 < hairGroups_.size(); ++g) {
         const auto all = static_cast<float>(hairGroups_[g + 1] - hairGroups_[g]);

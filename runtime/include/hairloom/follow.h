@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -96,6 +97,16 @@ class FollowHairs {
     bool evaluateSome(const GuideMotion& guides, std::span<const std::uint32_t> groups,
                       std::span<const std::uint32_t> taken, std::span<Float3> hairs_ws,
                       const Host& host = {});
+    /// Takes hairs as they are evaluated, some at a time and from whatever threads; `first` counts wanted
+    /// ones.
+    using Sink = std::function<void(std::size_t first, std::size_t count, const Float3* hairs_ws)>;
+    /// The same without room for all at a time: each run of hairs is handed to `sink`, which may be empty,
+    /// after it was written to `hairs_ws`, or to a few KB of the stack where that is null. False, too, where
+    /// hairs have more than kMaxShownPoints points.
+    bool showSome(const GuideMotion& guides, std::span<const std::uint32_t> groups,
+                  std::span<const std::uint32_t> taken, Float3* hairs_ws, const Sink& sink,
+                  const Host& host = {});
+    static constexpr std::uint32_t kMaxShownPoints = 512;
 
   private:
     struct Impl;

@@ -7,6 +7,11 @@
  * stepped once a frame, and read. Metres, seconds, Y up, right-handed; matrices are three rows of four, row
  * by row, and take columns (x, y, z, 1).
  *
+ * Structs may get more members at their end. Those that begin with `size` want it set to the size that the
+ * caller knows; of others each call tells it (hl_asset_describe_sized() and the like, which the plain names
+ * stand for). Older and newer callers are both served: members that the library does not know have to be 0
+ * where they ask for something, and are set to 0 where they are given back. Other sizes are refused.
+ *
  * No call throws, keeps state of its own, or reads beyond the sizes that it is given. Calls on different
  * instances may run at the same time; calls on one may not. Every call that can fail returns a code and,
  * where `error` is not null, says in words what was wrong. A call that fails changes nothing. Of a thread's
@@ -14,6 +19,23 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* Of these headers. docs/versions.md of the project says what may change from one to the next. */
+#define HL_VERSION_MAJOR 0
+#define HL_VERSION_MINOR 2
+#define HL_VERSION_PATCH 0
+#define HL_VERSION (HL_VERSION_MAJOR * 1000000 + HL_VERSION_MINOR * 1000 + HL_VERSION_PATCH)
+
+/* Say HL_SHARED where the library is shared; its CMake package does. */
+#if !defined(HL_SHARED)
+#define HL_API
+#elif defined(_WIN32) && defined(HL_BUILDS_RUNTIME)
+#define HL_API __declspec(dllexport)
+#elif defined(_WIN32)
+#define HL_API __declspec(dllimport)
+#else
+#define HL_API __attribute__((visibility("default")))
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,6 +57,21 @@ typedef struct hl_error {
     char words[232]; /* ends in 0 */
 } hl_error;
 
+/* --- Version --- */
+
+/* HL_VERSION of the library that runs. */
+HL_API uint32_t hl_version(void);
+typedef struct hl_build {
+    size_t size; /* sizeof(hl_build) */
+    uint32_t version;
+    uint32_t lanes; /* strands that one instruction works on; 1: no vectors, several times slower */
+    const char* instruction_set; /* "AVX3": what runs on this machine */
+    const char* compiler;
+    uint32_t fused; /* 1: multiplies and adds in one; the bits of hair are then those of all such machines */
+    uint32_t single_header; /* 1: for one instruction set; 0: takes the best of the machine at run time */
+} hl_build;
+HL_API hl_code hl_build_info(hl_build* build, hl_error* error);
+
 /* --- Assets --- */
 
 /* The caller's; holds no memory of its own. Do not look inside. */
@@ -54,14 +91,18 @@ typedef struct hl_asset_info {
     size_t guides_memory;
     size_t hairs_memory;  /* ... what HL_HAIRS adds, ... */
     size_t thread_memory; /* ... and each further thread of the machine where there are hl_jobs */
+    /* Since 0.2: */
+    size_t levels_memory; /* what HL_LEVELS adds */
+    uint32_t layers, settings, attributes;
+    uint32_t measured_levels; /* 1: errors of levels are in the asset, so that HL_LEVELS takes little time */
 } hl_asset_info;
 
 /* Looks at header and table of the file alone. `bytes` begin at a multiple of 16 and outlive the asset. */
-hl_code hl_asset_open(hl_asset* asset, const void* bytes, size_t size, hl_error* error);
+HL_API hl_code hl_asset_open(hl_asset* asset, const void* bytes, size_t size, hl_error* error);
 /* Compares all checksums and looks at every record. hl_instance_make does the second by itself. */
-hl_code hl_asset_check(const hl_asset* asset, hl_error* error);
+HL_API hl_code hl_asset_check(const hl_asset* asset, hl_error* error);
 /* Of an asset whose content is sound; looks at every record. */
-hl_code hl_asset_describe(const hl_asset* asset, hl_asset_info* info, hl_error* error);
+HL_API hl_code hl_asset_describe(const hl_asset* asset, hl_asset_info* info, hl_error* error);
 
 typedef struct hl_bone {
     const char* name; /* UTF-8, does not end in 0 */
@@ -70,9 +111,10 @@ typedef struct hl_bone {
     float inverse_bind[12]; /* from the head at rest to the bone */
 } hl_bone;
 /* Bones by whose numbers hl_frame takes matrices, `bone` from 0. */
-hl_code hl_asset_bone(const hl_asset* asset, uint32_t bone, hl_bone* out, hl_error* error);
+HL_API hl_code hl_asset_bone(const hl_asset* asset, uint32_t bone, hl_bone* out, hl_error* error);
 /* The vertex of the head's file of each scalp vertex. */
-hl_code hl_asset_scalp_sources(const hl_asset* asset, uint32_t* vertices, size_t count, hl_error* error);
+HL_API hl_code hl_asset_scalp_sources(const hl_asset* asset, uint32_t* vertices, size_t count,
+                                      hl_error* error);
 typedef struct hl_layer {
     const char* name; /* UTF-8, does not end in 0; empty where the hairstyle names no layers */
     size_t name_bytes;
@@ -81,15 +123,64 @@ typedef struct hl_layer {
                               hairstyle's, "material.rootColour" */
 } hl_layer;
 /* `layer` from 0. */
-hl_code hl_asset_layer(const hl_asset* asset, uint32_t layer, hl_layer* out, hl_error* error);
+HL_API hl_code hl_asset_layer(const hl_asset* asset, uint32_t layer, hl_layer* out, hl_error* error);
 /* How many layers there are, one at least, and of each guide its layer. `of_guides` may be null, with a count
  * of 0. Follow hairs are on the layer of their guide. */
-hl_code hl_asset_layers(const hl_asset* asset, uint32_t* layers, uint32_t* of_guides, size_t count,
-                        hl_error* error);
+HL_API hl_code hl_asset_layers(const hl_asset* asset, uint32_t* layers, uint32_t* of_guides, size_t count,
+                               hl_error* error);
+/* A setting, by its number below hl_asset_info.settings. What is given back lies in the asset's bytes. */
+enum { HL_NUMBERS = 0, HL_CHOICE = 1, HL_SEED = 2, HL_CURVE = 3 };
+typedef struct hl_setting {
+    size_t size;      /* sizeof(hl_setting) */
+    const char* name; /* "simulation.windSpeed", UTF-8, does not end in 0 */
+    size_t name_bytes;
+    uint32_t kind;
+    uint32_t count;       /* of values */
+    const double* values; /* numbers; of a seed its lower and upper 32 bits; of a curve place (0 root … 1 tip)
+                             and value of each key; null of a choice */
+    const char* choice;   /* the name of what is chosen; null of others */
+    size_t choice_bytes;
+} hl_setting;
+HL_API hl_code hl_asset_setting(const hl_asset* asset, uint32_t setting, hl_setting* out, hl_error* error);
+/* HL_BAD_VALUE where there is none of that name. */
+HL_API hl_code hl_asset_find_setting(const hl_asset* asset, const char* name, uint32_t* setting,
+                                     hl_error* error);
+
+/* What the hairstyle says of each guide, by its number below hl_asset_info.attributes: "root_uv", "group",
+ * "colour", or a name that an artist gave. */
+enum { HL_UINT8 = 0, HL_UINT32 = 1, HL_INT32 = 2, HL_FLOAT = 3 };
+typedef struct hl_attribute {
+    size_t size; /* sizeof(hl_attribute) */
+    const char* name;
+    size_t name_bytes;
+    uint32_t type, components; /* 1 to 4 */
+    const void* values;        /* guide after guide, without gaps, in the asset's bytes */
+    size_t bytes;
+} hl_attribute;
+HL_API hl_code hl_asset_attribute(const hl_asset* asset, uint32_t attribute, hl_attribute* out,
+                                  hl_error* error);
+HL_API hl_code hl_asset_find_attribute(const hl_asset* asset, const char* name, uint32_t* attribute,
+                                       hl_error* error);
+
+/* What a follow hair is, whatever share of them is read: for vertex buffers and shaders, once. */
+typedef struct hl_hair {
+    uint32_t guide; /* its own */
+    uint32_t layer;
+    uint32_t guides[3]; /* that it goes with, and how much of each; the first is its own */
+    float shares[3];
+    float random;                  /* its own for good: evenly spread over 0 to 1, by seed, guide and hair */
+    float root_uv[2];              /* in the head's texture; 0 0 where the asset has none */
+    float colour[3];               /* linear: the guides' where strands have colours, else the material's */
+    float root_radius, tip_radius; /* metres */
+} hl_hair;
+/* All follow hairs, in the order in which hl_instance_read_hairs has them where it reads all. `bytes` are
+ * from one to the next: sizeof(hl_hair). */
+HL_API hl_code hl_asset_hairs(const hl_asset* asset, hl_hair* hairs, size_t bytes, size_t count,
+                              hl_error* error);
 /* Numbers of a setting: "simulation.windSpeed", "material.rootColour". `written` says how many there are,
  * also where `count` is too small. Choices have none. */
-hl_code hl_asset_numbers(const hl_asset* asset, const char* name, double* values, size_t count,
-                         size_t* written, hl_error* error);
+HL_API hl_code hl_asset_numbers(const hl_asset* asset, const char* name, double* values, size_t count,
+                                size_t* written, hl_error* error);
 
 /* --- Instances --- */
 
@@ -109,13 +200,26 @@ enum { HL_GUIDES = 0, HL_HAIRS = 1, HL_LEVELS = 2 };
  * follow hairs as well and HL_LEVELS to have levels of detail. `jobs` may be null: all on the calling thread.
  * All memory is asked for here and at the first frames of new effects or more spheres, none by other steps.
  * At rest on the head at rest until it is reset or stepped. */
-hl_code hl_instance_make(const hl_asset* asset, uint32_t what, const hl_jobs* jobs, hl_instance** out,
-                         hl_error* error);
+HL_API hl_code hl_instance_make(const hl_asset* asset, uint32_t what, const hl_jobs* jobs, hl_instance** out,
+                                hl_error* error);
+/* What a game lends an instance. All may be null. */
+typedef struct hl_host {
+    size_t size; /* sizeof(hl_host), set by hl_host_init() */
+    const hl_jobs* jobs;
+    void* user;                          /* for the two below */
+    uint64_t (*nanoseconds)(void* user); /* as hl_instance_time */
+    /* Is told in words what a developer wants to know: of hair that was put back to rest, say. From the
+     * thread that steps. */
+    void (*log)(void* user, const char* words, size_t bytes);
+} hl_host;
+HL_API void hl_host_init(hl_host* host);
+HL_API hl_code hl_instance_make_hosted(const hl_asset* asset, uint32_t what, const hl_host* host,
+                                       hl_instance** out, hl_error* error);
 /* Another character of the same hair, in the same state: running on gives the same bits, so a copy is a
  * snapshot, too. It takes less time than hl_instance_make, and shares with the instance what never changes.
  */
-hl_code hl_instance_copy(const hl_instance* instance, hl_instance** out, hl_error* error);
-void hl_instance_free(hl_instance* instance); /* null is allowed */
+HL_API hl_code hl_instance_copy(const hl_instance* instance, hl_instance** out, hl_error* error);
+HL_API void hl_instance_free(hl_instance* instance); /* null is allowed */
 
 /* Where the head is at the end of a frame. Begin with hl_frame_init(); what stays 0 or null is not there.
  * Roots follow, the first of these that is there: `roots`, `scalp`, `bones`, `head`. Spheres follow
@@ -123,7 +227,8 @@ void hl_instance_free(hl_instance* instance); /* null is allowed */
  * were. */
 typedef struct hl_frame {
     size_t size;       /* sizeof(hl_frame), set by hl_frame_init() */
-    float dt;          /* seconds, 1e-6 or more; may change from frame to frame */
+    float dt;          /* seconds, 1e-6 or more, which may change from frame to frame; or 0, a game that is
+                          paused: nothing moves */
     double time;       /* seconds at the end of the frame; drives gusts alone */
     const float* head; /* 12: from the head at rest to the world, rigid; null: the head at rest */
     const float*
@@ -139,16 +244,16 @@ typedef struct hl_frame {
     const float* wind; /* 3: the mean wind, m/s, in place of the authored one; null: as authored */
     double origin[3];  /* that roots, bones' results, spheres and what is read are measured from, world */
 } hl_frame;
-void hl_frame_init(hl_frame* frame);
+HL_API void hl_frame_init(hl_frame* frame);
 
 /* At rest on the frame's roots, without speed. dt is not looked at. */
-hl_code hl_instance_reset(hl_instance* instance, const hl_frame* frame, hl_error* error);
-hl_code hl_instance_step(hl_instance* instance, const hl_frame* frame, hl_error* error);
+HL_API hl_code hl_instance_reset(hl_instance* instance, const hl_frame* frame, hl_error* error);
+HL_API hl_code hl_instance_step(hl_instance* instance, const hl_frame* frame, hl_error* error);
 
 /* Replaces a setting of the engine from the next step on: name without group, "windSpeed"; may ask for
  * memory. */
-hl_code hl_instance_set(hl_instance* instance, const char* name, const double* values, size_t count,
-                        hl_error* error);
+HL_API hl_code hl_instance_set(hl_instance* instance, const char* name, const double* values, size_t count,
+                               hl_error* error);
 
 typedef struct hl_instance_info {
     uint32_t guides, guide_points;
@@ -159,16 +264,25 @@ typedef struct hl_instance_info {
     uint32_t left_roots, left_spheres; /* of the last step that were not finite */
     size_t bytes;                      /* that the instance holds */
 } hl_instance_info;
-hl_code hl_instance_describe(const hl_instance* instance, hl_instance_info* info, hl_error* error);
+HL_API hl_code hl_instance_describe(const hl_instance* instance, hl_instance_info* info, hl_error* error);
 /* First point of each guide, and the number of all points: guides + 1. */
-hl_code hl_instance_offsets(const hl_instance* instance, uint32_t* offsets, size_t count, hl_error* error);
+HL_API hl_code hl_instance_offsets(const hl_instance* instance, uint32_t* offsets, size_t count,
+                                   hl_error* error);
 /* Of all positions and speeds: equal for any number of threads. */
-uint64_t hl_instance_hash(const hl_instance* instance);
+HL_API uint64_t hl_instance_hash(const hl_instance* instance);
+
+/* All that steps change, as bytes: an instance of the same asset, made with the same `what`, with the same
+ * settings, runs on from them with the same bits. `data` may be null, with `bytes` 0; `written` says how many
+ * there are, also where there is too little room. */
+HL_API hl_code hl_instance_save(const hl_instance* instance, void* data, size_t bytes, size_t* written,
+                                hl_error* error);
+/* HL_DAMAGED where the bytes are of another asset or damaged. May ask for memory. */
+HL_API hl_code hl_instance_load(hl_instance* instance, const void* data, size_t bytes, hl_error* error);
 
 /* A steady clock, for hl_effect.milliseconds, from the next step on; it costs a little. Null: none. It is
  * asked from whatever threads the jobs run on. Copies ask it, too. */
-hl_code hl_instance_time(hl_instance* instance, uint64_t (*nanoseconds)(void* user), void* user,
-                         hl_error* error);
+HL_API hl_code hl_instance_time(hl_instance* instance, uint64_t (*nanoseconds)(void* user), void* user,
+                                hl_error* error);
 enum { HL_EFFECT_COUNT = 12 };
 typedef struct hl_effect {
     const char* name; /* "collision"; the last is "strands", what every strand takes */
@@ -177,7 +291,8 @@ typedef struct hl_effect {
     char why[120]; /* "collision: off, no sphere within reach of a strand"; ends in 0 */
 } hl_effect;
 /* Of the last step, `effect` below HL_EFFECT_COUNT. Rods solve all forces in one, which counts as strands. */
-hl_code hl_instance_effect(const hl_instance* instance, uint32_t effect, hl_effect* out, hl_error* error);
+HL_API hl_code hl_instance_effect(const hl_instance* instance, uint32_t effect, hl_effect* out,
+                                  hl_error* error);
 
 /* Where a value of each point goes: at data, data + stride, ... Size and stride in bytes. Without data it is
  * left out. */
@@ -187,10 +302,43 @@ typedef struct hl_out {
 } hl_out;
 /* Guide after guide, or hair after hair, from root to tip: float[3] position, float[3] tangent of unit
  * length, float radius. HL_WRONG_SIZE where one does not fit; nothing is written then. */
-hl_code hl_instance_read_guides(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
-                                hl_error* error);
-hl_code hl_instance_read_hairs(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
-                               hl_error* error);
+HL_API hl_code hl_instance_read_guides(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
+                                       hl_error* error);
+HL_API hl_code hl_instance_read_hairs(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
+                                      hl_error* error);
+
+/* Which of hl_asset_hairs() each hair is that is read now, in their order: hl_instance_info.hairs of them. */
+HL_API hl_code hl_instance_hair_numbers(const hl_instance* instance, uint32_t* numbers, size_t count,
+                                        hl_error* error);
+
+/* All that can be read, in one pass. */
+enum {
+    HL_FLOAT32 = 0,
+    HL_FLOAT16 = 1, /* IEEE half; positions less `from`, since at 1.5 m a half is a millimetre */
+    HL_NORM16 = 2   /* positions: 0 at `from` to 65535 at `to`; what lies outside is put onto the border.
+                       Tangents: signed, -32767 for -1 to 32767 for 1. Radii: 65535 for a millimetre */
+};
+typedef struct hl_read {
+    size_t size;    /* sizeof(hl_read), set by hl_read_init(), which sets all to 0 */
+    uint32_t hairs; /* 1: follow hairs; 0: guides */
+    uint32_t position_format, tangent_format, radius_format;
+    hl_out positions, tangents,
+        radii; /* as of hl_instance_read_hairs; 2 bytes a component of formats of 16 */
+    /* Where the last read had them that asked for these, measured from the origin of now, in the format of
+     * the positions: for motion vectors. Where they are now in the first, after a reset, and where another
+     * number of hairs was read. Takes memory for all points at the first. */
+    hl_out previous;
+    float from[3], to[3]; /* metres, world, less hl_frame.origin: a box of the formats of 16 bits */
+    /* In: what the last read into the same memory gave back, or 0. Where nothing has changed since, nothing
+     * is written, and it stays as it is. */
+    uint64_t state;
+    /* Given back, also where nothing is to be written: */
+    float bounds_min[3], bounds_max[3]; /* of all points that are finite; 0 where nothing has changed */
+    uint32_t changed;                   /* 1 where something was written, or would have been */
+    uint32_t outside;                   /* components of positions that HL_NORM16 put onto the border */
+} hl_read;
+HL_API void hl_read_init(hl_read* read);
+HL_API hl_code hl_instance_read(hl_instance* instance, hl_read* read, hl_error* error);
 
 /* --- Levels of detail and crowds --- */
 
@@ -210,12 +358,19 @@ typedef struct hl_level {
                            hairs; by counts and the rates of a machine of docs/integrate.md */
 } hl_level;
 /* Bytes that HL_LEVELS adds to an instance, at most. */
-hl_code hl_asset_levels_memory(const hl_asset* asset, size_t* bytes, hl_error* error);
-hl_code hl_instance_level(const hl_instance* instance, uint32_t level, hl_level* out, hl_error* error);
+HL_API hl_code hl_asset_levels_memory(const hl_asset* asset, size_t* bytes, hl_error* error);
+HL_API hl_code hl_instance_level(const hl_instance* instance, uint32_t level, hl_level* out, hl_error* error);
 /* From the next step on; what is read next is where it was, and goes over within half a second. Of an
  * instance with HL_LEVELS. `hair_share`, above 0 to 1: that share of each guide's follow hairs is read, one
  * at least, and as much wider as they are fewer. */
-hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_share, hl_error* error);
+HL_API hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_share,
+                                     hl_error* error);
+
+/* How fast this machine is, for hl_crowd_limits.speed: plays copies of the instance at each of its levels for
+ * some frames, and compares what they take with what is predicted. Takes some tenths of a second;
+ * `nanoseconds` is a steady clock. Ask it on a quiet machine. */
+HL_API hl_code hl_rate(const hl_instance* instance, uint64_t (*nanoseconds)(void* user), void* user,
+                       float* speed, hl_error* error);
 
 typedef struct hl_crowd_limits {
     size_t size;        /* sizeof(hl_crowd_limits), set by hl_crowd_limits_init() */
@@ -224,7 +379,7 @@ typedef struct hl_crowd_limits {
     float milliseconds; /* of all characters together, predicted; infinite: no budget */
     float speed;        /* of this machine, where 1 is that of hl_level.milliseconds; 1 */
 } hl_crowd_limits;
-void hl_crowd_limits_init(hl_crowd_limits* limits);
+HL_API void hl_crowd_limits_init(hl_crowd_limits* limits);
 
 typedef struct hl_viewed {
     hl_instance* hair;      /* with HL_LEVELS; each stands once in a crowd */
@@ -247,8 +402,44 @@ typedef struct hl_crowd_report {
  * clock: the same frames come to the same levels. Takes no memory. A character goes to a coarser level only
  * where that has a quarter of the limit to spare, so that it does not go to and fro. Before its first step
  * nobody knows how it will move: all levels but the finest count as a metre off. */
-hl_code hl_crowd_plan(const hl_crowd_limits* limits, hl_viewed* characters, size_t count,
-                      hl_crowd_report* report, hl_error* error);
+HL_API hl_code hl_crowd_plan(const hl_crowd_limits* limits, hl_viewed* characters, size_t count,
+                             hl_crowd_report* report, hl_error* error);
+
+/* --- Sizes --- */
+
+/* The plain names tell the sizes that the caller was compiled with. Programs that were compiled before there
+ * were sizes call functions of the plain names. Other languages call these. */
+HL_API hl_code hl_asset_describe_sized(const hl_asset* asset, hl_asset_info* info, size_t size,
+                                       hl_error* error);
+HL_API hl_code hl_asset_bone_sized(const hl_asset* asset, uint32_t bone, hl_bone* out, size_t size,
+                                   hl_error* error);
+HL_API hl_code hl_asset_layer_sized(const hl_asset* asset, uint32_t layer, hl_layer* out, size_t size,
+                                    hl_error* error);
+HL_API hl_code hl_instance_describe_sized(const hl_instance* instance, hl_instance_info* info, size_t size,
+                                          hl_error* error);
+HL_API hl_code hl_instance_effect_sized(const hl_instance* instance, uint32_t effect, hl_effect* out,
+                                        size_t size, hl_error* error);
+HL_API hl_code hl_instance_level_sized(const hl_instance* instance, uint32_t level, hl_level* out,
+                                       size_t size, hl_error* error);
+/* `viewed_size` is from one character to the next. */
+HL_API hl_code hl_crowd_plan_sized(const hl_crowd_limits* limits, hl_viewed* characters, size_t viewed_size,
+                                   size_t count, hl_crowd_report* report, size_t report_size,
+                                   hl_error* error);
+#define hl_asset_describe(asset, info, error) \
+    hl_asset_describe_sized((asset), (info), sizeof(hl_asset_info), (error))
+#define hl_asset_bone(asset, bone, out, error) \
+    hl_asset_bone_sized((asset), (bone), (out), sizeof(hl_bone), (error))
+#define hl_asset_layer(asset, layer, out, error) \
+    hl_asset_layer_sized((asset), (layer), (out), sizeof(hl_layer), (error))
+#define hl_instance_describe(instance, info, error) \
+    hl_instance_describe_sized((instance), (info), sizeof(hl_instance_info), (error))
+#define hl_instance_effect(instance, effect, out, error) \
+    hl_instance_effect_sized((instance), (effect), (out), sizeof(hl_effect), (error))
+#define hl_instance_level(instance, level, out, error) \
+    hl_instance_level_sized((instance), (level), (out), sizeof(hl_level), (error))
+#define hl_crowd_plan(limits, characters, count, report, error)                       \
+    hl_crowd_plan_sized((limits), (characters), sizeof(hl_viewed), (count), (report), \
+                        sizeof(hl_crowd_report), (error))
 
 #ifdef __cplusplus
 }
