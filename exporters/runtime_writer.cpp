@@ -10,6 +10,7 @@
 #include "core/groom/file/fields.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
+#include "exporters/asset_extras.h"
 #include "exporters/asset_scalp.h"
 #include "exporters/prepared_strands.h"
 #include "hairloom/asset.h"
@@ -220,7 +221,8 @@ void addLayers(const Groom& groom, const PreparedStrands& strands, AssetBuilder&
 
 Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& strands,
                                           const FollowSections& follow,
-                                          const std::optional<SafeLimits>& safeLimits) {
+                                          const std::optional<SafeLimits>& safeLimits,
+                                          std::span<const asset::MeasuredLevel> levels) {
     const auto encoded = encodeStrands(strands.offsets, strands.positions);
     if (!encoded) return tl::unexpected(encoded.error());
     AssetBuilder builder;
@@ -243,6 +245,8 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     }
     builder.add<std::uint16_t>(asset::kRadii, ownRadii(groom, strands));
     addLayers(groom, strands, builder);
+    addAttributes(groom, strands, builder);
+    builder.add<asset::MeasuredLevel>(asset::kLevelErrors, levels);
     builder.addSettings("simulation", groom.simulation);
     builder.addSettings("material", groom.material);
     builder.addSettings("interpolation", groom.interpolation);
@@ -261,7 +265,11 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
     if (auto status = checkPoints(*strands); !status) return here(status.error());
     const auto follow = followSections(groom, *strands);
     if (!follow) return here(follow.error());
-    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits);
+    // Levels are measured on the asset without them; findings are told once.
+    PreparedStrands unmeasured = *strands;
+    const auto plain = buildAsset(groom, unmeasured, *follow, options.safeLimits, {});
+    if (!plain) return here(plain.error());
+    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits, measureLevels(*plain));
     if (!bytes) return here(bytes.error());
     auto report = writeAndCompare(groom, std::move(*strands), options, path, *bytes);
     if (!report) return report;
@@ -277,8 +285,9 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
 StrandWriter runtimeWriter() {
     return {"runtime",
             "Hairloom runtime asset .hairrt",
-            "root bindings, the head's bones, spheres, settings, layers, materials and how follow hairs come "
-            "from guides",
+            "root bindings, the head's bones, spheres, settings, layers, materials, attributes of strands "
+            "and how "
+            "follow hairs come from guides",
             "512 points a strand",
             {{"game",
               "Game by Hairloom's runtime",

@@ -16,6 +16,8 @@ namespace {
 
 namespace asset = runtime::asset;
 
+constexpr std::uint32_t kMostGroups = 65536;
+
 bool isAsset(std::span<const std::byte> bytes) {
     return bytes.size() >= asset::kMagic.size() &&
            std::memcmp(bytes.data(), asset::kMagic.data(), asset::kMagic.size()) == 0;
@@ -85,6 +87,50 @@ void readGuides(const runtime::Asset& from, RawStrands& raw) {
     raw.attributes.push_back(std::move(guides));
 }
 
+/// What the groom says of its strands by name; layers and guides have sections of their own.
+void readAttributes(const runtime::Asset& from, RawStrands& raw) {
+    for (const asset::Attribute& record : from.attributes()) {
+        const std::string name(from.nameOf(record));
+        const auto values = from.valuesOf(record);
+        const std::size_t count = from.strands.size() * record.components;
+        const bool known = std::ranges::any_of(raw.attributes,
+                                               [&](const RawAttribute& other) { return other.name == name; });
+        if (known || name == attribute::kLayer) continue;
+        RawAttribute read;
+        read.name = name;
+        read.components = record.components;
+        if (record.type == asset::AttributeType::float32) {
+            read.numbers.resize(count);
+            std::memcpy(read.numbers.data(), values.data(), count * sizeof(float));
+            if (name == attribute::kRootUv && record.components == 2) {
+                for (std::size_t s = 0; s < from.strands.size(); ++s)
+                    raw.rootUvs.emplace_back(read.numbers[2 * s], read.numbers[2 * s + 1]);
+                continue;
+            }
+        } else {
+            if (record.components != 1) continue;
+            std::uint32_t most = 0;
+            read.type = record.type == asset::AttributeType::uint8   ? RawAttribute::Type::Flag
+                        : record.type == asset::AttributeType::int32 ? RawAttribute::Type::Whole
+                                                                     : RawAttribute::Type::Index;
+            for (std::size_t s = 0; s < count; ++s) {
+                std::uint32_t value = 0;
+                if (record.type == asset::AttributeType::uint8)
+                    value = static_cast<std::uint32_t>(values[s]);
+                else
+                    std::memcpy(&value, &values[sizeof value * s], sizeof value);
+                read.whole.push_back(static_cast<std::int32_t>(value));
+                most = std::max(most, value);
+            }
+            // Names of groups are not in the asset.
+            if (name == attribute::kGroup && most >= kMostGroups) continue;
+            for (std::uint32_t group = 0; name == attribute::kGroup && group <= most; ++group)
+                raw.groupNames.push_back(fmt::format("group {}", group));
+        }
+        raw.attributes.push_back(std::move(read));
+    }
+}
+
 Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&& given,
                                const StrandImportOptions&) {
     // Memory of whole files is aligned so; a piece of another buffer need not be.
@@ -117,6 +163,10 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
     raw.authored = readAuthored(from);
     readLayers(from, raw);
     readGuides(from, raw);
+    readAttributes(from, raw);
+    if (!from.roots.empty() && from.bones.empty())
+        raw.warnings.push_back(fileNote("no bones are in the asset: roots go with the head as a whole",
+                                        "skin", "or the game gives the vertices of the scalp"));
     return raw;
 }
 

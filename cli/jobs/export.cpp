@@ -13,6 +13,7 @@
 #include "cli/progress.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
+#include "core/base/log.h"
 #include "core/documents/hair_export.h"
 #include "core/documents/web_page.h"
 #include "core/stability/certificate.h"
@@ -65,6 +66,14 @@ Result<Asked> findAsked(const ExportOptions& options) {
     }
     throw WrongUsage(fmt::format("{} does not read {}", options.target, options.format),
                      "expected " + formats);
+}
+
+/// Not in the report alone, which few open while all seems well.
+void tellFindings(const ExportReport& report) {
+    for (const Finding& finding : report.findings) {
+        if (finding.severity == Severity::Info) continue;
+        log::warning("{}: {}{}{}", finding.where, finding.what, finding.fix.empty() ? "" : "; ", finding.fix);
+    }
 }
 
 /// Writes the report beside the file, if that is one.
@@ -126,6 +135,7 @@ Result<Report> exportAsset(const ExportOptions& options) {
     };
     const auto written = exportHair(*groom, *wanted, *asked->writer, options.output, exporting);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
+    tellFindings(*written);
     return withCompanion(options, toJson(*written));
 }
 

@@ -49,7 +49,7 @@ inside sh -c 'apt-get -o Dpkg::Use-Pty=0 install -y -qq --no-install-recommends 
 inside sh -c 'cmake -S /try/player -B /try/build > /dev/null && cmake --build /try/build > /dev/null && /try/build/player /try/hair.hairrt --frames 30'
 echo "ok   samples/player builds by find_package(hairloom-runtime) and plays"
 inside sh -c 'cc -std=c99 -O2 -c /try/game.c -o /try/game.o $(pkg-config --cflags hairloom-runtime) &&
-    c++ /try/game.o $(pkg-config --libs hairloom-runtime) -o /try/game && /try/game /try/hair.hairrt'
+    cc /try/game.o $(pkg-config --libs hairloom-runtime) -o /try/game && /try/game /try/hair.hairrt'
 echo "ok   the C99 program of docs/integrate.md builds by pkg-config and plays"
 inside apt-get -o Dpkg::Use-Pty=0 remove -y -qq hairloom hairloom-runtime-dev >&2
 [ ! -e "$root/usr/bin/hairloom" ] && [ ! -e "$root/usr/include/hairloom" ]

@@ -64,19 +64,34 @@ void toSignedNorms(const float* values, std::size_t count, std::int16_t* norms) 
 }
 
 void growBounds(const float* positions, std::size_t points, float* low, float* high) {
-    float least[3] = {low[0], low[1], low[2]}, most[3] = {high[0], high[1], high[2]};
-    for (std::size_t p = 0; p < points; ++p) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float at = positions[3 * p + c];
+    const D d;
+    const std::size_t floats = 3 * points;
+    // Three registers hold whole points, x y z x y z …: lane i of all three has coordinate i modulo 3.
+    V least[3], most[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        least[k] = all(1e30f);
+        most[k] = all(-1e30f);
+    }
+    std::size_t i = 0;
+    for (; i + 3 * kWidth <= floats; i += 3 * kWidth) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const V at = hn::LoadU(d, positions + i + k * kWidth);
             // Comparisons with what is no number are false.
-            least[c] = at < least[c] ? at : least[c];
-            most[c] = at > most[c] ? at : most[c];
+            least[k] = hn::IfThenElse(at < least[k], at, least[k]);
+            most[k] = hn::IfThenElse(at > most[k], at, most[k]);
         }
     }
-    for (std::size_t c = 0; c < 3; ++c) {
-        low[c] = least[c];
-        high[c] = most[c];
+    HWY_ALIGN float lows[3 * kWidth], highs[3 * kWidth];
+    for (std::size_t k = 0; k < 3; ++k) {
+        hn::Store(least[k], d, lows + k * kWidth);
+        hn::Store(most[k], d, highs + k * kWidth);
     }
+    const auto take = [&](std::size_t at, float lowest, float highest) {
+        low[at % 3] = lowest < low[at % 3] ? lowest : low[at % 3];
+        high[at % 3] = highest > high[at % 3] ? highest : high[at % 3];
+    };
+    for (std::size_t lane = 0; lane < 3 * kWidth; ++lane) take(lane, lows[lane], highs[lane]);
+    for (; i < floats; ++i) take(i, positions[i], positions[i]);
 }
 
 /// Of a point between two others of its strand, which may be itself.

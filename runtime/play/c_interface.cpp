@@ -67,7 +67,7 @@ hl_code readPlain(hl_instance* instance, bool hairs, hl_out positions, hl_out ta
         read.positions = positions;
         read.tangents = tangents;
         read.radii = radii;
-        return say(error, instance->instance.read(read));
+        return say(error, instance->instance.read(read, false));
     });
 }
 

@@ -42,7 +42,7 @@ class Instance {
     Outcome reset(const hl_frame& frame);
     Outcome step(const hl_frame& frame);
     Outcome set(std::string_view name, std::span<const double> values);
-    Outcome read(hl_read& read);
+    Outcome read(hl_read& read, bool wantsBounds = true);
     Outcome readHairNumbers(std::span<std::uint32_t> numbers) const;
     Outcome readOffsets(std::span<std::uint32_t> offsets) const;
     hl_instance_info describe() const;

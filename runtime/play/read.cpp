@@ -69,7 +69,8 @@ bool isAligned(const void* data) {
 struct Instance::Reading {
     const hl_read& read;
     Shown& shown;
-    bool wasShown;      ///< shown.positions has these points
+    bool wasShown;  ///< shown.positions has these points
+    bool wantsBounds;
     Float3 sinceShown;  ///< what is added to them, so that they are measured from the origin of now
     const FollowKernels& kernels = followKernels();
     Float3 from{read.from[0], read.from[1], read.from[2]};
@@ -167,6 +168,7 @@ void Instance::Reading::take(std::size_t first, std::size_t count, std::size_t p
     if (read.previous.data) putPrevious(first, count, positions);
     if (read.tangents.data) putTangents(first, count, perStrand, values);
     if (read.radii.data) putRadii(first, count, radii);
+    if (!wantsBounds) return;
     float least[3] = {1e30f, 1e30f, 1e30f}, most[3] = {-1e30f, -1e30f, -1e30f};
     kernels.grow(values, count, least, most);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -201,7 +203,7 @@ std::size_t Instance::hairPoints() const {
     return hairs_ ? std::size_t{hairs_->hairCount()} * hairs_->pointsPerHair() : 0;
 }
 
-Outcome Instance::read(hl_read& read) {
+Outcome Instance::read(hl_read& read, bool wantsBounds) {
     const bool hairs = read.hairs != 0;
     if (hairs && !hairs_)
         return Refusal{HL_BAD_VALUE, "the instance was made without follow hairs, or the asset has none"};
@@ -228,7 +230,7 @@ Outcome Instance::read(hl_read& read) {
                       static_cast<float>(shown.origin[1] - origin_[1]),
                       static_cast<float>(shown.origin[2] - origin_[2])};
     }
-    Reading reading{read, shown, wasShown, sinceShown};
+    Reading reading{read, shown, wasShown, wantsBounds, sinceShown};
     showPositions();
     if (hairs)
         readHairsInto(reading);
@@ -239,11 +241,13 @@ Outcome Instance::read(hl_read& read) {
         shown.state = now;
         shown.origin = origin_;
     }
+    read.state = now;
+    read.outside = reading.outside;
+    if (!wantsBounds) return std::nullopt;
     const bool any = reading.low[0] <= reading.high[0];
     shown.low = any ? Float3{reading.low[0], reading.low[1], reading.low[2]} : Float3{};
     shown.high = any ? Float3{reading.high[0], reading.high[1], reading.high[2]} : Float3{};
-    shown.boundsOf = read.state = now;
-    read.outside = reading.outside;
+    shown.boundsOf = now;
     tellBounds();
     return std::nullopt;
 }

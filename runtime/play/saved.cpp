@@ -151,8 +151,8 @@ std::vector<std::byte> Instance::save() const {
     }
     if (const Engine* const engine = engineOfLevel()) writeState(writer, *engine->state());
     const std::span<const std::byte> content = std::span(writer.bytes).subspan(sizeof(Head));
-    const Head head{
-        kSavedMagic, kSavedVersion, asset_, writer.bytes.size(), levels_ ? 1u : 0u, asset::checksum(content)};
+    const Head head{kSavedMagic,         kSavedVersion,     asset_,
+                    writer.bytes.size(), levels_ ? 1u : 0u, asset::checksum(content)};
     std::memcpy(writer.bytes.data(), &head, sizeof head);
     return std::move(writer.bytes);
 }
@@ -175,7 +175,8 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
     std::vector<Quat> turns;
     reader.all(turns, turns_.size());
     const auto number = reader.value<std::uint32_t>();
-    if (number > (levels_ ? std::uint32_t{HL_LEVEL_RIGID} : 0u)) return damaged("is at a level that there is not");
+    if (number > (levels_ ? std::uint32_t{HL_LEVEL_RIGID} : 0u))
+        return damaged("is at a level that there is not");
     Levels read;
     if (levels_) {
         read.share = reader.value<float>();

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: MIT
 // Plays a runtime asset without a window, by the installed package alone: a nodding head in wind, a crowd.
 //   player ASSET [--frames N] [--crowd N] [--budget MS] [--resting] [--wind M/S] [--hairs]
 

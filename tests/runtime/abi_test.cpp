@@ -46,6 +46,63 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_asset_info, guides_memory, 64, 8),
         MEMBER(hl_asset_info, hairs_memory, 72, 8),
         MEMBER(hl_asset_info, thread_memory, 80, 8),
+        MEMBER(hl_asset_info, levels_memory, 88, 8),
+        MEMBER(hl_asset_info, layers, 96, 4),
+        MEMBER(hl_asset_info, settings, 100, 4),
+        MEMBER(hl_asset_info, attributes, 104, 4),
+        MEMBER(hl_asset_info, measured_levels, 108, 4),
+        MEMBER(hl_build, size, 0, 8),
+        MEMBER(hl_build, version, 8, 4),
+        MEMBER(hl_build, lanes, 12, 4),
+        MEMBER(hl_build, instruction_set, 16, 8),
+        MEMBER(hl_build, compiler, 24, 8),
+        MEMBER(hl_build, fused, 32, 4),
+        MEMBER(hl_build, single_header, 36, 4),
+        MEMBER(hl_setting, size, 0, 8),
+        MEMBER(hl_setting, name, 8, 8),
+        MEMBER(hl_setting, name_bytes, 16, 8),
+        MEMBER(hl_setting, kind, 24, 4),
+        MEMBER(hl_setting, count, 28, 4),
+        MEMBER(hl_setting, values, 32, 8),
+        MEMBER(hl_setting, choice, 40, 8),
+        MEMBER(hl_setting, choice_bytes, 48, 8),
+        MEMBER(hl_attribute, size, 0, 8),
+        MEMBER(hl_attribute, name, 8, 8),
+        MEMBER(hl_attribute, name_bytes, 16, 8),
+        MEMBER(hl_attribute, type, 24, 4),
+        MEMBER(hl_attribute, components, 28, 4),
+        MEMBER(hl_attribute, values, 32, 8),
+        MEMBER(hl_attribute, bytes, 40, 8),
+        MEMBER(hl_hair, guide, 0, 4),
+        MEMBER(hl_hair, layer, 4, 4),
+        MEMBER(hl_hair, guides, 8, 12),
+        MEMBER(hl_hair, shares, 20, 12),
+        MEMBER(hl_hair, random, 32, 4),
+        MEMBER(hl_hair, root_uv, 36, 8),
+        MEMBER(hl_hair, colour, 44, 12),
+        MEMBER(hl_hair, root_radius, 56, 4),
+        MEMBER(hl_hair, tip_radius, 60, 4),
+        MEMBER(hl_host, size, 0, 8),
+        MEMBER(hl_host, jobs, 8, 8),
+        MEMBER(hl_host, user, 16, 8),
+        MEMBER(hl_host, nanoseconds, 24, 8),
+        MEMBER(hl_host, log, 32, 8),
+        MEMBER(hl_read, size, 0, 8),
+        MEMBER(hl_read, hairs, 8, 4),
+        MEMBER(hl_read, position_format, 12, 4),
+        MEMBER(hl_read, tangent_format, 16, 4),
+        MEMBER(hl_read, radius_format, 20, 4),
+        MEMBER(hl_read, positions, 24, 24),
+        MEMBER(hl_read, tangents, 48, 24),
+        MEMBER(hl_read, radii, 72, 24),
+        MEMBER(hl_read, previous, 96, 24),
+        MEMBER(hl_read, from, 120, 12),
+        MEMBER(hl_read, to, 132, 12),
+        MEMBER(hl_read, state, 144, 8),
+        MEMBER(hl_read, bounds_min, 152, 12),
+        MEMBER(hl_read, bounds_max, 164, 12),
+        MEMBER(hl_read, changed, 176, 4),
+        MEMBER(hl_read, outside, 180, 4),
         MEMBER(hl_bone, name, 0, 8),
         MEMBER(hl_bone, name_bytes, 8, 8),
         MEMBER(hl_bone, index, 16, 4),
@@ -113,7 +170,13 @@ TEST(Abi, StructsLieAsTheyDid) {
     }
     EXPECT_EQ(sizeof(hl_error), 248u);
     EXPECT_EQ(sizeof(hl_asset), 320u);
-    EXPECT_EQ(sizeof(hl_asset_info), 88u);
+    EXPECT_EQ(sizeof(hl_asset_info), 112u);
+    EXPECT_EQ(sizeof(hl_build), 40u);
+    EXPECT_EQ(sizeof(hl_setting), 56u);
+    EXPECT_EQ(sizeof(hl_attribute), 48u);
+    EXPECT_EQ(sizeof(hl_hair), 64u);
+    EXPECT_EQ(sizeof(hl_host), 40u);
+    EXPECT_EQ(sizeof(hl_read), 184u);
     EXPECT_EQ(sizeof(hl_bone), 72u);
     EXPECT_EQ(sizeof(hl_layer), 24u);
     EXPECT_EQ(sizeof(hl_jobs), 16u);
@@ -176,6 +239,33 @@ TEST(Abi, FunctionsTakeWhatTheyTook) {
     EXPECT_TRUE((isA<void(hl_crowd_limits*)>(&hl_crowd_limits_init)));
     EXPECT_TRUE((isA<hl_code(const hl_crowd_limits*, hl_viewed*, size_t, hl_crowd_report*, hl_error*)>(
         &hl_crowd_plan)));
+    EXPECT_TRUE((isA<std::uint32_t()>(&hl_version)));
+    EXPECT_TRUE((isA<hl_code(hl_build*, hl_error*)>(&hl_build_info)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, hl_setting*, hl_error*)>(&hl_asset_setting)));
+    EXPECT_TRUE((isA<hl_code(Asset, const char*, std::uint32_t*, hl_error*)>(&hl_asset_find_setting)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, hl_attribute*, hl_error*)>(&hl_asset_attribute)));
+    EXPECT_TRUE((isA<hl_code(Asset, const char*, std::uint32_t*, hl_error*)>(&hl_asset_find_attribute)));
+    EXPECT_TRUE((isA<hl_code(Asset, hl_hair*, size_t, size_t, hl_error*)>(&hl_asset_hairs)));
+    EXPECT_TRUE((isA<void(hl_host*)>(&hl_host_init)));
+    EXPECT_TRUE(
+        (isA<hl_code(Asset, std::uint32_t, const hl_host*, Hair*, hl_error*)>(&hl_instance_make_hosted)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, void*, size_t, size_t*, hl_error*)>(&hl_instance_save)));
+    EXPECT_TRUE((isA<hl_code(Hair, const void*, size_t, hl_error*)>(&hl_instance_load)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, std::uint32_t*, size_t, hl_error*)>(&hl_instance_hair_numbers)));
+    EXPECT_TRUE((isA<void(hl_read*)>(&hl_read_init)));
+    EXPECT_TRUE((isA<hl_code(Hair, hl_read*, hl_error*)>(&hl_instance_read)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, std::uint64_t(*)(void*), void*, float*, hl_error*)>(&hl_rate)));
+    EXPECT_TRUE((isA<hl_code(Asset, hl_asset_info*, size_t, hl_error*)>(&hl_asset_describe_sized)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, hl_bone*, size_t, hl_error*)>(&hl_asset_bone_sized)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, hl_layer*, size_t, hl_error*)>(&hl_asset_layer_sized)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, hl_instance_info*, size_t, hl_error*)>(&hl_instance_describe_sized)));
+    EXPECT_TRUE(
+        (isA<hl_code(ConstHair, std::uint32_t, hl_effect*, size_t, hl_error*)>(&hl_instance_effect_sized)));
+    EXPECT_TRUE(
+        (isA<hl_code(ConstHair, std::uint32_t, hl_level*, size_t, hl_error*)>(&hl_instance_level_sized)));
+    EXPECT_TRUE((
+        isA<hl_code(const hl_crowd_limits*, hl_viewed*, size_t, size_t, hl_crowd_report*, size_t, hl_error*)>(
+            &hl_crowd_plan_sized)));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: MIT
 // What a game does with the engine, in short; prints the state that it comes to.
 #include <hairloom/engine.h>
 
