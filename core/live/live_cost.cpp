@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/live/live_cost.h"
 
-#include <algorithm>
-
 #include "core/base/stopwatch.h"
 #include "core/gpu/frames_under_way.h"
+#include "core/live/moving_picture.h"
 
 namespace hairloom {
 namespace {
@@ -18,13 +17,7 @@ render::RenderOptions viewportOptions(std::uint32_t width, std::uint32_t height)
     render::RenderOptions options;
     options.width = width;
     options.height = height;
-    options.frames = 1;
-    options.samples = 1;
-    options.subdivisions = 1;
-    options.shadowResolution = 512;
-    options.skyStrands = 1024;
-    options.detail = 0.5f;
-    options.bakeBehind = true;
+    simplifyWhileMoving(options);
     options.temporal = true;
     options.transparency = render::Transparency::automatic;
     return options;
@@ -106,17 +99,21 @@ void LiveLoop::add(const std::vector<gpu::PassTime>& times) {
 }
 
 double& LiveLoop::sumOf(std::string_view pass) {
-    using render::Pass;
-    const auto isOne = [&](std::initializer_list<std::string_view> names) {
-        return std::ranges::find(names, pass) != names.end();
-    };
-    if (isOne({"head", "roots", "roots of slots", "strands", "measures", "extent"})) return cost_.simulate;
-    if (isOne({"wisps", "follow hairs"})) return cost_.follow;
-    if (isOne({passName(Pass::headDepth), passName(Pass::firstHair), passName(Pass::opacity),
-               passName(Pass::skyHead), passName(Pass::skyFirst), passName(Pass::skyLayers),
-               passName(Pass::skySeen)}))
-        return cost_.shadow;
-    if (isOne({passName(Pass::shade), passName(Pass::curves)})) return cost_.shade;
+    switch (frameCostOf(pass)) {
+        case FrameCost::head:
+        case FrameCost::solve:
+        case FrameCost::hairHair:
+        case FrameCost::measures:
+            return cost_.simulate;
+        case FrameCost::follow:
+            return cost_.follow;
+        case FrameCost::shadow:
+            return cost_.shadow;
+        case FrameCost::shade:
+            return cost_.shade;
+        case FrameCost::draw:
+            break;
+    }
     return cost_.draw;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/live_work.h"
 
-#include <algorithm>
-
+#include "core/live/moving_picture.h"
 #include "core/simulation/strand_method.h"
 
 namespace hairloom::editor {
@@ -15,18 +14,6 @@ std::size_t drawnPointsOf(const GroomScene& scene) {
 
 std::size_t verticesOf(const GroomScene& scene) {
     return scene.rest().scalp ? scene.rest().scalp->vertexCount() : 0;
-}
-
-/// The row of what is spent in a pass.
-std::string partOf(std::string_view pass) {
-    const auto isOne = [&](std::initializer_list<std::string_view> names) {
-        return std::ranges::find(names, pass) != names.end();
-    };
-    if (isOne({"strands", "roots of slots"})) return "solve";
-    if (isOne({"head", "roots"})) return "head";
-    if (isOne({"wisps", "follow hairs"})) return "followHairs";
-    if (isOne({"hair against hair"})) return "hair-hair";
-    return "measures";
 }
 
 }  // namespace
@@ -101,7 +88,7 @@ void LiveWork::time(gpu::SubmissionPtr submission) {
         std::map<std::string, double> parts;
         for (const gpu::PassTime& pass : *times) {
             sum += pass.milliseconds;
-            parts[partOf(pass.name)] += pass.milliseconds;
+            parts[std::string(frameCostName(frameCostOf(pass.name)))] += pass.milliseconds;
         }
         const auto smooth = [](double& mean, double now) {
             constexpr double kShare = 0.1;

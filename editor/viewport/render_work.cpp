@@ -10,6 +10,7 @@
 #include "core/groom/file/fields.h"
 #include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
+#include "core/live/moving_picture.h"
 
 namespace hairloom::editor {
 namespace {
@@ -281,14 +282,8 @@ render::RenderOptions RenderWork::options() const {
     options.bakeBehind = true;
     options.transparentBackground = last_->seeThrough && !swapChain_;
     if (!last_->moving) return options;
-    options.samples = 1;
-    options.frames = 1;
+    simplifyWhileMoving(options);
     options.temporal = last_->quality.joinsFrames;
-    options.subdivisions = 1;
-    options.skyStrands = 1024;
-    options.shadowBlur = 0;
-    options.shadowResolution = std::min(512u, options.shadowResolution);
-    options.detail = 0.5f;
     return options;
 }
 
