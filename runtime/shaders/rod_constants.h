@@ -21,14 +21,19 @@
 #define HAIRLOOM_ROD_SHORTENING 0.4
 #define HAIRLOOM_ROD_SHORTENINGS 3
 #define HAIRLOOM_ROD_ROUNDING 1.1920929e-7
-/// Stiffness of a contact over m/h².
-#define HAIRLOOM_ROD_CONTACT 300.0
-/// Metres outside a sphere within which a node stays in contact that was pressed in the last substep: how
-/// deep it is there, weight over stiffness, can be less than rounding.
+/// Stiffness of a contact over m/h², h the substep.
+#define HAIRLOOM_ROD_CONTACT 1000.0
+/// Metres outside a shape within which a node stays in contact that was pressed in the last substep: how deep it is
+/// there, weight over stiffness, can be less than rounding.
 #define HAIRLOOM_ROD_CONTACT_REACH 5e-6
-
-/// Root mean square speed of a strand, m/s, below which contacts with spheres that rest are not looked at for
-/// energy that they add.
+/// Metres inside a shape from which on a node is held at the surface where it comes out.
+#define HAIRLOOM_ROD_CONTACT_DEEP 1e-4
+/// Metres by which a step may take a node nearer to a shape than was predicted for the shape to be looked at.
+#define HAIRLOOM_ROD_CONTACT_NEAR 1e-3
+/// Metres of penetration or lift that a second look at the end of a step mends.
+#define HAIRLOOM_ROD_CONTACT_LOOK 1e-5
+/// Metres per second: below, contact is rest. Of a strand's points in the root mean square, below which contacts
+/// with shapes that rest are not looked at for energy that they add; of a point's approach.
 #define HAIRLOOM_ROD_CONTACT_SPEED 5e-3
 
 #endif

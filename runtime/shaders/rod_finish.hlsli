@@ -12,15 +12,22 @@ void slowRod(float share) {
 /// Takes the step: places, velocities, and what the next one starts from.
 void finishRodStep() {
     float3 at = firstPosition();
-    float turn = 0.0, energy = 0.0, kinetic = 0.0, size = 0.0, stiffness = 0.0, touched = 0.0, masses = 0.0;
+    float turn = 0.0, energy = 0.0, kinetic = 0.0, size = 0.0, stiffness = 0.0, masses = 0.0;
     // The least that the normal part of a contact's force can be of it.
     const float normalShare = 1.0 / sqrt(1.0 + gFrame.substep.friction * gFrame.substep.friction);
+    float touched = 0.0;
+#if HAIR_SPHERES
+    if (gReachable != 0u) touched = gTouched;
+#endif
+    // A bounce is no smooth motion: speeds behind it are those of the mean way.
+    const bool bounces = touched > 2.0;
+    const float blend = bounces ? 0.0 : gBlend, inverseStep = bounces ? 1.0 / gFrame.h : gInverseTimeStep;
     EACH_SEGMENT(j) {
         const uint node = j + 1;
         const float4 rest = restTangentAndBend(j), relative = newRelative(j);
         at = mad3(rodRotate(rotation(j), rest.xyz), segmentLength(j), at);
         const float3 moved = newDisplacement(j);
-        const float3 now = negMad3(displacement(node), gBlend, moved) * gInverseTimeStep;
+        const float3 now = negMad3(displacement(node), blend, moved) * inverseStep;
         setVelocityBefore(node, velocity(node));
         setVelocity(node, now);
         setDisplacement(node, moved);
@@ -43,15 +50,14 @@ void finishRodStep() {
 #if HAIR_SPHERES
         if (gReachable != 0u) {
             const RodContact met = contact(j);
-            touched = max(touched, met.touching);
-            const float3 force = forceOf(met, moved - predictedDisplacement(j));
+            const float3 force = rodContactForce(met, moved - predictedDisplacement(j));
             if (dot(force, met.normal) > 0.0) pressed = sqrt(dot(force, force)) * normalShare;
             if (met.touching > 1.0) pressed = -pressed;
         }
 #endif
         setLoad(node, pressed);
     }
-    turn = sqrt(turn);
+    turn = bounces ? HAIRLOOM_ROD_NO_STEP : sqrt(turn);
     // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time scheme add is taken
     // back.
     const float last = energyBefore();

@@ -6,6 +6,7 @@ float negMad(float a, float b, float c) { return mad(-a, b, c); }
 float3 mad3(float3 a, float s, float3 b) { return mad(a, float3(s, s, s), b); }
 float3 negMad3(float3 a, float s, float3 b) { return mad(-a, float3(s, s, s), b); }
 float maximum(float a, float b) { return max(a, b); }
+float minimum(float a, float b) { return min(a, b); }
 float absolute(float a) { return abs(a); }
 float root(float a) { return sqrt(a); }
 float3 xyz(float4 q) { return q.xyz; }
@@ -14,6 +15,12 @@ float4 real4(float3 v, float w) { return float4(v, w); }
 float withSignOf(float v, float sign) { return asfloat(asuint(v) ^ (asuint(sign) & 0x80000000u)); }
 float3 withSignOf(float3 v, float sign) { return asfloat(asuint(v) ^ (asuint(sign) & 0x80000000u)); }
 
+bool both(bool a, bool b) { return a && b; }
+bool either(bool a, bool b) { return a || b; }
+float choose(bool which, float yes, float no) { return which ? yes : no; }
+float3 choose(bool which, float3 yes, float3 no) { return which ? yes : no; }
+
+#define RodMask bool
 #define Real float
 #define Real3 float3
 #define Real4 float4
@@ -23,6 +30,7 @@ float3 withSignOf(float3 v, float sign) { return asfloat(asuint(v) ^ (asuint(sig
 #define ROD_UNROLL [unroll]
 #define ROD_NUMBER(value) value
 #include "rod.h"
+#include "rod_contact.h"
 
 RodForm noForm() {
     RodForm form;

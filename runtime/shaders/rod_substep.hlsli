@@ -81,16 +81,40 @@ float4 aim(uint node, float3 tangent, float3 position) {
 }
 
 #if HAIR_SPHERES
-RodContact meet(uint node, float3 tangent, float3 position, float3 moved, float weight) {
-    RodNode met;
-    met.position = position;
-    met.displacement = moved;
-    met.tangent = tangent;
-    met.velocity = velocity(node);
-    met.weight = weight;
-    met.load = load(node);
-    met.radius = collisionRadiusAt(node);
-    return contactOf(rootAtEnd(), met, gTimeStep);
+static float gTouched;  // most of RodContact::touching
+static bool gNear;      // a shape is near some node
+
+RodNode nodeOf(uint p, float3 moved, float3 tangent, float3 position, float weight) {
+    RodNode node;
+    node.position = position;
+    node.displacement = moved;
+    node.tangent = tangent;
+    node.velocity = velocity(p);
+    node.faster = node.velocity - velocityBefore(p);
+    node.weight = weight;
+    node.stiffness = mass(p) * (HAIRLOOM_ROD_CONTACT / (gFrame.h * gFrame.h));
+    node.load = load(p);
+    node.step = gTimeStep;
+    node.radius = collisionRadiusAt(p);
+    return node;
+}
+
+/// The contacts of segment j's outer node, as predicted.
+RodContact meet(uint j, RodNode node) {
+    RodContact found = noContact();
+    bool near = false;
+    EACH_SPHERE(k) {
+        RodTouch touch;
+        if (touchSphere(k, rootAtEnd(), node, touch)) {
+            near = true;
+            press(touch, rodHolds(touch, node.load), node, found);
+        }
+    }
+    gTouched = max(gTouched, found.touching);
+    gNear = gNear || near;
+    setNear(j, near);
+    setContact(j, found);
+    return found;
 }
 #endif
 
@@ -99,6 +123,10 @@ void predict() {
     float3 outer = gInDisplacement, position = firstPosition();
     float4 before = gInner;
     gObjective = gStartObjective = gStiffnessSum = 0.0;
+#if HAIR_SPHERES
+    gTouched = 0.0;
+    gNear = false;
+#endif
     EACH_SEGMENT(j) {
         const float4 old = rotation(j), rest = restTangentAndBend(j);
         const float3 oldTangent = rodRotate(old, rest.xyz);
@@ -134,10 +162,9 @@ void predict() {
         setTarget(j, aimed);
 #if HAIR_SPHERES
         if (gReachable != 0u) {
-            const RodContact met = meet(j + 1, tangent, position, outer, aimed.w);
+            const RodContact met = meet(j, nodeOf(j + 1, outer, tangent, position, aimed.w));
             gObjective += met.twiceEnergy;
-            gStartObjective += twiceEnergyAt(met, gInDisplacement - outer);
-            setContact(j, met);
+            gStartObjective += rodContactTwiceEnergy(met, gInDisplacement - outer);
         }
 #endif
         before = q;
@@ -153,9 +180,10 @@ void eliminate() {
         float3 r = (predictedDisplacement(j) - aimed.xyz) * aimed.w;
 #if HAIR_SPHERES
         if (gReachable != 0u) {
-            const float3 diagonal = contactDiagonal(j), others = contactOthers(j);
-            r += contactGradient(j);
-            rodAddContact(form, diagonal.x, others.x, others.y, diagonal.y, others.z, diagonal.z);
+            const RodContact met = contact(j);
+            r += met.gradient;
+            rodAddContact(form, met.hessian[0], met.hessian[1], met.hessian[2], met.hessian[3], met.hessian[4],
+                          met.hessian[5]);
         }
 #endif
         float3 pull = r;
@@ -192,7 +220,7 @@ float advance(float share) {
         sum += rodTwiceEnergy(twice(relative) - wantedStrain(j), bend, section(j, bend)) +
                aimed.w * dot(off, off);
 #if HAIR_SPHERES
-        if (gReachable != 0u) sum += twiceEnergyAt(contact(j), x);
+        if (gReachable != 0u) sum += rodContactTwiceEnergy(contact(j), x);
 #endif
         setNewDisplacement(j, outer);
         setNewRelative(j, relative);
@@ -202,6 +230,74 @@ float advance(float share) {
     }
     return sum * 0.5;
 }
+
+/// One step of Gauss-Newton from the guess.
+void descend() {
+    eliminate();
+    float share = 1.0;
+    const float limit = gObjective + mad(gObjective, 1e-5, roundingOf(gObjective));
+    [loop] for (uint shortenings = 0; shortenings <= HAIRLOOM_ROD_SHORTENINGS + 1; ++shortenings) {
+        const float objective = advance(share);
+        // What is no number has risen, too.
+        if (objective <= limit && isSound(float3(objective, limit, 0.0))) break;
+        share = shortenings < HAIRLOOM_ROD_SHORTENINGS ? share * HAIRLOOM_ROD_SHORTENING : 0.0;
+    }
+}
+
+#if HAIR_SPHERES
+/// Looks for contacts where the step has led. Where it has pressed a node into a shape that the prediction had outside,
+/// or holds one that it has lifted off, what it has found is the next guess; false: nowhere.
+bool lookAgain() {
+    if (!gNear) return false;
+    bool wrong = false;
+    float3 position = firstPosition();
+    EACH_SEGMENT(j) {
+        const float3 tangent = rodRotate(rotation(j), restTangent(j));
+        position = mad3(tangent, segmentLength(j), position);
+        if (isNear(j)) {
+            const RodNode node = nodeOf(j + 1, newDisplacement(j), tangent, position, target(j).w);
+            const bool held = gScratch[slotOf(CONTACT_PLANE + 10, j)] > 0.0;
+            bool inside = false, lifted = held;
+            EACH_SPHERE(k) {
+                RodTouch touch;
+                if (touchSphere(k, rootAtEnd(), node, touch)) {
+                    inside = inside || touch.depth > HAIRLOOM_ROD_CONTACT_LOOK;
+                    if (rodHolds(touch, 0.0) || touch.depth > -HAIRLOOM_ROD_CONTACT_LOOK) lifted = false;
+                }
+            }
+            wrong = wrong || lifted || (inside && !held);
+        }
+    }
+    if (!wrong) return false;
+    position = firstPosition();
+    gObjective = gTouched = 0.0;
+    EACH_SEGMENT(i) {
+        const float4 q = rotation(i), rest = restTangentAndBend(i), relative = newRelative(i), aimed = target(i);
+        const float3 tangent = rodRotate(q, rest.xyz), moved = newDisplacement(i), off = moved - aimed.xyz;
+        position = mad3(tangent, segmentLength(i), position);
+        if (isNear(i)) {
+            const RodNode node = nodeOf(i + 1, moved, tangent, position, aimed.w);
+            RodContact found = noContact();
+            EACH_SPHERE(k) {
+                RodTouch touch;
+                if (touchSphere(k, rootAtEnd(), node, touch)) press(touch, rodHolds(touch, 0.0), node, found);
+            }
+            setContact(i, found);
+        }
+        const RodContact met = contact(i);
+        gTouched = max(gTouched, met.touching);
+        const float bend = rest.w * gDamped;
+        gObjective += met.twiceEnergy + aimed.w * dot(off, off) +
+                      rodTwiceEnergy(twice(relative) - wantedStrain(i), bend, section(i, bend));
+        setPredictedRotation(i, q);
+        setPredictedRelative(i, relative);
+        setPredictedDisplacement(i, moved);
+        setPredictedIncrement(i, increment(i));
+    }
+    gObjective *= 0.5;
+    return true;
+}
+#endif
 
 #include "rod_finish.hlsli"
 
@@ -215,14 +311,9 @@ void stageRod() {
         worse = gObjective > mad(gStartObjective, HAIRLOOM_ROD_PREDICTION_SHARE, roundingOf(gStartObjective));
         if (!worse) break;
     }
-    eliminate();
-    float share = 1.0;
-    const float limit = gObjective + mad(gObjective, 1e-5, roundingOf(gObjective));
-    [loop] for (uint shortenings = 0; shortenings <= HAIRLOOM_ROD_SHORTENINGS + 1; ++shortenings) {
-        const float objective = advance(share);
-        // What is no number has risen, too.
-        if (objective <= limit && isSound(float3(objective, limit, 0.0))) break;
-        share = shortenings < HAIRLOOM_ROD_SHORTENINGS ? share * HAIRLOOM_ROD_SHORTENING : 0.0;
-    }
+    descend();
+#if HAIR_SPHERES
+    if (gReachable != 0u && lookAgain()) descend();
+#endif
     finishRodStep();
 }

@@ -16,7 +16,7 @@ namespace hairloom::shaders {
 #define HAIRLOOM_ROD_STATE_PLANES 23
 /// Planes of a point that a substep works in, and those of contacts behind them.
 #define HAIRLOOM_ROD_WORK_PLANES 49
-#define HAIRLOOM_ROD_CONTACT_PLANES 14
+#define HAIRLOOM_ROD_CONTACT_PLANES 15
 
 struct RodConstants {
     float4 gravity;         ///< m/s²; w: drag of the air, 1/s, 0 without air

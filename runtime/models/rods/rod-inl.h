@@ -35,6 +35,7 @@ struct RodPoint {
     V3 newDisplacement;
     V4 newRelative;
     RodContact contact;
+    V near;  ///< 1 where a shape is near the outer node, as predicted
 };
 
 /// One vector of strands in one substep.
@@ -63,6 +64,16 @@ class RodStrip {
             kept_ = hn::Not(worse);
             predict();
         }
+        descend();
+        if constexpr (kContacts) {
+            if (lookAgain()) descend();
+        }
+        finish();
+    }
+
+  private:
+    /// One step of Gauss-Newton from the guess.
+    void descend() {
         eliminate();
         V share = all(1.0f);
         const V limit = objective_ + hn::MulAdd(objective_, all(1e-5f), rounding(objective_));
@@ -74,10 +85,8 @@ class RodStrip {
                                   : hn::Zero(D());
             share = hn::IfThenElse(rose, shorter, share);
         }
-        finish();
     }
 
-  private:
     std::size_t at(std::uint32_t j) const { return std::size_t{j} * kBlockLanes + lane_; }
     V4 loadRotation(const float* planes, std::size_t i) const {
         const float* const x = planes + i;
@@ -153,7 +162,8 @@ class RodStrip {
     void predict() {
         V3 outer = inDisplacement_;
         V4 before = inner_;
-        objective_ = startObjective_ = stiffnessSum_ = hn::Zero(D());
+        objective_ = startObjective_ = stiffnessSum_ = touched_ = hn::Zero(D());
+        near_ = noLane();
         V3 position = zero3();  // of the inner node, relative to the root at the end of the substep
         if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
         for (std::uint32_t j = first_; j < segments_; ++j) {
@@ -171,7 +181,7 @@ class RodStrip {
             const V3 tangent = rodRotate(point.rotation, along);
             position = mad3(tangent, length, position);
             aim(point, node, tangent, position);
-            if constexpr (kContacts) meet(point, node, tangent, position, j + 1);
+            if constexpr (kContacts) meet(point, tangent, position, j + 1);
 
             const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i);
             const V4 last = rodOfStrain(strain);
@@ -189,7 +199,8 @@ class RodStrip {
                               point.weight * dot(offStart, offStart);
             if constexpr (kContacts) {
                 objective_ = objective_ + point.contact.twiceEnergy;
-                startObjective_ = startObjective_ + point.contact.twiceEnergyAt(inDisplacement_ - outer);
+                startObjective_ =
+                    startObjective_ + rodContactTwiceEnergy(point.contact, inDisplacement_ - outer);
             }
             before = point.rotation;
         }
@@ -254,14 +265,105 @@ class RodStrip {
                     load3(lanes_.root, lane_));
     }
 
-    void meet(RodPoint& point, std::size_t node, V3 tangent, V3 position, std::uint32_t p) const {
+    RodNode nodeOf(const RodPoint& point, V3 displacement, V3 tangent, V3 position, std::uint32_t p) const {
+        const std::size_t node = at(p);
         const float along = static_cast<float>(p) / static_cast<float>(segments_);
         const float radius = context_.collisionRadiusAtRoot +
                              along * (context_.collisionRadiusAtTip - context_.collisionRadiusAtRoot);
-        point.contact = contactOf(lanes_, rootPosition(),
-                                  {position, point.displacement, tangent, load3(rod_.velocity, node),
-                                   point.weight, hn::Load(D(), rod_.load + node), step_, radius},
-                                  context_);
+        const V3 velocity = load3(rod_.velocity, node);
+        const V stiffness = hn::Load(D(), rod_.mass + node) *
+                            all(static_cast<float>(HAIRLOOM_ROD_CONTACT) / (context_.h * context_.h));
+        return {position,
+                displacement,
+                tangent,
+                velocity,
+                velocity - load3(rod_.velocityBefore, node),
+                point.weight,
+                stiffness,
+                hn::Load(D(), rod_.load + node),
+                step_,
+                all(radius)};
+    }
+    void press(const RodTouch& touch, RodMask held, const RodNode& node, RodContact& contact) const {
+        if (hn::AllFalse(D(), held)) return;
+        rodPress(touch, held, node, all(1.0f / context_.h), all(context_.friction), all(context_.restitution),
+                 contact);
+    }
+    void meet(RodPoint& point, V3 tangent, V3 position, std::uint32_t p) {
+        const RodNode node = nodeOf(point, point.displacement, tangent, position, p);
+        point.contact = noContact();
+        auto near = noLane();
+        forEachTouch(lanes_, rootPosition(), node, context_, [&](const RodTouch& touch, RodMask here) {
+            near = either(near, here);
+            press(touch, rodHolds(touch, node.load), node, point.contact);
+        });
+        touched_ = hn::Max(touched_, point.contact.touching);
+        near_ = either(near_, near);
+        point.near = hn::IfThenElseZero(near, all(1.0f));
+    }
+
+    /// Calls visit(point, node, near) for the outer node of each segment where the step has led.
+    template <class Visit>
+    void forEachNode(Visit&& visit) const {
+        V3 position = zero3();
+        if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
+        for (std::uint32_t j = first_; j < segments_; ++j) {
+            RodPoint& point = points_[j];
+            const V3 tangent = rodRotate(loadRotation(rod_.rotation, at(j)), restTangent(j));
+            position = mad3(tangent, lengthOf(j), position);
+            const auto near = point.near > hn::Zero(D());
+            if (!hn::AllFalse(D(), near))
+                visit(point, nodeOf(point, point.newDisplacement, tangent, position, j + 1), near);
+        }
+    }
+
+    /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
+    /// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
+    /// false: nowhere.
+    bool lookAgain() {
+        if (HWY_LIKELY(hn::AllFalse(D(), near_))) return false;
+        const V3 root = rootPosition();
+        const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
+        auto wrong = noLane();
+        forEachNode([&](const RodPoint& point, const RodNode& node, RodMask near) {
+            const auto held = point.contact.touching > hn::Zero(D());
+            auto inside = noLane(), lifted = held;
+            forEachTouch(lanes_, root, node, context_, [&](const RodTouch& touch, RodMask) {
+                inside = either(inside, touch.depth > reach);
+                lifted =
+                    hn::AndNot(either(rodHolds(touch, hn::Zero(D())), touch.depth > hn::Neg(reach)), lifted);
+            });
+            wrong = either(wrong, both(near, either(lifted, hn::AndNot(held, inside))));
+        });
+        if (hn::AllFalse(D(), wrong)) return false;
+        forEachNode([&](RodPoint& point, const RodNode& node, RodMask near) {
+            RodContact found = noContact();
+            forEachTouch(lanes_, root, node, context_, [&](const RodTouch& touch, RodMask) {
+                press(touch, both(near, rodHolds(touch, hn::Zero(D()))), node, found);
+            });
+            point.contact = rodChosen(wrong, found, point.contact);
+        });
+        // Other lanes take the same step again.
+        objective_ = touched_ = hn::Zero(D());
+        for (std::uint32_t j = first_; j < segments_; ++j) {
+            RodPoint& point = points_[j];
+            const std::size_t i = at(j);
+            point.rotation = chosen(wrong, loadRotation(rod_.rotation, i), point.rotation);
+            point.relative = chosen(wrong, point.newRelative, point.relative);
+            point.displacement = select(wrong, point.newDisplacement, point.displacement);
+            point.increment = select(wrong, load3(rod_.increment, i), point.increment);
+            touched_ = hn::Max(touched_, point.contact.touching);
+            const V bend = hn::Load(D(), rod_.bend + i) * damped_;
+            const V3 off = point.displacement - point.target;
+            objective_ = objective_ + point.contact.twiceEnergy + point.weight * dot(off, off) +
+                         rodTwiceEnergy(twice(point.relative) - point.wanted, bend, sectionOf(i, bend));
+        }
+        objective_ = objective_ * all(0.5f);
+        return true;
+    }
+    static V4 chosen(RodMask which, V4 yes, V4 no) {
+        return {choose(which, yes.x, no.x), choose(which, yes.y, no.y), choose(which, yes.z, no.z),
+                choose(which, yes.w, no.w)};
     }
 
     void eliminate() {
@@ -304,7 +406,7 @@ class RodStrip {
             const V3 off = outer - point.target;
             sum = sum + rodTwiceEnergy(twice(relative) - point.wanted, bend, sectionOf(i, bend)) +
                   point.weight * dot(off, off);
-            if constexpr (kContacts) sum = sum + point.contact.twiceEnergyAt(x);
+            if constexpr (kContacts) sum = sum + rodContactTwiceEnergy(point.contact, x);
             point.newDisplacement = outer;
             point.newRelative = relative;
             storeRotation(q, rod_.rotation, i);
@@ -319,16 +421,20 @@ class RodStrip {
         V3 position = zero3();
         if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
         V turn = hn::Zero(D()), energy = hn::Zero(D()), kinetic = hn::Zero(D()), size = hn::Zero(D()),
-          touched = hn::Zero(D()), masses = hn::Zero(D());
+          masses = hn::Zero(D());
         V stiffness = hn::Zero(D());
         // The least that the normal part of a contact's force can be of it.
         const V normalShare = all(1.0f / std::sqrt(1.0f + context_.friction * context_.friction));
+        // A bounce is no smooth motion: speeds behind it are those of the mean way.
+        const auto bounces = touched_ > all(2.0f);
+        const V blend = hn::IfThenZeroElse(bounces, blend_);
+        const V inverseStep = hn::IfThenElse(bounces, all(1.0f / context_.h), inverseStep_);
         for (std::uint32_t j = first_; j < segments_; ++j) {
             const RodPoint& point = points_[j];
             const std::size_t i = at(j), node = at(j + 1);
             position = mad3(rodRotate(loadRotation(rod_.rotation, i), restTangent(j)), lengthOf(j), position);
             const V3 moved = point.newDisplacement;
-            const V3 velocity = negMad3(load3(rod_.displacement, node), blend_, moved) * inverseStep_;
+            const V3 velocity = negMad3(load3(rod_.displacement, node), blend, moved) * inverseStep;
             store3(load3(rod_.velocity, node), rod_.velocityBefore, node);
             store3(velocity, rod_.velocity, node);
             store3(moved, rod_.displacement, node);
@@ -350,15 +456,14 @@ class RodStrip {
             masses = masses + mass;
             V load = hn::Zero(D());
             if constexpr (kContacts) {
-                touched = hn::Max(touched, point.contact.touching);
-                const V3 force = point.contact.force(moved - point.displacement);
+                const V3 force = rodContactForce(point.contact, moved - point.displacement);
                 load = hn::Sqrt(dot(force, force)) * normalShare;
                 load = hn::IfThenElse(point.contact.touching > all(1.0f), hn::Neg(load), load);
                 load = hn::IfThenElseZero(dot(force, point.contact.normal) > hn::Zero(D()), load);
             }
             hn::Store(load, D(), rod_.load + node);
         }
-        turn = hn::Sqrt(turn);
+        turn = hn::IfThenElse(bounces, all(kRodNoStep), hn::Sqrt(turn));
         // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time
         // scheme add is taken back.
         const V last = hn::Load(D(), rod_.energy + lane_);
@@ -367,8 +472,8 @@ class RodStrip {
         // Where spheres press, what is as slow as this is rounding.
         constexpr float kSlow = static_cast<float>(HAIRLOOM_ROD_CONTACT_SPEED);
         if constexpr (kContacts)
-            noise =
-                hn::IfThenElse(touched > hn::Zero(D()), mad(masses, all(0.5f * kSlow * kSlow), noise), noise);
+            noise = hn::IfThenElse(touched_ > hn::Zero(D()), mad(masses, all(0.5f * kSlow * kSlow), noise),
+                                   noise);
         const auto rose = hn::And(still_, hn::And(energy + kinetic > last + noise, kinetic > hn::Zero(D())));
         V after = energy + kinetic;
         if (!hn::AllFalse(D(), rose)) {
@@ -387,7 +492,7 @@ class RodStrip {
         // take: what they push out comes to rest outside.
         if constexpr (kContacts) {
             if (!context_.spheresRest)
-                after = hn::IfThenElse(touched > hn::Zero(D()), all(kRodNoEnergy), after);
+                after = hn::IfThenElse(touched_ > hn::Zero(D()), all(kRodNoEnergy), after);
         }
         hn::Store(after, D(), rod_.energy + lane_);
         hn::Store(turn, D(), rod_.turn + lane_);
@@ -414,6 +519,8 @@ class RodStrip {
     V4 inner_;  ///< rotation of the segment before the first free one
     hn::Mask<D> kept_, still_;
     V objective_, startObjective_, stiffnessSum_;
+    V touched_;         ///< most of RodContact::touching
+    hn::Mask<D> near_;  ///< a shape is near some node
 };
 
 template <bool kTwists, bool kContacts>

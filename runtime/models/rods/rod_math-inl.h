@@ -18,6 +18,7 @@ namespace HWY_NAMESPACE {
 using Real = V;
 using Real3 = V3;
 using Real4 = V4;
+using RodMask = hn::Mask<D>;
 
 HWY_INLINE V mad(V a, V b, V c) {
     return hn::MulAdd(a, b, c);
@@ -33,6 +34,9 @@ HWY_INLINE V3 negMad3(V3 a, V s, V3 b) {
 }
 HWY_INLINE V maximum(V a, V b) {
     return hn::Max(a, b);
+}
+HWY_INLINE V minimum(V a, V b) {
+    return hn::Min(a, b);
 }
 HWY_INLINE V absolute(V a) {
     return hn::Abs(a);
@@ -57,13 +61,28 @@ HWY_INLINE V3 withSignOf(V3 v, V sign) {
     return {hn::Xor(v.x, negative), hn::Xor(v.y, negative), hn::Xor(v.z, negative)};
 }
 
+HWY_INLINE RodMask both(RodMask a, RodMask b) {
+    return hn::And(a, b);
+}
+HWY_INLINE RodMask either(RodMask a, RodMask b) {
+    return hn::Or(a, b);
+}
+HWY_INLINE V choose(RodMask which, V yes, V no) {
+    return hn::IfThenElse(which, yes, no);
+}
+HWY_INLINE V3 choose(RodMask which, V3 yes, V3 no) {
+    return select(which, yes, no);
+}
+
 #define ROD_FUNCTION HWY_INLINE
 #define ROD_INOUT(Type) Type&
 #define ROD_OUT(Type) Type&
 #define ROD_UNROLL
 #define ROD_NUMBER(value) all(static_cast<float>(value))
 #undef HAIRLOOM_ROD_FUNCTIONS
+#undef HAIRLOOM_ROD_CONTACT_FUNCTIONS
 #include "shaders/rod.h"
+#include "shaders/rod_contact.h"
 #undef ROD_FUNCTION
 #undef ROD_INOUT
 #undef ROD_OUT
