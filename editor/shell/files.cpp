@@ -149,11 +149,11 @@ void DocumentFiles::open(const QString& path, std::function<void()> done) {
             return std::pair(std::move(*opened), kind);
         },
         [this, path, name, done = std::move(done)](std::pair<Opened, FileKind> opened) {
-            const bool isUnclear = opened.first.isUnclear;
+            // Nothing is opened before somebody has said what it is.
+            if (opened.first.isUnclear && unclearHead_) return unclearHead_(path);
             show(std::move(opened.first), opened.second == FileKind::Project ? path : QString(), name);
             preferences_.addRecentFile(path);
             if (done) done();
-            if (isUnclear && unclearHead_) unclearHead_(path);
         });
 }
 

@@ -21,6 +21,8 @@
 #include "editor/dialogs/head_dialog.h"
 #include "editor/dialogs/import_dialog.h"
 #include "editor/document/words.h"
+#include "editor/fields/input_rules.h"
+#include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/files.h"
 #include "editor/style/icons.h"
@@ -71,6 +73,10 @@ QWidget* toolPalette(const QActionGroup& actions, const ToolBox& tools) {
 MainWindow::MainWindow()
     : actions_(new Actions(*this)), pages_(new QStackedWidget), toolGroup_(new QActionGroup(this)) {
     setObjectName("mainWindow");
+    // Dialogs have the default, what is in the window has its own.
+    QLocale::setDefault(numberLocale());
+    setLocale(numberLocale());
+    new InputRules(this);
     setWindowIcon(icon("hairloom"));
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -104,7 +110,7 @@ MainWindow::MainWindow()
     restoreLayout();
 
     connect(&document_, &QtDocument::replaced, this, [this] { files_.forgetRecovered(); });
-    files_.onUnclearHead([this](const QString& path) { showHeadDialog(path); });
+    files_.onUnclearHead([this](const QString& path) { showHeadDialog(path, true); });
     connect(start_, &StartPage::openRequested, this, &MainWindow::chooseAndOpen);
     connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&document_, &QtDocument::changed, this, &MainWindow::showPage);
@@ -267,11 +273,11 @@ void MainWindow::open(const QString& path) {
     if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
 }
 
-void MainWindow::showHeadDialog(const QString& path) {
+void MainWindow::showHeadDialog(const QString& path, bool mayLeave) {
     auto* dialog = new HeadDialog(tasks_, preferences_, path, this);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
-    connect(dialog, &QDialog::accepted, this, [this, dialog, path] {
-        if (mayLeaveDocument()) files_.openHead(path, dialog->options());
+    connect(dialog, &QDialog::accepted, this, [this, dialog, path, mayLeave] {
+        if (mayLeave || mayLeaveDocument()) files_.openHead(path, dialog->options());
     });
     dialog->open();
 }

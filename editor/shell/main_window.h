@@ -36,8 +36,9 @@ class MainWindow : public QMainWindow {
     void open(const QString& path);
     /// False where the user cancelled or writing failed.
     bool saveTo(const QString& path);
-    /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself.
-    void showHeadDialog(const QString& path);
+    /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself. Nothing
+    /// changes before it is accepted. `mayLeave`: what to do about unsaved changes has been asked.
+    void showHeadDialog(const QString& path, bool mayLeave = false);
     /// Writes the steps since the document was opened as a script. False, with a word in the status line,
     /// where one cannot be in it or writing failed.
     bool saveScriptTo(const QString& path);
