@@ -370,7 +370,7 @@ JobRun declare(CLI::App& job) {
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--size", options->size, "Pixels WxH; 1024x1024 where neither this nor the view says");
     job.add_option("--camera", options->camera, "From where")
-        ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter"}));
+        ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter", "top", "bottom"}));
     auto* view = job.add_option("--view", options->view, "JSON file with camera, lights, head and hair");
     job.add_option("--images", options->imageFolders,
                    "Folders that the view may name images in, beside its own, with commas between")

@@ -122,9 +122,10 @@ void addParts(const WorkPrecision& result, const std::string& drawing, HtmlRepor
          "Model: how far the finest strands of this model are from the rod, with short steps: springs that "
          "sag, strands that follow a guide, how contacts give and slip, hair against hair, single precision, "
          "a head that is seen at the ends of frames only. Neither steps nor points mend it.",
-         fmt::format("Doubt of the reference: it moves by {:.3g} mm when its resolution in time is halved. "
-                     "What is below that says little.",
-                     result.groundTruthUncertaintyMm)});
+         fmt::format(
+             "Uncertainty of the reference: it moves by {:.3g} mm when its resolution in time is halved. "
+             "What is below that says little.",
+             result.groundTruthUncertaintyMm)});
 }
 
 void addMeasures(const std::vector<NamedDrawing>& drawings, HtmlReport& page) {

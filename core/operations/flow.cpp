@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/operations/head_places.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"
 #include "core/operations/strand_frames.h"
@@ -14,10 +15,12 @@ namespace {
 using S = FlowSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::crown>("crown", "m", -kAnywhere, kAnywhere, "point of the head that hair flows away from"),
+    field<&S::crown>("crown", "m", -kAnywhere, kAnywhere,
+                     "point of the head that hair flows away from; zero: a fifth behind the top of the head"),
     field<&S::whorlDegrees>("whorlDegrees", "°", -180, 180, "turn of the flow near the crown"),
     field<&S::parting>("parting", "", 0, 1, "share of the flow that leads away from the parting plane"),
-    field<&S::partingPoint>("partingPoint", "m", -kAnywhere, kAnywhere, "the middle of the parting"),
+    field<&S::partingPoint>("partingPoint", "m", -kAnywhere, kAnywhere,
+                            "the middle of the parting; zero: the top of the head"),
     field<&S::partingNormal>("partingNormal", "", -kAnywhere, kAnywhere,
                              "of the parting plane; strands flow to the side of their root"),
     field<&S::partingReach>("partingReach", "m", 0.001, kAnywhere,
@@ -140,8 +143,10 @@ std::span<const Field<S>> fieldsOf(const S&) {
 Result<std::size_t> flow(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("flow", settings); !status) return tl::unexpected(status.error());
     if (!groom.scalp) return fail("flow: the groom has no scalp", "bind it to one first");
-    return editStrands(groom, region, {-1.0f, true},
-                       [&](StrandEdit& strand) { layStrand(strand, settings); });
+    S placed = settings;
+    if (placed.crown.isZero(0)) placed.crown = crownOfHead(groom);
+    if (placed.partingPoint.isZero(0)) placed.partingPoint = topOfHead(groom);
+    return editStrands(groom, region, {-1.0f, true}, [&](StrandEdit& strand) { layStrand(strand, placed); });
 }
 
 Operation flowOperation() {

@@ -8,10 +8,10 @@ namespace hairloom {
 /// fieldsOf() describes the members. Directions add up: away from the crown, away from the parting, along the
 /// sweep.
 struct FlowSettings {
-    Vec3f crown = Vec3f(0, 0, 0);
+    Vec3f crown = Vec3f::Zero();  ///< zero: crownOfHead()
     float whorlDegrees = 0;
     float parting = 0;
-    Vec3f partingPoint = Vec3f::Zero();
+    Vec3f partingPoint = Vec3f::Zero();  ///< zero: topOfHead()
     Vec3f partingNormal = Vec3f(1, 0, 0);
     float partingReach = 0.15f;
     Vec3f sweep = Vec3f::Zero();

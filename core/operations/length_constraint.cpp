@@ -12,6 +12,8 @@ namespace {
 constexpr float kNoDirection = 1e-9f;  ///< metres; shorter differences point nowhere
 constexpr int kTurns = 6;              ///< towards the offset surface, which one reaches where it is flat
 constexpr int kHalvings = 10;          ///< of the turn towards the normal
+constexpr float kCatchUp = 0.5f;       ///< share of what a strand is behind that a segment makes up for; at
+                                       ///< most 13 degrees from one to the next
 constexpr float kSlack = 1e-5f;        ///< metres by which a clearance may be missed
 
 Vec3f directionOr(const Vec3f& difference, const Vec3f& fallback) {
@@ -37,6 +39,31 @@ class Lead {
     float norm_ = 1;
 };
 
+/// Leads a strand of given lengths along points that were moved: by the direction of each segment, and
+/// towards what it has fallen behind.
+class Follow {
+  public:
+    explicit Follow(std::span<const Vec3f> points) : lead_(points) {}
+    /// The unit vector along which a segment of `length` goes on, for points that are `segment` apart.
+    Vec3f direction(const Vec3f& segment, float length) {
+        lead_.follow(segment);
+        along_ = lead_.direction();
+        const float longer = segment.norm() - length;
+        // What is drawn together gives back what was fallen behind along the way, and no more.
+        const float given = longer > 0 ? longer : -std::min(-longer, std::max(0.0f, behind_.dot(along_)));
+        behind_ += given * along_;
+        const Vec3f ahead = behind_ - std::min(0.0f, behind_.dot(along_)) * along_;
+        return directionOr(along_ * length + kCatchUp * ahead, along_);
+    }
+    /// Where that segment went in truth.
+    void went(const Vec3f& direction, float length) { behind_ -= length * (direction - along_); }
+
+  private:
+    Lead lead_;
+    Vec3f along_ = Vec3f::UnitY();
+    Vec3f behind_ = Vec3f::Zero();  ///< metres, from where the strand is to where it was wanted
+};
+
 float clearanceAt(float arcLength, float clearance) {
     return std::min(clearance, 0.5f * arcLength);
 }
@@ -48,7 +75,11 @@ Vec3f turnedOut(const Vec3f& direction, const Vec3f& outward, float rise) {
     const float wanted = along + rise;
     const Vec3f across = direction - outward * along;
     const float norm = across.norm();
-    if (!(wanted < 1) || !(norm > kNoDirection)) return outward.normalized();
+    if (!(wanted < 1)) return outward.normalized();
+    // What leads straight into the skin goes on along it, any way, rather than back.
+    if (!(norm > kNoDirection))
+        return (outward * wanted + outward.unitOrthogonal() * std::sqrt(std::max(0.0f, 1 - wanted * wanted)))
+            .normalized();
     // Close to the skin the way out is rounded to a length that is not quite 1.
     return (outward * wanted + across * (std::sqrt(std::max(0.0f, 1 - wanted * wanted)) / norm)).normalized();
 }
@@ -93,10 +124,14 @@ void measureSegments(std::span<const Vec3f> points, std::vector<float>& lengths)
 
 void restoreLengths(std::span<Vec3f> points, std::span<const float> lengths, bool keepFirst) {
     assert(points.size() >= 2 && lengths.size() + 1 == points.size());
-    Lead lead(points);
+    Follow follow(points);
+    Vec3f before = points[keepFirst ? 1 : 0];
     for (std::size_t i = keepFirst ? 2 : 1; i < points.size(); ++i) {
-        lead.follow(points[i] - points[i - 1]);
-        points[i] = points[i - 1] + lead.over(lengths[i - 1]);
+        const float length = lengths[i - 1];
+        const Vec3f direction = follow.direction(points[i] - before, length);
+        before = points[i];
+        points[i] = points[i - 1] + direction * length;
+        follow.went(direction, length);
     }
 }
 
@@ -122,29 +157,37 @@ Vec3f placeOutside(const SkinQuery& skin, const Vec3f& from, const Vec3f& direct
 bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
                  float clearance, std::size_t first) {
     assert(points.size() >= 2 && lengths.size() + 1 == points.size() && first >= 1);
-    Lead lead(points);
+    Follow follow(points);
     float arc =
         std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(first - 1), 0.0f);
     float known = 0;  // distance from the skin, at least
     bool moved = false;
+    Vec3f before = points[first - 1];
     for (std::size_t i = first; i < points.size(); ++i) {
         const float length = lengths[i - 1];
+        const Vec3f segment = points[i] - before;
+        before = points[i];
         arc += length;
+        Vec3f direction = Vec3f::Zero();
         if (moved) {
-            lead.follow(points[i] - points[i - 1]);
-            points[i] = points[i - 1] + lead.over(length);
+            direction = follow.direction(segment, length);
+            points[i] = points[i - 1] + direction * length;
         }
         // Over a way of length w the distance changes by w at most.
         known -= length;
         const float wanted = clearanceAt(arc, clearance);
-        if (known > wanted) continue;
-        const SkinDistance sample = skin.distanceUpTo(points[i], wanted);
+        const bool near = known <= wanted;
+        const SkinDistance sample =
+            near ? skin.distanceUpTo(points[i], wanted) : SkinDistance{known, Vec3f::UnitY()};
         known = sample.distance;
-        if (!(known < wanted - kSlack)) continue;
-        if (!moved) lead.follow(points[i] - points[i - 1]);
-        points[i] = placeOutsideFrom(sample, skin, points[i - 1], lead.direction(), length, wanted);
-        known = 0;
-        moved = true;
+        if (near && known < wanted - kSlack) {
+            if (!moved) direction = follow.direction(segment, length);
+            points[i] = placeOutsideFrom(sample, skin, points[i - 1], direction, length, wanted);
+            direction = directionOr(points[i] - points[i - 1], direction);
+            known = 0;
+            moved = true;
+        }
+        if (moved) follow.went(direction, length);
     }
     return moved;
 }

@@ -14,17 +14,19 @@ namespace hairloom {
 /// Length of each segment, metres; `lengths` gets points.size() − 1 values.
 void measureSegments(std::span<const Vec3f> points, std::vector<float>& lengths);
 
-/// Moves points 1 … n−1 so that segments have these lengths again, root to tip, each as near to where it was
-/// as its predecessor allows. With `keepFirst` the first segment is left as it is.
+/// Gives segments these lengths again, root to tip, after points 1 … n−1 were moved: each segment keeps the
+/// direction that the move gave it. Where points were drawn farther apart than hair reaches, segments behind
+/// lead on to where they were wanted, little by little, and never back: no segment turns round that the move
+/// itself did not turn. With `keepFirst` the first segment is left as it is.
 void restoreLengths(std::span<Vec3f> points, std::span<const float> lengths, bool keepFirst = false);
 
-/// The same by turning segments alone: each keeps its direction and the rest of the strand moves along. Fit
+/// The same by turning segments alone: the rest of the strand moves along, and nothing is made up for. Fit
 /// for bends whose shape matters more than their place (curls, noise).
 void restoreLengthsByDirection(std::span<Vec3f> points, std::span<const float> lengths);
 
-/// Points nearer to the skin than `clearance` (metres) are moved out as restoreLengths() would; near the root
-/// the clearance grows with half the arc length. The strand is unchanged where none is too near, and before
-/// the point `first` (≥ 1) in any case. True when it moved.
+/// Points nearer to the skin than `clearance` (metres) are moved out, and what hangs on them follows as in
+/// restoreLengths(); near the root the clearance grows with half the arc length. The strand is unchanged
+/// where none is too near, and before the point `first` (≥ 1) in any case. True when it moved.
 bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
                  float clearance, std::size_t first = 1);
 

@@ -5,16 +5,22 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cmath>
+#include <numeric>
 
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "core/groom/point_dye.h"
+#include "core/operations/formula.h"
 #include "core/operations/length_constraint.h"
 
 namespace hairloom {
 namespace {
 
 constexpr std::size_t kGrain = 256;
+constexpr std::uint64_t kFormulaSeed = 0xf0a1;
 constexpr std::array<const char*, 7> kMaps = {"none", "density", "dye", "mask1", "mask2", "mask3", "mask4"};
 constexpr Field<Mask> kFields[] = {
     choiceField<&Mask::map>("map",
@@ -67,8 +73,19 @@ Mask readMask(JsonReader& reader) {
     if (!reader.has("mask")) return mask;
     JsonReader part = reader.object("mask");
     part.fields(mask);
+    if (part.has("formula")) {
+        mask.formula = part.string("formula");
+        if (const auto read = Formula::read(mask.formula); !mask.formula.empty() && !read)
+            part.complain("formula", read.error().problem, read.error().expected);
+    }
     part.finish();
     return mask;
+}
+
+nlohmann::ordered_json toJson(const Mask& mask) {
+    nlohmann::ordered_json json = fieldsToJson(mask);
+    if (!mask.formula.empty()) json["formula"] = mask.formula;
+    return json;
 }
 
 const std::vector<FieldRow>& scriptMaskFields() {
@@ -76,7 +93,92 @@ const std::vector<FieldRow>& scriptMaskFields() {
     return fields;
 }
 
-std::vector<float> maskShares(const Groom& groom, const Mask& mask, std::span<const Vec3f> positions) {
+namespace {
+
+/// Maps that formulas name, where they do.
+constexpr std::array<std::pair<FormulaName, MaskMap>, 6> kNamedMaps = {
+    {{FormulaName::density, MaskMap::density},
+     {FormulaName::dye, MaskMap::dye},
+     {FormulaName::mask1, MaskMap::mask1},
+     {FormulaName::mask2, MaskMap::mask2},
+     {FormulaName::mask3, MaskMap::mask3},
+     {FormulaName::mask4, MaskMap::mask4}}};
+
+/// The maps that a mask reads, each once.
+std::vector<MaskMap> mapsOf(const Mask& mask) {
+    std::vector<MaskMap> maps;
+    if (mask.map != MaskMap::none) maps.push_back(mask.map);
+    if (mask.formula.empty()) return maps;
+    const auto formula = Formula::read(mask.formula);
+    for (const auto& [name, map] : kNamedMaps) {
+        if (formula && formula->names(name) && std::ranges::find(maps, map) == maps.end())
+            maps.push_back(map);
+    }
+    return maps;
+}
+
+/// Multiplies the shares by a formula's.
+Status applyFormula(const Groom& groom, const Formula& formula, std::span<const Vec3f> positions,
+                    std::vector<float>& shares) {
+    const auto uvs = groom.strandAttributes.view<Vec2f>(attribute::kRootUv);
+    if (uvs.size() != groom.strandCount() && (formula.names(FormulaName::u) || formula.names(FormulaName::v)))
+        return fail("the formula names u or v, and the hair has no UVs", "bind it to a head with UVs");
+    std::array<std::vector<float>, kNamedMaps.size()> maps;
+    for (std::size_t m = 0; m < maps.size(); ++m) {
+        if (formula.names(kNamedMaps[m].first)) maps[m] = valuesOf(groom, kNamedMaps[m].second);
+    }
+    const auto ids = groom.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
+    std::atomic<std::size_t> wrong = groom.strandCount();
+    parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> lengths;
+        FormulaValues values{};
+        const auto set = [&](FormulaName name, float value) {
+            values[static_cast<std::size_t>(name)] = value;
+        };
+        set(FormulaName::pi, kPi);
+        for (std::size_t s = begin; s < end; ++s) {
+            const std::size_t first = groom.offsets[s], count = groom.offsets[s + 1] - first;
+            if (count < 2) continue;
+            measureSegments(positions.subspan(first, count), lengths);
+            const float total = std::accumulate(lengths.begin(), lengths.end(), 0.0f);
+            set(FormulaName::length, total);
+            set(FormulaName::random, Random(kFormulaSeed, s < ids.size() ? ids[s] : s).uniform());
+            set(FormulaName::x, positions[first].x());
+            set(FormulaName::y, positions[first].y());
+            set(FormulaName::z, positions[first].z());
+            if (s < uvs.size()) {
+                set(FormulaName::u, uvs[s].x());
+                set(FormulaName::v, uvs[s].y());
+            }
+            float arc = 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                arc += i > 0 ? lengths[i - 1] : 0;
+                set(FormulaName::t, total > 0 ? std::min(arc / total, 1.0f) : 0.0f);
+                for (std::size_t m = 0; m < maps.size(); ++m) {
+                    if (!maps[m].empty()) set(kNamedMaps[m].first, maps[m][first + i]);
+                }
+                const float value = formula.at(values);
+                if (!std::isfinite(value)) {
+                    std::size_t before = wrong;
+                    while (s < before && !wrong.compare_exchange_weak(before, s)) {
+                    }
+                }
+                shares[first + i] *= std::clamp(value, 0.0f, 1.0f);
+            }
+        }
+    });
+    if (wrong == groom.strandCount()) return {};
+    return fail(
+        fmt::format("the formula gives no number at strand {}: it divides by 0, or takes the root or power "
+                    "of less than 0",
+                    wrong.load()),
+        "max(…, 0.001) or if(…) keeps it away from there");
+}
+
+}  // namespace
+
+Result<std::vector<float>> maskShares(const Groom& groom, const Mask& mask,
+                                      std::span<const Vec3f> positions) {
     std::vector<float> shares = valuesOf(groom, mask.map);
     const bool isEven = mask.ramp == runtime::Ramp();
     parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -97,8 +199,24 @@ std::vector<float> maskShares(const Groom& groom, const Mask& mask, std::span<co
             }
         }
     });
+    if (mask.formula.empty()) return shares;
+    const auto formula = Formula::read(mask.formula);
+    if (!formula) return tl::unexpected(formula.error());
+    if (auto status = applyFormula(groom, *formula, positions, shares); !status)
+        return tl::unexpected(status.error());
     return shares;
 }
+
+bool readsMap(const Mask& mask, MaskMap map) {
+    const std::vector<MaskMap> maps = mapsOf(mask);
+    return std::ranges::find(maps, map) != maps.end();
+}
+
+bool readsMaps(const Mask& mask) {
+    return !mapsOf(mask).empty();
+}
+
+namespace {
 
 std::string mapState(const Groom& groom, MaskMap map) {
     switch (map) {
@@ -113,6 +231,16 @@ std::string mapState(const Groom& groom, MaskMap map) {
         default:
             return fmt::format("mask {}", groom.strandAttributes.version(maskAttribute(numberOf(map))));
     }
+}
+
+}  // namespace
+
+std::string mapState(const Groom& groom, const Mask& mask) {
+    std::string state;
+    for (const MaskMap map : mapsOf(mask)) state += mapState(groom, map) + ' ';
+    if (!mask.formula.empty())
+        state += fmt::format("uv {}", groom.strandAttributes.version(attribute::kRootUv));
+    return state;
 }
 
 std::vector<Vec3f> blendShapes(const Groom& groom, std::span<const Vec3f> from, std::span<const Vec3f> to,
@@ -144,15 +272,17 @@ std::vector<Vec3f> blendShapes(const Groom& groom, std::span<const Vec3f> from, 
 Result<std::size_t> runMasked(Groom& groom, const Mask& mask,
                               const std::function<Result<std::size_t>(Groom&)>& edit) {
     if (mask.isWhole()) return edit(groom);
-    if (mask.map == MaskMap::density && groom.strandCount() > 0 && groom.rootBindings().empty())
+    if (readsMap(mask, MaskMap::density) && groom.strandCount() > 0 && groom.rootBindings().empty())
         return fail("the mask's map is density, and the hair is bound to no scalp",
                     "bind it to one first, or another map");
     const Groom input = groom;
     const auto before = input.positions();
+    // Before the edit, so that what a formula complains of does not hang on what is edited.
+    const auto shares = maskShares(input, mask, before);
+    if (!shares) return tl::unexpected(shares.error());
     const auto touched = edit(groom);
     if (!touched || *touched == 0) return touched;
-    const std::vector<float> shares = maskShares(input, mask, before);
-    std::vector<Vec3f> after = blendShapes(groom, before, groom.positions(), {1, shares});
+    std::vector<Vec3f> after = blendShapes(groom, before, groom.positions(), {1, *shares});
     std::size_t changed = 0;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         const auto first = static_cast<std::ptrdiff_t>(groom.offsets[s]);

@@ -18,25 +18,31 @@ inline constexpr std::uint32_t kPaintedMasks = 4;
 /// "mask.1": float per strand in [0, 1]; 0 where nothing was painted. `number` counts from 1.
 std::string maskAttribute(std::uint32_t number);
 
-/// The map's share times the ramp's. fieldsOf() describes the members.
+/// The map's share times the ramp's and the formula's. fieldsOf() describes the members but the formula.
 struct Mask {
     MaskMap map = MaskMap::none;
     bool invert = false;
-    runtime::Ramp ramp;  ///< over the share of the strand's length
+    runtime::Ramp ramp;   ///< over the share of the strand's length
+    std::string formula;  ///< of core/operations/formula.h, held to 0 … 1; empty: 1
 
     /// Acts everywhere with full strength.
-    bool isWhole() const { return map == MaskMap::none && ramp == runtime::Ramp(); }
+    bool isWhole() const { return map == MaskMap::none && ramp == runtime::Ramp() && formula.empty(); }
 };
 std::span<const Field<Mask>> fieldsOf(const Mask&);
-/// The member "mask", whole where it is absent.
+/// The member "mask", whole where it is absent. A formula that does not read is a complaint of the reader.
 Mask readMask(JsonReader& reader);
+nlohmann::ordered_json toJson(const Mask& mask);
 /// The fields for lists and the reference page.
 const std::vector<FieldRow>& scriptMaskFields();
 
-/// One share for each point, 0 … 1, on strands that have these positions.
-std::vector<float> maskShares(const Groom& groom, const Mask& mask, std::span<const Vec3f> positions);
-/// Differs where what is painted on a map differs.
-std::string mapState(const Groom& groom, MaskMap map);
+/// One share for each point, 0 … 1, on strands that have these positions. Error: a formula that gives no
+/// number, or asks for UVs that there are none of.
+Result<std::vector<float>> maskShares(const Groom& groom, const Mask& mask, std::span<const Vec3f> positions);
+/// Whether it reads what is painted: that map, or any.
+bool readsMap(const Mask& mask, MaskMap map);
+bool readsMaps(const Mask& mask);
+/// Differs where what it reads of the groom differs.
+std::string mapState(const Groom& groom, const Mask& mask);
 
 /// The same for all points, or one for each.
 struct BlendShares {

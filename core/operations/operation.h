@@ -61,7 +61,7 @@ std::string settings(JsonReader& reader) {
     nlohmann::ordered_json json = fieldsToJson(settings);
     if constexpr (hasCurve<S>) json["curve"] = toJson(settings.curve);
     if (reader.has("region")) json["region"] = fieldsToJson(readRegion(reader));
-    if (Masked && reader.has("mask")) json["mask"] = fieldsToJson(readMask(reader));
+    if (Masked && reader.has("mask")) json["mask"] = toJson(readMask(reader));
     return json.dump();
 }
 

@@ -58,7 +58,7 @@ nlohmann::ordered_json settingsOf(const Operator& one, SettingsPart part) {
     if (part == SettingsPart::own) return all;
     const char* const name = nameOf(part);
     if (all.contains(name)) return all[name];
-    return part == SettingsPart::region ? fieldsToJson(Region{}) : fieldsToJson(Mask{});
+    return part == SettingsPart::region ? fieldsToJson(Region{}) : toJson(Mask{});
 }
 
 /// The same as it stands in a file of its own.
@@ -169,7 +169,7 @@ Mask maskOf(const Operator& one) {
 }
 
 void setMaskOf(Operator& one, const Mask& mask) {
-    storePart(one, SettingsPart::mask, fieldsToJson(mask));
+    storePart(one, SettingsPart::mask, toJson(mask));
 }
 
 DrawnCurve curveOf(const Operator& one) {
@@ -185,8 +185,7 @@ void setCurveOf(Operator& one, const DrawnCurve& curve) {
 }
 
 bool readsMaps(const std::vector<Operator>& operators) {
-    return std::ranges::any_of(operators,
-                               [](const Operator& one) { return maskOf(one).map != MaskMap::none; });
+    return std::ranges::any_of(operators, [](const Operator& one) { return readsMaps(maskOf(one)); });
 }
 
 std::uint32_t layerOf(const Operator& one) {
@@ -257,7 +256,7 @@ class StackRun {
         const Version strokes =
             one.op == kSculpt ? groom_.pointAttributes.version(sculptAttribute(one.number)) : 0;
         return fmt::format("{} {} {} {} {}", one.op, one.weight, strokes, one.settings,
-                           mapState(groom_, maskOf(one).map));
+                           mapState(groom_, maskOf(one)));
     }
 
     Result<AttributeData> apply(const Operator& one, const AttributeData& input) {
@@ -282,12 +281,14 @@ class StackRun {
     }
 
     /// Of a sculpt; operations heed their masks themselves.
-    AttributeData masked(const Operator& one, const AttributeData& input, AttributeData output) const {
+    Result<AttributeData> masked(const Operator& one, const AttributeData& input,
+                                 AttributeData output) const {
         const Mask mask = maskOf(one);
         if (mask.isWhole()) return output;
         const auto from = valuesOf<Vec3f>(input);
-        const std::vector<float> shares = maskShares(groom_, mask, from);
-        return CowArray<Vec3f>(blendShapes(groom_, from, valuesOf<Vec3f>(output), {1, shares}));
+        const auto shares = maskShares(groom_, mask, from);
+        if (!shares) return tl::unexpected(shares.error());
+        return CowArray<Vec3f>(blendShapes(groom_, from, valuesOf<Vec3f>(output), {1, *shares}));
     }
 
     const Groom& groom_;

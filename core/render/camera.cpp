@@ -22,6 +22,10 @@ Vec3f direction(View view) {
             return {1, 0.06f, 0};
         case View::Right:
             return {-1, 0.06f, 0};
+        case View::Top:
+            return Vec3f::UnitY();
+        case View::Bottom:
+            return -Vec3f::UnitY();
         case View::ThreeQuarter:
             break;
     }
@@ -31,10 +35,12 @@ Vec3f direction(View view) {
 }  // namespace
 
 Result<View> parseView(std::string_view name) {
-    constexpr std::array<std::string_view, 5> kNames = {"front", "back", "left", "right", "three-quarter"};
+    constexpr std::array<std::string_view, 7> kNames = {"front",         "back", "left",  "right",
+                                                        "three-quarter", "top",  "bottom"};
     const auto found = std::ranges::find(kNames, name);
     if (found == kNames.end()) {
-        return fail(fmt::format("no camera '{}'", name), "front, back, left, right or three-quarter");
+        return fail(fmt::format("no camera '{}'", name),
+                    "front, back, left, right, three-quarter, top or bottom");
     }
     return static_cast<View>(found - kNames.begin());
 }
@@ -53,7 +59,9 @@ Camera frame(View view, const Box3f& bounds_ws, float aspect) {
     Camera camera;
     camera.target_ws = box.center();
     const Vec3f back = direction(view).normalized();
-    const Vec3f right = Vec3f::UnitY().cross(back).normalized();
+    const bool isSteep = view == View::Top || view == View::Bottom;
+    if (isSteep) camera.up_ws = (view == View::Top ? -1.0f : 1.0f) * Vec3f::UnitZ();
+    const Vec3f right = camera.up_ws.cross(back).normalized();
     const Vec3f up = back.cross(right);
     const float tanY = std::tan(radians(camera.verticalFov) / 2);
     const float tanX = tanY * aspect;

@@ -21,9 +21,10 @@ struct Camera {
     bool isOrthographic() const { return orthographicHeight > 0; }
 };
 
-enum class View { Front, Back, Left, Right, ThreeQuarter };
+enum class View { Front, Back, Left, Right, ThreeQuarter, Top, Bottom };
 
-/// "front", "back", "left", "right", "three-quarter". The head looks along +Z; left is the head's left (+X).
+/// "front", "back", "left", "right", "three-quarter", "top", "bottom". The head looks along +Z; left is the
+/// head's left (+X). From above the face is below in the picture, from below it is above.
 Result<View> parseView(std::string_view name);
 
 /// A camera that sees all of `bounds_ws` with a small margin. `aspect` = width / height. Empty bounds are

@@ -7,17 +7,24 @@
 #include <QFormLayout>
 #include <QHeaderView>
 #include <QPointer>
+#include <QRegularExpression>
+#include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <atomic>
+#include <map>
+#include <numeric>
 
 #include "core/documents/hair_export.h"
 #include "core/documents/web_page.h"
+#include "core/groom/strand_subset.h"
 #include "core/live/played_frames.h"
 #include "core/stability/certificate.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
+#include "editor/fields/number_spin.h"
+#include "importers/child_process.h"
 #include "importers/length_unit.h"
 
 namespace hairloom::editor {
@@ -43,19 +50,68 @@ const ExportTarget& pageTarget() {
     return target;
 }
 
-/// By the names of the formats.
-const std::vector<Choice>& choices() {
-    static const std::vector<Choice> all = [] {
-        std::vector<Choice> list;
+/// What people look for: "Blender" of "Blender, USD", "Engines without strands" of those for cards.
+QString programOf(const ExportTarget& target) {
+    static const QRegularExpression kFormat("[,:]");
+    return QString::fromStdString(target.name).section(kFormat, 0, 0).trimmed();
+}
+
+/// A program, with the formats that it reads, the one that carries most of the hair first.
+struct Program {
+    QString name;
+    std::vector<Choice> choices;
+};
+
+/// Each program once, in order of name.
+const std::vector<Program>& programs() {
+    static const std::vector<Program> all = [] {
+        std::vector<Program> list;
+        const auto add = [&](const Choice& choice) {
+            const QString name = programOf(*choice.target);
+            auto found = std::ranges::find(list, name, &Program::name);
+            if (found == list.end()) found = list.insert(list.end(), {name, {}});
+            found->choices.push_back(choice);
+        };
         for (const StrandWriter& writer : hairWriters()) {
-            for (const ExportTarget& target : writer.targets) list.push_back({&writer, &target});
+            for (const ExportTarget& target : writer.targets) add({&writer, &target});
         }
-        list.push_back({&strandWriter("runtime"), &pageTarget(), true});
-        std::ranges::stable_sort(list, {}, [](const Choice& choice) { return choice.writer->label; });
+        add({&strandWriter("runtime"), &pageTarget(), true});
+        std::ranges::sort(list, [](const Program& a, const Program& b) {
+            return a.name.compare(b.name, Qt::CaseInsensitive) < 0;
+        });
+        for (Program& program : list) {
+            if (program.choices.size() == 1) continue;
+            const std::string& name = program.choices.front().target->program;
+            const StrandWriter& best = preferredWriter(name, hairWriters());
+            std::ranges::stable_partition(program.choices, [&](const Choice& choice) {
+                return choice.writer->name == (best.holdsCards() ? kCardFormat : best.name);
+            });
+        }
         return list;
     }();
     return all;
 }
+
+/// Why the choice cannot work on this machine; empty where it can.
+QString problemOf(const Choice& choice) {
+    if (choice.isPage && findWebPlayer(programFolder()).empty())
+        return ExportDialog::tr(
+            "Not here: the page's player was not built with this program. `./dev web` builds "
+            "it, or set HAIRLOOM_WEB to a folder that holds one.");
+    return {};
+}
+
+/// Bytes of a point in the formats' files, measured on the samples; text takes what its digits take.
+double bytesOfPoint(const StrandWriter& writer) {
+    static const std::map<std::string, double> bytes{
+        {"abc", 16}, {"abc-unreal", 16}, {"hair", 16}, {"obj-c4d", 70}, {"obj-lines", 36},
+        {"ply", 20}, {"runtime", 8},     {"tfx", 16},  {"usda", 42},    {"usdc", 16}};
+    const auto found = bytes.find(writer.name);
+    return found == bytes.end() ? 16 : found->second;
+}
+
+/// More than a game moves each by itself.
+constexpr std::size_t kManyGuides = 6000;
 
 }  // namespace
 
@@ -69,10 +125,14 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       player_(player),
       form_(new QFormLayout),
       target_(new QComboBox),
+      format_(new QComboBox),
       what_(new QComboBox),
       layers_(new QComboBox),
       frames_(new QSpinBox),
       note_(new QLabel),
+      problem_(new QLabel),
+      many_(new QLabel),
+      cluster_(new QPushButton(tr("Guides by clustering…"))),
       unit_(new QComboBox),
       up_(new QComboBox),
       points_(new QSpinBox),
@@ -90,9 +150,11 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     form_->setVerticalSpacing(8);
     form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
     layout->addLayout(form_);
-    for (const Choice& choice : choices()) target_->addItem(QString::fromStdString(choice.target->name));
+    for (const Program& program : programs()) target_->addItem(program.name);
     target_->setObjectName("target");
-    target_->setToolTip(tr("Sets unit, axis and points as this program expects them"));
+    target_->setToolTip(tr("Sets format, unit, axis and points as this program expects them"));
+    format_->setObjectName("format");
+    format_->setToolTip(tr("Formats that the program reads; the first carries most of the hair"));
     what_->addItem(tr("Guides: the strands of the document"), static_cast<int>(ExportedHair::guides));
     what_->addItem(tr("Hairs: those that the picture shows"), static_cast<int>(ExportedHair::hairs));
     what_->setObjectName("what");
@@ -112,6 +174,16 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
         "format that can hold them"));
     note_->setProperty("role", "dim");
     note_->setWordWrap(true);
+    problem_->setObjectName("problem");
+    problem_->setWordWrap(true);
+    problem_->setProperty("role", "problem");
+    many_->setObjectName("manyGuides");
+    many_->setWordWrap(true);
+    cluster_->setObjectName("cluster");
+    cluster_->setAutoDefault(false);
+    cluster_->setToolTip(
+        tr("Closes this dialog and finds few strands that stand for all; the others follow them"));
+    connect(cluster_, &QPushButton::clicked, this, [this] { done(kWantsClustering); });
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
     unit_->setToolTip(tr("One unit of the file; a wrong one makes hair a hundred times too large or small"));
     up_->addItems({tr("Y up"), tr("Z up")});
@@ -120,7 +192,9 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     points_->setSpecialValueText(tr("as they are"));
     points_->setToolTip(tr("Points of every strand, resampled evenly"));
     form_->addRow(tr("For"), target_);
+    form_->addRow(tr("Format"), format_);
     form_->addRow(QString(), note_);
+    form_->addRow(QString(), problem_);
     form_->addRow(tr("Strands"), what_);
     form_->addRow(tr("Layers"), layers_);
     form_->addRow(tr("Frames"), frames_);
@@ -143,7 +217,10 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     certify_->setToolTip(
         tr("Tries a thousand random storms; half a minute or so. The report has what was found, and a "
            "runtime asset carries it"));
-    form_->addRow(tr("Certify"), certify_);
+    form_->addRow(tr("Stress test"), certify_);
+    layout->addWidget(many_);
+    layout->addWidget(cluster_, 0, Qt::AlignLeft);
+    summary_->setObjectName("willWrite");
     summary_->setWordWrap(true);
     layout->addWidget(summary_);
     findings_->setObjectName("findings");
@@ -152,6 +229,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     findings_->setWordWrap(true);
     findings_->header()->resizeSection(0, 240);
     findings_->header()->resizeSection(1, 110);
+    findings_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     findings_->setSelectionMode(QAbstractItemView::NoSelection);
     layout->addWidget(findings_, 1);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
@@ -161,13 +239,105 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     layout->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     connect(write_, &QPushButton::clicked, this, &ExportDialog::choosePath);
-    connect(target_, &QComboBox::currentIndexChanged, this, &ExportDialog::takeTarget);
-    takeTarget(0);
-    write_->setEnabled(document_.groom().strandCount() > 0);
+    connect(target_, &QComboBox::currentIndexChanged, this, &ExportDialog::takeProgram);
+    connect(format_, &QComboBox::currentIndexChanged, this, [this](int index) {
+        if (index >= 0) takeTarget();
+    });
+    for (QComboBox* box : {what_, layers_, unit_, up_})
+        connect(box, &QComboBox::currentIndexChanged, this, &ExportDialog::showWhatWillBeWritten);
+    for (QSpinBox* box : {frames_, points_, cards_})
+        connect(box, &QSpinBox::valueChanged, this, &ExportDialog::showWhatWillBeWritten);
+    connect(&tasks_, &Tasks::stopped, this, [this] { write_->setEnabled(canWrite()); });
+    takeProgram(0);
 }
 
-void ExportDialog::takeTarget(int index) {
-    const Choice& choice = choices()[static_cast<std::size_t>(index)];
+namespace {
+
+const Choice& choiceAt(int program, int format) {
+    const std::vector<Choice>& choices = programs()[static_cast<std::size_t>(std::max(program, 0))].choices;
+    return choices[static_cast<std::size_t>(std::clamp(format, 0, static_cast<int>(choices.size()) - 1))];
+}
+
+}  // namespace
+
+void ExportDialog::takeProgram(int index) {
+    {
+        const QSignalBlocker quiet(format_);
+        format_->clear();
+        for (const Choice& choice : programs()[static_cast<std::size_t>(std::max(index, 0))].choices)
+            format_->addItem(QString::fromStdString(choice.writer->label));
+    }
+    form_->setRowVisible(format_, format_->count() > 1);
+    takeTarget();
+}
+
+bool ExportDialog::canWrite() const {
+    return document_.groom().strandCount() > 0 && !tasks_.isBusy() &&
+           problemOf(choiceAt(target_->currentIndex(), format_->currentIndex())).isEmpty();
+}
+
+std::vector<std::string> ExportDialog::layersToWrite() const {
+    std::vector<std::string> names;
+    for (const Layer& layer : document_.groom().layers) {
+        const bool isShown = layers_->currentIndex() == 1 && layer.visible;
+        if (isShown || layers_->currentData().toString().toStdString() == layer.name)
+            names.push_back(layer.name);
+    }
+    return names;
+}
+
+void ExportDialog::showWhatWillBeWritten() {
+    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
+    const Groom& groom = document_.groom();
+    // What was found belongs to what was written, which would be something else now.
+    findings_->clear();
+    report_ = {};
+    const std::vector<std::string> names = layersToWrite();
+    std::vector<std::uint32_t> strands(groom.strandCount());
+    std::iota(strands.begin(), strands.end(), 0u);
+    if (!names.empty()) strands = strandsOfLayers(groom, names).value_or(std::vector<std::uint32_t>());
+    if (layers_->currentIndex() == 1 && names.empty()) strands.clear();
+    const bool isAsset = choice.writer->generatesFollowHairs;
+    const auto flags = groom.strandAttributes.view<std::uint8_t>(attribute::kGuide);
+    std::size_t guides = 0, points = 0;
+    for (const std::uint32_t s : strands) {
+        guides += s < flags.size() ? flags[s] != 0 : 1;
+        points += groom.offsets[s + 1] - groom.offsets[s];
+    }
+    many_->setVisible(isAsset && guides > kManyGuides);
+    cluster_->setVisible(isAsset && guides > kManyGuides);
+    many_->setText(tr("A game would move all %L1 guides by themselves, which takes long. Fewer guides with "
+                      "follow hairs look the same and cost a tenth.")
+                       .arg(guides));
+    if (choice.writer->holdsCards()) {
+        summary_->setText(
+            tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is held against "
+               "the strands at its distance.")
+                .arg(cards_->value())
+                .arg(strands.size()));
+        return;
+    }
+    std::size_t count = strands.size();
+    const auto perGuide = static_cast<std::size_t>(groom.interpolation.followPerGuide);
+    const bool isBaked =
+        what_->currentData().toInt() == static_cast<int>(ExportedHair::hairs) && perGuide > 0;
+    if (isBaked) {
+        points = count > 0 ? points / count * guides * perGuide : 0;
+        count = guides * perGuide;
+    }
+    if (points_->value() > 0) points = count * static_cast<std::size_t>(points_->value());
+    const auto frames = static_cast<double>(std::max(1, frames_->value()));
+    const double bytes = static_cast<double>(points) * bytesOfPoint(*choice.writer) * frames;
+    summary_->setText(
+        tr("Will write %L1 strands with %L2 points, about %3. The file is read back and compared with the "
+           "hair.")
+            .arg(count)
+            .arg(points)
+            .arg(numberLocale().formattedDataSize(static_cast<qint64>(bytes), 1, QLocale::DataSizeSIFormat)));
+}
+
+void ExportDialog::takeTarget() {
+    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
     const ExportTarget& target = *choice.target;
     const bool cards = choice.writer->holdsCards();
     for (QWidget* ofStrands : {static_cast<QWidget*>(what_), static_cast<QWidget*>(unit_),
@@ -175,19 +345,22 @@ void ExportDialog::takeTarget(int index) {
         form_->setRowVisible(ofStrands, !cards);
     for (QWidget* ofCards : {cards_, textures_}) form_->setRowVisible(ofCards, cards);
     frames_->setMaximum(cards ? 1 : kMostFrames);
-    summary_->setText(cards ? tr("Each level is held against the strands at its distance.")
-                            : tr("The file is read back after writing and compared with the hair."));
     note_->setText(QString::fromStdString(target.note));
+    const QString problem = problemOf(choice);
+    problem_->setText(problem);
+    form_->setRowVisible(problem_, !problem.isEmpty());
+    write_->setEnabled(canWrite());
     for (int i = 0; i < unit_->count(); ++i) {
         if (static_cast<float>(unit_->itemData(i).toDouble()) == target.options.metresPerUnit)
             unit_->setCurrentIndex(i);
     }
     up_->setCurrentIndex(target.options.up == UpAxis::Z ? 1 : 0);
     points_->setValue(static_cast<int>(target.options.pointsPerStrand));
+    showWhatWillBeWritten();
 }
 
 void ExportDialog::choosePath() {
-    const Choice& choice = choices()[static_cast<std::size_t>(target_->currentIndex())];
+    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
     const QString title = QFileInfo(document_.title()).completeBaseName();
     if (choice.isPage) {
         const QString folder = QFileDialog::getExistingDirectory(this, tr("Folder that gets the page"));
@@ -201,7 +374,7 @@ void ExportDialog::choosePath() {
 }
 
 void ExportDialog::exportTo(const QString& path) {
-    const Choice& choice = choices()[static_cast<std::size_t>(target_->currentIndex())];
+    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
     const StrandWriter& writer = *choice.writer;
     StrandExportOptions options;
     options.limits = choice.target->options.limits;
@@ -213,11 +386,7 @@ void ExportDialog::exportTo(const QString& path) {
     if (certify_->isChecked()) wanted.storms = CertificateOptions{}.storms;
     wanted.levels.cards = static_cast<std::uint32_t>(cards_->value());
     wanted.levels.chain.textures = static_cast<std::uint32_t>(textures_->value());
-    for (const Layer& layer : document_.groom().layers) {
-        const bool isShown = layers_->currentIndex() == 1 && layer.visible;
-        if (isShown || layers_->currentData().toString().toStdString() == layer.name)
-            wanted.layers.push_back(layer.name);
-    }
+    wanted.layers = layersToWrite();
     if (layers_->currentIndex() == 1 && wanted.layers.empty())
         return messages_.warn(tr("No layer is shown, so that nothing would be written"));
     if (choice.isPage && frames_->value() > 0)
@@ -255,8 +424,7 @@ void ExportDialog::exportTo(const QString& path) {
             self->report_ = std::move(report);
             self->showReport();
         });
-    if (!started) write_->setEnabled(true);
-    connect(&tasks_, &Tasks::stopped, this, [this] { write_->setEnabled(true); });
+    if (!started) write_->setEnabled(canWrite());
 }
 
 QString ExportDialog::summary() const {

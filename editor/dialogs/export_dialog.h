@@ -29,11 +29,18 @@ class ExportDialog : public QDialog {
 
     /// Writes to this file with the options that are set; the report follows when it is done.
     void exportTo(const QString& path);
-    /// Of the last export; format is empty before it.
+    /// What exec() gives where fewer guides are wanted first.
+    static constexpr int kWantsClustering = 2;
+    /// Of the last export; format is empty before it, and where something else would be written now.
     const ExportReport& report() const { return report_; }
 
   private:
-    void takeTarget(int index);
+    void takeProgram(int index);
+    void takeTarget();
+    bool canWrite() const;
+    /// Names of those that are chosen; none for all.
+    std::vector<std::string> layersToWrite() const;
+    void showWhatWillBeWritten();
     void showReport();
     QString summary() const;
     void choosePath();
@@ -44,11 +51,15 @@ class ExportDialog : public QDialog {
     Messages& messages_;
     const Player& player_;
     QFormLayout* form_;
-    QComboBox* target_;
+    QComboBox* target_;  ///< the program
+    QComboBox* format_;  ///< of those that the program reads
     QComboBox* what_;
     QComboBox* layers_;
     QSpinBox* frames_;
     QLabel* note_;
+    QLabel* problem_;  ///< why the target cannot work here
+    QLabel* many_;     ///< more guides than a game moves
+    QPushButton* cluster_;
     QComboBox* unit_;
     QComboBox* up_;
     QSpinBox* points_;

@@ -135,14 +135,23 @@ void HeadDialog::take(std::shared_ptr<const ImportedScene> scene) {
     scene_ = std::move(scene);
     const HeadGuess guess = guessHead(*scene_);
     const auto units = lengthUnits();
-    const auto known = std::ranges::find_if(units, [&](const LengthUnit& u) { return guess.unit == u.name; });
+    // Positions are in metres already where the file says of what they are.
+    statesUnit_ = scene_->format == "fbx" || scene_->format == "gltf" || scene_->format == "glb";
+    const auto known = std::ranges::find_if(units, [&](const LengthUnit& u) {
+        return statesUnit_ ? static_cast<float>(u.metres) == scene_->metresPerUnit : guess.unit == u.name;
+    });
     if (known != units.end()) unit_->button(static_cast<int>(known - units.begin()))->setChecked(true);
+    for (QAbstractButton* button : unit_->buttons()) {
+        button->setEnabled(!statesUnit_);
+        if (statesUnit_) button->setToolTip(tr("The file states its unit, which stands"));
+    }
     up_->button(guess.zUp ? 1 : 0)->setChecked(true);
     groups_->setGroups(scene_->mesh, guess.helpers);
     refresh();
 }
 
 float HeadDialog::metresPerUnit() const {
+    if (statesUnit_) return 1;
     return static_cast<float>(
         lengthUnits()[static_cast<std::size_t>(std::max(unit_->checkedId(), 0))].metres);
 }
@@ -150,7 +159,7 @@ float HeadDialog::metresPerUnit() const {
 HeadImportOptions HeadDialog::options() const {
     HeadImportOptions options;
     // Metres are what a file without a unit has.
-    if (unit_->checkedId() > 0) options.metresPerUnit = metresPerUnit();
+    if (!statesUnit_ && unit_->checkedId() > 0) options.metresPerUnit = metresPerUnit();
     options.zUp = up_->checkedId() == 1;
     options.leaveOut = groups_->groupsOf(GroupRole::LeftOut);
     options.collideWith = groups_->groupsOf(GroupRole::Collide);
@@ -172,7 +181,7 @@ void HeadDialog::refresh() {
                               .arg(lengthText(size.y(), preferences_), lengthText(size.x(), preferences_),
                                    lengthText(size.z(), preferences_))
                               .arg(head_->triangleCount())
-                              .arg(odd ? tr("<p>That is neither a head nor a human.</p>") : QString()));
+                              .arg(odd ? tr("<p>Unlikely size for a head: check the unit.</p>") : QString()));
     }
     fit();
 }

@@ -45,6 +45,7 @@ class HeadDialog : public QDialog {
     QString path_;
     std::shared_ptr<const ImportedScene> scene_;  ///< as read without options; null until then
     std::shared_ptr<const ScalpMesh> head_;       ///< what the options leave of it
+    bool statesUnit_ = false;                     ///< the file does, and it stands
     bool fitting_ = false, outdated_ = false;     ///< what is being fitted serves no more
     QButtonGroup* unit_;
     QButtonGroup* up_;

@@ -70,8 +70,7 @@ void ShortcutDialog::fill() {
             if (edit->keySequence() == actions_.get(id).shortcut()) return;
             const QString robbed = actions_.setShortcut(id, edit->keySequence());
             if (robbed.isEmpty()) return;
-            message_->setText(
-                tr("%1 had these keys and has none now").arg(plainText(actions_.get(robbed).text())));
+            message_->setText(tr("Removed from %1").arg(plainText(actions_.get(robbed).text())));
             message_->show();
             if (auto* other = list_->findChild<QKeySequenceEdit*>(robbed)) other->clear();
         });

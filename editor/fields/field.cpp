@@ -11,6 +11,7 @@
 #include "core/operations/script.h"
 #include "core/operations/stack.h"
 #include "editor/document/words.h"
+#include "editor/fields/number_spin.h"
 
 namespace hairloom::editor {
 namespace {
@@ -21,7 +22,7 @@ std::vector<Field> fieldsIn(Read read, Edit edit, editing::Part part) {
     std::vector<Field> fields;
     for (const runtime::Field<S>& described : fieldsOf(S{})) {
         if (described.components() == 0) continue;
-        Field field{described, labelOf(described.name), {}, part, {}, {}, {}};
+        Field field{described, labelOf(described.name), {}, part, {}, {}, {}, {}};
         for (std::uint32_t c = 0; c < field.components(); ++c)
             field.defaultValue[c] = defaultValue(described, c);
         field.value = [&described, read](const Groom& groom, std::uint32_t component) {
@@ -64,7 +65,7 @@ struct OperatorAt {
         return &groom.operators[index];
     }
     Field field(const FieldInfo& info) const {
-        Field field{info, labelOf(info.name), {}, editing::Part::Operators, {}, {}, {}};
+        Field field{info, labelOf(info.name), {}, editing::Part::Operators, {}, {}, {}, {}};
         const std::string name =
             labelOf(QString::fromStdString(op)).toStdString() + ": " + field.label.toStdString();
         field.step = [at = *this, name](const editing::Model& model,
@@ -155,7 +156,7 @@ std::vector<Field> placementFields() {
 }
 
 Field layerDensityField(std::size_t index) {
-    Field field{kDensity, QObject::tr("Density"), {1, 0, 0}, editing::Part::Layers, {}, {}, setLayersOf};
+    Field field{kDensity, QObject::tr("Density"), {1, 0, 0}, editing::Part::Layers, {}, {}, setLayersOf, {}};
     field.value = [index](const Groom& groom, std::uint32_t) {
         return index < groom.layers.size() ? static_cast<double>(groom.layers[index].density) : 1;
     };
@@ -232,7 +233,7 @@ QString tooltipOf(const Field& field, DisplayUnit lengths) {
     }
     if (field.kind == FieldKind::Bool || field.kind == FieldKind::Colour) return text;
     const Shown shown = shownAs(QString::fromUtf8(field.unit), field.min, field.max, lengths);
-    const auto number = [&](double value) { return QString::number(value * shown.factor, 'g', 6); };
+    const auto number = [&](double value) { return numberLocale().toString(value * shown.factor, 'g', 6); };
     text += QObject::tr("<p>%1 to %2 %3; default %4</p>")
                 .arg(number(field.min), number(field.max),
                      shown.unit.isEmpty() ? QString() : shown.unit.toHtmlEscaped(),

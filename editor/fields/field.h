@@ -25,6 +25,9 @@ struct Field : FieldInfo {
     /// The step that gives the document what set() made of its groom; settings as a whole where it is empty.
     std::function<std::unique_ptr<editing::Command>(const editing::Model&, const Groom&)> step;
 
+    /// Lets a person point at the place that it holds; empty where it holds none.
+    std::function<void()> pick;
+
     QStringList choiceLabels() const;
 };
 

@@ -12,6 +12,7 @@
 #include "core/editing/settings_commands.h"
 #include "editor/fields/colour.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/number_spin.h"
 #include "editor/fields/price_tag.h"
 #include "editor/style/icons.h"
 
@@ -72,7 +73,7 @@ void FieldForm::addRow(const Field& field) {
     defaultValue->setIconSize({12, 12});
     defaultValue->setAutoRaise(true);
     defaultValue->setToolTip(tr("Back to the default value"));
-    defaultValue->setFocusPolicy(Qt::NoFocus);
+    defaultValue->setAccessibleName(tr("%1: back to the default value").arg(field.label));
     connect(defaultValue, &QToolButton::clicked, this, [this, &field] {
         begin();
         for (std::uint32_t c = 0; c < field.components(); ++c) store(field, field.defaultValue[c], c);
@@ -80,7 +81,8 @@ void FieldForm::addRow(const Field& field) {
     const int row = grid_->rowCount() + (field.kind == FieldKind::Vector ? 1 : 0);
     if (field.kind == FieldKind::Vector) {
         // Three numbers beside each other need the whole width.
-        grid_->addWidget(label, row - 1, 0, 1, 2);
+        grid_->addWidget(label, row - 1, 0, 1, field.pick ? 1 : 2);
+        if (field.pick) grid_->addWidget(pickButton(field), row - 1, 1, Qt::AlignRight);
         grid_->addWidget(control, row, 0, 1, 2);
     } else {
         grid_->addWidget(label, row, 0);
@@ -90,6 +92,10 @@ void FieldForm::addRow(const Field& field) {
     if (prices_) grid_->addWidget(new PriceTag(*prices_, preferences_, field.name), row + 1, 1, 1, 2);
     refreshers_.push_back([this, &field, label, control, defaultValue] {
         const QString tip = tooltipOf(field, preferences_.unit());
+        // Numbers beside each other have no room for their unit.
+        const QString unit = shownOf(field).unit;
+        if (field.kind == FieldKind::Vector && !unit.isEmpty())
+            label->setText(QStringLiteral("%1 (%2)").arg(field.label, unit));
         label->setToolTip(tip);
         control->setToolTip(tip);
         bool isDefault = true;
@@ -100,12 +106,24 @@ void FieldForm::addRow(const Field& field) {
     });
 }
 
+QWidget* FieldForm::pickButton(const Field& field) {
+    auto* button = new QPushButton(tr("Pick on head"));
+    button->setObjectName(QString::fromUtf8(field.name) + "Pick");
+    button->setToolTip(tr("Takes the handles: click the head to put it there, or drag it in the view"));
+    connect(button, &QPushButton::clicked, this, [&field] { field.pick(); });
+    return button;
+}
+
+Shown FieldForm::shownOf(const Field& field) const {
+    return shownAs(QString::fromUtf8(field.unit), field.min, field.max, preferences_.unit());
+}
+
 QWidget* FieldForm::makeNumber(const Field& field) {
     auto* box = new NumberBox(field.min, field.max, field.isWhole());
     connect(box, &NumberBox::begun, this, &FieldForm::begin);
     connect(box, &NumberBox::edited, this, [this, &field](double value) { store(field, value); });
     refreshers_.push_back([this, &field, box] {
-        const Shown shown = shownAs(QString::fromUtf8(field.unit), field.min, field.max, preferences_.unit());
+        const Shown shown = shownOf(field);
         box->setShown(shown.factor, shown.unit, shown.decimals);
         box->setValue(field.value(document_.groom(), 0));
     });
@@ -144,24 +162,25 @@ QWidget* FieldForm::makeVector(const Field& field) {
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(4);
     for (std::uint32_t c = 0; c < 3; ++c) {
-        auto* box = new QDoubleSpinBox;
-        box->setRange(field.min, field.max);
-        // Places anywhere in space are set to the millimetre.
-        const bool anywhere = field.max - field.min > 100;
-        box->setDecimals(anywhere ? 3 : 2);
-        box->setSingleStep(anywhere ? 0.005 : (field.max - field.min) / 200);
-        box->setKeyboardTracking(false);
+        auto* box = new NumberSpin;
         box->setPrefix(QStringLiteral("XYZ").mid(static_cast<int>(c), 1) + ' ');
         box->setButtonSymbols(QAbstractSpinBox::NoButtons);
         box->setMinimumWidth(60);
         layout->addWidget(box, 1);
         connect(box, &QDoubleSpinBox::valueChanged, this, [this, &field, c](double value) {
             begin();
-            store(field, value, c);
+            store(field, value / shownOf(field).factor, c);
         });
         refreshers_.push_back([this, &field, box, c] {
             const QSignalBlocker quiet(box);
-            box->setValue(field.value(document_.groom(), c));
+            const Shown shown = shownOf(field);
+            // Places anywhere in space are set to the millimetre.
+            const bool isPlace = !shown.unit.isEmpty() && field.max - field.min > 100;
+            box->setDecimals(isPlace ? std::max(1, shown.decimals - 1) : 2);
+            box->setRange(field.min * shown.factor, field.max * shown.factor);
+            box->setSingleStep(isPlace ? 0.005 * shown.factor
+                                       : std::min(0.05, (field.max - field.min) / 200));
+            box->setValue(field.value(document_.groom(), c) * shown.factor);
         });
     }
     return widget;

@@ -28,6 +28,9 @@ class FieldForm : public QWidget {
 
   private:
     void addRow(const Field& field);
+    QWidget* pickButton(const Field& field);
+    /// In the unit of the preferences.
+    Shown shownOf(const Field& field) const;
     QWidget* makeNumber(const Field& field);
     QWidget* makeGroundTruth(const Field& field);
     QWidget* makeChoice(const Field& field);

@@ -30,7 +30,7 @@ NumberBox::NumberBox(double min, double max, bool whole, QWidget* parent)
       max_(max),
       whole_(whole),
       slider_(new QSlider(Qt::Horizontal)),
-      spin_(new QDoubleSpinBox) {
+      spin_(new NumberSpin) {
     auto* layout = new QHBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(6);
@@ -40,7 +40,6 @@ NumberBox::NumberBox(double min, double max, bool whole, QWidget* parent)
     slider_->setMinimumWidth(24);
     slider_->setFocusPolicy(Qt::ClickFocus);
     spin_->setFixedWidth(86);
-    spin_->setKeyboardTracking(false);
     spin_->setAlignment(Qt::AlignRight);
     setFocusProxy(spin_);
     spin_->installEventFilter(this);

@@ -2,9 +2,10 @@
 #pragma once
 // A slider and a spin box for one number. Tells when a drag begins, so that one drag is one undo.
 
-#include <QDoubleSpinBox>
 #include <QSlider>
 #include <QWidget>
+
+#include "editor/fields/number_spin.h"
 
 namespace hairloom::editor {
 
@@ -41,7 +42,7 @@ class NumberBox : public QWidget {
     double factor_ = 1;
     double value_ = 0;
     QSlider* slider_;
-    QDoubleSpinBox* spin_;
+    NumberSpin* spin_;
 };
 
 }  // namespace hairloom::editor

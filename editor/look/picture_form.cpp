@@ -70,7 +70,7 @@ class PictureForm : public OptionForm {
                     "finer hair"),
                  1, 7, tr("%1 averaged"), &PictureQuality::frames);
         addBool(
-            "joinsFrames", tr("Join frames"),
+            "joinsFrames", tr("Temporal anti-aliasing"),
             tr("While something moves, each frame joins those before it where their hair was: thin hair is "
                "smooth in place of grainy, and costs a little more"),
             [this] { return viewport_.quality().joinsFrames; },
@@ -81,7 +81,7 @@ class PictureForm : public OptionForm {
             });
         addEnum("filter", tr("Filter"), tr("Softens the edges that are left in the finished picture"),
                 {tr("None"), tr("FXAA"), tr("FXAA, long search")}, &PictureQuality::filter);
-        addEnum("transparency", tr("Thin hair"),
+        addEnum("transparency", tr("Transparency"),
                 tr("How hair that is thinner than a sample shows what lies behind it: as is nearest to the "
                    "truth on the device, by the nearest hairs of a pixel in their order, by a random part "
                    "of the samples, by a fixed part, or blended in any order"),

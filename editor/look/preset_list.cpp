@@ -68,13 +68,14 @@ class PresetList : public QWidget {
         list_->setToolTip(tr("Click a look to give it to the hair"));
         layout->addWidget(list_);
         auto* row = new QHBoxLayout;
-        auto* save = new QPushButton(tr("Keep this look…"));
+        auto* save = new QPushButton(tr("Save preset…"));
         save->setObjectName("saveLook");
-        save->setToolTip(tr("Keeps all settings of this panel's material under a name, for other documents"));
+        save->setToolTip(tr("Saves all settings of this panel's material under a name, for other documents"));
         row->addWidget(save);
         row->addStretch(1);
         layout->addLayout(row);
         connect(list_, &QListWidget::itemClicked, this, &PresetList::apply);
+        connect(list_, &QListWidget::itemActivated, this, &PresetList::apply);
         connect(save, &QPushButton::clicked, this, &PresetList::save);
         connect(&viewport_, &Viewport::sidePictureReady, this, &PresetList::takePicture);
         soon_.setSingleShot(true);
@@ -114,7 +115,7 @@ class PresetList : public QWidget {
         }
         for (const std::string& name : savedLooks(folderOfLooks())) {
             if (auto material = loadLook(folderOfLooks(), name)) {
-                add({words(name), *material, nullptr}, tr("A look that you kept"));
+                add({words(name), *material, nullptr}, tr("A preset that you saved"));
             } else {
                 messages_.warn(errorText(material.error()));
             }
@@ -142,7 +143,7 @@ class PresetList : public QWidget {
     void save() {
         bool taken = false;
         const QString name =
-            QInputDialog::getText(this, tr("Keep this look"), tr("Name"), QLineEdit::Normal, {}, &taken);
+            QInputDialog::getText(this, tr("Save preset"), tr("Name"), QLineEdit::Normal, {}, &taken);
         if (!taken || name.trimmed().isEmpty()) return;
         const auto& material = document_.groom().material;
         if (auto saved = saveLook(folderOfLooks(), name.trimmed().toStdString(), material); !saved) {

@@ -71,9 +71,9 @@ class AccuracyPanel : public QWidget {
         addMeasures(*layout);
         layout->addWidget(plot_, 1);
         addChoice(*layout, *pixels_, "accuracyPixels", tr("Cheapest within"), "px",
-                  tr("Chooses the cheapest setting whose error is at most so many pixels in this view"));
-        addChoice(*layout, *milliseconds_, "accuracyMs", tr("Most exact within"), "ms",
-                  tr("Chooses the most exact setting that takes at most so long a frame on this machine"));
+                  tr("Cheapest settings within this error in the view"));
+        addChoice(*layout, *milliseconds_, "accuracyMs", tr("Most accurate within"), "ms",
+                  tr("Most accurate settings within this frame time"));
         adopt_->setObjectName("accuracyAdopt");
         adopt_->setToolTip(
             tr("Gives the document these settings, undoably. Another number of points makes the "
@@ -275,7 +275,7 @@ class AccuracyPanel : public QWidget {
     QString besideInWords() const {
         if (static_cast<Beside>(beside_->currentIndex()) == Beside::reference) return {};
         const auto other = beside();
-        if (!other) return tr(" Nothing that was measured is a pair to it; blue is the reference.");
+        if (!other) return tr(" No matching measurement; the reference is shown in blue.");
         return tr(" Beside it in blue: %1: %2.").arg(setting(*other), numbers(*other));
     }
 
@@ -361,7 +361,7 @@ class AccuracyPanel : public QWidget {
             if (const auto next = nextStep(*measured_, *now); next && !has.diverged) {
                 text += ' ' + step(has, *next);
             } else if (!next) {
-                text += ' ' + tr("Nothing that was tried is nearer to the truth.");
+                text += ' ' + tr("No measured setting has a smaller error.");
             }
         }
         if (measured_->strands < measured_->groomStrands)
@@ -421,7 +421,7 @@ class AccuracyPanel : public QWidget {
             return by_ == Choice::click ? tr("Click a point, or set a limit")
                                         : tr("Nothing that was tried is %1.").arg(limit);
         const QString which = by_ == Choice::pixels         ? tr("Cheapest %1").arg(limit)
-                              : by_ == Choice::milliseconds ? tr("Most exact %1").arg(limit)
+                              : by_ == Choice::milliseconds ? tr("Most accurate %1").arg(limit)
                                                             : tr("Chosen");
         const QString has =
             chosen_ == runOf(*measured_, document_.groom()) ? tr(" This hair has it.") : QString();
@@ -450,7 +450,7 @@ class AccuracyPanel : public QWidget {
                               run.diverged ? 0 : valueOf(run, measure.measure) * upwards, run.diverged,
                               front[r], setting(r)});
         }
-        plot_->setAxes(tr("time a frame"), tr("ms"), QString::fromUtf8(measure.label));
+        plot_->setAxes(tr("Cost: time of a frame"), tr("ms"), QString::fromUtf8(measure.label));
         plot_->setPoints(std::move(points), measure.length ? tr("px") : QString::fromUtf8(measure.unit));
         plot_->setMarked(runOf(*measured_, document_.groom()), chosen_);
     }
@@ -486,16 +486,15 @@ class AccuracyPanel : public QWidget {
 }  // namespace
 
 PanelInfo accuracyPanel() {
-    return {
-        "accuracy",
-        QObject::tr("Accuracy"),
-        "effects",
-        Qt::RightDockWidgetArea,
-        95,
-        true,
-        [](const PanelParts& parts) -> QWidget* {
-            return scrolled(column({heading(QObject::tr("What accuracy costs")), new AccuracyPanel(parts)}));
-        }};
+    return {"accuracy",
+            QObject::tr("Accuracy"),
+            "effects",
+            Qt::RightDockWidgetArea,
+            95,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column({heading(QObject::tr("Cost and error")), new AccuracyPanel(parts)}));
+            }};
 }
 
 }  // namespace hairloom::editor

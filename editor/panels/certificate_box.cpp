@@ -14,7 +14,7 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
       document_(document),
       tasks_(tasks),
       words_(new QLabel),
-      certify_(new QPushButton(tr("Certify"))) {
+      certify_(new QPushButton(tr("Stress test"))) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(8);
@@ -43,7 +43,7 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
 void CertificateBox::certify() {
     const auto groom = std::make_shared<const Groom>(document_.groom());
     tasks_.run<Certificate>(
-        tr("Certifying"),
+        tr("Stress test"),
         [groom](TaskControl& control) {
             CertificateOptions options;
             options.progress = [&](std::size_t done, std::size_t total) {

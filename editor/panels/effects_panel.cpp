@@ -118,7 +118,7 @@ class EffectsPanel : public QWidget {
         table_->setItemDelegateForColumn(kMs, bars_);
         table_->setToolTip(
             tr("What each effect takes of a frame, while it plays of the last half second; megabytes of its "
-               "own; and why it runs or does not. Untick an effect to try the hair without it."));
+               "own; and why it runs or does not. Uncheck an effect to try the hair without it."));
     }
 
     void makeMeasure() {
@@ -213,12 +213,12 @@ class EffectsPanel : public QWidget {
     void makeTrial() {
         auto* row = new QHBoxLayout(trial_);
         row->setContentsMargins(0, 0, 0, 0);
-        auto* keep = new QPushButton(tr("Leave out for good"));
+        auto* keep = new QPushButton(tr("Remove from document"));
         keep->setObjectName("effectsKeep");
         keep->setToolTip(tr("Changes the document so that these effects are off; can be undone"));
-        auto* all = new QPushButton(tr("All as authored"));
+        auto* all = new QPushButton(tr("Re-enable all"));
         all->setObjectName("effectsAll");
-        all->setToolTip(tr("Ends the try: every effect runs that the document calls for"));
+        all->setToolTip(tr("Re-enable all effects"));
         row->addWidget(keep);
         row->addWidget(all);
         connect(keep, &QPushButton::clicked, this, &EffectsPanel::keepTrial);
@@ -254,7 +254,7 @@ class EffectsPanel : public QWidget {
                 .arg(costs->milliseconds.median, 0, 'f', 2)
                 .arg(age);
         }
-        if (!player_.frame()) return tr("What would run; play (Space) to see what it costs.");
+        if (!player_.frame()) return tr("What will run. Press Play (Space) to see its cost.");
         const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu;
         return onGpu ? tr("Live, on the GPU: one kernel moves the strands with all their effects")
                      : tr("Live, on the processor: mean of the last half second");
@@ -295,13 +295,13 @@ class EffectsPanel : public QWidget {
             item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
             item.setData(kName, Qt::CheckStateRole, {});
         }
-        item.setToolTip(kName, known ? tr("Untick to try the hair without it")
+        item.setToolTip(kName, known ? tr("Uncheck to try the hair without it")
                                      : tr("Follows from the hair's shape and speed"));
         const QString none = QStringLiteral("–");
         showMilliseconds(item, effect, measured);
         item.setText(kMb,
                      effect.on ? QString::number(static_cast<double>(effect.bytes) / 1e6, 'f', 1) : none);
-        item.setText(kWhy, leftOut ? tr("left out for a try") : QString::fromStdString(effect.why));
+        item.setText(kWhy, leftOut ? tr("disabled for a trial") : QString::fromStdString(effect.why));
         item.setToolTip(kWhy, item.text(kWhy));
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
         item.setTextAlignment(kMb, Qt::AlignRight | Qt::AlignVCenter);

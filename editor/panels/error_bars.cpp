@@ -34,9 +34,8 @@ ErrorBars::ErrorBars(const Preferences& preferences, QWidget* parent)
     bars_[2].meaning =
         tr("from the rod to the finest strands of this model: springs that sag, contact, single precision, "
            "a head that is seen at the ends of frames only; neither steps nor points mend it");
-    bars_[3].name = tr("Doubt");
-    bars_[3].meaning =
-        tr("the reference's own, with half of its steps; what is smaller than this says little");
+    bars_[3].name = tr("Uncertainty");
+    bars_[3].meaning = tr("of the reference (half the steps): smaller differences are noise");
 }
 
 void ErrorBars::setParts(const ErrorParts& parts, double doubtMm, double pixelsPerMm) {

@@ -16,12 +16,14 @@ class HistoryPanel : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(12, 8, 12, 12);
         list_->setObjectName("steps");
-        list_->setToolTip(tr("Click a step to go back or forward to it"));
+        list_->setToolTip(tr("Click a step, or Return, to go back or forward to it"));
         memory_->setProperty("role", "dim");
         memory_->setToolTip(tr("Memory that undo holds; the oldest steps are forgotten beyond the bound"));
         layout->addWidget(list_, 1);
         layout->addWidget(memory_);
         connect(list_, &QListWidget::itemClicked, this,
+                [this](QListWidgetItem* item) { document_.goToStep(list_->row(item)); });
+        connect(list_, &QListWidget::itemActivated, this,
                 [this](QListWidgetItem* item) { document_.goToStep(list_->row(item)); });
         connect(&document_, &QtDocument::historyChanged, this, [this] { fill(); });
         connect(&document_, &QtDocument::replaced, this, [this] { fill(); });

@@ -101,7 +101,7 @@ class LookPanel : public QWidget {
                         column({makePictureForm(preferences_, prices_, viewport_),
                                 makePicturePrices(document_, parts.tasks, viewport_, parts.prices)}),
                         false));
-        layout_->addWidget(collapsible(tr("Hairs between the guides"), form(followHairFields()), false));
+        layout_->addWidget(collapsible(tr("Interpolated hairs"), form(followHairFields()), false));
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
             if (contains(changed, editing::Part::Material)) refresh();
         });
@@ -141,7 +141,7 @@ class LookPanel : public QWidget {
         layout->addWidget(rows);
         auto* button = new QPushButton(tr("Colours from the pigment"));
         button->setObjectName("colourByMelanin");
-        button->setToolTip(tr("Gives root and tip the colour that this pigment makes of much hair"));
+        button->setToolTip(tr("Set root and tip colour from melanin"));
         connect(button, &QPushButton::clicked, this, [this] {
             HairMaterial material = document_.groom().material;
             colourByMelanin(material);

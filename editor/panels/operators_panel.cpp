@@ -4,6 +4,7 @@
 #include <QGridLayout>
 #include <QGuiApplication>
 #include <QInputDialog>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
@@ -12,6 +13,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <QWidgetAction>
+#include <algorithm>
+#include <map>
 
 #include "core/editing/document.h"
 #include "core/editing/mask_commands.h"
@@ -19,10 +22,13 @@
 #include "core/operations/stack_file.h"
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"
+#include "editor/fields/formula_edit.h"
 #include "editor/fields/image_button.h"
 #include "editor/fields/mask_ramp.h"
 #include "editor/panels/panel.h"
+#include "editor/style/icons.h"
 #include "editor/tools/curve_tool.h"
+#include "editor/tools/handle_tool.h"
 #include "editor/viewport/strand_preview.h"
 
 namespace hairloom::editor {
@@ -53,6 +59,8 @@ class OperatorsPanel : public QWidget {
         list_->setToolTip(
             tr("What makes the hair out of its base shape, from the first on; unchecked ones do "
                "nothing. Brush strokes go to a sculpt at the end."));
+        list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        list_->installEventFilter(this);
         layout->addWidget(list_);
         layout->addLayout(makeButtons());
         settings_ = new QVBoxLayout;
@@ -69,6 +77,24 @@ class OperatorsPanel : public QWidget {
         refresh();
     }
 
+  protected:
+    bool eventFilter(QObject* object, QEvent* event) override {
+        if (object != list_ || event->type() != QEvent::KeyPress || chosen() == kNone)
+            return QWidget::eventFilter(object, event);
+        const auto* key = static_cast<QKeyEvent*>(event);
+        const bool alt = key->modifiers() & Qt::AltModifier;
+        if (key->key() == Qt::Key_Delete) {
+            perform(editing::removeOperator(model(), chosen()), chosen());
+        } else if (alt && key->key() == Qt::Key_Up && chosen() > 0) {
+            move(chosen() - 1);
+        } else if (alt && key->key() == Qt::Key_Down && chosen() + 1 < operators().size()) {
+            move(chosen() + 1);
+        } else {
+            return QWidget::eventFilter(object, event);
+        }
+        return true;
+    }
+
   private:
     const editing::Model& model() const { return document_.editing().model(); }
     const std::vector<Operator>& operators() const { return document_.groom().operators; }
@@ -81,15 +107,52 @@ class OperatorsPanel : public QWidget {
         return text;
     }
 
+    /// What artists look for an operator under, in the order of a day's work.
+    static QString kindOf(std::string_view name) {
+        static const std::vector<std::pair<QString, std::vector<std::string_view>>> kinds{
+            {tr("Direction"), {"flow", "part", "attract", "shrinkwrap", "drape", "mirror"}},
+            {tr("Length"), {"set_length", "trim"}},
+            {tr("Locks"), {"clump", "braid", "bun"}},
+            {tr("Texture"), {"curl", "wave", "noise", "frizz", "flyaways"}},
+            {tr("Shape"), {"smooth", "straighten", "bend", "collide", "sculpt"}}};
+        for (const auto& [kind, names] : kinds) {
+            if (std::ranges::find(names, name) != names.end()) return kind;
+        }
+        return tr("Others");
+    }
+    static std::vector<StackOperator> sortedByKind() {
+        std::vector<StackOperator> sorted = stackOperators();
+        const QStringList order{tr("Direction"), tr("Length"), tr("Locks"),
+                                tr("Texture"),   tr("Shape"),  tr("Others")};
+        std::ranges::stable_sort(sorted, {},
+                                 [&](const StackOperator& one) { return order.indexOf(kindOf(one.name)); });
+        return sorted;
+    }
+    /// That of the brush that does alike, where there is one.
+    static QIcon iconOf(std::string_view name) {
+        static const std::map<std::string_view, const char*> icons{
+            {"flow", "comb"},         {"part", "part"},     {"attract", "curve"},
+            {"shrinkwrap", "shrink"}, {"drape", "grab"},    {"mirror", "mirror"},
+            {"set_length", "length"}, {"trim", "cut"},      {"clump", "clump"},
+            {"braid", "twist"},       {"bun", "sphere"},    {"curl", "curl"},
+            {"wave", "wind"},         {"noise", "noise"},   {"frizz", "noise"},
+            {"flyaways", "puff"},     {"smooth", "smooth"}, {"straighten", "straighten"},
+            {"bend", "pinch"},        {"collide", "frame"}, {"sculpt", "brush"}};
+        const auto found = icons.find(name);
+        return icon(found == icons.end() ? "brush" : found->second);
+    }
+
     QWidget* makeAddButton() {
         auto* add = new QPushButton(tr("Add"));
         add->setObjectName("operatorAdd");
         add->setToolTip(tr("Adds an operator behind the chosen one"));
         auto* menu = new QMenu(add);
         menu->setToolTipsVisible(true);
-        for (const StackOperator& known : stackOperators()) {
+        QString last;
+        for (const StackOperator& known : sortedByKind()) {
             const std::string name(known.name);
-            QAction* action = menu->addAction(labelOf(newOperator(name)));
+            if (const QString kind = kindOf(name); kind != last) menu->addSection(last = kind);
+            QAction* action = menu->addAction(iconOf(name), labelOf(newOperator(name)));
             action->setToolTip(sentence(known.meaning));
             connect(action, &QAction::triggered, this, [this, name] {
                 const std::size_t at = chosen() == kNone ? operators().size() : chosen() + 1;
@@ -102,15 +165,15 @@ class OperatorsPanel : public QWidget {
 
     QLayout* makeButtons() {
         QWidget* const buttons[] = {
-            pushButton("operatorUp", tr("Earlier"), tr("Lets it act before the one above it"),
+            pushButton("operatorUp", tr("Move up"), tr("Lets it act before the one above it (Alt+Up)"),
                        [this] {
                            if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
                        }),
-            pushButton("operatorDown", tr("Later"), tr("Lets it act after the one below it"),
+            pushButton("operatorDown", tr("Move down"), tr("Lets it act after the one below it (Alt+Down)"),
                        [this] {
                            if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
                        }),
-            pushButton("operatorRemove", tr("Remove"), tr("Takes the operator away"),
+            pushButton("operatorRemove", tr("Remove"), tr("Removes the operator (Delete)"),
                        [this] {
                            if (chosen() != kNone)
                                perform(editing::removeOperator(model(), chosen()), chosen());
@@ -142,7 +205,7 @@ class OperatorsPanel : public QWidget {
     QWidget* makePresetsButton() {
         auto* presets = new QPushButton(tr("Presets"));
         presets->setObjectName("operatorPresets");
-        presets->setToolTip(tr("Stacks that you kept, for all projects"));
+        presets->setToolTip(tr("Operators that you saved, for all projects"));
         auto* menu = new QMenu(presets);
         connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillPresets(*menu); });
         fillPresets(*menu);
@@ -198,16 +261,16 @@ class OperatorsPanel : public QWidget {
             });
         }
         menu.addSeparator();
-        connect(menu.addAction(tr("Keep the operator…")), &QAction::triggered, this, [this] {
+        connect(menu.addAction(tr("Save operator as preset…")), &QAction::triggered, this, [this] {
             if (chosen() != kNone) keep({operators()[chosen()]});
         });
-        connect(menu.addAction(tr("Keep the stack…")), &QAction::triggered, this,
+        connect(menu.addAction(tr("Save stack as preset…")), &QAction::triggered, this,
                 [this] { keep(operators()); });
     }
     void keep(const std::vector<Operator>& kept) {
         bool taken = false;
         const QString name =
-            QInputDialog::getText(this, tr("Keep operators"), tr("Name"), QLineEdit::Normal, {}, &taken);
+            QInputDialog::getText(this, tr("Save preset"), tr("Name"), QLineEdit::Normal, {}, &taken);
         if (!taken || name.trimmed().isEmpty()) return;
         const auto file = stackPresetFile(folderOfStacks(), name.trimmed().toStdString());
         std::error_code problem;
@@ -299,9 +362,11 @@ class OperatorsPanel : public QWidget {
     void showSettings() {
         const std::size_t index = chosen();
         const std::string op = index == kNone ? std::string() : operators()[index].op;
-        if (index == chosen_ && op == shown_) return;
+        if (index == chosen_ && op == shown_ && settings_->count() > 0) return;
         chosen_ = index;
         shown_ = op;
+        if (auto* tool = dynamic_cast<HandleTool*>(tools_.find("handles")); tool && index != kNone)
+            tool->setOperator(index);
         while (QLayoutItem* item = settings_->takeAt(0)) {
             if (QWidget* form = item->widget()) {
                 form->setParent(nullptr);  // gone at once; one of its controls may be what is talking
@@ -309,18 +374,43 @@ class OperatorsPanel : public QWidget {
             }
             delete item;
         }
-        if (index == kNone) return;
+        if (index == kNone) {
+            auto* none =
+                new QLabel(tr("No operators yet. Add one to shape all of the hair, and change it at any "
+                              "time: start with Flow, which lays hair along the head."));
+            none->setObjectName("operatorsNone");
+            none->setProperty("role", "dim");
+            none->setWordWrap(true);
+            settings_->addWidget(none);
+            return;
+        }
         const auto failed = [this](const QString& words) { messages_.warn(words); };
         settings_->addWidget(heading(labelOf(operators()[index])));
         if (findStackOperator(op)->hasCurve) settings_->addWidget(curveRow(index));
-        settings_->addWidget(
-            new FieldForm(document_, preferences_, operatorFields(document_.groom(), index, failed)));
+        settings_->addWidget(new FieldForm(
+            document_, preferences_,
+            pickable(operatorFields(document_.groom(), index, failed), index, SettingsPart::own)));
         settings_->addWidget(
             collapsible(tr("Mask"), maskForm(index, failed), !maskOf(operators()[index]).isWhole()));
         if (!findStackOperator(op)->hasRegion) return;
-        auto* region =
-            new FieldForm(document_, preferences_, operatorRegionFields(document_.groom(), index, failed));
+        auto* region = new FieldForm(
+            document_, preferences_,
+            pickable(operatorRegionFields(document_.groom(), index, failed), index, SettingsPart::region));
         settings_->addWidget(collapsible(tr("Region"), region, false));
+    }
+
+    /// Places can be pointed at.
+    std::vector<Field> pickable(std::vector<Field> fields, std::size_t index, SettingsPart part) {
+        for (Field& field : fields) {
+            if (field.kind != FieldKind::Vector || QLatin1String(field.unit) != QLatin1String("m")) continue;
+            field.pick = [this, index, part, info = FieldInfo(field)] {
+                auto* tool = dynamic_cast<HandleTool*>(tools_.find("handles"));
+                if (!tool) return;
+                tools_.activate(tool);
+                tool->pickOnHead(index, info, part);
+            };
+        }
+        return fields;
     }
 
     QWidget* maskForm(std::size_t index, const SayError& failed) {
@@ -335,6 +425,7 @@ class OperatorsPanel : public QWidget {
                "it has none of the four, the first that nothing uses, which it then has"),
             [this, index](const MaskImage& image) { return takeMask(index, image); }, failed));
         rows->addWidget(new MaskRamp(document_, index, failed));
+        rows->addWidget(new FormulaEdit(document_, index));
         return form;
     }
 

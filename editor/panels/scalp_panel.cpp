@@ -71,20 +71,20 @@ class ScalpPanel : public QWidget {
             });
             grid->addWidget(button, grid->count() / 3, grid->count() % 3);
         };
-        add("scalpGrow", tr("Grow"), tr("Adds the faces next to the scalp"),
+        add("scalpGrow", tr("Grow"), tr("Grow selection"),
             [this] { return growSelection(mesh(), groom().scalpSelection, 1); });
-        add("scalpShrink", tr("Shrink"), tr("Takes the faces at the scalp's border away"),
+        add("scalpShrink", tr("Shrink"), tr("Shrink selection"),
             [this] { return shrinkSelection(mesh(), groom().scalpSelection, 1); });
-        add("scalpInvert", tr("Invert"), tr("Takes all other faces instead"),
+        add("scalpInvert", tr("Invert"), tr("Invert selection"),
             [this] { return invertSelection(mesh(), groom().scalpSelection); });
-        add("scalpSymmetric", tr("Mirror"), tr("Adds the faces on the other side of the head"), [this] {
+        add("scalpSymmetric", tr("Mirror"), tr("Mirror selection"), [this] {
             return editing::symmetricFaces(mesh(), *document_.editing().surface(), groom().scalpSelection);
         });
         add("scalpConnected", tr("Largest"), tr("Keeps the largest connected piece only"), [this] {
             const auto pieces = connectedPieces(mesh(), groom().scalpSelection);
             return pieces.empty() ? FaceSet() : pieces.front();
         });
-        add("scalpClear", tr("Clear"), tr("Takes all faces away"), [] { return FaceSet(); });
+        add("scalpClear", tr("Clear"), tr("Clear selection"), [] { return FaceSet(); });
         return grid;
     }
 

@@ -182,13 +182,13 @@ void DocumentFiles::openFile(const QString& path, Opening opening, std::function
         [this, path, name, opening, before = document_.editing().state(),
          done = std::move(done)](std::pair<Opened, FileKind> opened) {
             if (!mayShow(before, name)) return;
-            const bool isUnclear = opened.first.isUnclear;
+            // Nothing is opened before somebody has said what it is.
+            if (opened.first.isUnclear && unclearHead_) return unclearHead_(path);
             const QString missing = opened.first.missing;
             const bool hasFile = opened.second == FileKind::Project && opening == Opening::AsItself;
             show(std::move(opened.first), hasFile ? path : QString(), name);
             preferences_.addRecentFile(path);
             if (done) done();
-            if (isUnclear && unclearHead_) unclearHead_(path);
             if (!missing.isEmpty() && missingHead_) missingHead_(missing);
         });
 }

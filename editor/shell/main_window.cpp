@@ -15,6 +15,8 @@
 #include <algorithm>
 
 #include "core/base/write_rules.h"
+#include "editor/fields/input_rules.h"
+#include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/files.h"
 #include "editor/style/icons.h"
@@ -65,6 +67,10 @@ QWidget* toolPalette(const QActionGroup& actions, const ToolBox& tools) {
 MainWindow::MainWindow()
     : actions_(new Actions(*this)), pages_(new QStackedWidget), toolGroup_(new QActionGroup(this)) {
     setObjectName("mainWindow");
+    // Dialogs have the default, what is in the window has its own.
+    QLocale::setDefault(numberLocale());
+    setLocale(numberLocale());
+    new InputRules(this);
     setWindowIcon(icon("hairloom"));
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -103,7 +109,7 @@ MainWindow::MainWindow()
     connect(&document_, &QtDocument::saved, this, [this] { files_.discardRecovered(); });
     files_.onProject([this](const QString& path) { return mayOpenProject(path); });
     files_.onChangedMeanwhile([this] { return mayLeaveDocument(); });
-    files_.onUnclearHead([this](const QString& path) { showHeadDialog(path); });
+    files_.onUnclearHead([this](const QString& path) { showHeadDialog(path, true); });
     files_.onMissingHead([this](const QString& file) { askForHead(file); });
     connect(start_, &StartPage::openRequested, this, &MainWindow::chooseAndOpen);
     connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);

@@ -38,8 +38,9 @@ class MainWindow : public QMainWindow {
     /// Writes the project on a thread of its own and keeps the window alive meanwhile. Asks where others have
     /// to do with the file. False where the user cancelled or writing failed.
     bool saveTo(const QString& path);
-    /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself.
-    void showHeadDialog(const QString& path);
+    /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself. Nothing
+    /// changes before it is accepted. `mayLeave`: what to do about unsaved changes has been asked.
+    void showHeadDialog(const QString& path, bool mayLeave = false);
     /// A project names a file of its head that is not there.
     void askForHead(const QString& missing);
     /// Writes the steps since the document was opened as a script. False, with a word in the status line,

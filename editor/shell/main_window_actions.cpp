@@ -109,7 +109,7 @@ void MainWindow::addFileActions() {
          tr("Writes the hair for a game and reads it back to compare"), QKeySequence("Ctrl+E")},
         [this] {
             ExportDialog dialog(document_, preferences_, tasks_, messages_, player_, this);
-            dialog.exec();
+            if (dialog.exec() == ExportDialog::kWantsClustering) chooseGuidesByClustering();
         });
     menu->addSeparator();
     add({"file.quit", tr("&Quit"), "", tr("Leaves the program"), QKeySequence("Ctrl+Q")},
@@ -124,12 +124,11 @@ void MainWindow::addEditActions() {
         menu->addAction(&action);
         return action;
     };
-    QAction& undo =
-        add({"edit.undo", tr("&Undo"), "undo", tr("Takes the last step back"), QKeySequence("Ctrl+Z")},
-            [this] { document_.undo(); });
-    QAction& redo = add({"edit.redo", tr("&Redo"), "redo", tr("Does the step again that was taken back"),
-                         QKeySequence("Ctrl+Shift+Z")},
-                        [this] { document_.redo(); });
+    QAction& undo = add({"edit.undo", tr("&Undo"), "undo", tr("Undo the last step"), QKeySequence("Ctrl+Z")},
+                        [this] { document_.undo(); });
+    QAction& redo =
+        add({"edit.redo", tr("&Redo"), "redo", tr("Redo the last undone step"), QKeySequence("Ctrl+Shift+Z")},
+            [this] { document_.redo(); });
     const auto enable = [this, &undo, &redo] {
         const QtDocument& document = document_;
         undo.setEnabled(document.doneSteps() > 0);
@@ -182,7 +181,9 @@ void MainWindow::addViewActions() {
         {"view.back", QT_TR_NOOP("From the &back"), "Ctrl+1", render::View::Back},
         {"view.left", QT_TR_NOOP("From the &left"), "3", render::View::Left},
         {"view.right", QT_TR_NOOP("From the &right"), "Ctrl+3", render::View::Right},
-        {"view.threeQuarter", QT_TR_NOOP("Three &quarters"), "7", render::View::ThreeQuarter},
+        {"view.top", QT_TR_NOOP("From &above"), "7", render::View::Top},
+        {"view.bottom", QT_TR_NOOP("From bel&ow"), "Ctrl+7", render::View::Bottom},
+        {"view.threeQuarter", QT_TR_NOOP("Three &quarters"), "0", render::View::ThreeQuarter},
     };
     for (const auto& view : kViews) {
         add({view.id, tr(view.text), "", tr("Looks at the head from this side"), QKeySequence(view.key)},

@@ -49,11 +49,11 @@ void MainWindow::open(const QString& path) {
     if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
 }
 
-void MainWindow::showHeadDialog(const QString& path) {
+void MainWindow::showHeadDialog(const QString& path, bool mayLeave) {
     auto* dialog = new HeadDialog(tasks_, preferences_, path, this);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
-    connect(dialog, &QDialog::accepted, this, [this, dialog, path] {
-        if (mayLeaveDocument()) files_.openHead(path, dialog->options());
+    connect(dialog, &QDialog::accepted, this, [this, dialog, path, mayLeave] {
+        if (mayLeave || mayLeaveDocument()) files_.openHead(path, dialog->options());
     });
     dialog->open();
 }

@@ -133,13 +133,13 @@ void MainWindow::addSelectActions() {
             return editing::freezeStrands(model, editing::allStrands(model.groom), false);
         },
         false);
-    menu->addAction(&actions_->add(
-        {"select.guides",
-         tr("G&uides by clustering…"),
-         "",
-         tr("Finds few strands that stand for all, keeps them, and lets follow hairs come from them"),
-         {}},
-        [this] { chooseGuidesByClustering(); }));
+    menu->addAction(
+        &actions_->add({"select.guides",
+                        tr("G&uides by clustering…"),
+                        "",
+                        tr("Keeps few strands that stand for all; interpolated hairs come from them"),
+                        {}},
+                       [this] { chooseGuidesByClustering(); }));
     add(
         {"select.delete", tr("&Delete selected"), "delete", tr("Removes the selected strands"),
          QKeySequence("Del")},

@@ -128,7 +128,7 @@ void StartPage::showEvent(QShowEvent* event) {
 void StartPage::fillRecent() {
     clear(*recent_);
     const QStringList files = preferences_.recentFiles();
-    if (files.isEmpty()) recent_->addWidget(dim(tr("Files that you open will stand here.")));
+    if (files.isEmpty()) recent_->addWidget(dim(tr("Recent files appear here.")));
     for (const QString& path : files.mid(0, 6)) {
         auto* button = card(QFileInfo(path).fileName(), "history", path);
         connect(button, &QPushButton::clicked, this, [this, path] { files_.open(path); });

@@ -26,6 +26,8 @@ constexpr Tones kDark{"#1c1e22", "#25282d", "#17191c", "#33373e", "#3b4048",
 constexpr Tones kLight{"#dfe2e6", "#f2f3f5", "#ffffff", "#e3e6ea", "#c3c8cf",
                        "#17191c", "#535a64", "#959ca6", "#1f63b8", "#ffffff"};
 
+constexpr const char *kBadOnDark = "#ef6b62", *kBadOnLight = "#b3261e";
+
 const Tones& tones(Theme theme) {
     return theme == Theme::Dark ? kDark : kLight;
 }
@@ -66,6 +68,7 @@ QString styleSheetOf(const Tones& t) {
         {"@line", t.line},     {"@text", t.text},         {"@dim", t.dim},     {"@disabled", t.disabled},
         {"@accent", t.accent}, {"@on-accent", t.onAccent}};
     for (const auto& [name, tone] : names) sheet.replace(name, tone);
+    sheet.replace("@bad", &t == &kDark ? kBadOnDark : kBadOnLight);
     sheet.replace("@theme", &t == &kDark ? "dark" : "light");
     sheet.replace("@icon", iconEnding());
     return sheet;
@@ -91,7 +94,7 @@ ThemeColours themeColours(Theme theme) {
             QColor(t.accent),
             QColor(dark ? "#5fbf77" : "#1c7a37"),
             QColor(dark ? "#e0b04a" : "#8f6200"),
-            QColor(dark ? "#ef6b62" : "#b3261e")};
+            QColor(dark ? kBadOnDark : kBadOnLight)};
 }
 
 }  // namespace hairloom::editor

@@ -133,7 +133,7 @@ class ReplaceTool : public Tool {
     Player& player_;
     Viewport& viewport_;
     ToolInfo info_{"replace",
-                   tr("Place anew"),
+                   tr("Replant"),
                    "place",
                    tr("Paint over the scalp; hair there is placed anew with the settings of the Scalp panel"),
                    QKeySequence("N"),

@@ -57,6 +57,14 @@ void OrbitCamera::look(render::View view) {
             yaw_ = 0.6f;
             pitch_ = 0.1f;
             break;
+        case render::View::Top:
+            yaw_ = 0;
+            pitch_ = kQuarter;
+            break;
+        case render::View::Bottom:
+            yaw_ = 0;
+            pitch_ = -kQuarter;
+            break;
     }
 }
 

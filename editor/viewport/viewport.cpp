@@ -2,6 +2,7 @@
 #include "editor/viewport/viewport.h"
 
 #include <QApplication>
+#include <QResizeEvent>
 #include <QVBoxLayout>
 #include <cmath>
 #include <utility>
@@ -418,6 +419,13 @@ void Viewport::finishRequest(PictureRequest& request) const {
 void Viewport::resizeEvent(QResizeEvent* event) {
     QWidget::resizeEvent(event);
     if (window_ && apart_) placeApart();
+    // What was seen across a wide view is seen across a narrow one, and as large again when that grows.
+    const auto share = [](const QSize& size_px) {
+        return std::min(
+            1.0f, static_cast<float>(size_px.width()) / static_cast<float>(std::max(1, size_px.height())));
+    };
+    if (framed_ && event->oldSize().isValid() && !event->oldSize().isEmpty() && !size().isEmpty())
+        camera_.zoom(share(size()) / share(event->oldSize()));
     redraw(true);
 }
 

@@ -371,7 +371,7 @@ TEST_F(ShellTest, CardsLeaveByTheSameDialogWithWhatEachLevelLoses) {
     dialog.show();
     auto* cards = dialog.findChild<QSpinBox*>("cards");
     EXPECT_FALSE(cards->isVisible()) << "strands have none";
-    dialog.findChild<QComboBox*>("target")->setCurrentText("Engines without strands: cards (glTF)");
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Engines without strands");
     EXPECT_TRUE(cards->isVisible());
     EXPECT_FALSE(dialog.findChild<QComboBox*>("what")->isVisible());
     cards->setValue(12);
@@ -412,7 +412,7 @@ TEST_F(ShellTest, APageForBrowsersIsExportedAtRest) {
     }
     qputenv("HAIRLOOM_WEB", inFolder("player").toUtf8());
     ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
-    dialog.findChild<QComboBox*>("target")->setCurrentText("Browser, a page that moves");
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Browser");
     auto* frames = dialog.findChild<QSpinBox*>("frames");
     frames->setValue(3);
     dialog.exportTo(inFolder("page"));

@@ -216,7 +216,7 @@ TEST(Stack, MasksShowTheDensityOfTheScalpAndTheDyeOfPoints) {
         groom.scalpDensity[v] = groom.scalp->positions()[v].x() > 0 ? 1.0f : 0.0f;
     Mask mask;
     mask.map = MaskMap::density;
-    const auto shares = maskShares(groom, mask, groom.positions());
+    const auto shares = maskShares(groom, mask, groom.positions()).value();
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         const float x = groom.strand(s)[0].x();
         if (std::abs(x) < 0.03f) continue;
@@ -226,7 +226,7 @@ TEST(Stack, MasksShowTheDensityOfTheScalpAndTheDyeOfPoints) {
     groom.pointAttributes.set("dye", dye);
     mask.map = MaskMap::dye;
     mask.invert = true;
-    EXPECT_FLOAT_EQ(maskShares(groom, mask, groom.positions())[7], 0.75f);
+    EXPECT_FLOAT_EQ(maskShares(groom, mask, groom.positions()).value()[7], 0.75f);
 
     Groom bare = makeGroom({0, 2}, {Vec3f(0, 0, 0), Vec3f(0, 0.1f, 0)});
     mask.map = MaskMap::density;

@@ -31,7 +31,7 @@ TEST(CameraTest, AnOrthographicViewIsAsHighAsItSaysAndHasNoPerspective) {
 TEST(Camera, NamedViewsSeeAllCornersAndFillTheFrame) {
     const Box3f box(Vec3f(-0.1f, 1.3f, -0.12f), Vec3f(0.2f, 1.8f, 0.15f));
     for (const float aspect : {0.5f, 1.0f, 16.0f / 9.0f}) {
-        for (const char* name : {"front", "back", "left", "right", "three-quarter"}) {
+        for (const char* name : {"front", "back", "left", "right", "three-quarter", "top", "bottom"}) {
             const Camera camera = frame(parseView(name).value(), box, aspect);
             ASSERT_TRUE(check(camera));
             const Mat4f m = projectionMatrix(camera.verticalFov, aspect, 0.01f, 100) * viewMatrix(camera);

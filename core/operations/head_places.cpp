@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/head_places.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace hairloom {
+namespace {
+
+constexpr float kBehindTop = 0.2f;  ///< of the depth of what hair grows on
+
+/// Vertices of the selected faces; all where none is selected.
+std::vector<Vec3f> whereHairGrows(const Groom& groom) {
+    const auto positions = groom.scalp->positions();
+    std::vector<Vec3f> places;
+    for (const std::uint32_t face : groom.scalpSelection) {
+        for (const std::uint32_t vertex : groom.scalp->triangles()[face]) places.push_back(positions[vertex]);
+    }
+    if (places.empty()) places.assign(positions.begin(), positions.end());
+    return places;
+}
+
+Vec3f onSkinBelow(const Groom& groom, float behind) {
+    if (!groom.scalp) return Vec3f::Zero();
+    const std::vector<Vec3f> places = whereHairGrows(groom);
+    Box3f box;
+    for (const Vec3f& place : places) box.extend(place);
+    const Vec3f above(box.center().x(), box.max().y(), box.center().z() - behind * box.sizes().z());
+    return *std::ranges::min_element(places, {},
+                                     [&](const Vec3f& place) { return (place - above).squaredNorm(); });
+}
+
+}  // namespace
+
+Vec3f topOfHead(const Groom& groom) {
+    return onSkinBelow(groom, 0);
+}
+
+Vec3f crownOfHead(const Groom& groom) {
+    return onSkinBelow(groom, kBehindTop);
+}
+
+Vec3f placeFound(const Groom& groom, std::string_view setting) {
+    return setting == "crown" ? crownOfHead(groom) : topOfHead(groom);
+}
+
+}  // namespace hairloom
