@@ -71,7 +71,7 @@ void FieldForm::addRow(const Field& field) {
     defaultValue->setIcon(icon("reset"));
     defaultValue->setIconSize({12, 12});
     defaultValue->setAutoRaise(true);
-    defaultValue->setToolTip(tr("Back to the default value"));
+    defaultValue->setToolTip(tr("Reset to the default value"));
     defaultValue->setFocusPolicy(Qt::NoFocus);
     connect(defaultValue, &QToolButton::clicked, this, [this, &field] {
         begin();

@@ -65,12 +65,12 @@ class PresetList : public QWidget {
         list_->setGridSize({kSide + 18, kSide + 28});
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         list_->setFixedHeight(2 * (kSide + 28) + 16);
-        list_->setToolTip(tr("Click a look to give it to the hair"));
+        list_->setToolTip(tr("Click a look to apply it to the hair"));
         layout->addWidget(list_);
         auto* row = new QHBoxLayout;
-        auto* save = new QPushButton(tr("Keep this look…"));
+        auto* save = new QPushButton(tr("Save look…"));
         save->setObjectName("saveLook");
-        save->setToolTip(tr("Keeps all settings of this panel's material under a name, for other documents"));
+        save->setToolTip(tr("Saves all material settings of this panel as a preset for any document"));
         row->addWidget(save);
         row->addStretch(1);
         layout->addLayout(row);
@@ -114,7 +114,7 @@ class PresetList : public QWidget {
         }
         for (const std::string& name : savedLooks(folderOfLooks())) {
             if (auto material = loadLook(folderOfLooks(), name)) {
-                add({words(name), *material, nullptr}, tr("A look that you kept"));
+                add({words(name), *material, nullptr}, tr("A look that you saved"));
             } else {
                 messages_.warn(errorText(material.error()));
             }
@@ -142,7 +142,7 @@ class PresetList : public QWidget {
     void save() {
         bool taken = false;
         const QString name =
-            QInputDialog::getText(this, tr("Keep this look"), tr("Name"), QLineEdit::Normal, {}, &taken);
+            QInputDialog::getText(this, tr("Save look"), tr("Name"), QLineEdit::Normal, {}, &taken);
         if (!taken || name.trimmed().isEmpty()) return;
         const auto& material = document_.groom().material;
         if (auto saved = saveLook(folderOfLooks(), name.trimmed().toStdString(), material); !saved) {

@@ -43,7 +43,7 @@ class EffectsPanel : public QWidget {
           table_(new QTreeWidget),
           bars_(new CostBars(parts.preferences, table_)),
           note_(new QLabel),
-          measure_(new QPushButton(tr("Measure on and off"))),
+          measure_(new QPushButton(tr("Measure on/off"))),
           trial_(new QWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
@@ -87,11 +87,12 @@ class EffectsPanel : public QWidget {
   private:
     void makeBudget(QVBoxLayout& layout) {
         auto* row = new QHBoxLayout;
-        auto* words = new QLabel(tr("Budget of a frame"));
+        auto* words = new QLabel(tr("Frame budget"));
         words->setBuddy(budget_);
         budget_->setObjectName("effectsBudget");
-        budget_->setToolTip(tr(
-            "What the simulation may take of a frame: the line through the bars; what is beyond it is red"));
+        budget_->setToolTip(
+            tr("Simulation time that a frame may take, drawn as the line through the bars. Time beyond it is "
+               "red"));
         budget_->setShown(1, tr("ms"), 1);
         budget_->setValue(std::clamp(QSettings().value(kBudgetKey, kUsualBudget_ms).toDouble(), 0.1, 100.0));
         connect(budget_, &NumberBox::edited, this, [this](double milliseconds) {
@@ -117,15 +118,16 @@ class EffectsPanel : public QWidget {
         table_->header()->setSectionResizeMode(kWhy, QHeaderView::Stretch);
         table_->setItemDelegateForColumn(kMs, bars_);
         table_->setToolTip(
-            tr("What each effect takes of a frame, while it plays of the last half second; megabytes of its "
-               "own; and why it runs or does not. Untick an effect to try the hair without it."));
+            tr("Frame time of each effect, averaged over the last half second of playback, its memory in "
+               "megabytes, and why it runs or does not. Clear a checkbox to preview the hair without that "
+               "effect."));
     }
 
     void makeMeasure() {
         measure_->setObjectName("effectsMeasure");
         measure_->setToolTip(
-            tr("Runs the hair with and without each effect, on the processor, and shows what each adds to a "
-               "frame: the only way to price effects that share one solve"));
+            tr("Runs the hair with and without each effect on the CPU and shows what each adds to a frame. "
+               "Effects that share one solve can only be measured this way"));
         connect(measure_, &QPushButton::clicked, this, &EffectsPanel::measure);
     }
 
@@ -175,18 +177,19 @@ class EffectsPanel : public QWidget {
             const Quartiles& ms = *cost->costMilliseconds;
             item.setText(kMs, lostInSpread(ms) ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
             item.setData(kMs, CostBars::kMilliseconds, std::max(ms.median, 0.0));
-            item.setToolTip(kMs,
-                            tr("%1 ms a frame with it, %2 without; half of the runs lie between %3 and %4")
-                                .arg(costs_->milliseconds.median, 0, 'f', 2)
-                                .arg(cost->millisecondsOff->median, 0, 'f', 2)
-                                .arg(ms.q1, 0, 'f', 3)
-                                .arg(ms.q3, 0, 'f', 3));
+            item.setToolTip(
+                kMs,
+                tr("%1 ms per frame with it, %2 without. The middle half of the runs is between %3 and %4")
+                    .arg(costs_->milliseconds.median, 0, 'f', 2)
+                    .arg(cost->millisecondsOff->median, 0, 'f', 2)
+                    .arg(ms.q1, 0, 'f', 3)
+                    .arg(ms.q3, 0, 'f', 3));
         } else if (measured && live > 0) {
             item.setText(kMs, QString::number(live, 'f', 3));
             item.setData(kMs, CostBars::kMilliseconds, live);
-            item.setToolTip(kMs, tr("Its share of the frame's time"));
+            item.setToolTip(kMs, tr("Share of the frame time"));
         } else if (measured) {
-            item.setToolTip(kMs, tr("Part of the strands' one solve; Measure on and off tells its price"));
+            item.setToolTip(kMs, tr("Part of the shared strand solve. Use Measure on/off to get its cost"));
         }
     }
 
@@ -213,12 +216,12 @@ class EffectsPanel : public QWidget {
     void makeTrial() {
         auto* row = new QHBoxLayout(trial_);
         row->setContentsMargins(0, 0, 0, 0);
-        auto* keep = new QPushButton(tr("Leave out for good"));
+        auto* keep = new QPushButton(tr("Disable permanently"));
         keep->setObjectName("effectsKeep");
-        keep->setToolTip(tr("Changes the document so that these effects are off; can be undone"));
-        auto* all = new QPushButton(tr("All as authored"));
+        keep->setToolTip(tr("Turns these effects off in the document. You can undo this"));
+        auto* all = new QPushButton(tr("Re-enable all"));
         all->setObjectName("effectsAll");
-        all->setToolTip(tr("Ends the try: every effect runs that the document calls for"));
+        all->setToolTip(tr("Re-enable all effects"));
         row->addWidget(keep);
         row->addWidget(all);
         connect(keep, &QPushButton::clicked, this, &EffectsPanel::keepTrial);
@@ -233,7 +236,7 @@ class EffectsPanel : public QWidget {
         }
         player_.setLeftOut({});
         document_.perform(
-            editing::setSettings(document_.editing().model(), groom, tr("Leave effects out").toStdString()));
+            editing::setSettings(document_.editing().model(), groom, tr("Disable effects").toStdString()));
     }
 
     void takeCheck(QTreeWidgetItem* item, int column) {
@@ -247,17 +250,17 @@ class EffectsPanel : public QWidget {
     }
 
     QString words(bool nothing) const {
-        if (nothing) return tr("Place hair to see what its simulation would run.");
+        if (nothing) return tr("Place hair to see which effects its simulation runs.");
         if (const EffectCosts* costs = this->costs()) {
             const QString age = costsChange_ != changes_ ? tr(" before the last change") : QString();
-            return tr("On and off, of %1 ms a frame on the processor, measured%2.")
+            return tr("Measured on and off, of %1 ms per frame on the CPU%2.")
                 .arg(costs->milliseconds.median, 0, 'f', 2)
                 .arg(age);
         }
-        if (!player_.frame()) return tr("What would run; play (Space) to see what it costs.");
+        if (!player_.frame()) return tr("Effects that would run. Press Play (Space) to see their cost.");
         const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu;
-        return onGpu ? tr("Live, on the GPU: one kernel moves the strands with all their effects")
-                     : tr("Live, on the processor: mean of the last half second");
+        return onGpu ? tr("Live, on the GPU: one kernel simulates the strands with all their effects")
+                     : tr("Live, on the CPU: mean of the last half second");
     }
 
     void refresh() {
@@ -295,13 +298,13 @@ class EffectsPanel : public QWidget {
             item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
             item.setData(kName, Qt::CheckStateRole, {});
         }
-        item.setToolTip(kName, known ? tr("Untick to try the hair without it")
-                                     : tr("Follows from the hair's shape and speed"));
+        item.setToolTip(kName, known ? tr("Clear to preview the hair without this effect")
+                                     : tr("Depends on the shape and speed of the hair"));
         const QString none = QStringLiteral("–");
         showMilliseconds(item, effect, measured);
         item.setText(kMb,
                      effect.on ? QString::number(static_cast<double>(effect.bytes) / 1e6, 'f', 1) : none);
-        item.setText(kWhy, leftOut ? tr("left out for a try") : QString::fromStdString(effect.why));
+        item.setText(kWhy, leftOut ? tr("disabled for preview") : QString::fromStdString(effect.why));
         item.setToolTip(kWhy, item.text(kWhy));
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
         item.setTextAlignment(kMb, Qt::AlignRight | Qt::AlignVCenter);

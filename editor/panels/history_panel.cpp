@@ -16,9 +16,9 @@ class HistoryPanel : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(12, 8, 12, 12);
         list_->setObjectName("steps");
-        list_->setToolTip(tr("Click a step to go back or forward to it"));
+        list_->setToolTip(tr("Click a step to undo or redo to it"));
         memory_->setProperty("role", "dim");
-        memory_->setToolTip(tr("Memory that undo holds; the oldest steps are forgotten beyond the bound"));
+        memory_->setToolTip(tr("Memory limit of the undo history. Beyond it, the oldest steps are deleted"));
         layout->addWidget(list_, 1);
         layout->addWidget(memory_);
         connect(list_, &QListWidget::itemClicked, this,
@@ -45,7 +45,7 @@ class HistoryPanel : public QWidget {
         }
         list_->setCurrentRow(document_.doneSteps());
         constexpr double kMega = 1 << 20;
-        memory_->setText(tr("Memory: %1 of at most %2 MB")
+        memory_->setText(tr("Memory: %1 of %2 MB")
                              .arg(static_cast<double>(document_.historyBytes()) / kMega, 0, 'f', 1)
                              .arg(static_cast<double>(document_.historyLimit()) / kMega, 0, 'f', 0));
     }

@@ -56,10 +56,7 @@ const std::vector<Group>& groups() {
          true},
         {QT_TR_NOOP("Cross-section"), {"eccentricity"}, kMarschner, false},
         {QT_TR_NOOP("First highlight (R)"), {"rIntensity", "rWidth", "rShiftDegrees"}, kFibres, false},
-        {QT_TR_NOOP("Light that shines through (TT)"),
-         {"ttIntensity", "ttWidth", "ttShiftDegrees"},
-         kFibres,
-         false},
+        {QT_TR_NOOP("Transmission (TT)"), {"ttIntensity", "ttWidth", "ttShiftDegrees"}, kFibres, false},
         {QT_TR_NOOP("Second highlight (TRT)"),
          {"trtIntensity", "trtWidth", "trtShiftDegrees"},
          kFibres,
@@ -72,7 +69,7 @@ const std::vector<Group>& groups() {
          {"glintIntensity", "glintWidthDegrees", "glintNearDegrees", "glintFarDegrees"},
          kSadeghi,
          false},
-        {QT_TR_NOOP("Own light, tentacles"),
+        {QT_TR_NOOP("Emission and tentacles"),
          {"emission", "emissionRootColour", "emissionTipColour", "tubes"},
          kAll,
          false},
@@ -141,7 +138,7 @@ class LookPanel : public QWidget {
         layout->addWidget(rows);
         auto* button = new QPushButton(tr("Colours from the pigment"));
         button->setObjectName("colourByMelanin");
-        button->setToolTip(tr("Gives root and tip the colour that this pigment makes of much hair"));
+        button->setToolTip(tr("Set root and tip colour from melanin"));
         connect(button, &QPushButton::clicked, this, [this] {
             HairMaterial material = document_.groom().material;
             colourByMelanin(material);

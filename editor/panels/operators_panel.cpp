@@ -45,14 +45,14 @@ class OperatorsPanel : public QWidget {
         auto* first = new QHBoxLayout;
         first->addWidget(makeAddButton());
         first->addWidget(pushButton("operatorBake", tr("Bake"),
-                                    tr("Makes the hair as it is all there is; the operators are gone"),
+                                    tr("Apply all operators permanently and clear the stack"),
                                     [this] { perform(editing::bakeOperators(model()), kNone); }));
         layout->addLayout(first);
         list_->setObjectName("operators");
         list_->setMinimumHeight(150);
         list_->setToolTip(
-            tr("What makes the hair out of its base shape, from the first on; unchecked ones do "
-               "nothing. Brush strokes go to a sculpt at the end."));
+            tr("Operators that build the hair from its base shape, in order from the top. Clear a checkbox "
+               "to mute an operator. Brush strokes go into a Sculpt operator at the end."));
         layout->addWidget(list_);
         layout->addLayout(makeButtons());
         settings_ = new QVBoxLayout;
@@ -84,7 +84,7 @@ class OperatorsPanel : public QWidget {
     QWidget* makeAddButton() {
         auto* add = new QPushButton(tr("Add"));
         add->setObjectName("operatorAdd");
-        add->setToolTip(tr("Adds an operator behind the chosen one"));
+        add->setToolTip(tr("Add an operator after the selected one"));
         auto* menu = new QMenu(add);
         menu->setToolTipsVisible(true);
         for (const StackOperator& known : stackOperators()) {
@@ -102,36 +102,36 @@ class OperatorsPanel : public QWidget {
 
     QLayout* makeButtons() {
         QWidget* const buttons[] = {
-            pushButton("operatorUp", tr("Earlier"), tr("Lets it act before the one above it"),
+            pushButton("operatorUp", tr("Move up"), tr("Move the operator up, to apply it earlier"),
                        [this] {
                            if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
                        }),
-            pushButton("operatorDown", tr("Later"), tr("Lets it act after the one below it"),
+            pushButton("operatorDown", tr("Move down"), tr("Move the operator down, to apply it later"),
                        [this] {
                            if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
                        }),
-            pushButton("operatorRemove", tr("Remove"), tr("Takes the operator away"),
+            pushButton("operatorRemove", tr("Remove"), tr("Remove the operator"),
                        [this] {
                            if (chosen() != kNone)
                                perform(editing::removeOperator(model(), chosen()), chosen());
                        }),
-            pushButton("operatorSolo", tr("Solo"), tr("Lets it act alone; again: all of them"),
+            pushButton("operatorSolo", tr("Solo"), tr("Apply only this operator. Click again to apply all"),
                        [this] {
                            if (chosen() != kNone) perform(editing::soloOperator(model(), chosen()), chosen());
                        }),
-            pushButton("operatorCopy", tr("Duplicate"), tr("Adds the same again behind it"),
+            pushButton("operatorCopy", tr("Duplicate"), tr("Duplicate the operator"),
                        [this] {
                            if (chosen() != kNone)
                                perform(editing::copyOperator(model(), chosen()), chosen() + 1);
                        }),
             makePresetsButton(),
             pushButton("operatorClip", tr("Copy"),
-                       tr("Puts the operator on the clipboard, for another project"),
+                       tr("Copy the operator to the clipboard, also for other projects"),
                        [this] {
                            if (chosen() != kNone) copy();
                        }),
             pushButton("operatorPaste", tr("Paste"),
-                       tr("Adds what is on the clipboard behind the chosen one"), [this] { paste(); })};
+                       tr("Paste operators from the clipboard after the selected one"), [this] { paste(); })};
         auto* grid = new QGridLayout;
         constexpr int kColumns = 3;
         for (int i = 0; i < static_cast<int>(std::size(buttons)); ++i)
@@ -142,7 +142,7 @@ class OperatorsPanel : public QWidget {
     QWidget* makePresetsButton() {
         auto* presets = new QPushButton(tr("Presets"));
         presets->setObjectName("operatorPresets");
-        presets->setToolTip(tr("Stacks that you kept, for all projects"));
+        presets->setToolTip(tr("Operator stacks that you saved for any project"));
         auto* menu = new QMenu(presets);
         connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillPresets(*menu); });
         fillPresets(*menu);
@@ -182,7 +182,7 @@ class OperatorsPanel : public QWidget {
             shown->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
             shown->setIconSize({kThumbnail_px, kThumbnail_px});
             shown->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-            shown->setToolTip(tr("Adds its operators behind the chosen one"));
+            shown->setToolTip(tr("Adds these operators after the selected one"));
             if (const auto file = stackPresetFile(folderOfStacks(), name))
                 shown->setIcon(QIcon(QString::fromStdString(pictureOf(*file).string())));
             action->setDefaultWidget(shown);
@@ -198,16 +198,15 @@ class OperatorsPanel : public QWidget {
             });
         }
         menu.addSeparator();
-        connect(menu.addAction(tr("Keep the operator…")), &QAction::triggered, this, [this] {
+        connect(menu.addAction(tr("Save operator…")), &QAction::triggered, this, [this] {
             if (chosen() != kNone) keep({operators()[chosen()]});
         });
-        connect(menu.addAction(tr("Keep the stack…")), &QAction::triggered, this,
-                [this] { keep(operators()); });
+        connect(menu.addAction(tr("Save stack…")), &QAction::triggered, this, [this] { keep(operators()); });
     }
     void keep(const std::vector<Operator>& kept) {
         bool taken = false;
         const QString name =
-            QInputDialog::getText(this, tr("Keep operators"), tr("Name"), QLineEdit::Normal, {}, &taken);
+            QInputDialog::getText(this, tr("Save operators"), tr("Name"), QLineEdit::Normal, {}, &taken);
         if (!taken || name.trimmed().isEmpty()) return;
         const auto file = stackPresetFile(folderOfStacks(), name.trimmed().toStdString());
         std::error_code problem;
@@ -233,7 +232,7 @@ class OperatorsPanel : public QWidget {
         layout->setContentsMargins(0, 0, 0, 0);
         layout->addWidget(new QLabel(tr("Curve")));
         layout->addWidget(pushButton("curveDraw", tr("Draw"),
-                                     tr("Takes the pen: draw over the head, or click point by point"),
+                                     tr("Draw over the head with the pen, or click point by point"),
                                      [this, index] {
                                          auto* tool = dynamic_cast<CurveTool*>(tools_.find("curve"));
                                          if (!tool) return;
@@ -241,7 +240,8 @@ class OperatorsPanel : public QWidget {
                                          tools_.activate(tool);
                                      }));
         layout->addWidget(pushButton(
-            "curveClear", tr("Clear"), tr("Without a curve the operator does nothing"), [this, index] {
+            "curveClear", tr("Clear"), tr("Delete the curve. Without a curve the operator has no effect"),
+            [this, index] {
                 if (index >= operators().size()) return;
                 Operator changed = operators()[index];
                 setCurveOf(changed, {});
@@ -331,8 +331,8 @@ class OperatorsPanel : public QWidget {
             new FieldForm(document_, preferences_, operatorMaskFields(document_.groom(), index, failed)));
         rows->addWidget(imageButton(
             "maskImage", tr("Mask from image…"),
-            tr("Fills the painted mask that the operator has with the values of a PNG at the root UVs; where "
-               "it has none of the four, the first that nothing uses, which it then has"),
+            tr("Fills the painted mask of the operator with the values of a PNG at the root UVs. If the "
+               "operator has no mask, it gets the first unused one"),
             [this, index](const MaskImage& image) { return takeMask(index, image); }, failed));
         rows->addWidget(new MaskRamp(document_, index, failed));
         return form;

@@ -51,7 +51,7 @@ Result<DocumentFiles::Opened> DocumentFiles::readHead(const std::string& path,
     opened.groom.spheres = std::move(head->colliders.spheres);
     QStringList notes;
     if (!opened.groom.spheres.empty()) {
-        notes += QObject::tr("Hair will collide with %n spheres beside it", nullptr,
+        notes += QObject::tr("Hair will collide with %n separate spheres", nullptr,
                              static_cast<int>(opened.groom.spheres.size()));
     }
     if (!scene.warnings.empty()) notes += QString::fromStdString(scene.warnings.front());
@@ -89,7 +89,7 @@ void DocumentFiles::show(Opened opened, const QString& path, const QString& name
     player_.setActor(std::move(opened.actor));
     const Groom& groom = document_.groom();
     const QString what = groom.strandCount() > 0 ? QObject::tr("%L1 strands").arg(groom.strandCount())
-                                                 : QObject::tr("a head; paint its scalp next");
+                                                 : QObject::tr("a head. Next, paint its scalp");
     messages_.say(opened.note.isEmpty() ? QObject::tr("%1: %2").arg(name, what)
                                         : QObject::tr("%1: %2. %3").arg(name, what, opened.note));
 }
@@ -118,9 +118,9 @@ FileKind kindOf(const QString& path) {
 QString openFilter() {
     const QString project = "*.hairloom", heads = patternsOf(meshFormats()),
                   hair = patternsOf(strandFormats());
-    return QObject::
-        tr("Everything that opens (%1 %2 %3);;Hairloom projects (%1);;Heads (%2);;Hair (%3);;All files (*)")
-            .arg(project, heads, hair);
+    return QObject::tr(
+               "All supported files (%1 %2 %3);;Hairloom projects (%1);;Heads (%2);;Hair (%3);;All files (*)")
+        .arg(project, heads, hair);
 }
 
 QString strandFilter() {
@@ -200,7 +200,7 @@ void DocumentFiles::importStrands(const QString& path, const StrandImportOptions
             if (!groom.scalp) {
                 show(std::move(opened), {}, name);
             } else if (groom.scalp != head || groom.scalpSelection != selection) {
-                messages_.warn(QObject::tr("The scalp has changed meanwhile; import the hair again"));
+                messages_.warn(QObject::tr("The scalp has changed in the meantime: import the hair again"));
                 return;
             } else {
                 replaceHair(groom, opened.groom);
@@ -226,14 +226,14 @@ void DocumentFiles::transferTo(const QString& path) {
             const auto transfer = transferToFile(opened.groom, file);
             if (!transfer) return tl::unexpected(transfer.error());
             opened.farthest = *std::ranges::max_element(transfer->distances);
-            if (transfer->baked) opened.note = QObject::tr("; operators are baked");
+            if (transfer->baked) opened.note = QObject::tr(". Operators were baked");
             return opened;
         },
         [this, name, file, before = document_.groom()](Opened opened) {
             const Groom& now = document_.groom();
             if (now.scalp != before.scalp || now.pointAttributes.version(attribute::kPosition) !=
                                                  before.pointAttributes.version(attribute::kPosition))
-                return messages_.warn(QObject::tr("The hair has changed meanwhile; transfer it again"));
+                return messages_.warn(QObject::tr("The hair has changed in the meantime: transfer it again"));
             document_.perform(editing::replaceGroom(document_.editing().model(), std::move(opened.groom),
                                                     QObject::tr("Transfer to %1").arg(name).toStdString(),
                                                     transferRecord(file, 0)));
@@ -251,7 +251,7 @@ void DocumentFiles::openRecovered(const QString& file, const QString& documentPa
         [this, file, documentPath, name](Opened opened) {
             document_.restore(std::move(opened.groom), documentPath, name);
             player_.setActor(std::move(opened.actor));
-            messages_.say(QObject::tr("%1 is back as it was; save it to keep it").arg(name));
+            messages_.say(QObject::tr("%1 is recovered. Save it to keep it").arg(name));
             recovered_ = file;
         });
 }

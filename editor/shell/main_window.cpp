@@ -295,7 +295,7 @@ bool MainWindow::saveTo(const QString& path) {
     }
     preferences_.addRecentFile(path);
     files_.discardRecovered();
-    messages_.say(tr("%1 saved").arg(QFileInfo(path).fileName()));
+    messages_.say(tr("Saved %1").arg(QFileInfo(path).fileName()));
     return true;
 }
 

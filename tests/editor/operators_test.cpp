@@ -176,7 +176,7 @@ TEST_F(OperatorsTest, AStackIsKeptWithAPictureAndUsedAgain) {
         dialog->setTextValue("Tousled");
         dialog->accept();
     });
-    entry("Keep the stack…")->trigger();
+    entry("Save stack…")->trigger();
     auto* kept = qobject_cast<QWidgetAction*>(entry("Tousled"));
     ASSERT_TRUE(kept) << window->statusLine().message().toStdString();
     auto* button = qobject_cast<QToolButton*>(kept->defaultWidget());
