@@ -173,7 +173,7 @@ TEST_F(LevelsTest, ACardShapedByHandStaysSoWhenTheRestIsMadeAnew) {
     trigger("edit.undo");
     EXPECT_EQ(groom().cardEdits.size(), 1u);
     find<LevelsPanel>("levels")->exportTo(inFolder("few.glb"));
-    EXPECT_TRUE(window->statusLine().message().contains("few.glb:"))
+    EXPECT_TRUE(window->statusLine().message().contains("Exported few.glb"))
         << window->statusLine().message().toStdString();
     // With other budgets the card is of a level that is not made.
     find<NumberBox>("levelCards")->spinBox().setValue(20);

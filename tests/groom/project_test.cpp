@@ -281,7 +281,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = kProjectVersion + 2;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 11; this program reads versions up to 9"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 11, but this program reads versions up to 9"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
@@ -289,7 +289,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     bytes[8] = std::byte{9};
     ASSERT_TRUE(writeFileAtomically(other.path, bytes, Replacing::Anything));
     EXPECT_THAT(loadError(other.path),
-                HasSubstr("container is version 9; this program reads versions up to 1"));
+                HasSubstr("container is version 9, but this program reads versions up to 1"));
 }
 
 TEST(HostileProject, HeadsAreReadStrictly) {

@@ -50,7 +50,7 @@ bool allZero(std::span<const std::byte> bytes) {
 }
 
 std::string newerVersion(std::string_view what, std::uint64_t found, std::uint32_t newest) {
-    return fmt::format("{} is version {}; this program reads versions up to {}", what, found, newest);
+    return fmt::format("{} is version {}, but this program reads versions up to {}", what, found, newest);
 }
 
 }  // namespace
