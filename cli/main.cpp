@@ -19,6 +19,7 @@
 #include "cli/global_options.h"
 #include "cli/help_format.h"
 #include "cli/job.h"
+#include "cli/usage_error.h"
 #include "core/base/log.h"
 #include "core/base/output_file.h"
 #include "core/base/parallel.h"
@@ -99,13 +100,13 @@ int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine
     return kDone;
 }
 
-/// What the parser says goes where it belongs: help and version are answers, all else is wrong usage.
+/// Help and version are answers; all else that the parser throws is wrong usage.
 int endParsing(const CLI::App& app, const CLI::ParseError& error, bool json) {
-    const bool isAnswer = app.exit(error) == 0;
-    if (!isAnswer) {
-        if (json) hairloom::cli::printErrorObject({{}, {}, error.what(), "see --help"});
+    if (error.get_exit_code() != 0) {
+        hairloom::cli::printError(hairloom::cli::usageError(app, error), json);
         return kWrongUsage;
     }
+    app.exit(error);
     if (const auto flushed = hairloom::cli::flushOutput(); !flushed) return failWith(flushed.error(), false);
     return kDone;
 }
@@ -134,7 +135,7 @@ int main(int argc, char** argv) {
         const auto isJson = [](const char* word) { return std::string_view(word) == "--json"; };
         return endParsing(app, error, std::any_of(argv + 1, argv + argc, isJson));
     }
-    hairloom::setWriteRules({options.force, true, "give another name, or --force"});
+    hairloom::setWriteRules({options.force, true, "choose another name, or use --force"});
     if (options.quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
     try {
         hairloom::setThreadCount(options.threads);

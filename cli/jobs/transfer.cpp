@@ -27,8 +27,7 @@ Result<Report> transferHair(const TransferOptions& options) {
     const auto transfer = transferToFile(*groom, options.head, unit);
     if (!transfer) return tl::unexpected(inFile(transfer.error(), options.input));
     if (transfer->baked)
-        log::warning("{}: its operators name places on the old head; the hair as it is is all there is now",
-                     options.input);
+        log::warning("{}: its operators refer to places on the old head, so they were baked", options.input);
     Report report;
     report["strands"] = groom->strandCount();
     report["same_mesh"] = transfer->sameMesh;
@@ -48,7 +47,7 @@ Result<Report> transferHair(const TransferOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<TransferOptions>();
     job.add_option("groom", options->input, "Hair that grows on a head")->required();
-    job.add_option("--to", options->head, "Head to put it on, upright and looking the same way")->required();
+    job.add_option("--to", options->head, "New head, upright and facing the same way")->required();
     addUnitOption(job, options->unit);
     job.add_option("-o,--output", options->output, "Project to write")->required();
     return [options](const std::string&) {
@@ -59,7 +58,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job transferJob() {
-    return {"transfer", "Put a hairstyle on another head",
+    return {"transfer", "Transfer a hairstyle to another head",
             "bob.hairloom --to head.obj --unit dm -o bob2.hairloom", declare};
 }
 
