@@ -126,7 +126,7 @@ Error wrongValue(const CLI::App& app, const std::string& name, const std::string
     if (const auto end = words.find(" not in {"); end != std::string::npos) {
         value = words.substr(0, end);
         const std::string guess = nearest(value, splitAtCommas(valuesOf(*option).choices));
-        if (!guess.empty()) expected += fmt::format("; did you mean {}?", guess);
+        if (!guess.empty()) expected += fmt::format(" (did you mean {}?)", guess);
     } else if (words.starts_with("Value ") && words.find(" not in range ") != std::string::npos) {
         value = words.substr(6, words.find(" not in range ") - 6);
     } else {

@@ -87,8 +87,7 @@ StrandWriter usdaWriter() {
     StrandWriter writer{
         "usda",
         "USD .usda",
-        "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
-        "any name",
+        "width and colour of each point; root UV, id, group and guide flag of each strand; all attributes",
         "none",
         usdTargets(".usda"),
         writeUsda};

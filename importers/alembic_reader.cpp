@@ -133,7 +133,8 @@ class Reader {
   private:
     Status visit(const AlembicObject& object, const std::vector<Level>& above, int depth) {
         if (depth > kMaxDepth)
-            return fail(object.path + " lies too deep", fmt::format("expected {} levels", kMaxDepth));
+            return fail(object.path + " is nested too deep",
+                        fmt::format("expected at most {} levels", kMaxDepth));
         const auto properties = archive_.properties(object);
         if (!properties) return tl::unexpected(properties.error());
         std::vector<Level> levels = above;
@@ -308,9 +309,9 @@ class Reader {
 
     void reportFrames(std::uint32_t samples) {
         if (std::exchange(framesReported_, true)) return;
-        strands_.warnings.push_back(
-            fileNote(fmt::format("the hair moves: {} samples in time; the first was taken", samples), "time",
-                     "import --record keeps all as a record of frames"));
+        strands_.warnings.push_back(fileNote(
+            fmt::format("the hair is animated: {} time samples, of which the first was imported", samples),
+            "time", "import with --record to keep all of them"));
     }
 
     Status readAttributes(const std::vector<AlembicProperty>& properties, CurveSet& set) {
@@ -349,7 +350,7 @@ class Reader {
                      const AlembicProperty& named, CurveSet& set) {
         if (values.samples == 0) return {};
         if (values.pod == AlembicPod::String || values.pod == AlembicPod::WideString) {
-            strands_.warnings.push_back(fileNote("text of curves was left out", named.name));
+            strands_.warnings.push_back(fileNote("string attributes of curves were left out", named.name));
             return {};
         }
         CurveAttribute attribute;
@@ -423,7 +424,7 @@ bool isAlembic(std::span<const std::byte> bytes) {
 Result<RawStrands> readAlembic(const std::string& file, std::vector<std::byte>&& bytes,
                                const StrandImportOptions& options) {
     if (std::to_integer<int>(bytes[0]) == 0x89)
-        return failIn(file, Byte{0}, "is in the HDF5 container of Alembic before 1.5",
+        return failIn(file, Byte{0}, "is an Alembic file in HDF5, from before version 1.5",
                       "expected Ogawa: export it again, or run abcconvert -toOgawa");
     const auto archive = AlembicArchive::open(file, bytes);
     if (!archive) return tl::unexpected(archive.error());

@@ -168,7 +168,7 @@ Result<RibbonOrder> findOrder(const std::string& file, const ObjStrandText& obj,
     }
     if (fitting.empty()) {
         return failIn(file, Line{obj.faceLines[farthest]},
-                      "this face does not lie between neighbouring cross-sections of one hair ribbon",
+                      "this face is not between neighbouring cross-sections of one hair ribbon",
                       fmt::format("expected ribbons of {} segments, or OBJ lines", size / 2 - 1));
     }
     return *std::min_element(fitting.begin(), fitting.end(), [&](RibbonOrder a, RibbonOrder b) {

@@ -70,7 +70,8 @@ void orientToScalp(RawStrands& raw, const ScalpMesh& scalp) {
     for (std::size_t strand = 0; strand < strands; ++strand)
         turn(raw, raw.offsets[strand], raw.offsets[strand + 1]);
     raw.warnings.push_back(fileNote(
-        fmt::format("{} strands were turned: the last point of most is nearer to the scalp", strands),
+        fmt::format("{} strands were reversed, because the last point of most is nearer to the scalp",
+                    strands),
         "strands"));
 }
 
@@ -88,9 +89,9 @@ Status checkRootDistance(const RawStrands& raw, const ScalpMesh& scalp, float me
         best = &unit;
         nearest = distance;
     }
-    return fail(fmt::format("its roots lie {:.3g} m from the head (median)", found),
-                best ? fmt::format("with the unit {} they would lie {:.3g} m from it", best->name, nearest)
-                     : "expected hair of this head; none of the units m, dm, cm, mm and inch puts it there");
+    return fail(fmt::format("its roots are {:.3g} m from the head (median)", found),
+                best ? fmt::format("with the unit {} they would be {:.3g} m from it", best->name, nearest)
+                     : "expected hair of this head. None of the units m, dm, cm, mm and inch puts it there");
 }
 
 }  // namespace hairloom

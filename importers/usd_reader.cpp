@@ -140,10 +140,10 @@ class Reader {
         const double rate = number("timeCodesPerSecond", number("framesPerSecond", 24));
         strands_.framesPerSecond = rate > 0 && std::isfinite(rate) ? static_cast<float>(rate) : 24;
         if (stage_.notFollowed.empty()) return;
-        strands_.warnings.push_back(fileWarning(
-            fmt::format("{} and {} more are not followed", stage_.notFollowed.front(),
-                        stage_.notFollowed.size() - 1),
-            "composition", "flatten the stage (usdcat --flatten) to have all that it is made of"));
+        strands_.warnings.push_back(
+            fileWarning(fmt::format("{} and {} more were not loaded", stage_.notFollowed.front(),
+                                    stage_.notFollowed.size() - 1),
+                        "composition", "flatten the stage (usdcat --flatten) to include everything"));
     }
 
     Status visit(UsdPrim& prim, const std::string& path, const Above& above) {
@@ -189,7 +189,7 @@ class Reader {
         const std::size_t wanted = numbersOf(kind);
         if (wanted == 0 || value.numbers.size() != wanted)
             return fail(fmt::format("{} of {} has {} numbers", name, prim.name, value.numbers.size()),
-                        fmt::format("expected {} of a transform that is known", wanted));
+                        fmt::format("expected {} of a known transform", wanted));
         const Eigen::Affine3d result = operation(kind, value.numbers.doubles());
         return inverse ? Eigen::Affine3d(result.inverse()) : result;
     }
@@ -268,8 +268,9 @@ class Reader {
         if (times.size() < 2) return {};
         if (!frames_) {
             strands_.warnings.push_back(
-                fileNote(fmt::format("the hair moves: {} samples in time; the first was taken", times.size()),
-                         set.path, "import --record keeps all as a record of frames"));
+                fileNote(fmt::format("the hair is animated: {} time samples, of which the first was imported",
+                                     times.size()),
+                         set.path, "import with --record to keep all of them"));
             return {};
         }
         for (const double time : times) {
@@ -293,7 +294,8 @@ class Reader {
         added.name = isWidth ? "width" : attribute.name.substr(kPrimvar.size());
         if (value.numbers.empty()) {
             if (!value.texts.empty())
-                strands_.warnings.push_back(fileNote("text of curves was left out", added.name));
+                strands_.warnings.push_back(
+                    fileNote("string attributes of curves were left out", added.name));
             return;
         }
         // The colour that a viewer draws a whole object in is none of the hair's.

@@ -38,7 +38,7 @@ class Parser {
     Parser(const std::string& file, std::string_view text) : file_(file), text_(text) {}
 
     Result<UsdStage> run() {
-        if (!text_.starts_with("#usda")) return error("is no USD text", "expected \"#usda 1.0\" first");
+        if (!text_.starts_with("#usda")) return error("is not USD text", "expected \"#usda 1.0\" first");
         if (parseLayer()) return std::move(stage_);
         return failIn(file_, Line{failedLine_}, problem_, expected_);
     }
@@ -115,7 +115,8 @@ class Parser {
 
     bool takeString(std::string& into) {
         const char quote = peek();
-        if (quote != '"' && quote != '\'') return wrong(fmt::format("found {}", shown()), "expected a text");
+        if (quote != '"' && quote != '\'')
+            return wrong(fmt::format("found {}", shown()), "expected a string");
         const std::string triple(3, quote);
         const bool isLong = text_.substr(at_).starts_with(triple);
         const std::string_view end =
@@ -123,13 +124,13 @@ class Parser {
         at_ += end.size();
         while (at_ < text_.size() && !text_.substr(at_).starts_with(end)) {
             if (text_[at_] == '\n') {
-                if (!isLong) return wrong("a text is not closed", "expected its quotation mark");
+                if (!isLong) return wrong("a string is not closed", "expected its quotation mark");
                 ++line_;
             }
             if (text_[at_] == '\\' && at_ + 1 < text_.size()) ++at_;
             into += text_[at_++];
         }
-        if (at_ >= text_.size()) return wrong("a text is not closed", "expected its quotation mark");
+        if (at_ >= text_.size()) return wrong("a string is not closed", "expected its quotation mark");
         at_ += end.size();
         return true;
     }
@@ -204,7 +205,7 @@ class Parser {
 
     /// A tuple, which may hold tuples (matrices).
     bool tuple(UsdValue& value, int depth) {
-        if (depth > 4) return wrong("tuples lie in each other too deep", "expected a matrix at most");
+        if (depth > 4) return wrong("tuples are nested too deep", "expected a matrix at most");
         if (!need('(')) return false;
         while (!take(')')) {
             if (!(peek() == '(' ? tuple(value, depth + 1) : scalar(value))) return false;
@@ -329,7 +330,7 @@ class Parser {
 
     bool prim(UsdPrim& parent, int depth) {
         if (depth > kMaxDepth)
-            return wrong("prims lie in each other too deep", fmt::format("expected {}", kMaxDepth));
+            return wrong("prims are nested too deep", fmt::format("expected {}", kMaxDepth));
         const std::string_view specifier = word();
         if (specifier != "def" && specifier != "over" && specifier != "class")
             return wrong(fmt::format("found '{}' {}", specifier, shown()), "expected def, over or class");

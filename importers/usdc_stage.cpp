@@ -177,7 +177,7 @@ class Reader {
     Status addChildren(std::uint32_t path, UsdPrim& prim, std::uint32_t depth,
                        const std::vector<std::string>& names) {
         if (depth > kMaxDepth)
-            return error("prims lie in each other too deep", fmt::format("expected {}", kMaxDepth));
+            return error("prims are nested too deep", fmt::format("expected {}", kMaxDepth));
         std::unordered_map<std::string_view, std::size_t> rank;
         for (const std::string& name : names) rank.emplace(name, rank.size());
         std::vector<std::uint32_t> order = children_[path];
@@ -353,7 +353,7 @@ class Reader {
         if (auto status = readPacked(UInt, *size, places); !status) return status;
         for (std::size_t i = 0; i < places.size(); ++i) {
             if (places[i] >= static_cast<double>(table.size()))
-                return error("a packed array names what its table does not have");
+                return error("a packed array refers to an entry that its table does not have");
             numbers.push_back(table[static_cast<std::size_t>(places[i])]);
         }
         return {};

@@ -77,7 +77,8 @@ Result<ScalpMesh> partOfHead(const ScalpMesh& mesh, const HeadImportOptions& opt
     if (faces.empty() && options.collideWith.empty())
         return fail("all groups are left out", "keep at least one");
     if (faces.empty())
-        return fail("no head is left: all groups are left out or to collide with", "keep at least one");
+        return fail("no head is left: all groups are left out or set to collide",
+                    "keep at least one as the head");
     return ScalpMesh::make(soupOf(mesh, faces, options.zUp));
 }
 

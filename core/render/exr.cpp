@@ -60,7 +60,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     const auto* const bytes = reinterpret_cast<const unsigned char*>(file->data());
     Loaded loaded;
     if (ParseEXRVersionFromMemory(&loaded.version, bytes, file->size()) != TINYEXR_SUCCESS)
-        return failed("is no OpenEXR");
+        return failed("is not an OpenEXR file");
     if (loaded.version.tiled != 0 || loaded.version.non_image != 0 || loaded.version.multipart != 0)
         return failed("is tiled, deep or of several parts");
     if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, file->size(), &loaded.error) !=
@@ -72,7 +72,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     const std::int64_t width = std::int64_t{window.max_x} - window.min_x + 1;
     const std::int64_t height = std::int64_t{window.max_y} - window.min_y + 1;
     if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-        return failed("is no picture of up to 16384 pixels along a side");
+        return failed("is not an image of up to 16384 pixels per side");
     std::array<int, 4> places{channelNamed(loaded.header, "R"), channelNamed(loaded.header, "G"),
                               channelNamed(loaded.header, "B"), channelNamed(loaded.header, "A")};
     if (const int grey = channelNamed(loaded.header, "Y"); places[0] < 0 && grey >= 0)

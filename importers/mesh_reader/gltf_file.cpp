@@ -120,7 +120,7 @@ bool isKnownExtension(std::string_view name) {
 Status checkExtensions(const tinygltf::Model& model) {
     for (const std::string& name : model.extensionsRequired) {
         if (!isKnownExtension(name))
-            return fail(fmt::format("requires the extension {}, which is not read", name),
+            return fail(fmt::format("requires the extension {}, which is not supported", name),
                         "expected a file exported without it");
     }
     return {};
@@ -130,7 +130,7 @@ Status checkExtensions(const tinygltf::Model& model) {
 std::string firstLine(std::string text) {
     text = text.substr(0, text.find('\n'));
     while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
-    return text.empty() ? "cannot be read, and the reader does not say why" : text;
+    return text.empty() ? "cannot be read, without a reason from the reader" : text;
 }
 
 std::uint32_t sizeOfComponent(int type) {

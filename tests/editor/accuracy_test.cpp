@@ -114,7 +114,7 @@ TEST_F(AccuracyTest, WhatAnErrorIsMadeOfIsFourBars) {
     measure();
     ASSERT_TRUE(parts->isVisibleTo(parts->parentWidget())) << "of the document's own setting";
     const QString own = parts->words();
-    for (const char* name : {"Steps", "Points", "Model", "Doubt"}) EXPECT_TRUE(own.contains(name));
+    for (const char* name : {"Steps", "Points", "Model", "Uncertainty"}) EXPECT_TRUE(own.contains(name));
     find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
     EXPECT_NE(parts->words(), own) << "fewer points, of the chosen one";
     openBust();

@@ -178,7 +178,7 @@ TEST_F(LevelsTest, ACardShapedByHandStaysSoWhenTheRestIsMadeAnew) {
     // With other budgets the card is of a level that is not made.
     find<NumberBox>("levelCards")->spinBox().setValue(20);
     make();
-    EXPECT_TRUE(words().contains("1 cards shaped by hand are of levels that are not made"))
+    EXPECT_TRUE(words().contains("1 edited cards are of levels that were not created"))
         << words().toStdString();
     EXPECT_FALSE(pick([this] { return width() == 2; }));
     // Scripts and projects have it.
