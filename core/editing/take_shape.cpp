@@ -50,7 +50,7 @@ Result<std::unique_ptr<Command>> takeShape(const Model& model, std::span<const V
     if (!groom.operators.empty() && groom.strandCount() > 0) {
         if (groom.operators.size() >= kMaxOperators)
             return fail(fmt::format("{} operators", groom.operators.size()),
-                        "expected fewer: bake some to make room for the sculpt of the shape");
+                        "expected fewer: bake some before you set the rest shape");
         if (auto sculpt = stackAfterStroke(next, allStrands(groom))) sculpt->exchange(next);
     }
     if (carriesWeight) carryWeight(next.groom.simulation);
