@@ -129,6 +129,8 @@ Error wrongValue(const CLI::App& app, const std::string& name, const std::string
         if (!guess.empty()) expected += fmt::format(" (did you mean {}?)", guess);
     } else if (words.starts_with("Value ") && words.find(" not in range ") != std::string::npos) {
         value = words.substr(6, words.find(" not in range ") - 6);
+    } else if (const auto finite = words.find(" is not a finite number"); finite != std::string::npos) {
+        return {{}, {}, fmt::format("{} is {}", name, words.substr(0, finite)), expected};
     } else {
         return {{}, {}, fmt::format("{}: {}", name, words), expected};
     }
@@ -147,10 +149,11 @@ Error usageError(const CLI::App& app, const CLI::ParseError& error) {
     };
     const auto before = [&](std::string_view mark) { return words.substr(0, words.find(mark)); };
     const bool isNamed = words.starts_with('-') && words.find(": ") != std::string::npos;
-    if (kind == "ExtrasError") {
-        const std::string rest = after("not expected: ");
-        return unknownWord(app, rest.substr(0, rest.find(' ')));
-    }
+    // An unknown word goes before what it may have left out: a misspelt option before a required one.
+    const auto unknown = app.remaining(true);
+    const auto flag = std::ranges::find_if(unknown, [](const auto& word) { return word.starts_with('-'); });
+    if (flag != unknown.end()) return unknownWord(app, *flag);
+    if (!unknown.empty()) return unknownWord(app, unknown.front());
     if (kind == "RequiredError" && words.starts_with("A subcommand"))
         return {{}, {}, "a job is required", helpOf(nullptr)};
     if (kind == "ValidationError" && isNamed) return wrongValue(app, before(": "), after(": "));

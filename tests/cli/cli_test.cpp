@@ -47,7 +47,8 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
          "strands?)\n"},
         {"simulate x --frames 0", "error: --frames is '0'; expected 1 to 100000\n"},
         {"simulate x --frames", "error: --frames has no value; expected 1 to 100000\n"},
-        {"simulate x --frames ten", "error: --frames: 'ten' is not a finite number; expected 1 to 100000\n"},
+        {"simulate x --frames ten", "error: --frames is 'ten'; expected 1 to 100000\n"},
+        {"simulate --motoin nod", "error: there is no option --motoin; did you mean --motion?\n"},
         {"simulate", "error: groom is required; see `hairloom-cli simulate --help`\n"},
     };
     for (const auto& [arguments, message] : wrong) {
@@ -330,8 +331,7 @@ TEST_F(Cli, FollowHairsAreExportedWhenAskedFor) {
     const auto guides = runJson("export full.hairloom --format hair -o guides.hair");
     EXPECT_EQ(guides["strands"], 300);
     const auto saysThatHairsStay = [](const nlohmann::json& report) {
-        return report["findings"].dump().find("5 follow hairs per guide are left out") !=
-               std::string::npos;
+        return report["findings"].dump().find("5 follow hairs per guide are left out") != std::string::npos;
     };
     EXPECT_TRUE(saysThatHairsStay(guides)) << guides.dump(2);
     const auto hairs = runJson("export full.hairloom --format hair --what hairs -o hairs.hair");
