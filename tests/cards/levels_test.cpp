@@ -32,7 +32,7 @@ TEST(LevelSpecs, SayWhatIsWrong) {
     for (const auto& [text, problem] : std::vector<std::pair<std::string, std::string>>{
              {"", "unknown kind"},
              {"cards:12@100", "pixels out of range"},
-             {"cards:12@x", "no number"},
+             {"cards:12@x", "not a number"},
              {"cards:1.5", "not a whole number"},
              {"cards:nan", "out of range"},
              {"strands:2", "out of range"},

@@ -221,7 +221,7 @@ TEST_F(AccuracyTest, WhatChangesWhileItMeasuresIsTold) {
     openFirstStrands(5);
     finishWork();
     EXPECT_FALSE(adopt().isEnabled()) << "was of another document";
-    EXPECT_TRUE(words().contains("How far")) << words().toStdString();
+    EXPECT_TRUE(words().contains("How accurate")) << words().toStdString();
 }
 
 TEST_F(AccuracyTest, ACancelledRunDoesNotMakeTheLastOneNew) {
@@ -266,7 +266,8 @@ TEST_F(AccuracyTest, APointOfAnOldDiagramIsNoneOfTheNewOne) {
     for (std::size_t run = 21; run-- > 0;)
         QTest::mouseClick(plot, Qt::LeftButton, {}, plot->place_px(run % 18).toPoint());
     finishWork();
-    EXPECT_TRUE(chosen().contains("4 points") || chosen().startsWith("Nothing")) << chosen().toStdString();
+    EXPECT_TRUE(chosen().contains("4 points") || chosen().startsWith("No measured setting"))
+        << chosen().toStdString();
     expectSound();
 }
 
