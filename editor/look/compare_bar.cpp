@@ -28,8 +28,8 @@ class CompareBar : public QWidget {
             row->addWidget(button, 1);
             return button;
         };
-        keep_ = add("compareKeep", tr("Store as A"),
-                    tr("Stores the current look as A, to compare others with it"));
+        keep_ =
+            add("compareKeep", tr("Set as A"), tr("Stores the current look as A, to compare others with it"));
         show_ = add(
             "compareShow", tr("A | B"),
             tr("Split view: A on the left, the current look on the right. Drag the line to move the split"));

@@ -72,7 +72,7 @@ class AccuracyPanel : public QWidget {
         layout->addWidget(plot_, 1);
         addChoice(*layout, *pixels_, "accuracyPixels", tr("Fastest within"), "px",
                   tr("Fastest settings within this error, in pixels of this view"));
-        addChoice(*layout, *milliseconds_, "accuracyMs", tr("Most accurate within"), "ms",
+        addChoice(*layout, *milliseconds_, "accuracyMs", tr("Best within"), "ms",
                   tr("Most accurate settings within this frame time"));
         adopt_->setObjectName("accuracyAdopt");
         adopt_->setToolTip(

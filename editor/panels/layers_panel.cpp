@@ -79,7 +79,7 @@ class LayersPanel : public QWidget {
 
     void makeList() {
         list_->setObjectName("layers");
-        list_->setHeaderLabels({tr("Layer"), tr("Visible"), tr("Locked"), tr("Strands")});
+        list_->setHeaderLabels({tr("Layer"), tr("Shown"), tr("Locked"), tr("Strands")});
         list_->setRootIsDecorated(false);
         list_->setMinimumHeight(120);
         list_->header()->setStretchLastSection(false);

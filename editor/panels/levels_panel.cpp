@@ -152,7 +152,7 @@ QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
     auto* layout = new QVBoxLayout(look_);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(8);
-    over_ = new QCheckBox(tr("Overlay cards on strands"));
+    over_ = new QCheckBox(tr("Cards over strands"));
     over_->setObjectName("levelOver");
     over_->setToolTip(tr(
         "Draws the cards of this level in the viewport, each in its own colour, while the hair is at rest"));

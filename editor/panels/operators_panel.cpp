@@ -102,11 +102,11 @@ class OperatorsPanel : public QWidget {
 
     QLayout* makeButtons() {
         QWidget* const buttons[] = {
-            pushButton("operatorUp", tr("Move up"), tr("Move the operator up, to apply it earlier"),
+            pushButton("operatorUp", tr("Up"), tr("Move the operator up, to apply it earlier"),
                        [this] {
                            if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
                        }),
-            pushButton("operatorDown", tr("Move down"), tr("Move the operator down, to apply it later"),
+            pushButton("operatorDown", tr("Down"), tr("Move the operator down, to apply it later"),
                        [this] {
                            if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
                        }),

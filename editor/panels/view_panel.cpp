@@ -83,7 +83,7 @@ QWidget* makeLight(Viewport& viewport) {
         layout->addRow(label, box);
         return box;
     };
-    number("lightTurn", QObject::tr("Rotate lights"),
+    number("lightTurn", QObject::tr("Light angle"),
            QObject::tr("Rotates the three lights around the head, in degrees"), {-180, 180}, 0,
            [&viewport](float degrees) { viewport.setLightTurn(degrees); })
         ->setShown(1, QStringLiteral("°"), 0);

@@ -108,7 +108,7 @@ class ReplaceTool : public Tool {
                 Q_EMIT updated();
             });
         form_->addNumber(
-            "replaceReach", tr("Inherit shape"),
+            "replaceReach", tr("Copy shape"),
             tr("New hair copies the shape of hair within this distance. 0 grows straight hair"), "m", 0, 0.2,
             false, [this] { return static_cast<double>(reach_); },
             [this](double value) { reach_ = static_cast<float>(value); });
