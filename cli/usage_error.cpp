@@ -150,7 +150,8 @@ Error usageError(const CLI::App& app, const CLI::ParseError& error) {
     const auto before = [&](std::string_view mark) { return words.substr(0, words.find(mark)); };
     const bool isNamed = words.starts_with('-') && words.find(": ") != std::string::npos;
     // An unknown word goes before what it may have left out: a misspelt option before a required one.
-    const auto unknown = app.remaining(true);
+    auto unknown = app.remaining(true);
+    std::erase(unknown, "--");
     const auto flag = std::ranges::find_if(unknown, [](const auto& word) { return word.starts_with('-'); });
     if (flag != unknown.end()) return unknownWord(app, *flag);
     if (!unknown.empty()) return unknownWord(app, unknown.front());
