@@ -56,11 +56,10 @@ void csvRows(const std::vector<GpuBenchRow>& rows, const char* table, Out out) {
 }
 
 void effectRows(const GpuBench& bench, Out out) {
-    fmt::format_to(
-        out,
-        "\n## What each effect costs\n\nThe frame with every effect, less the frame without it; "
-        "ms on the device.\n\n| strands | frame | wind | collision | angular | length | damping |\n"
-        "|---|---|---|---|---|---|---|\n");
+    fmt::format_to(out,
+                   "\n## What each effect costs\n\nThe frame with every effect minus the frame without it, "
+                   "in ms on the device.\n\n| strands | frame | wind | collision | angular | length | "
+                   "damping |\n|---|---|---|---|---|---|---|\n");
     double whole = 0.0;
     for (const GpuBenchRow& row : bench.effects) {
         if (row.leftOut == "nothing") {
@@ -139,11 +138,10 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
                        row.gpu.device, row.gpu.wall, row.gpu.together, orDash(row.cpuOne, ""),
                        orDash(row.cpuAll, ""), row.bytes, 100.0 * row.bandwidth / bench.copyBandwidth);
     }
-    fmt::format_to(
-        out,
-        "\n## The samples\n\nOn a nodding head, with their own settings; ms a frame.\n\n"
-        "| sample | strands | points | substeps | GPU | GPU, wall | CPU, one thread | CPU, all threads |\n"
-        "|---|---|---|---|---|---|---|---|\n");
+    fmt::format_to(out,
+                   "\n## The samples\n\nOn a nodding head, with their own settings, in ms per frame.\n\n| "
+                   "sample | strands | points | substeps | GPU | GPU, wall | CPU, one thread | CPU, all "
+                   "threads |\n|---|---|---|---|---|---|---|---|\n");
     for (const GpuBenchRow& row : bench.samples) {
         fmt::format_to(out, "| {} | {} | {} | {} | {:.3g} | {:.3g} | {} | {} |\n", row.hair, row.strands,
                        row.points, row.substeps, row.gpu.device, row.gpu.wall, orDash(row.cpuOne, ""),

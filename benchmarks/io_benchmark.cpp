@@ -152,7 +152,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark ioBenchmark() {
-    return {"io", "strand files in and out", {}, run};
+    return {"io", "reading and writing strand files", {}, run};
 }
 
 }  // namespace hairloom::benchmarks

@@ -150,11 +150,10 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark liveBenchmark() {
-    return {
-        "live",
-        "the editor's loop without a window: hair moved and drawn by the engine on the GPU and on the CPU",
-        {"--quick", "--device", "--size", "--grooms", "--frames", "--markdown"},
-        run};
+    return {"live",
+            "the editor's loop without a window: hair simulated and rendered on the GPU and on the CPU",
+            {"--quick", "--device", "--size", "--grooms", "--frames", "--markdown"},
+            run};
 }
 
 }  // namespace hairloom::benchmarks

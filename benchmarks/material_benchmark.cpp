@@ -90,7 +90,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark materialBenchmark() {
-    return {"material", "a moved control of the material", {"--device", "--quick"}, run};
+    return {"material", "changing a setting of the material", {"--device", "--quick"}, run};
 }
 
 }  // namespace hairloom::benchmarks

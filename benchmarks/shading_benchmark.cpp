@@ -51,7 +51,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark shadingBenchmark() {
-    return {"shading", "the shading models' tables", {"--quick"}, run};
+    return {"shading", "baking the tables of shading models", {"--quick"}, run};
 }
 
 }  // namespace hairloom::benchmarks

@@ -329,8 +329,10 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark simBenchmark() {
-    return {
-        "sim", "a step of the strand engine, beside the thesis", {"--strands", "--quick", "--markdown"}, run};
+    return {"sim",
+            "a step of the strand engine, compared with the thesis",
+            {"--strands", "--quick", "--markdown"},
+            run};
 }
 
 }  // namespace hairloom::benchmarks

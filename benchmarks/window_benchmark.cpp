@@ -22,14 +22,14 @@ Result<Outcome> run(const Options& options) {
     Outcome outcome;
     outcome.report =
         Report::parse(std::string_view(static_cast<const char*>(text), output->size()), nullptr, false);
-    if (outcome.report.is_discarded()) return fail("bench_window wrote no JSON");
+    if (outcome.report.is_discarded()) return fail("bench_window did not write JSON");
     return outcome;
 }
 
 }  // namespace
 
 Benchmark windowBenchmark() {
-    return {"window", "what a person waits for in the editor", {"--quick"}, run};
+    return {"window", "delays that a user notices in the editor", {"--quick"}, run};
 }
 
 }  // namespace hairloom::benchmarks

@@ -5,16 +5,16 @@ namespace hairloom::cli {
 
 void addGroundTruthOptions(CLI::App& job, GroundTruthOptions& options) {
     job.add_option("--truth", options.groundTruth,
-                   "What counts as true: the reference in double precision, or the engine converged")
+                   "What counts as exact: the reference in double precision, or the converged engine")
         ->check(CLI::IsMember({"reference", "engine"}));
     job.add_option("--truth-strands", options.strands,
-                   "Strands that errors are taken from when the reference is true; it is slow")
+                   "Number of strands for the error when --truth is reference, which is slow")
         ->check(CLI::Range(1, 100'000));
     job.add_option("--truth-tolerance", options.toleranceMm,
-                   "Millimetres by which a doubling of the reference's steps may still move a point")
+                   "Largest change of a point in millimetres when the steps of the reference are doubled")
         ->check(CLI::Range(1e-6, 10.0));
     job.add_option("--truth-substeps", options.substeps,
-                   "Most steps, in each quarter of a frame, of the run that counts as true")
+                   "Maximum steps of the exact run, in each quarter of a frame")
         ->check(CLI::IsMember({8, 16, 32, 64}));
 }
 

@@ -19,7 +19,7 @@ Report adviceReport(const Groom& groom, float frameTime) {
     std::string remedies;
     for (const runtime::StableOffer& offer : advice.offers) {
         offers.push_back(offer.words);
-        remedies += (remedies.empty() ? "; what helps: " : ", or ") + offer.words;
+        remedies += (remedies.empty() ? ". To fix it: " : ", or ") + offer.words;
     }
     log::warning("{}{}", advice.words, remedies);
     Report report;

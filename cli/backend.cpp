@@ -20,7 +20,7 @@ Result<std::unique_ptr<GpuBackend>> GpuBackend::make(std::optional<gpu::Backend>
 
 Result<JobEngine> chooseJobEngine(const std::string& wish, std::optional<gpu::Backend> backend,
                                   std::optional<std::uint32_t> index, const Groom& groom) {
-    if (wish == "cpu") return JobEngine{{EngineKind::cpu, "asked for"}, nullptr};
+    if (wish == "cpu") return JobEngine{{EngineKind::cpu, "you asked for it"}, nullptr};
     auto made = GpuBackend::make(backend, index);
     if (!made && wish == "gpu") return tl::unexpected(made.error());
     if (!made) return JobEngine{{EngineKind::cpu, "there is no GPU: " + made.error().message()}, nullptr};
@@ -30,7 +30,7 @@ Result<JobEngine> chooseJobEngine(const std::string& wish, std::optional<gpu::Ba
     if (engine.choice.kind == EngineKind::gpu) {
         engine.gpu = std::move(*made);
     } else if (wish == "gpu") {
-        return fail(engine.choice.why, "expected a groom that the engine on a GPU can run, or --engine cpu");
+        return fail(engine.choice.why, "expected a groom that the engine can run on a GPU, or --engine cpu");
     }
     return engine;
 }

@@ -22,7 +22,8 @@ std::vector<std::string> unitNames() {
 }  // namespace
 
 void addUnitOption(CLI::App& job, std::string& unit, const std::string& name, const std::string& of) {
-    job.add_option(name, unit, "Unit of lengths in " + of + " where it states none: m, dm, cm, mm or inch")
+    job.add_option(name, unit,
+                   "Unit of lengths in " + of + ", if the file states none: m, dm, cm, mm or inch")
         ->check(CLI::IsMember(unitNames()));
 }
 
@@ -39,7 +40,7 @@ Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMe
         float value = 0;
         const auto [next, code] = std::from_chars(at, end, value);
         if (code != std::errc() || !(value >= 0 && value <= 1)) {
-            return failIn(path, Line{line}, "is no density", "expected a number from 0 to 1");
+            return failIn(path, Line{line}, "is not a density", "expected a number from 0 to 1");
         }
         perSourceVertex.push_back(value);
         at = next;

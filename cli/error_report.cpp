@@ -55,7 +55,7 @@ Status flushOutput() {
     if (flushed && std::ferror(stdout) == 0 && std::cout.good()) return {};
     const int code = errno != 0 ? errno : EIO;
     return failIn("standard output", {}, "cannot be written: " + std::generic_category().message(code),
-                  "expected room for the answer");
+                  "expected space for the answer");
 }
 
 void keepStandardStreams() {

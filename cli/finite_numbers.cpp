@@ -25,7 +25,7 @@ bool isFinite(const std::string& text) {
 void refuseNumbersThatAreNone(CLI::App& job) {
     const CLI::Validator finite(
         [](std::string& text) {
-            return isFinite(text) ? std::string() : fmt::format("'{}' is no finite number", text);
+            return isFinite(text) ? std::string() : fmt::format("'{}' is not a finite number", text);
         },
         "");
     // Groups of options that exclude each other are jobs of their own to CLI11.

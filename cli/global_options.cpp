@@ -10,12 +10,12 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& options) {
     app.set_version_flag("--version", "hairloom-cli " HAIRLOOM_VERSION);
     app.add_flag("--json", options.json, "Print exactly one JSON object on standard output");
     app.add_option("--threads", options.threads,
-                   "Threads to use, 0 for one per core; results do not depend on it")
+                   "Number of threads, 0 for one per core. Results do not depend on it")
         ->check(CLI::Range(0, 1024));
-    app.add_flag("--quiet", options.quiet, "No warnings on standard error");
-    app.add_flag("--profile", options.profile, "Print on standard error what the parts of the job took");
+    app.add_flag("--quiet", options.quiet, "Print no warnings on standard error");
+    app.add_flag("--profile", options.profile, "Print the time of each part of the job on standard error");
     app.add_flag("--force", options.force,
-                 "Write also over an input, another kind of file, a read-only file, a device or a FIFO");
+                 "Allow overwriting an input, another kind of file, a read-only file, a device or a FIFO");
     app.add_flag(
         "--allow-unconfined", options.allowUnconfined,
         "Read foreign files also where the process that reads them cannot be confined as this system "

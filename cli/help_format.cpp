@@ -8,32 +8,6 @@ namespace {
 
 constexpr std::size_t kWidth = 100, kColumn = 26;
 
-/// What stands in the parser's words for the type of an option: "TEXT:{y,z}", "INT:INT in [0 - 1024]".
-struct Kind {
-    std::string type;     ///< TEXT
-    std::string choices;  ///< y,z
-    std::string range;    ///< 0 - 1024
-};
-Kind kindOf(const CLI::Option& option) {
-    const std::string words = option.get_type_name();
-    Kind kind{words.substr(0, words.find_first_of(":{")), {}, {}};
-    const auto between = [&](char open, char close) -> std::string {
-        const auto begin = words.find(open), end = words.rfind(close);
-        if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
-        return words.substr(begin + 1, end - begin - 1);
-    };
-    kind.choices = between('{', '}');
-    kind.range = between('[', ']');
-    return kind;
-}
-
-/// With a space behind each comma, so that a line can end there.
-std::string spaced(std::string_view list) {
-    std::string out;
-    for (const char c : list) out += c == ',' ? ", " : std::string(1, c);
-    return out;
-}
-
 void addSentence(std::string& text, const std::string& sentence) {
     if (!text.empty()) text += text.back() == '.' || text.back() == '\n' ? " " : ". ";
     text += sentence;
@@ -46,7 +20,7 @@ std::string namesOf(const std::set<CLI::Option*>& options) {
 }
 
 /// What is said of the option, and what the parser knows of it.
-std::string meaningOf(const CLI::Option& option, const Kind& kind) {
+std::string meaningOf(const CLI::Option& option, const OptionValues& kind) {
     const std::string said = option.get_description();
     const auto list = said.find('\n');
     std::string text = said.substr(0, list);
@@ -59,11 +33,30 @@ std::string meaningOf(const CLI::Option& option, const Kind& kind) {
     if (option.get_required()) addSentence(text, "Required");
     if (!option.get_needs().empty()) addSentence(text, fmt::format("Needs {}", namesOf(option.get_needs())));
     if (!option.get_excludes().empty())
-        addSentence(text, fmt::format("Not with {}", namesOf(option.get_excludes())));
+        addSentence(text, fmt::format("Excludes {}", namesOf(option.get_excludes())));
     return list == std::string::npos ? text : text + said.substr(list);
 }
 
 }  // namespace
+
+OptionValues valuesOf(const CLI::Option& option) {
+    const std::string words = option.get_type_name();
+    OptionValues values{words.substr(0, words.find_first_of(":{")), {}, {}};
+    const auto between = [&](char open, char close) -> std::string {
+        const auto begin = words.find(open), end = words.rfind(close);
+        if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
+        return words.substr(begin + 1, end - begin - 1);
+    };
+    values.choices = between('{', '}');
+    values.range = between('[', ']');
+    return values;
+}
+
+std::string spaced(std::string_view list) {
+    std::string out;
+    for (const char c : list) out += c == ',' ? ", " : std::string(1, c);
+    return out;
+}
 
 std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
     std::string out;
@@ -86,7 +79,7 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t indent
 }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool isPositional) const {
-    const Kind kind = kindOf(*option);
+    const OptionValues kind = valuesOf(*option);
     std::string left = "  " + make_option_name(option, isPositional);
     if (!isPositional && !kind.type.empty()) left += " " + kind.type;
     left += left.size() + 2 > kColumn ? "\n" + std::string(kColumn, ' ')

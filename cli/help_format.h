@@ -10,12 +10,23 @@
 
 namespace hairloom::cli {
 
+/// What an option takes, read from the parser's name of its type: "TEXT:{y,z}", "INT:INT in [0 - 1024]".
+struct OptionValues {
+    std::string type;     ///< TEXT
+    std::string choices;  ///< "y,z", or empty
+    std::string range;    ///< "0 - 1024", or empty
+};
+OptionValues valuesOf(const CLI::Option& option);
+
 /// Lines of an option's description stay lines; each is wrapped, and what follows two spaces inside a line
 /// hangs under itself: `abc  Alembic`.
 class HelpFormatter : public CLI::Formatter {
   public:
     std::string make_option(const CLI::Option* option, bool isPositional) const override;
 };
+
+/// A list with a space after each comma, so that a line can end there.
+std::string spaced(std::string_view list);
 
 /// `text` in lines of at most `width` columns, without the last line's end.
 /// All but the first are indented by `indent` columns, which count.

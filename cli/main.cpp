@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
         const auto isJson = [](const char* word) { return std::string_view(word) == "--json"; };
         return endParsing(app, error, std::any_of(argv + 1, argv + argc, isJson));
     }
-    hairloom::setWriteRules({options.force, true, "give another name, or --force"});
+    hairloom::setWriteRules({options.force, true, "choose another name, or use --force"});
     hairloom::cli::reportsAsJson(options.json);
     hairloom::allowUnconfinedReaders(options.allowUnconfined);
     if (options.quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);

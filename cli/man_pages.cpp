@@ -84,10 +84,10 @@ std::string commandLineManPage() {
     page += ".SH JOBS\n";
     for (const Job& job : jobs()) addJob(job, page);
     page +=
-        ".SH EXIT STATUS\n0 where the job was done, 1 where it failed, 2 where it was called wrongly.\n"
-        ".SH ENVIRONMENT\n";
-    page += entry("HAIRLOOM_SAMPLES", "The folder of sample heads and hairstyles.");
-    page += entry("HAIRLOOM_WEB", "The folder of the player that export --format web writes.");
+        ".SH EXIT STATUS\n0 if the job is done, 1 if it failed, 2 if the command line was wrong.\n.SH "
+        "ENVIRONMENT\n";
+    page += entry("HAIRLOOM_SAMPLES", "Folder of sample heads and hairstyles.");
+    page += entry("HAIRLOOM_WEB", "Folder of the player that export --format web writes.");
     page += ".SH SEE ALSO\n.BR hairloom (1)\n";
     return page;
 }
@@ -95,16 +95,14 @@ std::string commandLineManPage() {
 std::string editorManPage() {
     std::string page = heading("HAIRLOOM");
     page +=
-        ".SH NAME\nhairloom \\- author hairstyles for games in a window\n"
-        ".SH SYNOPSIS\n.B hairloom\n.RB [ \\-\\-help ]\n.RB [ \\-\\-version ]\n.RI [ FILE ]\n"
-        ".SH DESCRIPTION\nOpens a project (.hairloom), a head or a file of hair, or else the page to begin "
-        "from: pick the scalp,\nplace roots, groom strands, put collision spheres where they belong, see the "
-        "hair move, and export it.\n"
-        ".SH BRUSHES\n";
+        ".SH NAME\nhairloom \\- author hairstyles for games in a window\n.SH SYNOPSIS\n.B hairloom\n.RB [ "
+        "\\-\\-help ]\n.RB [ \\-\\-version ]\n.RI [ FILE ]\n.SH DESCRIPTION\nOpens a project (.hairloom), a "
+        "head or a file of hair, or else the start page. Select the scalp, place roots,\ngroom strands, "
+        "place collision spheres, watch the hair move, and export it.\n.SH BRUSHES\n";
     for (const std::string_view name : editing::brushNames()) {
         const editing::BrushInfo& brush = editing::brushInfo(name);
         std::string meaning(brush.meaning);
-        if (!brush.inverse.empty()) meaning += fmt::format("; inverted: {}", brush.inverse);
+        if (!brush.inverse.empty()) meaning += fmt::format(". Inverted: {}", brush.inverse);
         page += entry(std::string(brush.label), meaning + ".");
     }
     page += ".SH SEE ALSO\n.BR hairloom\\-cli (1)\n";

@@ -21,13 +21,13 @@ Status setWind(Groom& groom, const std::string& wind) {
 
 void addMotionOptions(CLI::App& job, MotionOptions& options) {
     job.add_option("groom", options.input, "Project or hair file")->required();
-    job.add_option("--frames", options.frames, "Frames of each run")->check(CLI::Range(1, 100'000));
+    job.add_option("--frames", options.frames, "Number of frames in each run")->check(CLI::Range(1, 100'000));
     job.add_option("--fps", options.framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
-    job.add_option("--wind", options.wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
+    job.add_option("--wind", options.wind, "Wind velocity X,Y,Z in m/s, instead of the groom's own");
     job.add_option("--motion", options.motion,
-                   "How the head moves: none, spin, nod, clip:NAME or a file of keys F.json");
+                   "Head motion: none, spin, nod, clip:NAME or a keyframe file F.json");
     job.add_option("--character", options.character,
-                   "File with the skeleton and clips, instead of the one the scalp came from");
+                   "File with skeleton and clips, if other than the scalp's file");
 }
 
 Result<MovingGroom> openMovingGroom(const MotionOptions& options) {

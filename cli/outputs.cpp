@@ -34,9 +34,10 @@ Streams& streams() {
 void sayLeftOvers(const fs::path& output) {
     for (const LeftOver& leftOver : findLeftOvers(output.has_parent_path() ? output.parent_path() : ".")) {
         if (leftOver.target != output.filename().string()) continue;
-        log::warning("{}: left by a run that was killed while it wrote {}{}; `hairloom-cli clean` removes it",
-                     leftOver.file.string(), leftOver.target,
-                     leftOver.whole ? ", which may be torn: this is its whole content" : "");
+        log::warning(
+            "{}: left by a run that was killed while it wrote {}{}. Remove it with `hairloom-cli clean`",
+            leftOver.file.string(), leftOver.target,
+            leftOver.whole ? ", which may be damaged: this file has the complete content" : "");
     }
 }
 

@@ -33,19 +33,20 @@ Report rowsOf(const PictureCost& cost) {
 
 void addPictureAccuracyOptions(CLI::App& job, PictureAccuracyOptions& options) {
     auto* picture = job.add_flag("--picture", options.wanted,
-                                 "Measure the settings of the picture instead of those of the motion: "
-                                 "samples, shadows, curves, thin hair, follow hairs");
+                                 "Measure render settings instead of simulation settings: samples, shadows, "
+                                 "curves, transparency, follow hairs");
     const auto add = [&](const char* name, auto& value, const char* does) {
         return job.add_option(name, value, does)->needs(picture);
     };
-    add("--shading", options.shading, "Shading model of the picture; without it the project's")
+    add("--shading", options.shading, "Shading model (default: the project's)")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
-    add("--size", options.size, "Pixels WxH of the picture; 640x640 where neither this nor the view says");
-    add("--passes", options.frames, "Frames that are averaged in the pictures that are compared")
+    add("--size", options.size, "Image size WxH in pixels (default: that of the view, or 640x640)");
+    add("--passes", options.frames, "Number of frames averaged in the compared images")
         ->check(CLI::Range(1, 1024));
     add("--hairs", options.hairs,
-        "Hairs to draw at most, 0 for all; without it all, and 2000 on a software device, which is slow");
-    job.add_option("--device", options.device, "GPU to draw or simulate on, by its index in `devices`");
+        "Maximum number of hairs to draw, 0 for all (default: all, and 2000 on a software device, which is "
+        "slow)");
+    job.add_option("--device", options.device, "GPU to render or simulate on, by its index in `devices`");
 }
 
 Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std::string& groomFile,

@@ -84,7 +84,7 @@ std::string table() {
     text += row("Hair in", labels(strandFormats()));
     text += row("Hair out", writers(false));
     text += row("Cards out", writers(true));
-    text += row("Written for", programs());
+    text += row("Export targets", programs());
     text += row("Sample hairstyles", sampleNames(findSamples(programFolder())), true);
     text += row("Brushes", brushes(), true);
     text += row("Operators", operators(), true);
@@ -100,7 +100,7 @@ std::string table() {
 Result<std::string> withLists(const std::string& readme) {
     const auto begin = readme.find(kBegin), end = readme.find(kEnd);
     if (begin == std::string::npos || end == std::string::npos || end < begin)
-        return fail("the marks of its lists are missing", fmt::format("{} … {}", kBegin, kEnd));
+        return fail("the markers of its lists are missing", fmt::format("{} … {}", kBegin, kEnd));
     return readme.substr(0, begin + kBegin.size()) + table() + readme.substr(end);
 }
 

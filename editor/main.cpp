@@ -20,9 +20,9 @@ int main(int argc, char** argv) {
     parser.addHelpOption();
     parser.addVersionOption();
     const QCommandLineOption quit("quit-when-shown",
-                                  QObject::tr("Ends as soon as the window stands; for measuring the start."));
+                                  QObject::tr("Exit when the window is shown, to measure startup time."));
     parser.addOption(quit);
-    parser.addPositionalArgument("file", QObject::tr("Project, head or hair to open"), "[file]");
+    parser.addPositionalArgument("file", QObject::tr("Project, head or hair file to open"), "[file]");
     parser.process(application);
     applyTheme(application, Preferences().theme());
     EndSignals signals;

@@ -20,11 +20,11 @@ StrandWriter abcUnrealWriter() {
     StrandWriter writer{
         "abc-unreal",
         "Alembic .abc for Unreal's groom importer",
-        "what abc carries, and Unreal's groom schema 1.5: widths, closest guides and their weights, "
-        "version and tool",
-        "Unreal takes units for centimetres",
+        "what abc carries, and Unreal's groom schema 1.5: widths, closest guides and their weights, version "
+        "and tool",
+        "Unreal reads units as centimetres",
         {{"unreal", "Unreal groom",
-          ".abc in centimetres, Y up; import it with rotation 90, 0, 0 and scale 1, -1, 1", centimetres}},
+          ".abc in centimetres, Y up. Import it with rotation 90, 0, 0 and scale 1, -1, 1", centimetres}},
         write};
     writer.animates = true;
     writer.marksGuides = true;

@@ -21,13 +21,13 @@ StrandWriter abcWriter() {
     StrandWriter writer{
         "abc",
         "Alembic .abc",
-        "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
-        "any name",
+        "width and colour of each point; root UV, id, group and guide flag of each strand; all attributes",
         "none",
-        {{"blender", "Blender, Alembic", ".abc in metres, Y up, as Blender takes every Alembic file", {}},
+        {{"blender", "Blender, Alembic", ".abc in metres, Y up, as Blender reads every Alembic file", {}},
          {"houdini", "Houdini, Alembic", ".abc in metres, Y up", {}},
          {"maya", "Maya, Alembic", ".abc in centimetres, Y up", centimetres},
-         {"unity", "Unity hair", ".abc in metres, Y up; 3 to 128 points, at most 64,000 strands", unity}},
+         {"unity", "Unity hair", ".abc in metres, Y up, with 3 to 128 points and at most 64,000 strands",
+          unity}},
         write};
     writer.animates = true;
     return writer;

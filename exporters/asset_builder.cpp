@@ -100,8 +100,8 @@ Result<AssetStrands> encodeStrands(std::span<const std::uint32_t> offsets, std::
         const auto strand =
             encode(positions.subspan(offsets[s], offsets[s + 1] - offsets[s]), encoded.residuals);
         if (!strand)
-            return fail(fmt::format("strand {} lies more than 32 km from the origin", s),
-                        "expected hair within reach of a head");
+            return fail(fmt::format("strand {} is more than 32 km from the origin", s),
+                        "expected hair near a head");
         encoded.strands.push_back(*strand);
     }
     return encoded;

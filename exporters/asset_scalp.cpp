@@ -52,7 +52,7 @@ class Collector {
         result_.findings.push_back({Severity::Warning,
                                     fmt::format("the head's bones are left out: {} are more than {}",
                                                 scene_->skeleton.bones().size(), kMaxBones),
-                                    "skin", "bind the head to fewer bones; roots move rigidly now"});
+                                    "skin", "bind the head to fewer bones. Roots now move rigidly"});
         scene_.reset();
     }
 
@@ -123,8 +123,8 @@ class Collector {
                     record.bone = boneOf(*bone);
                 else
                     result_.findings.push_back(
-                        {Severity::Warning, fmt::format("no bone '{}' is in the asset", sphere.bone),
-                         fmt::format("sphere '{}'", sphere.name), "it moves with the head as a whole"});
+                        {Severity::Warning, fmt::format("the asset has no bone '{}'", sphere.bone),
+                         fmt::format("sphere '{}'", sphere.name), "it moves with the head"});
             }
             result_.spheres.push_back(record);
         }

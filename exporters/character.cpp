@@ -14,7 +14,7 @@ std::optional<ImportedScene> characterOf(const Groom& groom, std::vector<Finding
     auto scene = importScene(groom.characterFile, options);
     const auto leave = [&](const std::string& why) {
         findings.push_back({Severity::Warning, fmt::format("the head's bones are left out: {}", why), "skin",
-                            "export where the head's file is as it was; roots move rigidly now"});
+                            "export where the head file is unchanged. Roots now move rigidly"});
         return std::nullopt;
     };
     if (!scene) return leave(scene.error().message());

@@ -130,14 +130,14 @@ void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportR
         report.leftBehind.push_back({std::move(what), std::move(fix)});
     };
     if (groom.interpolation.followPerGuide > 0 && !(carried && same(groom.interpolation, read.interpolation)))
-        leave(fmt::format("{} follow hairs of each strand", groom.interpolation.followPerGuide),
+        leave(fmt::format("{} follow hairs per strand", groom.interpolation.followPerGuide),
               "export the hairs instead of the guides, or interpolate in the other program");
     if (!groom.spheres.empty() && !(carried && read.spheres.size() == groom.spheres.size()))
         leave(fmt::format("{} collision spheres", groom.spheres.size()),
               "place colliders in the other program");
     if (!(carried && read.simulation == groom.simulation && same(read.material, groom.material)))
         leave("material and settings of the simulation",
-              "keep the project; `info` and `set --list` show them");
+              "keep the project. `info` and `set --list` show them");
 }
 
 }  // namespace

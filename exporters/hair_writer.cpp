@@ -19,7 +19,7 @@ Result<std::vector<std::uint16_t>> segmentCounts(const PreparedStrands& strands)
         const std::uint32_t count = strands.offsets[i + 1] - strands.offsets[i] - 1;
         if (count > kMaxSegments) {
             return fail(fmt::format("strand {} has {} segments", strands.sources[i], count),
-                        fmt::format("a .hair strand has at most {}; resample it", kMaxSegments));
+                        fmt::format("a .hair strand has at most {}: resample it", kMaxSegments));
         }
         segments[i] = static_cast<std::uint16_t>(count);
     }
@@ -57,7 +57,7 @@ void addLimits(PreparedStrands& strands) {
     }
     if (maximum > kAdvisablePoints) {
         strands.findings.push_back({Severity::Info, fmt::format("strands have up to {} points", maximum),
-                                    "points", "for Jolt Physics, 32 or fewer are advisable: resample"});
+                                    "points", "for Jolt Physics, resample to 32 or fewer"});
     }
 }
 
@@ -87,15 +87,16 @@ StrandWriter hairWriter() {
     jolt.pointsPerStrand = 32;
     jolt.limits = {"Jolt Physics", 0, 32, 2, false};
     unity.limits = unityLimits();
-    return {
-        "hair",
-        "Yuksel .hair",
-        "width, transparency and colour of each point",
-        "at most 65,535 segments a strand",
-        {{"plain", "Yuksel .hair", ".hair in metres, Y up; strands keep their points", {}},
-         {"jolt", "Jolt Physics", ".hair in metres, Y up; 32 points a strand, as Jolt advises", jolt},
-         {"unity", "Unity hair", ".hair in metres, Y up; 3 to 128 points, at most 64,000 strands", unity}},
-        writeHair};
+    return {"hair",
+            "Yuksel .hair",
+            "width, transparency and colour of each point",
+            "at most 65,535 segments per strand",
+            {{"plain", "Yuksel .hair", ".hair in metres, Y up. Strands keep their points", {}},
+             {"jolt", "Jolt Physics", ".hair in metres, Y up, with 32 points per strand, as Jolt recommends",
+              jolt},
+             {"unity", "Unity hair", ".hair in metres, Y up, with 3 to 128 points and at most 64,000 strands",
+              unity}},
+            writeHair};
 }
 
 }  // namespace hairloom

@@ -52,9 +52,9 @@ Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path
 StrandWriter objC4dWriter() {
     return {"obj-c4d",
             "Cinema 4D hair OBJ",
-            "the width of each point, as that of its ribbon",
-            "all strands have as many points",
-            {{"plain", "Cinema 4D", ".obj in metres, Y up; a ribbon for each strand, root first", {}}},
+            "the width of each point, as the width of its ribbon",
+            "all strands have the same number of points",
+            {{"plain", "Cinema 4D", ".obj in metres, Y up, with one ribbon per strand, root first", {}}},
             writeObjC4d};
 }
 

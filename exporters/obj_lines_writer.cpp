@@ -34,9 +34,9 @@ Result<ExportReport> writeObjLines(const Groom& groom, const std::filesystem::pa
 StrandWriter objLinesWriter() {
     return {"obj-lines",
             "OBJ lines",
-            "nothing but positions",
+            "only positions",
             "none",
-            {{"plain", "OBJ lines", ".obj in metres, Y up; a line for each strand, root first", {}}},
+            {{"plain", "OBJ lines", ".obj in metres, Y up, with one line per strand, root first", {}}},
             writeObjLines};
 }
 

@@ -53,9 +53,9 @@ Result<ExportReport> writePly(const Groom& groom, const std::filesystem::path& p
 StrandWriter plyWriter() {
     return {"ply",
             "PLY strands",
-            "width and colour of each point, single numbers of points by their names",
+            "width and colour of each point; scalar point attributes under their names",
             "none",
-            {{"plain", "PLY strands", ".ply in metres, Y up; a list of vertices for each strand", {}}},
+            {{"plain", "PLY strands", ".ply in metres, Y up, with a list of vertices per strand", {}}},
             writePly};
 }
 

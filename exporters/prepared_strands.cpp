@@ -195,31 +195,31 @@ class Preparer {
         findings.push_back({Severity::Info,
                             fmt::format("positions are in units of {} m, {} up, right-handed",
                                         options_.metresPerUnit, options_.up == UpAxis::Y ? "Y" : "Z"),
-                            "file", "set the same unit and axis where the file is read"});
+                            "file", "set the same unit and axis in the importing program"});
         if (unusable_.count > 0) {
-            findings.push_back(
-                {Severity::Warning,
-                 fmt::format("{} strands of no length, not finite or of fewer than two points were "
-                             "left out",
-                             unusable_.count),
-                 unusable_.where(), "delete or redraw them"});
+            findings.push_back({Severity::Warning,
+                                fmt::format("{} strands without length, with points that are not finite or "
+                                            "with fewer than two points were left out",
+                                            unusable_.count),
+                                unusable_.where(), "delete or redraw them"});
         }
         if (coincident_.count > 0 && target_ == 0) {
             findings.push_back(
                 {Severity::Warning,
-                 fmt::format("{} strands have segments of no length; some engines reject the whole set",
-                             coincident_.count),
+                 fmt::format(
+                     "{} strands have segments without length, for which some engines reject the whole file",
+                     coincident_.count),
                  coincident_.where(), "resample the strands"});
         }
         if (resampled_.count > 0) {
             findings.push_back(
                 {Severity::Info,
                  fmt::format("{} strands were resampled to {} points", resampled_.count, target_),
-                 resampled_.where(), "resample in the groom to see the result before exporting"});
+                 resampled_.where(), "resample the groom to see the result before you export"});
         }
         if (radii_.empty()) {
-            findings.push_back({Severity::Info, "the groom has no widths; the material's were used", "radius",
-                                "give the strands a radius"});
+            findings.push_back({Severity::Info, "the groom has no widths, so those of the material were used",
+                                "radius", "give the strands a radius"});
         }
     }
 
@@ -250,7 +250,7 @@ void judgeRoots(const Groom& groom, const PreparedStrands& prepared, std::vector
     const bool floating = *farthest > kRootTolerance;
     findings.push_back(
         {floating ? Severity::Warning : Severity::Info,
-         fmt::format("roots lie up to {:.3g} mm from the scalp", *farthest * 1000.0f),
+         fmt::format("roots are up to {:.3g} mm from the scalp", *farthest * 1000.0f),
          fmt::format("strand {}", prepared.sources[static_cast<std::size_t>(farthest - distances.begin())]),
          floating ? "bind the strands to the scalp" : ""});
 }
@@ -270,18 +270,18 @@ void judgeLimits(const TargetLimits& limits, PreparedStrands& prepared) {
         prepared.findings.push_back({Severity::Error, std::move(what), std::move(where), std::move(fix)});
     };
     if (tooMany.count > 0)
-        say(fmt::format("{} takes at most {} points a strand; {} have more", limits.program, limits.points,
-                        tooMany.count),
+        say(fmt::format("{} takes at most {} points per strand, but {} have more", limits.program,
+                        limits.points, tooMany.count),
             tooMany.where(), fmt::format("export with --points {}", limits.points));
     if (tooFew.count > 0)
-        say(fmt::format("{} wants {} points a strand or more; {} have fewer", limits.program,
+        say(fmt::format("{} needs {} points per strand or more, but {} have fewer", limits.program,
                         limits.fewestPoints, tooFew.count),
             tooFew.where(), fmt::format("export with --points {}", limits.fewestPoints));
     if (coincident.count > 0)
-        say(fmt::format("{} takes none of the strands when a segment of one has no length", limits.program),
+        say(fmt::format("{} rejects all strands if one segment has no length", limits.program),
             coincident.where(), "export with --points, which spaces points evenly");
     if (limits.strands > 0 && prepared.strandCount() > limits.strands)
-        say(fmt::format("{} takes at most {} strands; there are {}", limits.program, limits.strands,
+        say(fmt::format("{} takes at most {} strands, but there are {}", limits.program, limits.strands,
                         prepared.strandCount()),
             "strands", "export guides, or the groom in parts");
 }

@@ -98,7 +98,7 @@ Result<FollowSections> followSections(const Groom& groom, const PreparedStrands&
         const std::uint32_t strand = written[bindings.guideStrands[g]];
         if (strand == 0xffffffffu)
             return fail(fmt::format("guide strand {} has no length", bindings.guideStrands[g]),
-                        "expected guides that can be simulated: remove it, or draw it anew");
+                        "expected guides that can be simulated: remove it, or draw it again");
         const Mat3f& frame = bindings.rootFrames[g];
         sections.guides.push_back({strand,
                                    bindings.ids[g],
@@ -164,8 +164,8 @@ Result<double> followError(const Groom& groom, const FollowBindings& bindings, c
 
 Status checkOptions(const StrandExportOptions& options) {
     if (options.metresPerUnit != 1.0f || options.up != UpAxis::Y)
-        return fail("a runtime asset in another unit or axis",
-                    "it has metres, Y up: leave --unit and --up out");
+        return fail("a runtime asset with another unit or axis was requested",
+                    "expected neither --unit nor --up: it is in metres, Y up");
     return {};
 }
 
@@ -180,10 +180,10 @@ Status checkPoints(const PreparedStrands& strands) {
 }
 
 Finding gridFinding(const runtime::Asset& asset) {
-    return {Severity::Info,
-            fmt::format("points lie on grids, at most {:.2g} mm from where they were",
-                        asset.greatestError() * 1e3),
-            "points", ""};
+    return {
+        Severity::Info,
+        fmt::format("points are quantised, at most {:.2g} mm from their place", asset.greatestError() * 1e3),
+        "points", ""};
 }
 
 /// What follows from bytes that are already the file's: the content as the runtime takes it.
@@ -194,12 +194,11 @@ Status addFindings(const Groom& groom, const FollowSections& follow, const runti
     const auto error = followError(groom, *follow.bindings, asset);
     if (!error) return tl::unexpected(error.error());
     report.attributes.push_back({"follow hairs at rest", *error});
-    report.findings.push_back(
-        {Severity::Info,
-         fmt::format("{} follow hairs are drawn when the asset is loaded, at most {:.2g} mm "
-                     "from those of pictures",
-                     asset.hairCount(), *error * 1e3),
-         "follow hairs", ""});
+    report.findings.push_back({Severity::Info,
+                               fmt::format("{} follow hairs are generated when the asset is loaded, at most "
+                                           "{:.2g} mm from those of rendered images",
+                                           asset.hairCount(), *error * 1e3),
+                               "follow hairs", ""});
     return {};
 }
 
@@ -283,19 +282,17 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
 }  // namespace
 
 StrandWriter runtimeWriter() {
-    return {"runtime",
-            "Hairloom runtime asset .hairrt",
-            "root bindings, the head's bones, spheres, settings, layers, materials, attributes of strands "
-            "and how "
-            "follow hairs come from guides",
-            "512 points a strand",
-            {{"game",
-              "Game by Hairloom's runtime",
-              ".hairrt, metres, Y up; played by the library in runtime/",
-              {}}},
-            writeRuntime,
-            "hairrt",
-            true};
+    return {
+        "runtime",
+        "Hairloom runtime asset .hairrt",
+        "root bindings, the head's bones, spheres, settings, layers, materials, attributes of strands "
+        "and how "
+        "follow hairs come from guides",
+        "512 points per strand",
+        {{"game", "Game by Hairloom's runtime", ".hairrt in metres, Y up, for the library in runtime/", {}}},
+        writeRuntime,
+        "hairrt",
+        true};
 }
 
 }  // namespace hairloom

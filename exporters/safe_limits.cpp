@@ -13,7 +13,7 @@ constexpr runtime::Field<L> kFields[] = {
     field<&L::rootSpeed>("rootSpeed", "m/s", 0, 1e4, "fastest head"),
     field<&L::turn>("turn", "°", 0, 180, "largest turn of the head in a frame"),
     field<&L::wind>("wind", "m/s", 0, 1e4, "strongest wind"),
-    field<&L::storms>("storms", "", 0, 1e6, "random storms that were tried"),
+    field<&L::storms>("storms", "", 0, 1e6, "random storms tested"),
     field<&L::failed>("failed", "", 0, 1e6, "storms beyond the limits that broke it"),
 };
 // clang-format on

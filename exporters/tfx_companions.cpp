@@ -154,7 +154,7 @@ std::string meshFile(const ImportedScene& scene, const StrandExportOptions& opti
 std::string meshRefusal(const ImportedScene& scene) {
     for (const Bone& bone : scene.skeleton.bones()) {
         if (bone.name.empty() || bone.name.find_first_of(" \t\r\n") != std::string::npos)
-            return fmt::format("bone '{}' has a blank in its name, or none", bone.name);
+            return fmt::format("bone '{}' has a space in its name, or no name", bone.name);
     }
     return {};
 }
@@ -185,11 +185,11 @@ std::vector<TfxCompanion> tfxCompanions(const Groom& groom, PreparedStrands& str
         isSkinned && isBound ? rootWeights(groom, strands, *scene) : carriedWeights(groom, strands);
     if (!weights.bones.empty()) {
         if (const std::string why = refusal(weights); !why.empty())
-            leave(why, "tfxbone", "mend the character's skin, and export again");
+            leave(why, "tfxbone", "fix the character's skin, and export again");
         else
             add("tfxbone", boneFile(weights));
     } else if (isSkinned && !isBound) {
-        leave("the strands are bound to no scalp", "tfxbone", "bind them, so that bones move their roots");
+        leave("the strands are not bound to a scalp", "tfxbone", "bind them, so that bones move their roots");
     }
     if (!isSkinned) return made;
     if (const std::string why = meshRefusal(*scene); !why.empty()) {

@@ -54,7 +54,7 @@ Result<std::uint32_t> choosePoints(const Groom& groom, const StrandExportOptions
 std::vector<Vec2f> rootUvsOrZeros(const Groom& groom, PreparedStrands& strands) {
     std::vector<Vec2f> uvs = rootUvs(groom, strands);
     if (!uvs.empty()) return uvs;
-    strands.findings.push_back({Severity::Warning, "root UVs are missing; all are (0, 0)", "root UVs",
+    strands.findings.push_back({Severity::Warning, "root UVs are missing, so all are (0, 0)", "root UVs",
                                 "bind the strands to a scalp with UVs to colour them by its texture"});
     uvs.resize(strands.strandCount(), Vec2f::Zero());
     return uvs;
@@ -110,7 +110,7 @@ void addLimits(PreparedStrands& strands) {
             {Severity::Warning,
              fmt::format("{} vertices are more than one TressFX dispatch can take ({})",
                          strands.positions.size(), kMaxVertices),
-             "strands", "split the groom, or export fewer guides and let TressFX make follow hairs"});
+             "strands", "split the groom, or export fewer guides and let TressFX generate follow hairs"});
     }
 }
 
@@ -182,11 +182,12 @@ StrandWriter tfxWriter() {
     return {
         "tfx",
         "TressFX .tfx",
-        "root UV and thickness factor of each strand, colour and transparency of each point; bones of the "
-        "roots and the skinned head beside it (.tfxbone, .tfxmesh) where the head has some",
+        "root UV and thickness factor of each strand, colour and transparency of each point. Next to the "
+        "file, bones of the roots and the skinned head (.tfxbone, .tfxmesh) if the head has bones",
         "4, 8, 16, 32 or 64 points on every strand",
-        {{"tressfx", "TressFX", ".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64", {}},
-         {"tressfx-unreal", "TressFX for Unreal", ".tfx in centimetres, Z up, 16 points a strand", unreal}},
+        {{"tressfx", "TressFX", ".tfx version 4 in metres, Y up, resampled to 4, 8, 16, 32 or 64 points", {}},
+         {"tressfx-unreal", "TressFX for Unreal", ".tfx in centimetres, Z up, with 16 points per strand",
+          unreal}},
         writeTfx};
 }
 

@@ -129,7 +129,7 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
 }  // namespace
 
 StrandWriter usdcWriter() {
-    StrandWriter writer{"usdc", "USD .usdc",         "what usda carries, in a tenth of the time",
+    StrandWriter writer{"usdc", "USD .usdc",         "like usda, in a tenth of the time",
                         "none", usdTargets(".usdc"), writeUsdc};
     writer.animates = true;
     return writer;

@@ -222,7 +222,7 @@ Result<std::vector<AlembicProperty>> AlembicArchive::properties(const AlembicObj
 
 Result<std::vector<AlembicProperty>> AlembicArchive::properties(const AlembicProperty& compound) const {
     if (compound.kind != AlembicProperty::Kind::Compound)
-        return file_.error(compound.node, compound.name + " is no compound", "expected properties in it");
+        return file_.error(compound.node, compound.name + " is not a compound", "expected properties in it");
     return propertiesIn(compound.node);
 }
 
@@ -354,7 +354,7 @@ Result<std::vector<T>> AlembicArchive::numbers(const AlembicProperty& property, 
             convert<double>(*bytes, values);
             break;
         default:
-            return file_.error(property.node, property.name + " is text", "expected numbers");
+            return file_.error(property.node, property.name + " is a string", "expected numbers");
     }
     return values;
 }
@@ -376,7 +376,7 @@ Result<std::vector<std::int64_t>> AlembicArchive::integers(const AlembicProperty
 
 Result<std::string> AlembicArchive::text(const AlembicProperty& property, std::uint32_t index) const {
     if (property.pod != AlembicPod::String)
-        return file_.error(property.node, property.name + " is no text", "expected text");
+        return file_.error(property.node, property.name + " is not a string", "expected a string");
     const auto bytes = sample(property, index);
     if (!bytes) return tl::unexpected(bytes.error());
     const std::string_view text = asText(*bytes);

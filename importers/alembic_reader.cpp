@@ -112,8 +112,9 @@ class Reader {
         for (const MovingProperty& property : moving) samples = std::max(samples, property.samples);
         if (!options_.frames) {
             strands_.warnings.push_back(
-                fileNote(fmt::format("the hair moves: {} samples in time; the first was taken", samples),
-                         "time", "import --record keeps all as a record of frames"));
+                fileNote(fmt::format("the hair is animated: {} time samples, of which the first was imported",
+                                     samples),
+                         "time", "import with --record to keep all of them"));
             return {};
         }
         auto times = recordTimes(moving, isRate ? *stated : 0, static_cast<double>(options_.framesPerSecond));
@@ -308,7 +309,7 @@ class Reader {
                      const AlembicProperty& named, CurveSet& set) {
         if (values.samples == 0) return {};
         if (values.pod == AlembicPod::String || values.pod == AlembicPod::WideString) {
-            strands_.warnings.push_back(fileNote("text of curves was left out", named.name));
+            strands_.warnings.push_back(fileNote("string attributes of curves were left out", named.name));
             return {};
         }
         CurveAttribute attribute;
@@ -388,7 +389,7 @@ bool isAlembic(std::span<const std::byte> bytes) {
 Result<RawStrands> readAlembic(const std::string& file, std::vector<std::byte>&& bytes,
                                const StrandImportOptions& options) {
     if (std::to_integer<int>(bytes[0]) == 0x89)
-        return failIn(file, Byte{0}, "is in the HDF5 container of Alembic before 1.5",
+        return failIn(file, Byte{0}, "is an Alembic file in HDF5, from before version 1.5",
                       "expected Ogawa: export it again, or run abcconvert -toOgawa");
     const auto archive = AlembicArchive::open(file, bytes);
     if (!archive) return tl::unexpected(archive.error());

@@ -42,7 +42,7 @@ Result<StrandPieces> equalPieces(const std::string& file, const ObjStrandText& o
         if (begin == end ||
             std::any_of(begin, end, [&](std::uint32_t v) { return v / size != pieceOf(face); }))
             return failIn(file, Line{obj.faceLines[face]},
-                          "this face does not lie between neighbouring cross-sections of one hair ribbon",
+                          "this face is not between neighbouring cross-sections of one hair ribbon",
                           fmt::format("expected ribbons of {} segments, or OBJ lines", segments));
         ++counts[pieceOf(face)];
     }

@@ -43,7 +43,7 @@ Status crashed(const std::string& name, const std::string& how) {
 }
 
 Status gaveUp(const std::string& name, int status) {
-    return fail(fmt::format("{} gave up on this file (status {})", name, status),
+    return fail(fmt::format("{} could not read this file (status {})", name, status),
                 "the file is damaged; nothing was changed");
 }
 

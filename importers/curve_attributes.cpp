@@ -218,8 +218,9 @@ void takeIds(RawStrands& strands) {
     }
     const std::set<std::int32_t> different(ids.begin(), ids.end());
     if (different.size() != ids.size() || *different.begin() < 0) {
-        strands.warnings.push_back(fileWarning("ids of strands repeat or are negative", "groom_id",
-                                               "strands were numbered anew; the file's are in \"groom_id\""));
+        strands.warnings.push_back(
+            fileWarning("strand ids repeat or are negative", "groom_id",
+                        "strands were renumbered, and the ids of the file are in \"groom_id\""));
         *id = RawAttribute{"groom_id", false, RawAttribute::Type::Whole, 1, {}, std::move(ids)};
         return;
     }

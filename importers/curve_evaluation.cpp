@@ -140,7 +140,8 @@ CurvePoint deBoor(std::span<const double> knots, std::uint32_t span, std::uint32
 Status checkKnots(std::span<const double> knots) {
     if (!std::ranges::all_of(knots, [](double knot) { return std::isfinite(knot); }))
         return fail("knots are not finite", "expected ascending numbers");
-    if (!std::ranges::is_sorted(knots)) return fail("knots do not ascend", "expected ascending numbers");
+    if (!std::ranges::is_sorted(knots))
+        return fail("knots are not in ascending order", "expected ascending numbers");
     return {};
 }
 
@@ -153,7 +154,7 @@ Result<std::vector<CurvePoint>> alongNurbs(const CurveForm& form, std::uint32_t 
     }
     if (auto status = checkKnots(knots); !status) return tl::unexpected(status.error());
     const double from = knots[form.order - 1], to = knots[controls];
-    if (!(to > from)) return fail("the knots leave no length of the curve", "expected knots that ascend");
+    if (!(to > from)) return fail("the knots leave no range of the curve", "expected ascending knots");
     std::vector<CurvePoint> points;
     const std::uint32_t steps = controls - 1;
     std::uint32_t span = form.order - 1;

@@ -200,8 +200,8 @@ class Appender {
         }
         if (polylines_ > 0) {
             strands_.warnings.push_back(
-                fileWarning(fmt::format("{} curves are none of their basis ({})", polylines_, firstPolyline_),
-                            curves_.path, "lines through their control points were taken"));
+                fileWarning(fmt::format("{} curves do not fit their basis ({})", polylines_, firstPolyline_),
+                            curves_.path, "they were imported as lines through their control points"));
         }
         return {};
     }
@@ -374,7 +374,7 @@ class Appender {
 
     void reportLeftOut(const CurveAttribute& part) {
         strands_.warnings.push_back(
-            fileWarning(fmt::format("{} has {} values, which fit {} curves of {} points in no way", part.name,
+            fileWarning(fmt::format("{} has {} values, which do not fit {} curves of {} points", part.name,
                                     part.count(), sizes_.curves, sizes_.points),
                         curves_.path, "it was left out"));
     }

@@ -143,16 +143,15 @@ Result<RawStrands> readHair(const std::string& file, std::vector<std::byte>&& by
         raw.warnings.push_back(
             Finding{Severity::Error,
                     fmt::format("{} points belong to no strand", header->points - raw.offsets.back()),
-                    "header", "they were left out; write the file again with counts that agree"});
+                    "header", "they were left out. Write the file again with matching counts"});
     }
     if (arrays & ~kKnownBits) {
-        raw.warnings.push_back(
-            fileWarning(fmt::format("array bits {:#x} are not known", arrays & ~kKnownBits), "header",
-                        "what they announce was left out"));
+        raw.warnings.push_back(fileWarning(fmt::format("array bits {:#x} are unknown", arrays & ~kKnownBits),
+                                           "header", "their arrays were left out"));
     } else if (reader.remaining() > 0) {
         raw.warnings.push_back(
             Finding{Severity::Error, fmt::format("{} bytes follow the last array", reader.remaining()),
-                    "end of file", "they were left out; write the file again with counts that agree"});
+                    "end of file", "they were left out. Write the file again with matching counts"});
     }
     return raw;
 }

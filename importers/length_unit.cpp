@@ -46,9 +46,9 @@ std::optional<std::string> implausibleSize(double size, double metresPerUnit) {
     const double metres = size * metresPerUnit;
     if (plausible(metres)) return std::nullopt;
     const LengthUnit* best = fittingUnit(size);
-    const std::string found = fmt::format("is {:.3g} m large, which is neither a head nor a human", metres);
-    if (!best) return found + "; no unit among m, dm, cm, mm and inch fits";
-    return found + fmt::format("; with the unit {} it would be {:.3g} m", best->name, size * best->metres);
+    const std::string found = fmt::format("is {:.3g} m large, an unlikely size for a head or a body", metres);
+    if (!best) return found + ". No unit among m, dm, cm, mm and inch fits";
+    return found + fmt::format(". With the unit {} it would be {:.3g} m", best->name, size * best->metres);
 }
 
 }  // namespace hairloom

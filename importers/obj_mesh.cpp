@@ -161,7 +161,7 @@ class ObjReader {
         if (name.empty() || std::filesystem::exists(path_.parent_path() / std::filesystem::path(name), code))
             return;
         scene_.warnings.push_back(fmt::format(
-            "the material file '{}' is missing; materials keep their names only", shortened(name)));
+            "the material file '{}' was not found, so materials have only their names", shortened(name)));
     }
 
     Status checkIndices() const {
@@ -169,9 +169,10 @@ class ObjReader {
         for (std::size_t face = 0; face + 1 < soup.offsets.size(); ++face) {
             for (std::uint32_t corner = soup.offsets[face]; corner < soup.offsets[face + 1]; ++corner) {
                 if (soup.corners[corner] < soup.positions.size()) continue;
-                return failIn(file_, Line{faceLines_[face]},
-                              fmt::format("a face names vertex {}", std::uint64_t{soup.corners[corner]} + 1),
-                              fmt::format("the file has {} vertices", soup.positions.size()));
+                return failIn(
+                    file_, Line{faceLines_[face]},
+                    fmt::format("a face refers to vertex {}", std::uint64_t{soup.corners[corner]} + 1),
+                    fmt::format("the file has {} vertices", soup.positions.size()));
             }
         }
         return {};
@@ -187,7 +188,7 @@ class ObjReader {
         }
         if (tooFewCorners_ != 0) {
             scene_.warnings.push_back(
-                fmt::format("{} faces with fewer than three corners are left out", tooFewCorners_));
+                fmt::format("{} faces with fewer than three corners were left out", tooFewCorners_));
         }
         attachUvs();
         attachNormals();

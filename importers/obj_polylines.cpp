@@ -168,7 +168,7 @@ Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText
     }
     if (!obj.faceLines.empty()) {
         raw.warnings.push_back(fileNote(fmt::format("{} faces were left out", obj.faceLines.size()), "faces",
-                                        "read them as a mesh"));
+                                        "import them as a mesh"));
     }
     return raw;
 }

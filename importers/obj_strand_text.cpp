@@ -81,8 +81,8 @@ class Parser {
             const auto count = static_cast<std::int64_t>(obj_.vertices.size());
             const std::int64_t fromZero = *index < 0 ? count + *index : *index - 1;
             if (fromZero < 0 || fromZero >= count) {
-                return wrong(fmt::format("a {} names vertex {}", what, *index),
-                             fmt::format("{} vertices stand before it", count));
+                return wrong(fmt::format("a {} refers to vertex {}", what, *index),
+                             fmt::format("there are {} vertices before it", count));
             }
             target.push_back(static_cast<std::uint32_t>(fromZero));
         }
@@ -190,9 +190,9 @@ class Parser {
         } else {
             if (!saidPolyline_)
                 obj_.warnings.push_back(fileWarning(
-                    fmt::format(
-                        "a curve of type '{}', degree {} and {} control points became a line through these",
-                        shortened(type_), degree_, controls_.size()),
+                    fmt::format("a curve of type '{}', degree {} and {} control points became a line through "
+                                "these points",
+                                shortened(type_), degree_, controls_.size()),
                     fmt::format("line {}", curveLine_), "export curves as bezier, bspline or cardinal"));
             saidPolyline_ = true;
             obj_.lineIndices.insert(obj_.lineIndices.end(), controls_.begin(), controls_.end());

@@ -28,10 +28,11 @@ tl::unexpected<Error> OgawaFile::error(OgawaNode node, std::string problem, std:
 Result<OgawaFile> OgawaFile::open(std::string file, std::span<const std::byte> bytes) {
     OgawaFile opened(std::move(file), bytes);
     if (bytes.size() < kHeaderBytes || std::memcmp(bytes.data(), "Ogawa", 5) != 0)
-        return failIn(opened.file_, Byte{0}, "is no Ogawa file",
+        return failIn(opened.file_, Byte{0}, "is not an Ogawa file",
                       "expected an Alembic file in Ogawa's container");
     if (std::to_integer<int>(bytes[5]) != 0xff)
-        return failIn(opened.file_, Byte{5}, "was not finished by its writer", "export it again");
+        return failIn(opened.file_, Byte{5}, "was not completed by the program that wrote it",
+                      "export it again");
     if (std::to_integer<int>(bytes[6]) != 0 || std::to_integer<int>(bytes[7]) != 1)
         return failIn(opened.file_, Byte{6}, "is another version of Ogawa", "expected version 1");
     opened.root_.reference = readCount(bytes, 8);
@@ -41,11 +42,11 @@ Result<OgawaFile> OgawaFile::open(std::string file, std::span<const std::byte> b
 Result<std::uint64_t> OgawaFile::countAt(std::uint64_t offset, std::uint64_t elementBytes) const {
     const OgawaNode node{offset};
     if (offset < kHeaderBytes || offset > bytes_.size() || bytes_.size() - offset < kCountBytes)
-        return error(node, "stands outside the file", fmt::format("the file has {} bytes", bytes_.size()));
+        return error(node, "is outside the file", fmt::format("the file has {} bytes", bytes_.size()));
     const std::uint64_t count = readCount(bytes_, offset);
     if (count > (bytes_.size() - offset - kCountBytes) / elementBytes) {
-        return error(node, fmt::format("{} × {} bytes are announced", count, elementBytes),
-                     fmt::format("only {} are left of the file", bytes_.size() - offset - kCountBytes));
+        return error(node, fmt::format("{} × {} bytes were announced", count, elementBytes),
+                     fmt::format("only {} are left in the file", bytes_.size() - offset - kCountBytes));
     }
     return count;
 }
@@ -66,7 +67,7 @@ Result<std::vector<OgawaNode>> OgawaFile::group(OgawaNode node) const {
     if (!count) return tl::unexpected(count.error());
     visited_ += 1 + *count;
     if (visited_ > bytes_.size() / kCountBytes + kReadAgain)
-        return error(node, "groups refer to each other in a circle", "expected a tree");
+        return error(node, "groups form a cycle", "expected a tree");
     children.resize(static_cast<std::size_t>(*count));
     for (std::size_t i = 0; i < children.size(); ++i) children[i] = child(node, i);
     return children;

@@ -43,7 +43,8 @@ class HeaderReader {
     HeaderReader(const std::string& file, std::string_view text) : file_(file), text_(text) {}
 
     Result<PlyHeader> read() {
-        if (takeLine() != "ply" || !open_) return wrong("starts with no line 'ply'", "expected a PLY file");
+        if (takeLine() != "ply" || !open_)
+            return wrong("does not begin with the line 'ply'", "expected a PLY file");
         bool ended = false;
         while (!ended) {
             std::string_view rest = takeLine();
@@ -52,7 +53,7 @@ class HeaderReader {
             ended = keyword == "end_header";
             if (auto status = readLine(keyword, rest); !status) return tl::unexpected(status.error());
         }
-        if (!hasFormat_) return wrong("the header names no format", "expected a line 'format'");
+        if (!hasFormat_) return wrong("the header has no format", "expected a line 'format'");
         header_.bodyOffset = position_;
         header_.lines = line_;
         return std::move(header_);
@@ -104,13 +105,12 @@ class HeaderReader {
             const std::string_view sizeName = takeWord(rest);
             property.listSize = typeNamed(sizeName);
             const bool whole = property.listSize && *property.listSize < PlyType::Float32;
-            if (!whole)
-                return wrong(fmt::format("'{}' is no type of whole numbers", shortened(sizeName)), "");
+            if (!whole) return wrong(fmt::format("'{}' is not an integer type", shortened(sizeName)), "");
             typeName = takeWord(rest);
         }
         const auto type = typeNamed(typeName);
         if (!type)
-            return wrong(fmt::format("'{}' is no type", shortened(typeName)), "expected char … double");
+            return wrong(fmt::format("'{}' is not a type", shortened(typeName)), "expected char … double");
         property.type = *type;
         property.name = takeWord(rest);
         if (property.name.empty() || !takeWord(rest).empty()) {

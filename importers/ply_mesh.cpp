@@ -86,7 +86,7 @@ class PlyReader {
         }
         for (const double index : indices) {
             if (!(index >= 0) || index > 4294967294.0 || index != std::floor(index)) {
-                return numbers_.wrong(fmt::format("a face names vertex {}", index),
+                return numbers_.wrong(fmt::format("a face refers to vertex {}", index),
                                       "expected an index from 0");
             }
             soup.corners.push_back(static_cast<std::uint32_t>(index));
@@ -109,7 +109,7 @@ class PlyReader {
         soup.faceGroups.assign(soup.offsets.size() - 1, 0);
         if (tooFewCorners_ != 0) {
             scene_.warnings.push_back(
-                fmt::format("{} faces with fewer than three corners are left out", tooFewCorners_));
+                fmt::format("{} faces with fewer than three corners were left out", tooFewCorners_));
         }
         const auto exists = [&](std::uint32_t corner) { return corner < soup.positions.size(); };
         if (!std::ranges::all_of(soup.corners, exists)) return;

@@ -42,7 +42,7 @@ class Reader {
         if (lines_.lineOffsets.size() < 2) return strandsOfRuns();
         const auto count = lines_.vertices.size();
         if (std::ranges::any_of(lines_.lineIndices, [&](std::uint32_t index) { return index >= count; }))
-            return failIn(file_, {}, "a strand names a vertex that there is not",
+            return failIn(file_, {}, "a strand refers to a vertex that does not exist",
                           fmt::format("there are {}", count));
         std::vector<std::uint32_t> vertices;
         auto raw = strandsFromLines(file_, lines_, vertices);
@@ -121,7 +121,7 @@ class Reader {
         const bool isEdge = element.name == "edge";
         if (isVertex) {
             if (!lines_.vertices.empty() || !columns_.empty())
-                return rows_.wrong("vertices stand in two elements");
+                return rows_.wrong("vertices are in two elements");
             if (auto status = findProperties(element); !status) return status;
             reserve(element);
         }
@@ -198,7 +198,7 @@ class Reader {
     Status addLine(const Indices& indices) {
         for (const double index : indices) {
             if (!(index >= 0) || index > 4294967294.0 || index != std::floor(index))
-                return rows_.wrong(fmt::format("a strand names vertex {}", index),
+                return rows_.wrong(fmt::format("a strand refers to vertex {}", index),
                                    "expected an index from 0");
             lines_.lineIndices.push_back(static_cast<std::uint32_t>(index));
         }

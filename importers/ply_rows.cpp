@@ -28,7 +28,7 @@ tl::unexpected<Error> PlyRows::wrong(std::string problem, std::string expected) 
 
 Status PlyRows::checkCount(const PlyElement& element) const {
     if (element.count <= remaining()) return {};
-    return wrong(fmt::format("{} rows of '{}' are promised", element.count, element.name),
+    return wrong(fmt::format("{} rows of '{}' were announced", element.count, element.name),
                  fmt::format("only {} bytes are left", remaining()));
 }
 
@@ -39,7 +39,7 @@ Result<double> PlyRows::nextWord() {
     const std::string_view word = text_.substr(begin, position_ - begin);
     if (word.empty()) return wrong("the file ends early");
     const auto number = parseNumber(word);
-    if (!number) return wrong(fmt::format("'{}' is no number", shortened(word)));
+    if (!number) return wrong(fmt::format("'{}' is not a number", shortened(word)));
     return *number;
 }
 
@@ -68,7 +68,7 @@ Result<double> PlyRows::nextBinary(PlyType type) {
         case PlyType::Float64:
             return as<double>(bytes);
     }
-    return wrong("a value of no known type");
+    return wrong("a value of an unknown type");
 }
 
 Status PlyRows::row(const PlyElement& element, PlyRow& row) {

@@ -33,7 +33,7 @@ Status validateFaces(const PolygonSoup& soup) {
     for (std::size_t corner = 0; corner < soup.corners.size(); ++corner) {
         if (soup.corners[corner] < soup.positions.size()) continue;
         const auto face = std::ranges::upper_bound(soup.offsets, corner) - soup.offsets.begin() - 1;
-        return fail(fmt::format("face {} names vertex {}", face, soup.corners[corner]),
+        return fail(fmt::format("face {} refers to vertex {}", face, soup.corners[corner]),
                     fmt::format("there are {} vertices", soup.positions.size()));
     }
     return {};

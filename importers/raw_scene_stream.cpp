@@ -216,9 +216,8 @@ Result<RawScene> readRawScene(const std::string& file, std::span<const std::byte
     }
     reader(end);
     if (!reader.status() || end != kEnd || (kind != kScene && kind != kError) || in.remaining() != 0) {
-        return failIn(file, {},
-                      fmt::format("the mesh reader's answer of {} bytes makes no sense", bytes.size()),
-                      "the file is damaged in a way that upsets the reader");
+        return failIn(file, {}, fmt::format("the mesh reader's answer of {} bytes is invalid", bytes.size()),
+                      "the file is damaged in a way that breaks the reader");
     }
     if (kind == kScene) return scene;
     if (line != 0) error.place = Line{line};

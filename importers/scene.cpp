@@ -45,7 +45,7 @@ Result<FileHead> readHead(const std::filesystem::path& path) {
     const auto status = std::filesystem::status(path, code);
     if (!std::filesystem::exists(status)) return failIn(file, {}, "no such file", "expected a mesh file");
     if (!std::filesystem::is_regular_file(status))
-        return failIn(file, {}, "is no regular file", "expected a mesh file");
+        return failIn(file, {}, "is not a regular file", "expected a mesh file");
     FileHead head;
     head.fileSize = std::filesystem::file_size(path, code);
     if (code) return failIn(file, {}, fmt::format("cannot be read: {}", code.message()));
@@ -120,7 +120,7 @@ float convertToMetres(RawScene& scene, const MeshImportOptions& options) {
     const float metresPerUnit = stated ? scene.metresPerUnit : options.metresPerUnit.value_or(1.0f);
     if (stated && options.metresPerUnit && std::abs(*options.metresPerUnit / metresPerUnit - 1) > 1e-4f) {
         scene.warnings.push_back(
-            fmt::format("the file states its unit, {} m; the unit asked for is not used", metresPerUnit));
+            fmt::format("the file states its unit, {} m, so the requested unit is not used", metresPerUnit));
     }
     scaleLengths(scene, metresPerUnit);
     return metresPerUnit;
@@ -184,7 +184,7 @@ Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshI
     if (!head) return tl::unexpected(head.error());
     if (startsWithUtf16Mark(head->bytes)) return failIn(file, {}, "is UTF-16 text", "expected UTF-8");
     const auto format = meshFormatOf(head->bytes, head->fileSize);
-    if (!format) return failIn(file, {}, "is in no mesh format that can be read", expectedFormats());
+    if (!format) return failIn(file, {}, "is not in a supported mesh format", expectedFormats());
     auto raw = readRaw(path, *format);
     if (!raw) return tl::unexpected(inFile(raw.error(), file));
     auto scene = finishScene(std::move(*raw), *format, options);

@@ -100,7 +100,8 @@ void orientToScalp(RawStrands& raw, const ScalpMesh& scalp) {
     for (std::size_t strand = 0; strand < strands; ++strand)
         turn(raw, raw.offsets[strand], raw.offsets[strand + 1]);
     raw.warnings.push_back(fileNote(
-        fmt::format("{} strands were turned: the last point of most is nearer to the scalp", strands),
+        fmt::format("{} strands were reversed, because the last point of most is nearer to the scalp",
+                    strands),
         "strands"));
 }
 
@@ -134,14 +135,14 @@ Status checkRootDistance(RawStrands& raw, const ScalpMesh& scalp, const StrandIm
                 : std::string();
     if (found > far)
         return fail(
-            fmt::format("its roots lie {:.3g} m from the head (median)", found),
+            fmt::format("its roots are {:.3g} m from the head (median)", found),
             isPlain
                 ? with
                 : "expected hair of this head; neither of the units m, dm, cm, mm and inch puts it there, "
                   "nor another axis up");
     if (isPlain)
         raw.warnings.push_back(
-            fileWarning(fmt::format("its roots lie {:.3g} m from the head (median)", found), "roots", with));
+            fileWarning(fmt::format("its roots are {:.3g} m from the head (median)", found), "roots", with));
     return {};
 }
 

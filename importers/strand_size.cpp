@@ -93,10 +93,10 @@ std::optional<Finding> implausibleSize(std::span<const std::uint32_t> offsets,
     Finding finding{
         Severity::Warning, fmt::format("strands are {:.4g} m long (median)", size.length), "size", {}};
     if (size.spread > 0) finding.what += fmt::format(" and their roots spread over {:.4g} m", size.spread);
-    finding.what += ", which is implausible for hair";
+    finding.what += ", which is unlikely for hair";
     finding.fix = best ? fmt::format("the unit {} would fit: strands of {:.4g} m", best->name,
                                      size.length * static_cast<float>(best->metres) / metresPerUnit)
-                       : "none of the units m, dm, cm, mm and inch fits; scale the file";
+                       : "none of the units m, dm, cm, mm and inch fits, so scale the file";
     return finding;
 }
 

@@ -41,7 +41,7 @@ void readCompanion(const StrandReader& reader, std::filesystem::path path, RawSt
         bytes ? reader.readCompanion(path.string(), *bytes, raw) : Status(tl::unexpected(bytes.error()));
     if (!taken)
         raw.warnings.push_back({Severity::Error, taken.error().message(), path.filename().string(),
-                                "it is left out; write it anew, or take it away"});
+                                "it was left out. Write it again, or remove it"});
 }
 
 /// Of a file, and what lies beside it, at `path` unless that is empty.
@@ -54,7 +54,8 @@ Result<RawStrands> readRaw(const std::string& file, std::vector<std::byte> bytes
         if (raw && !path.empty() && !reader->companion.empty()) readCompanion(*reader, path, *raw);
         return raw;
     }
-    return failIn(file, Byte{0}, "is in no known strand format", "expected " + labelsOf(strandFormats()));
+    return failIn(file, Byte{0}, "is not in a supported strand format",
+                  "expected " + labelsOf(strandFormats()));
 }
 
 Vec3f toMetresYUp(const Vec3f& position, const StrandImportOptions& options, bool mirrorZ) {
@@ -185,11 +186,11 @@ class Cleaner {
     void reportRepairs() {
         if (repairedStrands_ == 0) return;
         raw_.warnings.push_back(fileWarning(
-            fmt::format("{} points coincided with the one before and were removed", repairedPoints_),
+            fmt::format("{} points that coincided with the one before them were removed", repairedPoints_),
             repairedStrands_ == 1
                 ? fmt::format("strand {}", firstRepaired_)
                 : fmt::format("strand {} and {} more", firstRepaired_, repairedStrands_ - 1),
-            "resample where every strand must have the same number of points"));
+            "resample if every strand must have the same number of points"));
     }
 
     RawStrands& raw_;
@@ -340,7 +341,8 @@ StrandImportOptions stated(RawStrands& raw, StrandImportOptions options) {
         const float unit = *raw.statedMetresPerUnit;
         if (options.metresPerUnit != 1.0f && std::abs(options.metresPerUnit / unit - 1) > 1e-4f) {
             raw.warnings.push_back(fileNote(
-                fmt::format("the file states its unit, {} m; the one asked for is not used", unit), "unit"));
+                fmt::format("the file states its unit, {} m, so the requested one is not used", unit),
+                "unit"));
         }
         options.metresPerUnit = unit;
     }

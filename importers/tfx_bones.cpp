@@ -37,7 +37,7 @@ Result<std::int32_t> readCount(ByteReader& reader, std::string_view what, std::u
     const std::uint64_t most = reader.remaining() / bytesEach;
     if (*count < 1 || static_cast<std::uint64_t>(*count) > most)
         return failIn(
-            file, place, fmt::format("tells of {} {}", *count, what),
+            file, place, fmt::format("has {} {}", *count, what),
             most > 0 ? fmt::format("expected 1 to {}, as the file's {} bytes can hold", most, reader.size())
                      : fmt::format("the file has {} bytes and holds none", reader.size()));
     return count;
@@ -67,7 +67,7 @@ Result<std::vector<std::string>> readNames(ByteReader& reader, const std::string
 Status checkInfluence(const Influence& influence, std::size_t bones, Byte place, const std::string& file) {
     // Exporters fill unused places with any number, and loaders read names by it.
     if (influence.bone < 0 || static_cast<std::size_t>(influence.bone) >= bones)
-        return failIn(file, place, fmt::format("names bone {}", influence.bone),
+        return failIn(file, place, fmt::format("refers to bone {}", influence.bone),
                       fmt::format("expected 0 to {}", bones - 1));
     if (!std::isfinite(influence.weight) || influence.weight < 0)
         return failIn(file, place, fmt::format("has the weight {}", influence.weight), "expected 0 or more");

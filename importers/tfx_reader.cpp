@@ -150,11 +150,11 @@ std::vector<Finding> findGaps(const Layout& layout, std::uint64_t size) {
         const std::uint64_t end = present[i].offset + present[i].bytes;
         const std::uint64_t next = i + 1 < present.size() ? present[i + 1].offset : size;
         if (next - end < kAlignment) continue;
-        gaps.push_back({Severity::Error,
-                        fmt::format("{} bytes behind the {} belong to nothing; the header tells of {} "
-                                    "strands of {} vertices",
-                                    next - end, present[i].name, layout.strands, layout.pointsPerStrand),
-                        fmt::format("byte {}", end), "correct the counts in the header, or write it anew"});
+        gaps.push_back(
+            {Severity::Error,
+             fmt::format("{} bytes after the {} are not used: the header has {} strands of {} vertices",
+                         next - end, present[i].name, layout.strands, layout.pointsPerStrand),
+             fmt::format("byte {}", end), "correct the counts in the header, or write the file again"});
     }
     return gaps;
 }
@@ -235,11 +235,12 @@ Result<RawStrands> readVersion(const std::string& file, std::span<const std::byt
     if (!raw.mirrorZ) {
         for (Finding& gap : findGaps(layout, bytes.size())) raw.warnings.push_back(std::move(gap));
     }
-    if (raw.mirrorZ) raw.warnings.push_back(fileNote("version 3 is left-handed; Z was negated", "positions"));
+    if (raw.mirrorZ)
+        raw.warnings.push_back(fileNote("version 3 is left-handed, so Z was negated", "positions"));
     if (bothEndsImmovable(*header, layout, bytes)) {
         raw.warnings.push_back(
-            fileNote("both ends of the strands are marked immovable; Hairloom fixes the root alone",
-                     "strand tips", "constrain the tips anew where that was wanted"));
+            fileNote("both ends of the strands are marked immovable, but Hairloom fixes only the root",
+                     "strand tips", "constrain the tips again where you need that"));
     }
     return raw;
 }

@@ -148,9 +148,9 @@ class Reader {
         if (!options_.frames) {
             strands_.warnings.insert(
                 strands_.warnings.begin(),
-                fileNote(
-                    fmt::format("the hair moves: {} samples in time; the first was taken", times_.size()),
-                    "time", "import --record keeps all as a record of frames"));
+                fileNote(fmt::format("the hair is animated: {} time samples, of which the first was imported",
+                                     times_.size()),
+                         "time", "import with --record to keep all of them"));
             return {};
         }
         std::vector<double> seconds;
@@ -345,7 +345,7 @@ class Reader {
                   CurveSet& set) {
         if (value.texts.empty()) return;
         if (added.name != "groom_group_name") {
-            strands_.warnings.push_back(fileNote("text of curves was left out", added.name));
+            strands_.warnings.push_back(fileNote("string attributes of curves were left out", added.name));
             return;
         }
         if (indices != nullptr) {

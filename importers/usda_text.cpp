@@ -238,7 +238,7 @@ class Parser {
 
     bool body(UsdPrim& prim_, int depth) {
         if (depth > kMaxDepth)
-            return in_.wrong("prims lie in each other too deep", fmt::format("expected {}", kMaxDepth));
+            return in_.wrong("prims are nested too deep", fmt::format("expected {}", kMaxDepth));
         if (!in_.need('{')) return false;
         while (!in_.take('}')) {
             if (in_.atEnd()) return in_.wrong("the file ends inside a prim", "expected '}'");
@@ -348,7 +348,7 @@ class Parser {
 
 Result<UsdLayer> readUsda(const std::string& file, std::string_view text) {
     if (!text.starts_with("#usda"))
-        return failIn(file, Line{1}, "is no USD text", "expected \"#usda 1.0\" first");
+        return failIn(file, Line{1}, "is not USD text", "expected \"#usda 1.0\" first");
     Parser parser(text);
     if (!parser.run()) return parser.error(file);
     return parser.take();

@@ -80,7 +80,7 @@ Result<UsdcFile> UsdcFile::open(std::string file, std::span<const std::byte> byt
 
 Status UsdcFile::read() {
     if (bytes_.size() < kBootstrap || std::memcmp(bytes_.data(), kStart.data(), kStart.size()) != 0)
-        return error(0, "is no binary USD file", "expected PXR-USDC and a head of 88 bytes");
+        return error(0, "is not a binary USD file", "expected PXR-USDC and a head of 88 bytes");
     const auto major = std::to_integer<int>(bytes_[8]);
     minor_ = std::to_integer<int>(bytes_[9]);
     if (major != 0 || minor_ < kOldest || minor_ > kNewest)
@@ -212,7 +212,7 @@ Status UsdcFile::readPaths() {
         for (bool goesOn = true; goesOn;) {
             if (entry >= indices->size() || (*indices)[entry] >= paths_.size() ||
                 visited++ >= indices->size())
-                return error(sections_[Paths].begin, "paths lead nowhere or in a circle");
+                return error(sections_[Paths].begin, "paths lead nowhere or form a cycle");
             const auto token = static_cast<std::int32_t>((*tokens)[entry]);
             const auto jump = static_cast<std::int32_t>((*jumps)[entry]);
             const std::uint32_t path = (*indices)[entry];
@@ -237,7 +237,8 @@ Status UsdcFile::readSpecs() {
     }
     for (std::size_t i = 0; i < paths->size(); ++i) {
         if ((*paths)[i] >= paths_.size() || (*sets)[i] >= fieldSets_.size())
-            return error(sections_[Specs].begin, fmt::format("spec {} names what there is not", i));
+            return error(sections_[Specs].begin,
+                         fmt::format("spec {} refers to something that does not exist", i));
         specs_.push_back({(*paths)[i], (*sets)[i], (*types)[i]});
     }
     return {};

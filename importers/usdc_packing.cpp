@@ -71,7 +71,7 @@ Result<std::vector<T>> unpackIntegers(std::span<const std::byte> packed, std::ui
     if (count == 0) return std::vector<T>();
     if (count > packed.size() * kMaxPerByte * 4 || count > kMaxIntegers)
         return fail(fmt::format("{} whole numbers in {} bytes", count, packed.size()),
-                    "expected a count that they bear out");
+                    "expected a count that fits");
     const std::size_t codes = static_cast<std::size_t>((count * 2 + 7) / 8);
     const auto bytes = unpackBytes(packed, sizeof(T) + codes + count * sizeof(T));
     if (!bytes) return tl::unexpected(bytes.error());

@@ -66,7 +66,7 @@ class Reader {
     Status addChildren(std::uint32_t path, UsdPrim& prim, std::uint32_t depth,
                        const std::vector<std::string>& names) {
         if (depth > kMaxDepth)
-            return failIn(file_.name(), {}, "prims lie in each other too deep",
+            return failIn(file_.name(), {}, "prims are nested too deep",
                           fmt::format("expected {}", kMaxDepth));
         std::unordered_map<std::string_view, std::size_t> places;
         for (std::size_t i = 0; i < names.size(); ++i) places.emplace(names[i], i);

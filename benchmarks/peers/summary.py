@@ -126,11 +126,11 @@ def picture(rows, path):
     parts += labels(points)
     below = TOP + 9 + 22 * len(COLOURS)
     parts += [line(RIGHT + 22, below, RIGHT + 46, below, "#666666", ' stroke-width="1.2" stroke-dasharray="6 4"'),
-              text(RIGHT + 54, below + 4, "doubt of its own truth", anchor="start"),
+              text(RIGHT + 54, below + 4, "uncertainty of its reference", anchor="start"),
               text((LEFT + RIGHT) / 2, BOTTOM + 39, "processor time per frame of 300 strands (ms)", 13),
               text(24, (TOP + BOTTOM) / 2, "error against its own converged run, rms (mm)", 13,
                    more=f' transform="rotate(-90 24 {(TOP + BOTTOM) / 2})"'),
-              text(12, 534, "Labels: substeps or steps a frame of 1/60 s, × iterations where there are any. Left is fast, down is exact.",
+              text(12, 534, "Labels: substeps or steps a frame of 1/60 s, × iterations where there are any. Left is fast, down is accurate.",
                    anchor="start", colour="#555555"),
               text(12, 549, f'{rows[0]["machine"]}, {rows[0]["date"]}.', anchor="start", colour="#555555"), "</svg>"]
     with open(path, "w") as file:
@@ -144,13 +144,13 @@ def sentence(peer, rows, ours):
     words = [f"- **{peer}**:"]
     if reached:
         few, many = (short(pick(factor for _, factor in reached)) for pick in (min, max))
-        words.append(f"at the same error or a smaller one ours costs {few if few == many else f'{few} to {many}'} times less.")
+        words.append(f"at the same error or less, ours costs {few if few == many else f'{few} to {many}'} times less.")
         close = [row["setting"] for row, factor in reached if factor < 10]
         if close:
             words.append(f"It is less than ten times at {', '.join(close)}.")
     if beyond:
         best = min(ours, key=lambda row: number(row, "error_rms_mm"))
-        words.append(f"{'At' if reached else 'at'} {' and '.join(row['setting'] for row in beyond)} it is more exact "
+        words.append(f"{'At' if reached else 'at'} {' and '.join(row['setting'] for row in beyond)} it is more accurate "
                      f"({short(number(beyond[0], 'error_rms_mm'))} mm) than ours at any setting here "
                      f"({short(number(best, 'error_rms_mm'))} mm), for "
                      f"{short(number(beyond[0], 'ms_per_frame') / number(best, 'ms_per_frame'))} times the time.")
@@ -158,8 +158,8 @@ def sentence(peer, rows, ours):
 
 
 def table(rows):
-    lines = ["| simulator | setting, a frame of 1/60 s | ms per frame | off from its own truth, mm: rms, largest | "
-             "stretch, %: mean, largest | cantilever off, mm |", "|---|---|---|---|---|---|"]
+    lines = ["| simulator | setting, a frame of 1/60 s | ms per frame | error against its own reference, mm: rms, largest | "
+             "stretch, %: mean, largest | cantilever error, mm |", "|---|---|---|---|---|---|"]
     for row in rows:
         cells = [f"{row['peer']} {row['version']}", row["setting"]]
         for columns in (["ms_per_frame"], ["error_rms_mm", "error_max_mm"], ["stretch_mean_percent", "stretch_max_percent"],
@@ -170,8 +170,8 @@ def table(rows):
     truths = [f"{peer} {own[0]['converged']}, {short(number(own[0], 'doubt_mm'))} mm" for peer, own in of.items() if own]
     load = max(number(row, "load") for row in rows)
     busy = f", a busy machine (load {load:.0f})" if load > 1.5 else ""
-    lines += ["", f"{scene.STRANDS} strands, {rows[0]['machine']}{busy}, {rows[0]['date']}. What counts as true, and how far the next best "
-              f"run is from it: {'; '.join(truths)}.", ""]
+    lines += ["", f"{scene.STRANDS} strands, {rows[0]['machine']}{busy}, {rows[0]['date']}. Reference of each, and its distance from the "
+              f"next best run: {', '.join(truths)}.", ""]
     for peer, own in of.items():
         if not own:
             lines.append(f"- **{peer}** was not run: it could not be had for a Python of this machine.")

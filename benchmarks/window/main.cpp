@@ -199,7 +199,7 @@ std::vector<std::string> hairBrushes() {
 }
 
 void measureAll(Timings& timings) {
-    timings.measure("the window stands", windowStands);
+    timings.measure("the window opens", windowStands);
     for (const char* name : {"short", "shoulder", "long"}) {
         timings.measure(std::string("opening the ") + name + " sample",
                         [name](Rounds& rounds) { return sampleOpens(rounds, name); });
@@ -212,7 +212,7 @@ void measureAll(Timings& timings) {
         timings.measure("undo of a stroke, " + name,
                         [&](Rounds& rounds) { return undo(rounds, name.c_str()); });
     }
-    timings.measure("the scene takes moved strands",
+    timings.measure("the scene updates moved strands",
                     [](Rounds& rounds) { return sceneTakes(rounds, false); });
     timings.measure("the scene takes the groom", [](Rounds& rounds) { return sceneTakes(rounds, true); });
 }

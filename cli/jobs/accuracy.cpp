@@ -112,7 +112,8 @@ Result<std::optional<double>> pixelsPerMm(const std::string& file, const Groom& 
     const auto view = readViewFile(file);
     if (!view) return tl::unexpected(view.error());
     if (!view->camera || !view->size || view->size->second == 0)
-        return failIn(file, {}, "the view has no camera or no size", "expected both, for errors in pixels");
+        return failIn(file, {}, "the view has no camera or no size",
+                      "expected both, to measure errors in pixels");
     const float metres = render::metresPerPixel(*view->camera, groom.bounds().center(),
                                                 static_cast<float>(view->size->second));
     return 1e-3 / static_cast<double>(metres);
@@ -243,39 +244,37 @@ Result<Report> compareFolders(const std::vector<std::string>& folders) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<AccuracyOptions>();
     addMotionOptions(job, options->motion);
-    job.add_option("-o,--output", options->output, "Folder for report.html, data.csv and the drawings")
+    job.add_option("-o,--output", options->output, "Folder for report.html, data.csv and the plots")
         ->required();
-    job.add_option("--strands", options->strands,
-                   "Strands to run, drawn from the groom's; all of them where guides vary")
+    job.add_option(
+           "--strands", options->strands,
+           "Number of strands to run, drawn at random from the groom. All of them run where guides vary")
         ->check(CLI::Range(1, 1'000'000));
     const auto list = [&](const char* name, std::vector<std::string>& values, const char* does) {
         job.add_option(name, values, does)->delimiter(',');
     };
     list("--integrators", options->integrators,
-         "Integrators of springs to try, instead of the groom's own; makes strands springs");
-    list("--substeps", options->substeps, "Steps in 1/60 s to try");
+         "Integrators of springs to measure instead of the groom's own. Uses springs");
+    list("--substeps", options->substeps, "Steps per 1/60 s to measure");
     list("--iterations", options->iterations,
-         "Corrections of length per substep of springs to try; makes strands springs");
+         "Length iterations per substep of springs to measure. Uses springs");
     list("--points", options->points,
-         "Points per strand to try, instead of the groom's, a half and a quarter");
-    list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
-    job.add_option(
-        "--vary", options->vary,
-        "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated. A field of the simulation, or "
-        "engine=cpu,gpu, hairHair=0,1 (hair against hair), spheres=0,2,… (the first so many), "
-        "guides=50,200,… (so many strands of all are simulated, the others go as their guides do), "
-        "hairsPerGuide=0,20,… (hairs that follow each: time alone). The engines are in single precision, the "
-        "reference is in double; levels of detail are pictures, which lod measures");
+         "Points per strand to measure, instead of the groom's own, a half and a quarter");
+    list("--thread-counts", options->threadCounts, "Thread counts to measure instead of --threads");
+    job.add_option("--vary", options->vary,
+                   "Another setting to measure as FIELD=VALUE,VALUE,… You can repeat this option. FIELD is a "
+                   "simulation setting, engine (cpu,gpu), hairHair (0,1), spheres (first N spheres), guides "
+                   "(N simulated strands; the others follow) or hairsPerGuide (time only)");
     job.add_option("--view", options->view,
-                   "View file (docs/cli.md) with a camera and a size: errors in its pixels, too")
+                   "View file (docs/cli.md) with a camera and a size. Adds errors in pixels of this view")
         ->type_name("FILE");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
     addGroundTruthOptions(job, options->groundTruth);
-    job.add_option("--seed", options->seed, "Another seed draws other strands");
+    job.add_option("--seed", options->seed, "Random seed of the sample of strands");
     addPictureAccuracyOptions(job, options->picture);
     auto* compare = job.add_option("--compare", options->compared,
-                                   "Instead of measuring: two folders of reports; names settings that are "
-                                   "slower or less exact in the second")
+                                   "Compares two report folders instead of measuring, and lists settings "
+                                   "that are slower or less accurate in the second")
                         ->expected(2);
     for (const char* name : {"groom", "--output"}) job.get_option(name)->required(false);
     job.final_callback([&job, compare] {
@@ -297,7 +296,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job accuracyJob() {
-    return {"accuracy", "Measure what accuracy costs: time and error for a grid of settings",
+    return {"accuracy", "Measure time and error for a grid of settings",
             "hair.hairloom -o accuracy --motion nod --wind 3,0,1 --substeps 1,2,4,8,16", declare};
 }
 

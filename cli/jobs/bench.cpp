@@ -46,7 +46,7 @@ void checkOptions(const BenchOptions& options) {
     const Benchmark& benchmark = benchmarkOf(options.name);
     for (const std::string& option : options.given) {
         if (std::ranges::find(benchmark.takes, option) != benchmark.takes.end()) continue;
-        throw WrongUsage(fmt::format("`bench {}` takes no {}", options.name, option),
+        throw WrongUsage(fmt::format("`bench {}` has no option {}", options.name, option),
                          fmt::format("expected it with {}", whoTakes(option)));
     }
 }
@@ -101,29 +101,28 @@ JobRun declare(CLI::App& job) {
         return fmt::format("{}: {}", whoTakes(option), does);
     };
     some.push_back(job.add_option("--strands", options->measuring.strands,
-                                  of("--strands", "numbers of strands, instead of the usual ones, ascending"))
+                                  of("--strands", "numbers of strands, in ascending order"))
                        ->delimiter(',')
                        ->check(CLI::Range(1, 1'000'000)));
-    some.push_back(job.add_flag("--quick", options->measuring.quick,
-                                of("--quick", "shorter runs, to see that it works")));
     some.push_back(
-        job.add_option("--markdown", options->markdown, of("--markdown", "file to write the tables to")));
+        job.add_flag("--quick", options->measuring.quick, of("--quick", "shorter runs, as a quick check")));
+    some.push_back(job.add_option("--markdown", options->markdown, of("--markdown", "file for the tables")));
     some.push_back(job.add_option("--hairs", options->measuring.hairs,
                                   of("--hairs", "numbers of hairs, instead of 3100,9300,18300,100000"))
                        ->delimiter(',')
                        ->check(CLI::Range(1, 1'000'000)));
     some.push_back(
         job.add_option("--grooms", options->measuring.grooms,
-                       of("--grooms", "samples by name, project files, or 100000x16, with commas between"))
+                       of("--grooms", "samples by name, project files, or 100000x16, separated by commas"))
             ->delimiter(','));
-    some.push_back(job.add_option("--frames", options->measuring.frames, of("--frames", "frames of each row"))
+    some.push_back(job.add_option("--frames", options->measuring.frames, of("--frames", "frames per row"))
                        ->check(CLI::Range(1, 100'000)));
-    some.push_back(job.add_option("--size", options->size, of("--size", "pixels WxH of all pictures")));
     some.push_back(
-        job.add_option("-o,--output", options->output,
-                       of("--output", "folder to write the table, its Markdown and the chart to")));
+        job.add_option("--size", options->size, of("--size", "size WxH of all images, in pixels")));
+    some.push_back(job.add_option("-o,--output", options->output,
+                                  of("--output", "folder for the table, its Markdown and the chart")));
     auto* const device =
-        job.add_option("--device", options->device, of("--device", "GPU to use, by its index in `devices`"));
+        job.add_option("--device", options->device, of("--device", "GPU index, as listed by `devices`"));
     some.push_back(device);
     job.final_callback([options, repetitions, device, some] {
         if (repetitions->count() > 0) options->measuring.repetitions = options->repetitions;
@@ -142,7 +141,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job benchJob() {
-    return {"bench", "Measure a part of Hairloom on this machine; medians of repeated runs",
+    return {"bench", "Measure a part of Hairloom on this machine, with medians of repeated runs",
             "sim --quick --json", declare};
 }
 

@@ -95,32 +95,34 @@ class FrameTimer {
 
 Error doesNotFit(const BudgetJobOptions& options, const Budget& solved) {
     if (options.withinMm) {
-        return Error{options.motion.input,
-                     {},
-                     fmt::format("the most exact settings found are off by {:.3g} mm", solved.errorMm),
-                     fmt::format("an error of at least that; {:.3g} mm was asked for", *options.withinMm)};
+        return Error{
+            options.motion.input,
+            {},
+            fmt::format("the most accurate settings found have an error of {:.3g} mm", solved.errorMm),
+            fmt::format("allow at least that: {:.3g} mm was the limit", *options.withinMm)};
     }
     const double characters = options.characters;
-    return Error{options.motion.input,
-                 {},
-                 fmt::format("the fastest settings found take {:.3g} ms a frame on this machine",
-                             characters * solved.milliseconds.median),
-                 fmt::format("a budget of at least that; {:.3g} ms were asked for, {:.3g} ms is what the "
-                             "scene takes as it is",
-                             *options.milliseconds, characters * solved.authoredMilliseconds.median)};
+    return Error{
+        options.motion.input,
+        {},
+        fmt::format("the fastest settings found take {:.3g} ms per frame on this machine",
+                    characters * solved.milliseconds.median),
+        fmt::format("allow at least that: {:.3g} ms was the limit, and the scene takes {:.3g} ms as authored",
+                    *options.milliseconds, characters * solved.authoredMilliseconds.median)};
 }
 
 Error isTooBusy(const BudgetJobOptions& options, const Budget& solved) {
     const Quartiles& ms = solved.milliseconds;
-    return Error{options.motion.input,
-                 {},
-                 fmt::format("this machine is too busy to promise milliseconds: half of the runs of the "
-                             "choice differ by {:.0f} %, and it took {:.3g} ms, then {:.3g} ms",
-                             100 * (ms.q3 - ms.q1) / ms.median, options.characters * ms.median,
-                             options.characters * solved.millisecondsAgain),
-                 fmt::format("differences of at most {:.0f} %: a quiet machine, more --repeat, or --busy to "
-                             "take what there is",
-                             100 * kSteadyShare)};
+    return Error{
+        options.motion.input,
+        {},
+        fmt::format("this machine is too busy to measure milliseconds: the middle half of the runs of the "
+                    "chosen settings differ by {:.0f} %, and they took {:.3g} ms, then {:.3g} ms",
+                    100 * (ms.q3 - ms.q1) / ms.median, options.characters * ms.median,
+                    options.characters * solved.millisecondsAgain),
+        fmt::format("expected differences of at most {:.0f} %: use a quiet machine, more --repeat, or --busy "
+                    "to accept them",
+                    100 * kSteadyShare)};
 }
 
 Result<Report> budget(const BudgetJobOptions& options) {
@@ -183,33 +185,34 @@ Result<Report> budget(const BudgetJobOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<BudgetJobOptions>();
     addMotionOptions(job, options->motion);
-    auto* asked = job.add_option_group("what is asked for");
+    auto* asked = job.add_option_group("the limit");
     asked
-        ->add_option("--ms", options->milliseconds,
-                     "Milliseconds a frame for all strands: finds the most exact settings that take no more")
+        ->add_option(
+            "--ms", options->milliseconds,
+            "Milliseconds per frame for all strands: finds the most accurate settings within this time")
         ->check(CLI::Range(1e-6, 1e6));
     asked
         ->add_option("--within-mm", options->withinMm,
-                     "Millimetres, root mean square: finds the cheapest settings that are as exact")
+                     "Root mean square error in millimetres: finds the fastest settings within this error")
         ->check(CLI::Range(1e-6, 1e6));
     asked->require_option(1);
-    auto* device = job.add_option(
-        "--device", options->device,
-        "Count whole frames, simulated and drawn, on that GPU by its index in `devices`, instead "
-        "of the engine on the CPU");
-    job.add_option("--size", options->size, "Pixels WxH of those frames; 1920x1080 without")->needs(device);
+    auto* device = job.add_option("--device", options->device,
+                                  "Measure whole frames, simulated and drawn, on the GPU with this index in "
+                                  "`devices`, instead of the engine on the CPU");
+    job.add_option("--size", options->size, "Size WxH of these frames in pixels (default: 1920x1080)")
+        ->needs(device);
     job.add_flag("--busy", options->busy,
-                 "Answer even where times differ too much to be relied upon, with a note");
+                 "Answer even if times differ too much to be reliable, and add a note");
     job.add_option("--characters", options->characters,
-                   "Characters with this hair that share the milliseconds, one after the other")
+                   "Number of characters with this hair that share the milliseconds")
         ->check(CLI::Range(1, 100'000));
-    job.add_option("-o,--output", options->output, "Project to save with what was found");
+    job.add_option("-o,--output", options->output, "Project to save with the settings found");
     job.add_option("--strands", options->strands,
-                   "Strands that errors are taken from, drawn from the groom's")
+                   "Number of strands to measure errors with, drawn from the groom")
         ->check(CLI::Range(1, 1'000'000));
     job.add_option("--repeat", options->repeats, "Timed runs of each candidate")->check(CLI::Range(1, 1000));
     addGroundTruthOptions(job, options->groundTruth);
-    job.add_option("--seed", options->seed, "Another seed draws other strands");
+    job.add_option("--seed", options->seed, "Random seed of the sample of strands");
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}}, [&] { return budget(*options); });
     };
@@ -218,7 +221,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job budgetJob() {
-    return {"budget", "Find the most exact settings that cost at most so many milliseconds a frame here",
+    return {"budget", "Find the most accurate settings within a frame time",
             "hair.hairloom --ms 0.5 --motion nod --wind 3,0,1 -o fast.hairloom", declare};
 }
 

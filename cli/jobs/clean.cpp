@@ -38,7 +38,7 @@ Result<Report> cleanCopies(const CleanOptions& options, std::size_t& removed) {
 
 Result<Report> clean(const CleanOptions& options) {
     if (!std::filesystem::is_directory(options.folder))
-        return failIn(options.folder, {}, "is no folder", "expected a folder to look through");
+        return failIn(options.folder, {}, "is not a folder", "expected a folder to search");
     Report rows = Report::array();
     std::size_t removed = 0;
     auto copies = cleanCopies(options, removed);
@@ -70,10 +70,11 @@ Result<Report> clean(const CleanOptions& options) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<CleanOptions>();
-    job.add_option("folder", options->folder, "Folder to look through; the current one where none is named");
-    auto* remove = job.add_flag("--remove", options->remove, "Remove what is found, not only list it");
+    job.add_option("folder", options->folder, "Folder to search (default: the current folder)");
+    auto* remove =
+        job.add_flag("--remove", options->remove, "Remove the files found instead of only listing them");
     job.add_flag("--whole", options->alsoWhole,
-                 "Also files that hold the whole content of a target that may be torn")
+                 "Include files with the complete content of a target that may be damaged")
         ->needs(remove);
     job.add_flag("--copies", options->copies,
                  "Also the window's copies of unsaved work, of windows that no longer run")

@@ -147,38 +147,34 @@ Result<Report> create(const CreateOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<CreateOptions>();
     job.add_option("--mesh", options->mesh, "Head mesh: " + labelsOf(meshFormats()))->required();
-    job.add_option(
-        "--scalp", options->scalp,
-        "Faces that carry hair: all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "
-        "shrink:N, invert, connected; a comma means and");
+    job.add_option("--scalp", options->scalp,
+                   "Faces where hair grows: all, group:NAME, material:NAME, cap:DEGREES, above:F, "
+                   "faces:FILE, grow:N, shrink:N, invert, connected. A comma combines terms");
     auto* count =
         job.add_option("--count", options->count, "Number of roots")->check(CLI::Range(1, 10'000'000));
     auto* density =
         job.add_option("--density", options->density, "Roots per cm²")->check(CLI::PositiveNumber);
     count->excludes(density);
     job.add_option("--placement", options->placement,
-                   "How roots are placed: random, or poissonDisk (by dart throwing; dart for short), at even "
-                   "distances")
+                   "Placement of roots: random, or poissonDisk (evenly spaced by dart throwing; short: dart)")
         ->check(CLI::IsMember({"random", "poissonDisk", "dart"}));
-    job.add_option(
-        "--mask", options->mask,
-        "Density of roots: a PNG, read at the UVs of the mesh's vertices, or a text file with a number in "
-        "[0, 1] per vertex of the mesh file");
+    job.add_option("--mask", options->mask,
+                   "Root density: a PNG at the UVs of the mesh, or a text file with a number in [0, 1] per "
+                   "vertex of the mesh file");
     job.add_option("--length", options->length, "Strand length, metres")->check(CLI::Range(1e-4, 10.0));
     job.add_option("--points", options->points, "Points per strand")->check(CLI::Range(2, 1024));
-    job.add_option("--seed", options->seed, "Seed of every random choice");
+    job.add_option("--seed", options->seed, "Random seed");
     addHeadOptions(job, options->head);
     job.add_option(
         "--scalp-mesh", options->scalpMesh,
         "Mesh of the scalp alone, in unit and place of the head: faces of the head that lie on it carry "
         "hair, of those that --scalp names");
-    auto* collide =
-        job.add_option("--collide-with", options->collideWith,
-                       "Groups likewise, named there or not, that are no part of the head, but that hair "
-                       "collides with: collision spheres are fitted to them")
-            ->delimiter(',');
+    auto* collide = job.add_option("--collide-with", options->collideWith,
+                                   "Groups that are not part of the head but that hair collides with, "
+                                   "through spheres fitted to them. NAME or PREFIX*, separated by commas")
+                        ->delimiter(',');
     job.add_option("--collide-spheres", options->colliderSpheres,
-                   "Number of these spheres, shared by area; each group has one at least and 64 at most")
+                   "Number of these spheres, shared by area. Each group gets 1 to 64")
         ->check(CLI::Range(1u, editing::kMaxPartSpheres))
         ->needs(collide);
     job.add_option("-o,--output", options->output, "Project to write")->required();

@@ -47,15 +47,16 @@ Result<Report> security() {
 
 JobRun declare(CLI::App& job) {
     const auto asksSecurity = std::make_shared<bool>(false);
-    job.add_flag("--security", *asksSecurity,
-                 "Say instead what the process that parses foreign meshes cannot do here, found by trying");
+    job.add_flag(
+        "--security", *asksSecurity,
+        "Report what the process that parses untrusted meshes cannot do on this machine, by testing it");
     return [asksSecurity](const std::string&) { return *asksSecurity ? security() : devices(); };
 }
 
 }  // namespace
 
 Job devicesJob() {
-    return {"devices", "List the GPUs and what each supports", "--json", declare};
+    return {"devices", "List GPUs and what each supports", "--json", declare};
 }
 
 }  // namespace hairloom::cli

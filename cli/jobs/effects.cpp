@@ -77,7 +77,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job effectsJob() {
-    return {"effects", "Say which effects the scene calls for, why, and what each costs on and off",
+    return {"effects", "Report which effects the scene runs, why, and what each costs",
             "hair.hairloom --motion nod --wind 3,0,1", declare};
 }
 

@@ -93,7 +93,7 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
     if (options.certify) wanted.storms = CertificateOptions{}.storms;
     if (options.record.empty()) return wanted;
     if (options.frames.size() != 2 || options.frames[1] < options.frames[0])
-        throw WrongUsage("--frames goes backwards or is not two numbers", "FIRST,LAST");
+        throw WrongUsage("--frames runs backwards or is not two numbers", "FIRST,LAST");
     wanted.firstFrame = options.frames[0];
     for (std::uint64_t number = options.frames[0]; number <= options.frames[1]; ++number) {
         auto frame = readFrame(options.record, groom, number);
@@ -106,8 +106,10 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
 Result<Report> exportAsPage(const ExportOptions& options) {
     if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
         !options.record.empty() || options.what == "hairs")
-        throw WrongUsage("--target, --unit, --up, --points, --record and --what hairs say nothing of a page",
-                         "it plays a runtime asset in metres, Y up, which draws follow hairs itself");
+        throw WrongUsage(
+            "--target, --unit, --up, --points, --record and --what hairs do not apply to a web page",
+            "leave them out: the page plays a runtime asset in metres, Y up, which draws follow hairs "
+            "itself");
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     HairToExport wanted;
@@ -149,10 +151,10 @@ std::vector<std::string> formatNames() {
 /// A line for each.
 std::string formatsInWords() {
     constexpr int kColumn = 16;
-    std::string text = "What to write";
+    std::string text = "File format";
     for (const StrandWriter& writer : hairWriters())
         text += fmt::format("\n{:<{}}{}", writer.name, kColumn, writer.label);
-    text += fmt::format("\n{:<{}}A folder with a page that plays the hair in a browser", kWebFormat, kColumn);
+    text += fmt::format("\n{:<{}}A folder with a web page that plays the hair", kWebFormat, kColumn);
     return text;
 }
 
@@ -160,35 +162,34 @@ JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ExportOptions>();
     job.add_option("groom", options->input, "Groom to export")->required();
     job.add_option("--format", options->format, formatsInWords())->check(CLI::IsMember(formatNames()));
-    job.add_option(
-           "--target", options->target,
-           "Program to write for: sets unit, axis, points and limits, and the format where that is not "
-           "said")
+    job.add_option("--target", options->target,
+                   "Program to export for. Sets unit, axis, points and limits, and the format unless "
+                   "--format is given")
         ->check(CLI::IsMember(exportPrograms(hairWriters())));
     job.add_option("--what", options->what,
-                   "guides: the strands of the groom; hairs: the follow hairs that pictures show")
+                   "guides: the strands of the groom; hairs: the follow hairs that images show")
         ->check(CLI::IsMember({"guides", "hairs"}));
-    job.add_option("--layers", options->layers, "Names of the layers to write, instead of all")
+    job.add_option("--layers", options->layers, "Names of the layers to export (default: all)")
         ->delimiter(',');
     auto* record = job.add_option("--record", options->record,
-                                  "Frames that simulate --record wrote, instead of the rest");
+                                  "Frames written by simulate --record, instead of the rest pose");
     auto* frames =
         job.add_option("--frames", options->frames,
-                       "FIRST,LAST of the record: strands that move, in a format that can hold them")
+                       "FIRST,LAST of the record: exports animated strands, in formats with animation")
             ->delimiter(',')
             ->needs(record);
     record->needs(frames);
     addUnitOption(job, options->unit);
-    job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
-    job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
+    job.add_option("--up", options->up, "Up axis of the file")->check(CLI::IsMember({"y", "z"}));
+    job.add_option("--points", options->points,
+                   "Resample every strand to this number of points. 0 keeps them")
         ->check(CLI::Range(0, 1024));
-    job.add_flag(
-        "--certify", options->certify,
-        "Find by a thousand random storms what a game may do to this hair (half a minute or so), for "
-        "the report and the runtime asset");
+    job.add_flag("--certify", options->certify,
+                 "Find out with a thousand random storms what a game may do to this hair, for the report and "
+                 "the runtime asset. Takes about half a minute");
     addCardOptions(job, options->levels);
     job.add_option("-o,--output", options->output,
-                   "File to write, or the folder of a page; the report goes beside a file")
+                   "File to write, or the folder of a web page. The report goes next to a file")
         ->required();
     return [options](const std::string&) {
         if (options->format == kWebFormat)
@@ -204,7 +205,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job exportJob() {
-    return {"export", "Write an asset for another program, read it back and compare",
+    return {"export", "Export to another program, read the file back and compare",
             "hair.hairloom --format tfx -o hair.tfx", declare};
 }
 

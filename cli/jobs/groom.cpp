@@ -65,9 +65,10 @@ Result<Report> list() {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<GroomOptions>();
     auto* listing = job.add_flag("--list", options->list,
-                                 "Show all operations and brushes with their fields, units and ranges");
+                                 "List all operations and brushes with their fields, units and ranges");
     auto* input = job.add_option("groom", options->input, "Groom to work on")->excludes(listing);
-    auto* script = job.add_option("--script", options->script, "Operations (docs/formats/script.md)");
+    auto* script =
+        job.add_option("--script", options->script, "Script of operations (docs/formats/script.md)");
     auto* output = job.add_option("-o,--output", options->output, "Project to write");
     job.final_callback([listing, input, script, output] {
         if (listing->count() == 0 && input->count() * script->count() * output->count() == 0)
@@ -82,7 +83,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job groomJob() {
-    return {"groom", "Replay a list of grooming operations on a groom",
+    return {"groom", "Apply a script of grooming operations to a groom",
             "hair.hairloom --script bob.json -o bob.hairloom", declare};
 }
 

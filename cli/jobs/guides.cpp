@@ -26,8 +26,8 @@ Result<Report> run(const GuidesOptions& options) {
     settings.alone = !options.all;
     const GuideClusters clusters = clusterGuides(*groom, strandsToEdit(*groom, {}), settings);
     if (clusters.guides.empty())
-        return failIn(options.input, {}, "no strand could be a guide",
-                      "expected strands of two points at least that are neither frozen nor locked");
+        return failIn(options.input, {}, "no strand can be a guide",
+                      "expected strands of at least two points that are not frozen or locked");
     Report report{{"strands", groom->strandCount()},
                   {"guides", clusters.guides.size()},
                   {"mean_mm", clusters.meanMm},
@@ -44,15 +44,16 @@ Result<Report> run(const GuidesOptions& options) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<GuidesOptions>();
-    job.add_option("groom", options->input, "Hair of many strands")->required();
-    job.add_option("--count", options->settings.count, "Guides to find")->check(CLI::Range(1, 100'000));
+    job.add_option("groom", options->input, "Groom with many strands")->required();
+    job.add_option("--count", options->settings.count, "Number of guides")->check(CLI::Range(1, 100'000));
     job.add_option("--root-weight", options->settings.rootWeight,
-                   "How much the distance of roots counts beside that of shapes")
+                   "Weight of the distance between roots, relative to the difference in shape")
         ->check(CLI::Range(0.0, 100.0));
-    job.add_option("--seed", options->settings.seed, "Another seed begins with other strands");
+    job.add_option("--seed", options->settings.seed, "Random seed of the clusters");
     job.add_flag("--all", options->all,
-                 "Keep all strands, the guides being marked; else they stay alone with follow hairs");
-    job.add_option("-o,--output", options->output, "Project to write; without it the error is told alone");
+                 "Keep all strands and mark the guides. Otherwise only guides stay, with follow hairs");
+    job.add_option("-o,--output", options->output,
+                   "Project to write. Without it, the job only reports the error");
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}}, [&] { return run(*options); });
     };
@@ -62,7 +63,7 @@ JobRun declare(CLI::App& job) {
 
 Job guidesJob() {
     return {"guides",
-            "Find few strands that stand for all, by clustering, and how far the others are from them",
+            "Reduce strands to a few guides by clustering, and report how far the others are from them",
             "hair.hairloom --count 200 -o guides.hairloom", declare};
 }
 

@@ -67,7 +67,7 @@ Report bindingReport(std::vector<float> distances) {
 /// The positions of every time of the file as frames of a record, which render and simulate --against read.
 Status recordFrames(const ImportOptions& options, const ImportedStrands& imported) {
     if (imported.frames.empty())
-        return failIn(options.file, {}, "has one time only", "expected strands that move for --record");
+        return failIn(options.file, {}, "has only one time sample", "expected animated strands for --record");
     constexpr float kUsualRate = 24;
     const float rate = imported.framesPerSecond > 0  ? imported.framesPerSecond
                        : options.framesPerSecond > 0 ? options.framesPerSecond
@@ -105,12 +105,13 @@ Report cleanReport(const CleanedHair& cleaned) {
 void triangulate(const ImportOptions& options, Groom& groom) {
     auto triangulation = triangulateRoots(*groom.scalp, groom.scalpSelection, groom.rootBindings());
     if (!triangulation) {
-        log::warning("{}: roots have no triangulation: {}", options.file, triangulation.error().message());
+        log::warning("{}: the roots were not triangulated: {}", options.file,
+                     triangulation.error().message());
         return;
     }
     groom.triangulation = std::move(*triangulation);
     if (groom.triangulation.triangles.empty())
-        log::warning("{}: no three roots make a triangle", options.file);
+        log::warning("{}: no three roots form a triangle", options.file);
 }
 
 /// Guides of a file of their own, behind the hairs.
@@ -198,14 +199,13 @@ Result<Report> import(const ImportOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ImportOptions>();
     job.add_option("file", options->file,
-                   labelsOf(strandFormats()) + "; an OBJ of lines or of Cinema 4D ribbons")
+                   labelsOf(strandFormats()) + "; or an OBJ of lines or of Cinema 4D ribbons")
         ->required();
     job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
-    job.add_option("--scalp", options->scalp, "Faces of the mesh that carry hair, as for create");
+    job.add_option("--scalp", options->scalp, "Faces of the mesh where hair grows, as for create");
     addUnitOption(job, options->unit);
     addHeadOptions(job, options->head, "mesh-");
-    job.add_option("--up", options->up, "Axis that points up in the hair file")
-        ->check(CLI::IsMember({"y", "z"}));
+    job.add_option("--up", options->up, "Up axis of the hair file")->check(CLI::IsMember({"y", "z"}));
     job.add_option(
            "--segments", options->segments,
            "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces, or from the distances "
@@ -213,11 +213,12 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::Range(0, 65535));
     job.add_option("--order", options->order, "Vertex order of a Cinema 4D OBJ")
         ->check(CLI::IsMember({"auto", "interleaved", "edges", "around"}));
-    job.add_option("--particle", options->particle, "Where a Cinema 4D ribbon's particles are")
+    job.add_option("--particle", options->particle, "Position of the particles within a Cinema 4D ribbon")
         ->check(CLI::IsMember({"edge", "centre"}));
     auto* record = job.add_option("--record", options->record,
-                                  "Keep strands that move (Alembic, USD) as a record of frames, too");
-    job.add_option("--fps", options->framesPerSecond, "Frames per second of the record; 0 as the file says")
+                                  "Also store animated strands (Alembic, USD) as a record of frames");
+    job.add_option("--fps", options->framesPerSecond,
+                   "Frames per second of the record. 0 uses those of the file")
         ->check(CLI::Range(0.0, 1000.0))
         ->needs(record);
     job.add_option(
@@ -248,7 +249,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job importJob() {
-    return {"import", "Bring in strands from another program; the format is found from the content",
+    return {"import", "Import strands from another program. The format is detected from the content",
             "hair.tfx --mesh head.obj -o hair.hairloom", declare};
 }
 

@@ -105,7 +105,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job infoJob() {
-    return {"info", "Say what is in a project, hair file or mesh", "hair.hairloom --json", declare};
+    return {"info", "Summarise a project, hair file or mesh", "hair.hairloom --json", declare};
 }
 
 }  // namespace hairloom::cli

@@ -43,14 +43,14 @@ Result<Report> layers(const std::string& input) {
 
 JobRun declare(CLI::App& job) {
     const auto input = std::make_shared<std::string>();
-    job.add_option("groom", *input, "Groom whose layers are shown")->required();
+    job.add_option("groom", *input, "Groom")->required();
     return [input](const std::string&) { return layers(*input); };
 }
 
 }  // namespace
 
 Job layersJob() {
-    return {"layers", "Show the layers of a groom, and what is on each", "hair.hairloom --json", declare};
+    return {"layers", "List the layers of a groom and their contents", "hair.hairloom --json", declare};
 }
 
 }  // namespace hairloom::cli

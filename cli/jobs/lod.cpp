@@ -24,7 +24,7 @@ Result<Report> run(const LodOptions& options, const std::string& commandLine) {
     const Stopwatch watch;
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    Progress bar("making levels", 1000);
+    Progress bar("creating levels", 1000);
     const auto chain = makeLevels(
         *groom, options.budget, LevelsMade::all,
         [&](std::string_view, double share) { bar.done(static_cast<std::size_t>(1000 * share)); }, nullptr);
@@ -48,12 +48,13 @@ Result<Report> run(const LodOptions& options, const std::string& commandLine) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<LodOptions>();
-    job.add_option("groom", options->input, "Groom that levels are made of")->required();
+    job.add_option("groom", options->input, "Groom to create levels of")->required();
     job.add_option("-o,--output", options->output,
-                   "Folder for textures, meshes, pictures beside the strands, table and plot")
+                   "Folder for textures, meshes, comparison images, table and plot")
         ->required();
     addCardOptions(job, options->budget);
-    job.add_option("--directions", options->budget.chain.directions, "Directions that levels are judged from")
+    job.add_option("--directions", options->budget.chain.directions,
+                   "Number of directions from which levels are compared")
         ->check(CLI::Range(1, 360));
     return [options](const std::string& commandLine) {
         return withOutputFolder(options->output, [&] { return run(*options, commandLine); });
@@ -63,7 +64,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job lodJob() {
-    return {"lod", "Make levels of detail: strands, cards and a shell, each measured against the strands",
+    return {"lod", "Create levels of detail: strands, cards and a shell, each measured against the strands",
             "hair.hairloom -o levels --cards 200 --json", declare};
 }
 

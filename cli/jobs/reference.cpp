@@ -55,13 +55,12 @@ std::string asSentence(std::string_view words) {
 
 void addSettings(std::string& page) {
     page +=
-        "\n## Settings of a groom\n\n"
-        "Project files have an object for each section. `hairloom-cli set GROOM SECTION.FIELD=VALUE` sets "
-        "one field,\n"
-        "but not of `placement`, which the editor and the script operation `placement` set.\n";
+        "\n## Settings of a groom\n\nA project file has an object for each section. Set a field with "
+        "`hairloom-cli set GROOM SECTION.FIELD=VALUE`.\nThe exception is `placement`, which the editor and "
+        "the script operation `placement` set.\n";
     std::vector<Section> sections = settingsSections();
-    sections.push_back({"placement", "how the editor places roots and what grows from them",
-                        fieldRows<PlacementSettings>()});
+    sections.push_back(
+        {"placement", "how the editor places roots and grows strands", fieldRows<PlacementSettings>()});
     for (const Section& section : sections) {
         page += fmt::format("\n### `{}`\n\n{}\n", section.name, asSentence(section.holds));
         addFields(section.fields, page);
@@ -70,13 +69,13 @@ void addSettings(std::string& page) {
 
 void addOperations(std::string& page) {
     page +=
-        "\n## Operations of scripts\n\n"
-        "[formats/script.md](formats/script.md) says what they do and how a script is written.\n"
-        "\n### `region`\n\nEvery operation takes one; it limits the operation to some strands.\n";
+        "\n## Operations of scripts\n\n[formats/script.md](formats/script.md) describes them and shows how "
+        "to write a script.\n\n### `region`\n\nEvery operation takes a region, which limits it to some "
+        "strands.\n";
     addFields(scriptRegionFields(), page);
     page +=
-        "\n### `mask`\n\nOperations that a stack may hold take one, and the sculpt does; they act by its "
-        "share.\n";
+        "\n### `mask`\n\nThe operations that a stack may hold take a mask, and so does the sculpt. It scales "
+        "their effect.\n";
     addFields(scriptMaskFields(), page);
     for (const Operation& operation : operations()) {
         page += fmt::format("\n### `{}`\n\n{}\n", operation.name, asSentence(operation.meaning));
@@ -85,7 +84,7 @@ void addOperations(std::string& page) {
 }
 
 void addBrushes(std::string& page) {
-    page += "\n## Brushes\n\nAll have these settings, and the curves `falloff` and `profile`.\n";
+    page += "\n## Brushes\n\nAll brushes have these settings and the curves `falloff` and `profile`.\n";
     addFields(fieldRows<editing::BrushSettings>(), page);
     for (const std::string_view name : editing::brushNames()) {
         const editing::BrushInfo& brush = editing::brushInfo(name);
@@ -98,9 +97,8 @@ void addBrushes(std::string& page) {
 
 void addJobs(std::string& page) {
     page +=
-        "\n## Jobs of the command line\n\n"
-        "`hairloom-cli JOB --help` shows the options of a job; [cli.md](cli.md) says what jobs answer.\n"
-        "\n| job | does | example |\n|---|---|---|\n";
+        "\n## Jobs of the command line\n\n`hairloom-cli JOB --help` shows the options of a job. "
+        "[cli.md](cli.md) describes the answers.\n\n| job | does | example |\n|---|---|---|\n";
     for (const Job& job : jobs())
         page +=
             fmt::format("| `{}` | {} | `hairloom-cli {} {}` |\n", job.name, job.does, job.name, job.example);
@@ -108,15 +106,11 @@ void addJobs(std::string& page) {
 
 Result<Report> write(const std::string& output) {
     std::string page =
-        "# Reference\n\n"
-        "For whoever sets a value, writes a script or calls the command line: every field with its unit, "
-        "range and\n"
-        "default, and every job. `hairloom-cli reference -o docs/reference.md` makes this "
-        "page from\n"
-        "the program itself; do not edit it.\n\n"
-        "Lengths are in metres, time in seconds, angles in degrees. The range of a vector or colour holds "
-        "for each\n"
-        "component; a colour is linear red, green and blue.\n";
+        "# Reference\n\nEvery field with its unit, range and default, and every job of the command line. You "
+        "need this page when you\nset a value or write a script. `hairloom-cli reference -o "
+        "docs/reference.md` generates it from the program.\nDo not edit it.\n\nLengths are in metres, time "
+        "in seconds, angles in degrees. The range of a vector or colour applies to each\ncomponent. A colour "
+        "is linear RGB.\n";
     addSettings(page);
     addOperations(page);
     addBrushes(page);
@@ -147,10 +141,10 @@ JobRun declare(CLI::App& job) {
     };
     const auto options = std::make_shared<Options>();
     auto* page = job.add_option("-o,--output", options->output, "Markdown file to write");
-    auto* man = job.add_option("--man", options->man,
-                               "Folder to write the manual pages hairloom.1 and hairloom-cli.1 into");
-    auto* readme = job.add_option("--readme", options->readme,
-                                  "README.md whose table of what the program has to make anew, in its place");
+    auto* man =
+        job.add_option("--man", options->man, "Folder for the manual pages hairloom.1 and hairloom-cli.1");
+    auto* readme =
+        job.add_option("--readme", options->readme, "README.md whose table of features to update in place");
     page->excludes(man)->excludes(readme);
     man->excludes(readme);
     job.require_option(1);
@@ -166,7 +160,7 @@ JobRun declare(CLI::App& job) {
 
 Job referenceJob() {
     return {"reference",
-            "Write the reference page of settings, operations, brushes and jobs, or manual pages",
+            "Write the reference page of settings, operations, brushes and jobs, or the manual pages",
             "-o docs/reference.md", declare};
 }
 

@@ -156,7 +156,7 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
     }
     if (options.frames.empty()) return std::vector<Shot>{{options.frame, 0}};
     if (options.frames.size() > 3 || options.frames.size() < 2) {
-        throw WrongUsage("--frames takes first, last and step", "FIRST,LAST[,STEP]");
+        throw WrongUsage("--frames needs FIRST,LAST and an optional STEP", "FIRST,LAST[,STEP]");
     }
     const std::uint64_t step = options.frames.size() == 3 ? options.frames[2] : 1;
     if (step == 0 || options.frames[1] < options.frames[0] ||
@@ -368,8 +368,9 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<RenderJobOptions>();
     job.add_option("groom", options->input, "Project or hair file")->required();
-    job.add_option("--size", options->size, "Pixels WxH; 1024x1024 where neither this nor the view says");
-    job.add_option("--camera", options->camera, "From where")
+    job.add_option("--size", options->size,
+                   "Image size WxH in pixels (default: that of the view, or 1024x1024)");
+    job.add_option("--camera", options->camera, "Camera position")
         ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter", "top", "bottom"}));
     auto* view = job.add_option("--view", options->view, "JSON file with camera, lights, head and hair");
     job.add_option("--images", options->imageFolders,
@@ -377,107 +378,100 @@ JobRun declare(CLI::App& job) {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->needs(view);
-    job.add_option(
-           "--hide", options->hiddenGroups,
-           "Groups of the head mesh to leave out of the picture, NAME or BEGINNING*, with commas between")
+    job.add_option("--hide", options->hiddenGroups,
+                   "Groups of the head mesh to hide: NAME or PREFIX*, separated by commas")
         ->delimiter(',')
         ->allow_extra_args(false);
     job.add_option("--material", options->material,
                    "Sample material (fire, tentacles, …) or JSON file of material fields to apply");
-    job.add_option("--shading", options->shading, "Shading model; without it the project's")
+    job.add_option("--shading", options->shading, "Shading model (default: the project's)")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
-    job.add_option(
-           "--scatter", options->scatter,
-           "Light that other hairs have scattered: single leaves it out, dual adds it; not for kajiya")
+    job.add_option("--scatter", options->scatter,
+                   "Light scattered by other hairs: single ignores it, dual adds it. Not for kajiya")
         ->check(CLI::IsMember({"single", "dual"}));
     job.add_option(
            "--shadow", options->shadow,
-           "Shadows of hair: deep opacity maps, absorption by depth, opacity maps at fixed depths, none")
+           "Hair shadows: deep opacity maps, absorption by depth, opacity maps at fixed depths, or none")
         ->check(CLI::IsMember(namesOf(kShadows)));
     job.add_option("--shadow-lights", options->shadowLights,
-                   "Most lights with shadow maps; areas and bright parts of images are cut into as many")
+                   "Maximum number of lights with shadow maps. Area lights and bright parts of images are "
+                   "split into this many")
         ->check(CLI::Range(std::size_t{1}, render::kMaxLights));
-    job.add_option(
-           "--head-absorption", options->headAbsorption,
-           "Light that hair behind the head gets fades with its depth there, per metre; 0: it gets none")
+    job.add_option("--head-absorption", options->headAbsorption,
+                   "Fades light on hair behind the head with depth, per metre. 0 blocks it")
         ->check(CLI::Range(0.0f, render::kMaxHeadAbsorption));
     job.add_option("--shadow-blur", options->shadowBlur,
-                   "Pixels by which shadows are blurred on the screen, which draws everything twice; 0: not")
+                   "Screen-space shadow blur in pixels, which draws everything twice. 0 turns it off")
         ->check(CLI::Range(0.0f, render::kMaxShadowBlur));
-    job.add_option(
-           "--aa", options->antiAliasing,
-           "Samples a pixel and frame (auto: the most the device has, up to 8), or FXAA, which draws once")
+    job.add_option("--aa", options->antiAliasing,
+                   "Samples per pixel and frame, or FXAA. auto uses as many as the device has, up to 8")
         ->check(CLI::IsMember(namesOf(kAntiAliasing)));
     job.add_option("--ribbons", options->ribbons,
-                   "How hairs are drawn: as pulled strips, as tessellated patches, or rasterised by kernels; "
-                   "auto: kernels on a GPU, strips without one or where hair is blended by weights")
+                   "How to draw hairs: as strips, as tessellated patches, or rasterised by compute kernels. "
+                   "auto uses kernels on a GPU, and strips without a GPU or with weighted transparency")
         ->check(CLI::IsMember(namesOf(kRibbons)));
     job.add_option(
            "--transparency", options->transparency,
-           "Hairs thinner than a sample: the nearest of a pixel blended in their order, a random part "
-           "of the samples, a fixed part, or blended by weights; auto: stochastic for an average, "
-           "sorted where a GPU draws once, else weighted")
+           "Transparency of hair thinner than a sample: sorted blends the nearest of a pixel, stochastic "
+           "covers a random part of the samples, fixed a fixed part, weighted blends in any order. auto uses "
+           "stochastic for averaged frames, sorted for single frames on a GPU, and weighted otherwise")
         ->check(CLI::IsMember(namesOf(kTransparency)));
-    job.add_option(
-           "--detail", options->detail,
-           "Leave out hairs that are thinner than this part of a pixel, and widen the others; 0: draw all")
+    job.add_option("--detail", options->detail,
+                   "Skip hairs thinner than this part of a pixel and widen the others. 0 draws all")
         ->check(CLI::Range(0.0, 100.0));
-    job.add_option("--exposure", options->exposure, "Factor on the light before the tone curve")
+    job.add_option("--exposure", options->exposure, "Exposure: multiplies light before the tone curve")
         ->check(CLI::Range(1e-3, 1e3));
     auto* passes = job.add_option("--passes", options->passes,
-                                  "Times the picture is drawn, each moved by part of a pixel, and averaged")
+                                  "Number of frames to average, each with a sub-pixel offset")
                        ->check(CLI::Range(1, 1024));
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
-    auto* motion =
-        job.add_option(
-               "--motion", options->motion,
-               "Simulate the hair while it is drawn, on a head that moves like that: none, spin, nod, "
-               "clip:NAME or a file of keys F.json")
-            ->excludes(record);
+    auto* motion = job.add_option("--motion", options->motion,
+                                  "Simulate the hair while rendering, with this head motion: none, spin, "
+                                  "nod, clip:NAME or a keyframe file F.json")
+                       ->excludes(record);
     job.add_flag("--temporal", options->temporal,
-                 "Each frame of the simulation is drawn once and joins those before it, as in the window "
-                 "while hair "
-                 "moves")
+                 "Temporal anti-aliasing: draws each frame of the simulation once and accumulates earlier "
+                 "frames, as the window does")
         ->needs(motion)
         ->excludes(passes);
     job.add_option("--character", options->character,
-                   "File with the skeleton and clips, instead of the one the scalp came from")
+                   "File with skeleton and clips, if other than the scalp's file")
         ->needs(motion);
-    job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own")
+    job.add_option("--wind", options->wind, "Wind velocity X,Y,Z in m/s, instead of the groom's own")
         ->needs(motion);
     job.add_option(
            "--engine", options->engine,
-           "What moves strands: the CPU, the GPU that draws them, or whichever was measured to be faster")
+           "Device that simulates: the CPU, the GPU that renders, or the one that was measured to be faster")
         ->check(CLI::IsMember({"auto", "cpu", "gpu"}))
         ->needs(motion);
     auto* frame = job.add_option("--frame", options->frame,
-                                 "Frame of the record, from 0, or of 1/60 s of the simulation");
+                                 "Frame of the record, counted from 0, or of the simulation in 1/60 s");
     auto* frames =
-        job.add_option("--frames", options->frames, "Such frames FIRST,LAST[,STEP]: a picture each")
+        job.add_option("--frames", options->frames, "Frames FIRST,LAST[,STEP] to render, one image each")
             ->delimiter(',')
             ->excludes(frame);
-    job.add_option("--turntable", options->turntable, "Pictures of one turn of the camera around the hair")
+    job.add_option("--turntable", options->turntable,
+                   "Number of images for one turn of the camera around the hair")
         ->check(CLI::Range(1, 10'000))
         ->excludes(frames);
     job.add_option("--animation", options->animation,
-                   "Animated PNG, or WebP where the name ends in .webp, to write all pictures to");
-    job.add_option("--strip", options->strip, "PNG to write all pictures side by side to");
-    job.add_option("--milliseconds", options->milliseconds, "Of a picture in the animation")
+                   "Animated PNG for all images, or WebP if the name ends in .webp");
+    job.add_option("--strip", options->strip, "PNG with all images side by side");
+    job.add_option("--milliseconds", options->milliseconds, "Frames per second of the animation")
         ->check(CLI::Range(1, 65'535));
     auto* exr = job.add_option("--exr", options->exr,
-                               "OpenEXR to write linear light to, before exposure and tone curve");
+                               "OpenEXR file for linear light, before exposure and tone curve");
     job.add_option("--aov", options->aovs,
-                   "Layers of the OpenEXR besides: of what is nearest in each pixel depth, id of the hair, "
-                   "velocity since the frame before, albedo")
+                   "Extra layers in the OpenEXR, for the nearest surface in each pixel: depth, hair id, "
+                   "velocity since the last frame, albedo")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::IsMember(std::vector<std::string>(render::kAovNames.begin(), render::kAovNames.end())))
         ->needs(exr);
     auto* device = job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
-    job.add_option("--backend", options->backend, "Graphics API; Direct3D 11 is on Windows only")
+    job.add_option("--backend", options->backend, "Graphics API. Direct3D 11 is only on Windows")
         ->check(CLI::IsMember({"any", "vulkan", "d3d11"}));
-    job.add_option("-o,--output", options->output, "PNG to write; of several pictures each gets its number")
-        ->required();
+    job.add_option("-o,--output", options->output, "PNG to write. Several images are numbered")->required();
     job.final_callback([options, device, frame, frames] {
         options->chooseDevice = device->count() > 0;
         const bool moves = !options->record.empty() || !options->motion.empty();
@@ -498,7 +492,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job renderJob() {
-    return {"render", "Make a picture without a window",
+    return {"render", "Render an image without a window",
             "hair.hairloom -o hair.png --size 1024x1024 --camera three-quarter", declare};
 }
 

@@ -38,14 +38,15 @@ Status addAssignment(const std::string& assignment, nlohmann::json& document) {
     const std::size_t equals = assignment.find('=');
     const std::string path = assignment.substr(0, equals);
     if (equals == std::string::npos || path.find('.') == std::string::npos)
-        throw WrongUsage(fmt::format("'{}' sets nothing", assignment), "expected SECTION.FIELD=VALUE");
+        throw WrongUsage(fmt::format("'{}' is not an assignment", assignment),
+                         "expected SECTION.FIELD=VALUE");
     nlohmann::json* at = &document;
     std::size_t begin = 0;
     for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
         at = &(*at)[path.substr(begin, dot - begin)];
         begin = dot + 1;
         if (!at->is_null() && !at->is_object())
-            throw WrongUsage(fmt::format("'{}' is within what another sets", assignment),
+            throw WrongUsage(fmt::format("'{}' is part of another assignment", assignment),
                              "expected one of them");
     }
     const std::string text = assignment.substr(equals + 1);
@@ -147,19 +148,19 @@ Result<Report> list() {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SetOptions>();
     auto* listing = job.add_flag("--list", options->list,
-                                 "Show every field with unit, range, default and meaning, and the presets");
+                                 "List every field with unit, range, default and meaning, and the presets");
     auto* input = job.add_option("groom", options->input, "Groom to change")->excludes(listing);
     job.add_option("fields", options->assignments,
-                   "SECTION.FIELD=VALUE; sections: simulation, material, interpolation; of a layer "
+                   "SECTION.FIELD=VALUE. Sections: simulation, material, interpolation. For a layer: "
                    "layers.NAME.density=VALUE, layers.NAME.material.FIELD=VALUE, layers.NAME.material=null");
     job.add_option(
            "--preset", options->preset,
-           "Measured hair to take stiffness, thickness and colour from; fields and --from come after it")
+           "Preset of measured hair for stiffness, thickness and colour. --from and fields override it")
         ->check(CLI::IsMember(presetNames()));
     auto* image = job.add_option("--dye-image", options->dyeImage,
-                                 "PNG over the root UVs: white where strands take the material's dye");
+                                 "PNG at the root UVs. White strands take the dye of the material");
     job.add_option("--dye-attribute", options->dyeAttribute,
-                   "Strand attribute of numbers, 0 to 1, that says how much of the dye a strand takes")
+                   "Strand attribute of numbers from 0 to 1 with the strength of the dye")
         ->excludes(image);
     job.add_option("--character", options->character,
                    "File of the head, where the project does not find it any more: mesh, skeleton and clips");

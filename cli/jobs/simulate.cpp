@@ -207,7 +207,7 @@ Result<Groom> take(Groom groom, std::span<const Vec3f> positions_ws, const HeadP
 /// What --engine says, and where it says nothing --backend.
 Result<JobEngine> engineOf(const SimulateOptions& options, const Groom& groom) {
     if (options.engine.empty() && options.backend == "cpu")
-        return JobEngine{{EngineKind::cpu, "no other was asked for"}, nullptr};
+        return JobEngine{{EngineKind::cpu, "the default"}, nullptr};
     if (options.engine == "auto" && options.method != "strands")
         return JobEngine{{EngineKind::cpu, "only the strand engine runs on a GPU"}, nullptr};
     std::optional<gpu::Backend> backend;
@@ -288,41 +288,39 @@ JobRun declare(CLI::App& job) {
     job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
     job.add_option("--engine", options->engine,
-                   "What moves strands: the CPU, a GPU, or whichever was measured to be faster")
+                   "Device that simulates: the CPU, a GPU, or the one that was measured to be faster")
         ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
     job.add_option("--backend", options->backend,
-                   "Graphics API of the GPU; alone it asks for the engine there, too")
+                   "Graphics API of the GPU. Without --engine, it selects the GPU")
         ->check(CLI::IsMember({"cpu", "vulkan", "d3d11"}));
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
-    job.add_option("--model", options->model, "What a strand is, instead of the groom's own")
+    job.add_option("--model", options->model, "Strand model, instead of the groom's own")
         ->check(CLI::IsMember({"rods", "springs"}));
-    job.add_option("--integrator", options->integrator, "How springs are advanced; makes strands springs")
+    job.add_option("--integrator", options->integrator, "Integrator of springs. Uses springs")
         ->check(CLI::IsMember(runtime::integratorNames()));
-    job.add_option("--substeps", options->substeps,
-                   "Steps in 1/60 s, instead of the groom's own (springs of a groom of rods: 8 at least)")
+    job.add_option(
+           "--substeps", options->substeps,
+           "Time steps per 1/60 s, instead of the groom's own. Springs on a groom of rods take at least 8")
         ->check(CLI::Range(1u, runtime::kMaxSubsteps));
-    job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
+    job.add_option("--wind", options->wind, "Wind velocity X,Y,Z in m/s, instead of the groom's own");
     job.add_option("--motion", options->motion,
-                   "How the head moves: none, spin, nod, clip:NAME or a file of keys F.json");
+                   "Head motion: none, spin, nod, clip:NAME or a keyframe file F.json");
     job.add_option("--character", options->character,
-                   "File with the skeleton and clips, instead of the one the scalp came from");
+                   "File with skeleton and clips, if other than the scalp's file");
     job.add_option("--method", options->method,
-                   "How strands move: the strand engine, projective equations, or a lattice around the head")
+                   "Simulation method: the strand engine, projective equations, or a lattice around the head")
         ->check(CLI::IsMember({"strands", "projective", "lattice"}));
-    job.add_flag("--hair-hair", options->hairHair, "Hair against hair, through a volume between frames");
+    job.add_flag("--hair-hair", options->hairHair, "Hair-hair collision, through a volume between frames");
     job.add_flag("--sag", options->sag,
-                 "Let the authored shape hang under gravity and contact: how far each strand drops in two "
-                 "seconds, as it is and as rods "
-                 "that carry their weight; -o keeps the latter");
-    job.add_option("--record", options->record, "File to write every frame to");
+                 "Let the authored shape hang under gravity and contact for two seconds. Reports how far "
+                 "each strand sags, as it is and as rods that carry their weight. -o saves the latter");
+    job.add_option("--record", options->record, "File for all frames");
     job.add_option("--against", options->against,
-                   "Record of the same groom and frames to tell the distance from");
-    auto* output =
-        job.add_option("-o,--output", options->output, "Project to write with the hair as it ends");
-    job.add_flag(
-           "--take", options->take,
-           "What -o writes has the hair as it ends for its authored shape, on the head at rest, as rods "
-           "that carry their weight in it; operators stay, with a sculpt on top")
+                   "Record of the same groom and frames, to measure the distance from");
+    auto* output = job.add_option("-o,--output", options->output, "Project to write, with the last frame");
+    job.add_flag("--take", options->take,
+                 "Makes the last frame the authored shape that -o writes, on the head at rest, as rods that "
+                 "carry their weight. The operators stay, with a sculpt on top")
         ->needs(output);
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},
@@ -333,7 +331,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job simulateJob() {
-    return {"simulate", "Run the simulation and say how it went",
+    return {"simulate", "Run the simulation and report how it went",
             "hair.hairloom --frames 120 --fps 60 --wind 3,0,1 --motion nod --record hair.frames", declare};
 }
 

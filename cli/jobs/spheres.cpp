@@ -81,21 +81,22 @@ Result<Report> placeSpheres(const SpheresOptions& options) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SpheresOptions>();
-    job.add_option("groom", options->input, "Groom to add them to")->required();
+    job.add_option("groom", options->input, "Groom to add spheres to")->required();
     CLI::App& source = *job.add_option_group("source");
     source.add_option("--from", options->from,
                       R"(JSON list of {"name", "centre": [x, y, z], "radius", "bone"}, metres)");
-    source.add_option("--fit", options->fit, "Find so many spheres that cover the skin near the hair")
+    source.add_option("--fit", options->fit, "Fit this number of spheres to the skin near the hair")
         ->check(CLI::Range(1, 64));
     source.require_option(1);
-    job.add_option("--near", options->near, "fit: how far from hair skin matters, metres; 0: all of it")
+    job.add_option("--near", options->near,
+                   "With --fit: skin within this distance of hair counts, in metres. 0 uses all of it")
         ->check(CLI::Range(0.0, 10.0));
     job.add_option(
         "--character", options->character,
         "fit: file with the skeleton whose bones carry the spheres, instead of the one the scalp came from");
-    job.add_option("--seed", options->seed, "fit: of the places where the skin is looked at");
+    job.add_option("--seed", options->seed, "With --fit: random seed of the points on the skin");
     job.add_flag("--replace", options->replace,
-                 "Remove the spheres that are there; fit: but those of groups to collide with (create)");
+                 "Remove existing spheres. With --fit, those of colliding groups stay (create)");
     job.add_option("-o,--output", options->output, "Project to write")->required();
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}}, [&] { return placeSpheres(*options); });
@@ -105,7 +106,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job spheresJob() {
-    return {"spheres", "Place collision spheres", "hair.hairloom --from spheres.json -o hair.hairloom",
+    return {"spheres", "Add collision spheres", "hair.hairloom --from spheres.json -o hair.hairloom",
             declare};
 }
 

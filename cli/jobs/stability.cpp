@@ -177,25 +177,26 @@ Result<Report> certificateOf(const StabilityJobOptions& options) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<StabilityJobOptions>();
-    CLI::Option* const groom =
-        job.add_option("groom", options->groom, "Groom to certify: random storms on its own strands");
+    CLI::Option* const groom = job.add_option("groom", options->groom, "Groom to certify with random storms");
     job.add_option(
            "-o,--output", options->output,
-           "Folder for report.html, cases.json, cases.csv, cases.md and the maps, or certificate.json")
+           "Folder for report.html, cases.json, cases.csv, cases.md and the maps, or for certificate.json")
         ->required();
     job.add_option("--integrators", options->integrators,
-                   "Rods, or integrators of springs, to run, instead of all")
+                   "Models to run instead of all: rods, or integrators of springs")
         ->delimiter(',')
         ->check(CLI::IsMember(methodNames()))
         ->excludes(groom);
-    job.add_option("--storms", options->storms, "Random storms of case 26, or on the groom (1,000)")
+    job.add_option("--storms", options->storms,
+                   "Number of random storms of case 26, or on the groom (default: 1,000)")
         ->check(CLI::Range(1, 1'000'000));
-    job.add_option("--backend", options->backend, "What runs the cases; maps are made on the CPU only")
+    job.add_option("--backend", options->backend, "Device that runs the cases. Maps are made only on the CPU")
         ->check(CLI::IsMember({"cpu", "vulkan"}))
         ->excludes(groom);
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
-    job.add_option("--cells", options->cells, "Steps and stiffnesses of a map")->check(CLI::Range(2, 200));
-    job.add_option("--steps", options->steps, "Steps of a cell")->check(CLI::Range(40, 100'000));
+    job.add_option("--cells", options->cells, "Number of steps and stiffnesses in a map")
+        ->check(CLI::Range(2, 200));
+    job.add_option("--steps", options->steps, "Steps per cell")->check(CLI::Range(40, 100'000));
     job.add_option("--steps-at-rest", options->stepsAtRest, "Substeps of the case at rest")
         ->check(CLI::Range(8, 100'000'000));
     return [options](const std::string& commandLine) {

@@ -108,15 +108,15 @@ Result<Report> run(const StackOptions& options) {
         const auto layer = std::ranges::find(groom->layers, options.layer, &Layer::name);
         if (layer == groom->layers.end())
             return failIn(options.input, {}, fmt::format("no layer is called '{}'", options.layer),
-                          "the job `layers` lists them");
+                          "list them with the job `layers`");
         const auto number = static_cast<std::uint32_t>(layer - groom->layers.begin()) + 1;
         std::erase_if(shown,
                       [&](const Operator& one) { return layerOf(one) != 0 && layerOf(one) != number; });
     }
     if (options.only) {
         if (*options.only >= shown.size())
-            return failIn(options.input, {}, fmt::format("operator {} is asked for", *options.only),
-                          fmt::format("there are {}", shown.size()));
+            return failIn(options.input, {}, fmt::format("operator {} does not exist", *options.only),
+                          fmt::format("there are {} operators", shown.size()));
         shown = {shown[*options.only]};
     }
     Report report{{"operators", toJson(shown)}};
@@ -129,37 +129,35 @@ Result<Report> run(const StackOptions& options) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<StackOptions>();
-    job.add_option("groom", options->input, "Groom whose operators are shown or set")->required();
+    job.add_option("groom", options->input, "Groom")->required();
     auto* output = job.add_option("-o,--output", options->output, "Project to write");
-    auto* from =
-        job.add_option("--from", options->from,
-                       "Operators to have, as this job prints them with --json (docs/formats/script.md)");
+    auto* from = job.add_option(
+        "--from", options->from,
+        "Replaces the operators with those of this file, as printed by --json (docs/formats/script.md)");
     auto* bake =
-        job.add_flag("--bake", options->bake, "Make the hair as it is all there is; no operators stay");
-    auto* add = job.add_option("--add", options->add,
-                               "Operators to have besides, of such a file: of another project, or a preset");
+        job.add_flag("--bake", options->bake, "Bake: apply all operators permanently and clear the stack");
+    auto* add = job.add_option("--add", options->add, "Adds the operators of such a file or of a preset");
     job.add_option("--at", options->at,
-                   "Where those go: before the one of that number, from 0; else behind all")
+                   "Position of added operators: before this one, from 0 (default: at the end)")
         ->needs(add);
     for (auto [name, number, help] :
-         {std::tuple{"--duplicate", &options->duplicate, "Operator to have twice, by its number from 0"},
-          std::tuple{"--remove", &options->remove, "Operator to take away"},
+         {std::tuple{"--duplicate", &options->duplicate, "Operator to duplicate, counted from 0"},
+          std::tuple{"--remove", &options->remove, "Operator to remove"},
           std::tuple{"--solo", &options->solo,
-                     "Operator that acts alone, the others being muted; all again where it did so"}})
+                     "Solo: applies only this operator. Repeat it to apply all again"}})
         job.add_option(name, *number, help)->needs(output);
     add->needs(output);
-    job.add_option("--layer", options->layer, "Shows those alone that act on the layer of that name")
+    job.add_option("--layer", options->layer, "Lists only operators of the layer with this name")
         ->excludes(output);
-    job.add_option("--only", options->only, "Shows the one of that number alone, of those that are shown")
-        ->excludes(output);
+    job.add_option("--only", options->only, "Lists only this operator")->excludes(output);
     job.add_option(
            "--keep", options->keep,
-           "File to keep what is shown in, for --from, --add and the editor's presets; sculpts stay out")
+           "File for the listed operators, for --from, --add and the editor's presets. Sculpts are left out")
         ->excludes(output);
     auto* image = job.add_option("--mask-image", options->maskImage,
                                  "PNG whose values at the root UVs become a mask of operators");
     image->needs(output);
-    job.add_option("--mask", options->mask, "Number of that mask; else the first that nothing uses")
+    job.add_option("--mask", options->mask, "Number of that mask (default: the first unused one)")
         ->check(CLI::Range(1u, kPaintedMasks))
         ->needs(image);
     from->needs(output);
@@ -173,7 +171,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job stackJob() {
-    return {"stack", "Show, set, copy, solo or bake the operators of a groom", "hair.hairloom --json",
+    return {"stack", "List, set, copy, solo or bake the operators of a groom", "hair.hairloom --json",
             declare};
 }
 

@@ -29,8 +29,7 @@ Result<Report> transferHair(const TransferOptions& options) {
     if (!done) return tl::unexpected(inFile(done.error(), options.input));
     const Transfer* const transfer = &done->transfer;
     if (transfer->baked)
-        log::warning("{}: its operators name places on the old head; the hair as it is is all there is now",
-                     options.input);
+        log::warning("{}: its operators refer to places on the old head, so they were baked", options.input);
     Report report;
     report["strands"] = groom->strandCount();
     report["same_mesh"] = transfer->sameMesh;
@@ -62,7 +61,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job transferJob() {
-    return {"transfer", "Put a hairstyle on another head",
+    return {"transfer", "Transfer a hairstyle to another head",
             "bob.hairloom --to head.obj --unit dm -o bob2.hairloom", declare};
 }
 

@@ -31,7 +31,8 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job validateJob() {
-    return {"validate", "Say what a consumer of a file would trip over", "hair.tfx --json", declare};
+    return {"validate", "List problems that other programs would have with a file", "hair.tfx --json",
+            declare};
 }
 
 }  // namespace hairloom::cli

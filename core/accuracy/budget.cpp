@@ -136,8 +136,8 @@ class Solver {
         std::ranges::copy_if(result->runs, std::back_inserter(front), &WorkPrecisionRun::onFront);
         std::ranges::sort(front, {}, [](const WorkPrecisionRun& run) { return run.error.rmsMm; });
         if (front.empty())
-            return fail("no settings keep the hair of this scene finite and let it rest",
-                        "a scene that can be simulated");
+            return fail("no settings keep the hair of this scene finite and let it come to rest",
+                        "expected a scene that can be simulated");
         return front;
     }
 

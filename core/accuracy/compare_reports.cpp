@@ -40,7 +40,7 @@ class Table {
             const auto found = std::ranges::find(table.head_, std::string_view(name));
             if (found == table.head_.end())
                 return failIn({}, Line{1}, fmt::format("there is no column {}", name),
-                              "expected a data.csv that `accuracy` has written");
+                              "expected a data.csv written by `accuracy`");
             table.columns_[name] = static_cast<std::size_t>(found - table.head_.begin());
         }
         std::vector<Row> rows;
@@ -58,7 +58,7 @@ class Table {
         const std::vector<std::string_view> cells = split(line, ',');
         if (cells.size() != head_.size())
             return failIn({}, Line{number}, fmt::format("{} columns", cells.size()),
-                          fmt::format("expected {}, as the first line has", head_.size()));
+                          fmt::format("expected {}, as in the first line", head_.size()));
         Row row;
         for (std::size_t c = 0; c < columns_.at("ms_median"); ++c)
             row.setting += fmt::format("{}{} {}", c > 0 ? ", " : "", head_[c], cells[c]);
@@ -110,7 +110,7 @@ Result<ComparedReports> compareReports(std::string_view before, std::string_view
             result.missing.push_back(row.setting);
     }
     if (result.runs.empty())
-        return fail("the two have no setting in common", "measurements of the same grid");
+        return fail("the two reports have no setting in common", "expected measurements of the same grid");
     return result;
 }
 

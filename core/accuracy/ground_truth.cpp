@@ -32,7 +32,7 @@ Result<Trajectory> run(SceneHair hair, std::span<const HeadPose> poses, const Sc
     auto result = runScene(hair, poses, time, followed);
     if (!result) return tl::unexpected(result.error());
     if (!result->trajectory.finite) {
-        return fail("the converged run itself is not finite", "expected a motion and a groom without NaN");
+        return fail("the converged run is not finite", "expected a motion and a groom without NaN");
     }
     return std::move(result->trajectory);
 }
@@ -74,7 +74,7 @@ Result<GroundTruth> EngineConverged::compute(const SceneHair& hair, const HeadMo
     }
     best.detail = fmt::format("{} substeps were taken; doubling changed {}", bestSubsteps, changes);
     const bool onlyWorse = bestSubsteps == 2 * kFewestSubsteps && maxSubsteps_ >= 4 * kFewestSubsteps;
-    if (onlyWorse) best.detail += "; the engine does not converge in this scene";
+    if (onlyWorse) best.detail += ". The engine does not converge in this scene";
     return best;
 }
 

@@ -7,17 +7,17 @@ namespace hairloom {
 namespace {
 
 constexpr MeasureInfo kMeasures[] = {
-    {Measure::distance, "distance", "off from the reference", "mm", true, 1e-4,
-     "Root mean square distance of points from where the reference has them, over the whole motion."},
-    {Measure::drop, "drop", "drop at rest", "mm", true, 1e-3,
-     "How far points come to rest from where they are authored, root mean square, on a head that stands "
-     "still in still air."},
-    {Measure::afterShake, "after_shake", "left over after a shake", "mm", true, 1e-3,
-     "How far points come to rest from where they rested before the head was shaken for a second."},
-    {Measure::depth, "depth", "deepest in head or spheres", "mm", true, 1e-3,
-     "How deep a point is in the head's mesh or in a collision sphere, at the worst moment of the motion."},
+    {Measure::distance, "distance", "error against the reference", "mm", true, 1e-4,
+     "Root mean square distance of points from the reference, over the whole motion."},
+    {Measure::drop, "drop", "sag at rest", "mm", true, 1e-3,
+     "Root mean square distance between the authored points and their rest position, with a still head in "
+     "still air."},
+    {Measure::afterShake, "after_shake", "residual after a shake", "mm", true, 1e-3,
+     "Distance between the rest positions before and after the head was shaken for a second."},
+    {Measure::depth, "depth", "deepest penetration of head or spheres", "mm", true, 1e-3,
+     "Largest depth of a point in the head mesh or in a collision sphere, over the whole motion."},
     {Measure::restSpeed, "rest_speed", "speed at rest", "mm/s", false, 1e-2,
-     "How fast the fastest point still is where the head has stood still for seconds: hair that trembles."},
+     "Speed of the fastest point after the head has been still for seconds. Above zero, the hair trembles."},
 };
 
 }  // namespace

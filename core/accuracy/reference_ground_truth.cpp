@@ -150,7 +150,7 @@ std::string detailOf(const std::vector<StrandGroundTruth>& strands, double toler
         reached, strands.size(), toleranceMm, fewest, maximum);
     if (reached < strands.size())
         detail +=
-            fmt::format("; the last doubling moved a point of the others by up to {:.3g} mm", 1e3 * worst);
+            fmt::format(". The last doubling moved a point of the others by up to {:.3g} mm", 1e3 * worst);
     return detail;
 }
 
@@ -159,28 +159,24 @@ std::vector<std::string> notesOf(const runtime::SimulationSettings& settings) {
     std::vector<std::string> notes;
     if (settings.sleepSpeed > 0) {
         notes.push_back(
-            fmt::format("The reference does not sleep: where the engine lets hair slower than {} m/s stand "
-                        "still, the way "
-                        "that it would still have gone counts as error.",
+            fmt::format("The reference does not sleep. Where the engine puts hair slower than {} m/s to "
+                        "sleep, the remaining motion counts as error.",
                         settings.sleepSpeed));
     }
     const bool springs = settings.strandModel == runtime::StrandModel::springs;
     const bool coils = settings.lengthMethod != runtime::LengthMethod::constraint;
     if (springs && coils && settings.lengthIterations > 0) {
         notes.push_back(
-            fmt::format("The reference lets coil springs stretch as far as they will, the engine by {} of "
-                        "their length at "
-                        "most: errors hold that difference.",
+            fmt::format("The reference does not limit the stretch of coil springs, while the engine limits "
+                        "it to {} of their length. Errors include that difference.",
                         settings.maximalExtension));
     }
     const bool gusts = settings.windKind != runtime::WindKind::uniform && settings.windGustiness > 0;
     if (springs && gusts && settings.windSpeed > 0 && settings.airDrag > 0) {
         notes.push_back(
-            fmt::format("The engine reads gusts at the root and the tip of a strand at the ends of frames "
-                        "and goes evenly between, "
-                        "the reference reads them at each point: where strands are not much shorter than "
-                        "gusts ({} m) errors "
-                        "hold that difference.",
+            fmt::format("The engine samples gusts at the root and the tip of a strand once per frame and "
+                        "interpolates. The reference samples them at each point. Where strands are not much "
+                        "shorter than gusts ({} m), errors include that difference.",
                         settings.windGustSize));
     }
     return notes;
@@ -235,8 +231,8 @@ Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const Hea
     groundTruth.notes = notesOf(hair.groom.simulation);
     if (solved.size() < strands.size()) {
         groundTruth.notes.push_back(fmt::format(
-            "The reference could not solve every step of {} of {} strands, which are left out of the "
-            "errors: hair that is pressed end-on or between two spheres has no sound motion there.",
+            "The reference could not solve every step of {} of {} strands, which are not part of the errors. "
+            "Hair that is pressed end-on or between two spheres has no well-defined motion there.",
             strands.size() - solved.size(), strands.size()));
     }
 
@@ -247,11 +243,9 @@ Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const Hea
     const auto engine = EngineConverged(kEngineSubsteps).compute(solvedHair, motion, time, all);
     if (!engine) return tl::unexpected(engine.error());
     groundTruth.notes.push_back(
-        fmt::format("The engine with its own steps refined until that changed {:.2g} mm is "
-                    "{:.3g} mm from "
-                    "the reference (root mean square). What is not explained by the former is what model and "
-                    "precision of "
-                    "the two differ by: substeps do not take errors below it.",
+        fmt::format("With its own steps refined until that changed {:.2g} mm, the engine is {:.3g} mm (root "
+                    "mean square) from the reference. The rest is the difference in model and precision, and "
+                    "more substeps do not reduce it.",
                     engine->uncertaintyMm, compare(engine->trajectory, groundTruth.trajectory).rmsMm));
     return groundTruth;
 }

@@ -171,10 +171,10 @@ void noteValuesWithoutEffect(std::size_t axisIndex, WorkPrecision& result) {
     for (const double value : axis.values) {  // in the order of the axis, not of the hashes
         const auto& same = valuesByHashes.at(hashesAt(result, axisIndex, value));
         if (same.size() < 2 || same.front() != axisValueText(axis, value)) continue;
-        result.notes.push_back(fmt::format(
-            "{} {} gave the same motion to the bit in every run: the engine does not tell them apart "
-            "in this scene, so their rows do not compare them.",
-            axis.field, fmt::join(same, ", ")));
+        result.notes.push_back(
+            fmt::format("{} {} gave the same motion to the bit in every run. The engine does not distinguish "
+                        "them in this scene, so their rows do not compare them.",
+                        axis.field, fmt::join(same, ", ")));
     }
 }
 
@@ -189,10 +189,10 @@ void noteIntegratorsWithoutBendDamping(WorkPrecision& result) {
         return index == static_cast<double>(runtime::Integrator::verlet);
     };
     if (std::ranges::all_of(used, isVerlet)) return;
-    result.notes.push_back(fmt::format(
-        "Only the integrator verlet damps bending (bendDampingTime {} s); the others leave it out, "
-        "which no number of substeps makes good.",
-        result.settings.bendDampingTime));
+    result.notes.push_back(
+        fmt::format("Only the integrator verlet damps bending (bendDampingTime {} s). The others ignore it, "
+                    "and more substeps do not change that.",
+                    result.settings.bendDampingTime));
 }
 
 /// Settings that are fast and exact while the head moves, and no good where it stands still.
@@ -209,9 +209,8 @@ void noteTrembling(WorkPrecision& result) {
     }
     if (settings.empty()) return;
     result.notes.push_back(fmt::format(
-        "Left out of the front, since the hair trembles where the head stands still (at up to {:.3g} m/s "
-        "after "
-        "{:.0f} s in still air: springs feed energy into curled hair, held lengths into soft hair): {}.",
+        "Not on the front, because the hair trembles while the head is still (at up to {:.3g} m/s after "
+        "{:.0f} s in still air: springs feed energy into curled hair, and fixed lengths into soft hair): {}.",
         fastest, runtime::kTrialSeconds, fmt::join(settings, ", ")));
 }
 
@@ -228,9 +227,8 @@ void noteWhatMatters(WorkPrecision& result) {
     });
     if (unclear > 0 && result.groundTruthUncertaintyMm > kNothing_mm) {
         result.notes.push_back(
-            fmt::format("The truth itself moves by {:.3g} mm when its resolution in time is halved. The "
-                        "errors of {} of {} runs "
-                        "are less than three times that; which of these is more exact cannot be told.",
+            fmt::format("The reference moves by {:.3g} mm when its time step is halved. The errors of {} of "
+                        "{} runs are less than three times that, so these runs cannot be ranked by accuracy.",
                         result.groundTruthUncertaintyMm, unclear, result.runs.size()));
         if (!result.groundTruthDetail.empty())
             result.notes.back() += fmt::format(" ({}.)", result.groundTruthDetail);
@@ -243,12 +241,13 @@ void noteWhatMatters(WorkPrecision& result) {
             diverged, result.runs.size(), result.options.divergedAboveMm));
     }
     if (result.strandsCompared < result.strands) {
-        result.notes.push_back(fmt::format("Errors are of {} of the {} strands that ran: the truth is slow.",
-                                           result.strandsCompared, result.strands));
+        result.notes.push_back(fmt::format(
+            "Errors are measured on {} of the {} simulated strands, because the reference is slow.",
+            result.strandsCompared, result.strands));
     }
     if (result.strands < result.groomStrands) {
         result.notes.push_back(
-            fmt::format("A sample of {} of {} strands ran (seed {}); times are of the sample.",
+            fmt::format("Ran a sample of {} of {} strands (seed {}). Times are those of the sample.",
                         result.strands, result.groomStrands, result.options.seed));
     }
 }
@@ -259,9 +258,9 @@ Status checkAxes(const WorkPrecisionOptions& options) {
         if (auto status = checkAxis(axis); !status) return status;
         if (axis.field == kEngineAxis && !options.gpuEngine &&
             std::ranges::find(axis.values, 1.0) != axis.values.end())
-            return fail("the engine on a GPU is asked for and there is none", "expected cpu, or a GPU");
+            return fail("--engine gpu was requested, but there is no GPU", "expected cpu, or a GPU");
         if (!seen.insert(axis.field).second)
-            return fail(axis.field + " varies twice", "expected one axis of it");
+            return fail(axis.field + " is varied twice", "expected one list of values for it");
     }
     return {};
 }

@@ -118,7 +118,7 @@ struct TimeRange {
 /// How far the truth can be trusted, as a line across.
 void addUncertainty(double uncertaintyMm, double from, double to, Plot& plot) {
     if (!(uncertaintyMm > 0) || !(from < to)) return;
-    plot.series.push_back({.name = "uncertainty of the truth",
+    plot.series.push_back({.name = "uncertainty of the reference",
                            .points = {{from, uncertaintyMm}, {to, uncertaintyMm}},
                            .colour = "#999999",
                            .marker = Marker::None,
@@ -203,11 +203,12 @@ std::optional<Plot> partsPlot(const WorkPrecision& result) {
     if (runs.empty()) return std::nullopt;
     std::ranges::sort(runs, {}, [](const WorkPrecisionRun* run) { return run->milliseconds.median; });
     Plot plot;
-    plot.title = "What errors are made of";
+    plot.title = "Sources of error";
     plot.note = fmt::format(
-        "Steps: from the same with up to {} substeps. Points: from that to twice the finest strands. Model: "
-        "from the rod to the finest strands of this model with short steps. Each is measured by "
-        "itself; they need not add up. Settings from the fastest to the most exact.",
+        "Steps: difference from the same setting with up to {} substeps. Points: difference from twice the "
+        "finest strands. Model: difference between the elastic rod and the finest strands of this model, "
+        "with short steps. Each is measured separately, so they need not add up. Sorted from fastest to most "
+        "accurate.",
         kConvergedSubsteps);
     std::vector<std::size_t> named;
     std::string names;
@@ -221,15 +222,14 @@ std::optional<Plot> partsPlot(const WorkPrecision& result) {
     plot.width = 860;
     plot.x = {.title = "setting", .low = -0.5, .high = static_cast<double>(runs.size()) - 0.5};
     plot.y = {.title = "root mean square", .unit = "mm", .scale = Scale::Logarithmic};
-    plot.series = {
-        {.name = "steps"}, {.name = "points"}, {.name = "model"}, {.name = "doubt of the reference"}};
+    plot.series = {{.name = "steps"}, {.name = "points"}, {.name = "model"}, {.name = "uncertainty"}};
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const ErrorParts& parts = *runs[r]->parts;
         std::string label;
         for (const std::size_t a : named)
             label += (label.empty() ? "" : "/") + axisValueText(result.options.axes[a], runs[r]->values[a]);
-        plot.x.ticks.push_back({static_cast<double>(r), label.empty() ? "as it is" : label});
+        plot.x.ticks.push_back({static_cast<double>(r), label.empty() ? "current" : label});
         const double mm[] = {parts.step.rmsMm, parts.points.rmsMm, parts.model.rmsMm,
                              result.groundTruthUncertaintyMm};
         for (std::size_t s = 0; s < plot.series.size(); ++s) {

@@ -106,22 +106,23 @@ void addFront(const WorkPrecision& result, HtmlReport& page) {
         append(rows.back(), partsOf(*run, forPeople));
     }
     page.heading("The Pareto front");
-    page.paragraph(
-        "Settings that no other one in this grid beats in both time and error, the fastest first.");
+    page.paragraph("Settings that no other measured setting beats in both time and error, fastest first.");
     page.table(rows);
 }
 
 void addParts(const WorkPrecision& result, const std::string& drawing, HtmlReport& page) {
-    page.heading("What the errors are made of");
+    page.heading("Sources of error");
     page.drawing(drawing);
     page.list(
-        {fmt::format("Steps: how far a run is from the same with up to {} substeps. More substeps mend it.",
+        {fmt::format("Steps: difference from the same setting with up to {} substeps. Use more substeps to "
+                     "reduce it.",
                      kConvergedSubsteps),
-         "Points: how far that one is from strands with twice the points of the finest here. More points "
-         "mend it.",
-         "Model: how far the finest strands of this model are from the rod, with short steps: springs that "
-         "sag, strands that follow a guide, how contacts give and slip, hair against hair, single precision, "
-         "a head that is seen at the ends of frames only. Neither steps nor points mend it.",
+         "Points: difference from strands with twice as many points as the finest measured setting. Use more "
+         "points to reduce it.",
+         "Model: difference between the elastic rod and the finest strands of this model, with short steps. "
+         "It comes from stretching springs, strands that follow a guide, contact and friction, hair-hair "
+         "collision, single precision and a head sampled once per frame. More substeps or points do not "
+         "reduce it.",
          fmt::format(
              "Uncertainty of the reference: it moves by {:.3g} mm when its resolution in time is halved. "
              "What is below that says little.",
@@ -129,7 +130,7 @@ void addParts(const WorkPrecision& result, const std::string& drawing, HtmlRepor
 }
 
 void addMeasures(const std::vector<NamedDrawing>& drawings, HtmlReport& page) {
-    page.heading("Shape held, penetration, rest");
+    page.heading("Sag, penetration, rest");
     for (std::size_t m = 1; m < measures().size(); ++m) {
         page.paragraph(measures()[m].meaning);
         page.drawing(drawings[m].svg);
@@ -176,13 +177,14 @@ void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, Ht
         facts.emplace_back(axis.field, fmt::format("{}", fmt::join(values, ", ")));
     }
     facts.emplace_back("Other settings", otherSettings(result));
-    facts.emplace_back("Truth",
-                       fmt::format("{}: {}; {} points per strand; {:.3g} mm root mean square from the same "
-                                   "at half its resolution in time",
-                                   result.groundTruthName, result.groundTruthDescription,
-                                   result.groundTruthPoints ? fmt::format("{}", result.groundTruthPoints)
-                                                            : std::string("the authored"),
-                                   result.groundTruthUncertaintyMm));
+    facts.emplace_back(
+        "Truth",
+        fmt::format(
+            "{}: {}, {} points per strand, {:.3g} mm root mean square from the same at twice the time step",
+            result.groundTruthName, result.groundTruthDescription,
+            result.groundTruthPoints ? fmt::format("{}", result.groundTruthPoints)
+                                     : std::string("the authored"),
+            result.groundTruthUncertaintyMm));
     if (!result.groundTruthDetail.empty()) facts.emplace_back("Its convergence", result.groundTruthDetail);
     if (result.strandsCompared < result.strands)
         facts.emplace_back("Strands compared", fmt::format("{}", result.strandsCompared));
@@ -241,11 +243,10 @@ std::string pageOf(const WorkPrecision& result, const ReportContext& context,
                    const std::vector<NamedDrawing>& drawings) {
     HtmlReport page("Work and precision of " + context.groom);
     page.paragraph(
-        "What a frame of simulation costs with each of a grid of settings, and how far the hair is from "
-        "where it should be.");
+        "What one simulation frame costs for each setting of a grid, and how accurate the hair is.");
     page.drawing(drawings[0].svg);
     if (!result.notes.empty()) {
-        page.heading("To be known");
+        page.heading("Notes");
         page.list(result.notes);
     }
     addFront(result, page);

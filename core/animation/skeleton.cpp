@@ -33,7 +33,7 @@ std::vector<std::uint32_t> parentsFirst(const std::vector<Bone>& bones) {
 Result<Skeleton> Skeleton::make(std::vector<Bone> bones) {
     for (const Bone& bone : bones) {
         if (bone.parent != kNoBone && bone.parent >= bones.size()) {
-            return fail(fmt::format("bone '{}' hangs on bone {}", bone.name, bone.parent),
+            return fail(fmt::format("bone '{}' has the parent {}", bone.name, bone.parent),
                         fmt::format("there are {} bones", bones.size()));
         }
         if (!bone.rest.matrix().allFinite() || !bone.inverseBind.matrix().allFinite()) {
@@ -43,7 +43,7 @@ Result<Skeleton> Skeleton::make(std::vector<Bone> bones) {
     Skeleton skeleton;
     skeleton.order_ = parentsFirst(bones);
     if (skeleton.order_.size() != bones.size()) {
-        return fail(fmt::format("{} bones hang on themselves", bones.size() - skeleton.order_.size()),
+        return fail(fmt::format("{} bones form a cycle", bones.size() - skeleton.order_.size()),
                     "expected every bone to lead to a root");
     }
     skeleton.bones_ = std::move(bones);

@@ -47,7 +47,7 @@ Status mayReplace(const fs::path& path, const fs::path& target, std::string_view
     if (input == InputState::ChangedSinceWritten && kind == content::kProject)
         return refuse("was changed by another program since it was written");
     if (input == InputState::AsRead && kind != content::kProject)
-        return refuse("is what was read, and would be replaced");
+        return refuse("is an input of this job and would be replaced");
     const std::string_view there = contentKind(readBeginning(path, kContentKindBytes));
     if (there == kind || state.bytes == 0) return {};
     return refuse(fmt::format("is {} and would be replaced by {}", there, kind));
@@ -267,7 +267,8 @@ std::vector<LeftOver> findLeftOvers(const fs::path& folder) {
 
 Status removeLeftOver(const LeftOver& leftOver) {
     const std::string name = leftOver.file.string();
-    if (isBeingWritten(leftOver.file)) return failIn(name, {}, "is being written", "wait for its writer");
+    if (isBeingWritten(leftOver.file))
+        return failIn(name, {}, "is being written", "wait until the other program is done");
     std::error_code code;
     if (!fs::remove(leftOver.file, code) || code)
         return failIn(name, {}, fmt::format("cannot be removed: {}", code.message()));

@@ -216,12 +216,12 @@ Result<fs::path> followLinks(const fs::path& path) {
         const fs::path next = fs::read_symlink(at, code);
         if (code) return at;
         if (isForeignLink(at)) {
-            return failIn(path.string(), {}, "is a link that another user laid in a folder for all",
+            return failIn(path.string(), {}, "is a link of another user in a folder for all users",
                           "give another name");
         }
         at = next.is_absolute() ? next : at.parent_path() / next;
     }
-    return failIn(path.string(), {}, "is a circle of links", "expected the name of a file");
+    return failIn(path.string(), {}, "is a circular link", "expected the name of a file");
 }
 
 struct TemporaryFile::Impl {
@@ -266,7 +266,7 @@ Status TemporaryFile::Impl::make() {
     if (!folder) return systemError();
     const FolderLock lock(folder.number());
     if (somebodyWrites(folderPath, folder.number(), prefix))
-        return fail("another program is writing it", "wait until that has ended");
+        return fail("another program is writing it", "wait until it is done");
     const std::string wanted = prefix + randomText() + std::string(kPartSuffix);
     slot = takeSlot(folder.number(), wanted);
     // Nobody else reads what may become a private file; adopt() opens it as far as the target is open.

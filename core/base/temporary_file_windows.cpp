@@ -184,7 +184,7 @@ Result<fs::path> followLinks(const fs::path& path) {
         if (code) return at;
         at = next.is_absolute() ? next : at.parent_path() / next;
     }
-    return failIn(path.string(), {}, "is a circle of links", "expected the name of a file");
+    return failIn(path.string(), {}, "is a circular link", "expected the name of a file");
 }
 
 struct TemporaryFile::Impl {
@@ -220,8 +220,7 @@ Status TemporaryFile::Impl::make() {
     // As u8string: names outside the code page are text all the same.
     const std::string prefix = "." + target.filename().string() + ".";
     const FolderLock lock(folder);
-    if (somebodyWrites(folder, prefix))
-        return fail("another program is writing it", "wait until that has ended");
+    if (somebodyWrites(folder, prefix)) return fail("another program is writing it", "wait until it is done");
     const fs::path wanted = folder / fs::path(prefix + randomText() + std::string(kPartSuffix));
     slot = takeSlot(wanted);
     // Nobody else may open it: that is how isBeingWritten() knows.

@@ -43,7 +43,7 @@ Result<LevelSpec> parseLevel(std::string_view text, std::uint32_t standardPx) {
     std::string_view rest = text;
     if (const auto at = rest.find('@'); at != std::string_view::npos) {
         double px = 0;
-        if (!readNumber(rest.substr(at + 1), px)) return refuse("pixels that are no number");
+        if (!readNumber(rest.substr(at + 1), px)) return refuse("pixels that are not a number");
         spec.headPx = px >= 16 && px <= 512 ? static_cast<std::uint32_t>(px) : 0;
         rest = rest.substr(0, at);
         if (static_cast<double>(spec.headPx) != px) return refuse("pixels out of range");
@@ -60,11 +60,11 @@ Result<LevelSpec> parseLevel(std::string_view text, std::uint32_t standardPx) {
     const Limits limits = limitsOf(spec.kind);
     spec.amount = limits.standard;
     if (colon != std::string_view::npos && !readNumber(rest.substr(colon + 1), spec.amount))
-        return refuse("an amount that is no number");
+        return refuse("an amount that is not a number");
     if (!(spec.amount >= limits.low) || !(spec.amount <= limits.high))
         return refuse("an amount out of range");
     if (spec.kind != LevelKind::strands && spec.amount != std::floor(spec.amount))
-        return refuse("an amount that is no whole number");
+        return refuse("an amount that is not a whole number");
     return spec;
 }
 
@@ -90,7 +90,7 @@ Result<std::vector<LevelSpec>> parseLevels(std::string_view text) {
         const auto spec = parseLevel(text.substr(0, comma), specs.empty() ? 512 : specs.back().headPx / 2);
         if (!spec) return tl::unexpected(spec.error());
         if (!specs.empty() && spec->headPx > specs.back().headPx)
-            return fail(fmt::format("level '{}' is nearer than the one before", text.substr(0, comma)),
+            return fail(fmt::format("level '{}' is nearer than the one before it", text.substr(0, comma)),
                         kGrammar);
         specs.push_back(*spec);
         if (specs.size() > kMostLevels) return fail("more than 16 levels", kGrammar);

@@ -190,8 +190,8 @@ Status makeCardLevel(const Work& work, Level& level) {
     auto& shaped = std::get<Cards>(level.content);
     if (!options.held.empty()) shapeByHand(options.held, shaped);
     if (shaped.mesh.indices.empty())
-        return fail(fmt::format("all cards of {} are deleted by hand", level.name),
-                    "at least one that stays");
+        return fail(fmt::format("all cards of {} were deleted by hand", level.name),
+                    "expected at least one that stays");
     return {};
 }
 
@@ -214,7 +214,8 @@ Status makeShellLevel(const Work& work, Level& level) {
         nearest = std::abs(off->coverage - 1);
         best = std::move(shell);
     }
-    if (best.indices.empty()) return fail("hair too thin for a shell", "levels without a shell");
+    if (best.indices.empty())
+        return fail("the hair is too thin for a shell", "expected levels without a shell");
     level.content = std::move(best);
     // Highlights do not grow with the albedo, so that light grows by some power of it, which two rounds tell.
     double power = 1, last = 0, factor = 1;
@@ -309,9 +310,9 @@ Status finish(const Work& work, Level& level) {
     level.drawMs = shooting.drawMs;
     const double target = static_cast<double>(work.options.targetPx);
     if (target > 0 && level.spec.kind == LevelKind::cards && off->silhouettePx > target) {
-        return fail(fmt::format("outlines of {} are off by {:.2f} pixels, more than the {:g} asked for",
+        return fail(fmt::format("the outline error of {} is {:.2f} pixels, more than the {:g} asked for",
                                 level.name, off->silhouettePx, target),
-                    fmt::format("a target of {:.2f} pixels, which these cards reach, or more cards",
+                    fmt::format("use a limit of {:.2f} pixels, which these cards reach, or more cards",
                                 off->silhouettePx + 0.005));
     }
     if (work.options.walk) {

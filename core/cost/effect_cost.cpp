@@ -17,7 +17,7 @@ std::string sideEffects(const std::string& name, const std::vector<EffectReport>
     std::string note;
     for (std::size_t e = 0; e < asIs.size() && e < off.size(); ++e) {
         if (asIs[e].name == name) {
-            if (off[e].on) note += "it stays on even so; ";
+            if (off[e].on) note += "it cannot be turned off completely; ";
         } else if (asIs[e].on != off[e].on) {
             note += fmt::format("without it {} is {}; ", off[e].name, off[e].on ? "on" : "off");
         }
@@ -79,7 +79,7 @@ void fillIn(const Variants& variants, std::size_t effect, EffectCosts& costs) {
         cost.note += (cost.note.empty() ? "" : "; ") + std::string(words);
     };
     if (lostInSpread(*cost.costMilliseconds)) {
-        say("the cost is lost in the spread of the runs");
+        say("the cost is smaller than the spread of the runs");
     } else if (!cost.price()) {
         say("a frame takes longer without it");
     }

@@ -121,19 +121,19 @@ Result<ExportReport> writeCardFile(const cards::Chain& chain, const Groom& groom
     report.companions = std::move(*companions);
     report.bytes = std::filesystem::file_size(path);
     std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
-    report.leftBehind.push_back({"springs, and the distances of levels", "write them as gltf"});
-    if (format != kFbx) report.leftBehind.push_back({"joints and weights", "write them as fbx"});
+    report.leftBehind.push_back({"springs, and the distances of levels", "export them as gltf"});
+    if (format != kFbx) report.leftBehind.push_back({"joints and weights", "export them as fbx"});
     if (format == kUsd)
-        report.leftBehind.push_back({"what cards have beside a texture that they share",
-                                     "multiply displayColor in, which UsdPreviewSurface cannot"});
+        report.leftBehind.push_back({"differences between cards that share a texture",
+                                     "multiply displayColor in yourself, because UsdPreviewSurface cannot"});
     return report;
 }
 
 Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
     if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
-        return fail("another unit, axis or number of points is asked for, and cards have none",
-                    "glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
+        return fail("another unit, axis or number of points was requested, which cards do not have",
+                    "expected none: glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
     const auto progress = wanted.progress ? wanted.progress : [](std::string_view, double) {};
     const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
     if (!chain) return tl::unexpected(chain.error());
@@ -145,10 +145,11 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
 StrandWriter cardWriter(const char* format, const char* label, const char* carries, ExportTarget target,
                         const char* suffix) {
     target.note =
-        "Cards and a shell for far away, each measured against the strands. It takes a minute or so; the "
-        "panel Levels shows them before they leave." +
+        "Cards and a shell for far away, each measured against the strands. This takes about a minute. The "
+        "Levels panel shows them before you export." +
         target.note;
-    return {format, label, carries, "cards and a shell, no strands", {std::move(target)}, nullptr, suffix};
+    return {format,  label, carries, "holds cards and a shell, not strands", {std::move(target)},
+            nullptr, suffix};
 }
 
 /// Of the strands as a game plays them.
@@ -187,21 +188,22 @@ const std::vector<StrandWriter>& hairWriters() {
         constexpr const char* kCarries = "textures, a skin, levels (MSFT_lod) and springs (VRMC_springBone)";
         writers.push_back(cardWriter(kCardFormat, "Cards as binary glTF 2.0", kCarries,
                                      {"cards", "Engines without strands: cards (glTF)", "", {}}, "glb"));
-        writers.push_back(cardWriter(kQuantised, "Cards as binary glTF 2.0, quantised",
-                                     "the same with 40 bytes a vertex in place of 88 (KHR_mesh_quantization)",
-                                     {"cards-small",
-                                      "Engines without strands: cards (glTF, quantised)",
-                                      " For readers of KHR_mesh_quantization.",
-                                      {}},
-                                     "glb"));
+        writers.push_back(
+            cardWriter(kQuantised, "Cards as binary glTF 2.0, quantised",
+                       "like gltf, with 40 bytes per vertex instead of 88 (KHR_mesh_quantization)",
+                       {"cards-small",
+                        "Engines without strands: cards (glTF, quantised)",
+                        " For readers of KHR_mesh_quantization.",
+                        {}},
+                       "glb"));
         writers.push_back(cardWriter(kUsd, "Cards as USD .usda",
-                                     "a variant for each level, textures beside the file",
+                                     "one variant per level, with textures next to the file",
                                      {"cards-usd", "Engines without strands: cards (USD)", "", {}}, "usda"));
         if (canWriteCardMeshes()) {
-            writers.push_back(cardWriter(kFbx, "Cards as FBX", "a skin, and textures beside the file",
+            writers.push_back(cardWriter(kFbx, "Cards as FBX", "a skin, with textures next to the file",
                                          {"cards-fbx", "Engines without strands: cards (FBX)", "", {}},
                                          "fbx"));
-            writers.push_back(cardWriter(kObj, "Cards as OBJ", "textures and materials beside the file",
+            writers.push_back(cardWriter(kObj, "Cards as OBJ", "textures and materials next to the file",
                                          {"cards-obj", "Engines without strands: cards (OBJ)", "", {}},
                                          "obj"));
         }
@@ -218,7 +220,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         for (const StrandWriter& other : strandWriters()) {
             if (other.animates) formats += (formats.empty() ? "" : ", ") + other.name;
         }
-        return fail(fmt::format("{} holds one shape, and {} frames are to be written", writer.name,
+        return fail(fmt::format("{} holds a single pose, but {} frames were requested", writer.name,
                                 wanted.frames.size()),
                     "expected one frame, or one of " + formats);
     }
@@ -272,8 +274,8 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
              "groom_guide", ""});
     if (report && !writer.holdsCards() && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {
         report->findings.push_back({Severity::Warning,
-                                    fmt::format("{} follow hairs for each guide are left out", perGuide),
-                                    "interpolation", "export hairs to write what pictures show"});
+                                    fmt::format("{} follow hairs per guide are left out", perGuide),
+                                    "interpolation", "export hairs to write the rendered hairs"});
     }
     return report;
 }

@@ -95,9 +95,10 @@ Result<ScalpMesh> partOfHead(const ScalpMesh& mesh, const HeadImportOptions& opt
     if (!out) return tl::unexpected(out.error());
     const FaceSet faces = invertSelection(mesh, *out);
     if (faces.empty() && options.collideWith.empty())
-        return fail("all groups are left out", "keep at least one");
+        return fail("all groups are left out", "keep at least one as the head");
     if (faces.empty())
-        return fail("no head is left: all groups are left out or to collide with", "keep at least one");
+        return fail("no head is left: all groups are left out or set to collide",
+                    "keep at least one as the head");
     return ScalpMesh::make(soupOf(mesh, faces, turnOf(options)));
 }
 

@@ -83,7 +83,7 @@ template <class K>
 void expectAscending(JsonReader& reader, std::string_view member, const std::vector<K>& keys) {
     for (std::size_t k = 1; k < keys.size(); ++k) {
         if (!(keys[k].time > keys[k - 1].time))
-            reader.complain(member, "does not ascend in t", "each key after the one before");
+            reader.complain(member, "is not later than the key before it", "each key after the one before");
     }
 }
 

@@ -17,15 +17,15 @@ namespace {
 constexpr LookPreset kPresets[] = {
     {"black", "black hair of East Asia and Africa", 6.0f, 0.0f, 0.10f},
     {"dark brown", "nearly black in the shade", 2.6f, 0.15f, 0.15f},
-    {"brown", "the middle of brown", 1.3f, 0.2f, 0.18f},
-    {"chestnut", "brown with red in the light", 0.85f, 0.55f, 0.20f},
+    {"brown", "medium brown", 1.3f, 0.2f, 0.18f},
+    {"chestnut", "brown with a red shine", 0.85f, 0.55f, 0.20f},
     {"auburn", "red-brown", 0.45f, 1.0f, 0.22f},
-    {"copper", "red hair of the lighter kind", 0.15f, 0.75f, 0.22f},
+    {"copper", "light red", 0.15f, 0.75f, 0.22f},
     {"dark blond", "between brown and blond", 0.5f, 0.2f, 0.25f},
     {"honey", "golden blond", 0.22f, 0.22f, 0.25f},
     {"blond", "blond", 0.12f, 0.08f, 0.25f},
     {"platinum", "bleached blond", 0.03f, 0.02f, 0.12f},
-    {"grey", "hair with less and less pigment", 0.18f, 0.0f, 0.45f},
+    {"grey", "grey hair, with less and less pigment", 0.18f, 0.0f, 0.45f},
     {"white", "hair without pigment", 0.0f, 0.0f, 0.05f},
 };
 constexpr std::string_view kSuffix = ".look.json";
@@ -91,7 +91,8 @@ Result<HairMaterial> loadLook(const std::filesystem::path& folder, const std::st
 
 Status saveLook(const std::filesystem::path& folder, const std::string& name, const HairMaterial& material) {
     if (name.empty() || name.find_first_of("/\\:*?\"<>|") != std::string::npos || name.front() == '.') {
-        return fail("'" + name + "' is no name for a look", "a name without / \\ : * ? \" < > |");
+        return fail("'" + name + "' is not a valid name for a look",
+                    "expected a name without / \\ : * ? \" < > |");
     }
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);

@@ -36,7 +36,7 @@ float MaskImage::at(const Vec2f& uv) const {
 Result<std::vector<float>> valuesAtRoots(const MaskImage& image, const Groom& groom) {
     const auto uvs = groom.strandAttributes.view<Vec2f>(attribute::kRootUv);
     if (uvs.size() != groom.strandCount())
-        return fail("the strands have no root UVs to read an image at", "bind them to a scalp that has UVs");
+        return fail("the strands have no root UVs to read an image at", "bind them to a scalp with UVs");
     std::vector<float> values(uvs.size());
     for (std::size_t s = 0; s < uvs.size(); ++s) {
         if (!uvs[s].allFinite()) return fail(fmt::format("the root UV of strand {} is not finite", s));

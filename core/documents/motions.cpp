@@ -51,7 +51,8 @@ void fitTo(const std::shared_ptr<const ScalpMesh>& head, std::shared_ptr<const S
 
 Result<std::shared_ptr<const Actor>> loadActor(const std::string& character, const Groom& groom) {
     const std::string file = characterOf(character, groom);
-    if (file.empty()) return fail("the groom names no file with clips", "expected --character FILE");
+    if (file.empty())
+        return fail("the groom does not refer to a file with clips", "expected --character FILE");
     MeshImportOptions options;
     if (character.empty() && groom.characterMetresPerUnit > 0)
         options.metresPerUnit = groom.characterMetresPerUnit;

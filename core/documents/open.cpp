@@ -81,7 +81,7 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
     opened.format = scene->format;
     for (const MeshRepair& repair : scene->mesh.repairs()) {
         opened.findings.push_back(
-            {Severity::Warning, repair.what, fmt::format("{} places", repair.count), "mended when imported"});
+            {Severity::Warning, repair.what, fmt::format("{} places", repair.count), "repaired on import"});
     }
     for (const std::string& warning : scene->warnings) {
         opened.findings.push_back({Severity::Warning, warning, "file", ""});
@@ -125,7 +125,7 @@ void readLayerSettings(JsonReader reader, const nlohmann::json& named, Groom& gr
             readSettings(entry.object("material"), material);
             layer.material = material;
         }
-        if (found == 0) reader.complain(name, "is no layer", "expected one that `layers` shows");
+        if (found == 0) reader.complain(name, "is not a layer", "expected one listed by `layers`");
         entry.finish();
     }
 }

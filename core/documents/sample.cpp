@@ -44,7 +44,7 @@ Result<T> number(const std::map<std::string, std::string>& values, const std::st
     T value{};
     const char* const end = found->second.data() + found->second.size();
     const auto [last, code] = std::from_chars(found->second.data(), end, value);
-    if (code != std::errc() || last != end) return failIn(file.string(), {}, key + " is no number");
+    if (code != std::errc() || last != end) return failIn(file.string(), {}, key + " is not a number");
     return value;
 }
 

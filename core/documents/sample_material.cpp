@@ -35,7 +35,7 @@ Status applyMaterial(const fs::path& samples, const std::string& nameOrFile, Gro
     std::error_code none;
     if (!isSample && !fs::exists(nameOrFile, none)) {
         return fail(fmt::format("there is no material '{}'", nameOrFile),
-                    fmt::format("a JSON file, or one of {}", fmt::join(names, ", ")));
+                    fmt::format("expected a JSON file, or one of {}", fmt::join(names, ", ")));
     }
     const fs::path path = isSample ? samples / kFolder / (nameOrFile + ".json") : fs::path(nameOrFile);
     const auto text = readTextFile(path, kMaxJsonBytes);

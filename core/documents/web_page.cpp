@@ -91,8 +91,8 @@ struct PlayerFiles {
 Result<PlayerFiles> readPlayer() {
     const fs::path from = findWebPlayer(programFolder());
     if (from.empty())
-        return fail("the player for browsers is not there",
-                    "build it by `./dev web`, or name its folder in HAIRLOOM_WEB");
+        return fail("the player for browsers was not found",
+                    "build it with `./dev web`, or set HAIRLOOM_WEB to its folder");
     auto index = readTextFile(from / kIndex);
     if (!index) return tl::unexpected(index.error());
     auto player = readTextFile(from / kPlayer);
@@ -123,7 +123,7 @@ Result<ExportReport> exportWebPage(const Groom& groom, const HairToExport& wante
     if (!player) return tl::unexpected(player.error());
     std::error_code code;
     const bool isNew = fs::create_directories(folder, code);
-    if (code) return failIn(folder.string(), {}, "cannot be made: " + code.message(), "expected a folder");
+    if (code) return failIn(folder.string(), {}, "cannot be created: " + code.message(), "expected a folder");
     const fs::path asset = folder / "hair.hairrt";
     auto report = exportHair(groom, wanted, strandWriter("runtime"), asset, {});
     if (!report) {

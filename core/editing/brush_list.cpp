@@ -12,16 +12,17 @@ namespace {
 using S = BrushSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::radius>("radius", "m", 0.0001, 1, "reach of the brush"),
-    field<&S::strength>("strength", "", 0, 1, "share of the full effect that one dab has"),
-    field<&S::depth>("depth", "m", 0, 10, "how far a dab made in a view reaches before and behind its place"),
-    field<&S::clearance>("clearance", "m", 0, 0.01, "distance kept from the skin"),
-    boolField<&S::collide>("collide", "whether hair is kept out of the head"),
-    boolField<&S::invert>("invert", "the brush's opposite"),
-    boolField<&S::symmetric>("symmetric", "each dab again at its mirror image"),
-    field<&S::mirrorPoint>("mirrorPoint", "m", -kAnywhere, kAnywhere, "a point of the mirror plane"),
-    field<&S::mirrorNormal>("mirrorNormal", "", -kAnywhere, kAnywhere, "direction across the mirror plane"),
-    seedField<&S::seed>("seed", "another seed draws other random numbers"),
+    field<&S::radius>("radius", "m", 0.0001, 1, "brush radius"),
+    field<&S::strength>("strength", "", 0, 1, "strength of one dab"),
+    field<&S::depth>("depth", "m", 0, 10,
+                     "depth of the brush in front of and behind its position, for strokes made in a view"),
+    field<&S::clearance>("clearance", "m", 0, 0.01, "minimum distance of hair from the skin"),
+    boolField<&S::collide>("collide", "keeps hair out of the head"),
+    boolField<&S::invert>("invert", "inverts the brush"),
+    boolField<&S::symmetric>("symmetric", "repeats each dab on the other side of the mirror plane"),
+    field<&S::mirrorPoint>("mirrorPoint", "m", -kAnywhere, kAnywhere, "a point on the mirror plane"),
+    field<&S::mirrorNormal>("mirrorNormal", "", -kAnywhere, kAnywhere, "normal of the mirror plane"),
+    seedField<&S::seed>("seed", "random seed of the stroke"),
 };
 
 /// By their order in a tool bar.

@@ -211,14 +211,13 @@ Result<std::size_t> Document::replay(const Stroke& stroke) {
 
 Result<std::string> Document::script() const {
     if (history_.forgotten() > 0)
-        return fail(fmt::format("the first {} steps are forgotten", history_.forgotten()),
-                    "a larger limit of the history");
+        return fail(fmt::format("the first {} steps are no longer in the undo history", history_.forgotten()),
+                    "a larger undo limit");
     std::string operations;
     for (std::size_t i = 0; i < history_.doneCount(); ++i) {
         std::string_view record = history_.record(i);
         if (record.empty())
-            return fail(fmt::format("step {}, '{}', has no record that a script could replay", i + 1,
-                                    history_.name(i)));
+            return fail(fmt::format("step {}, '{}', has no record for a script", i + 1, history_.name(i)));
         // What takes several operations is an array of them.
         if (record.front() == '[') record = record.substr(1, record.size() - 2);
         operations += fmt::format("{}\n  {}", operations.empty() ? "" : ",", record);

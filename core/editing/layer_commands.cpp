@@ -31,7 +31,8 @@ CommandResult withLayers(const Model& model, Groom next, std::vector<std::uint32
 
 Status checkLayer(const Groom& groom, std::uint32_t layer) {
     if (layer < groom.layers.size()) return {};
-    return fail(fmt::format("layer {} is named", layer), fmt::format("there are {}", groom.layers.size()));
+    return fail(fmt::format("layer {} does not exist", layer),
+                fmt::format("there are {} layers", groom.layers.size()));
 }
 
 }  // namespace
@@ -50,14 +51,15 @@ CommandResult moveToLayer(const Model& model, std::span<const std::uint32_t> str
 CommandResult removeLayer(const Model& model, std::uint32_t layer) {
     const Groom& groom = model.groom;
     if (auto status = checkLayer(groom, layer); !status) return tl::unexpected(status.error());
-    if (groom.layers.size() == 1) return fail("the only layer stays", "expected one of several");
+    if (groom.layers.size() == 1)
+        return fail("the only layer cannot be removed", "expected a hairstyle with several layers");
     Groom next = groom;
     const std::uint32_t number = layer + 1;  // as regions count
     for (std::size_t i = 0; i < next.operators.size(); ++i) {
         const std::uint32_t of = layerOf(next.operators[i]);
         if (of == number) {
-            return fail(fmt::format("operator {} is of the layer {}", i, groom.layers[layer].name),
-                        "expected one that no operator is of: give the operator another region first");
+            return fail(fmt::format("operator {} uses the layer {}", i, groom.layers[layer].name),
+                        "give the operator another region first");
         }
         if (of > number) setLayerOf(next.operators[i], of - 1);
     }

@@ -31,8 +31,8 @@ Result<std::uint32_t> freeMask(const Groom& groom) {
 StackCommand fillMaskOf(const Model& model, std::size_t index, std::span<const float> values) {
     const std::vector<Operator>& operators = model.groom.operators;
     if (index >= operators.size())
-        return fail(fmt::format("operator {} is named", index),
-                    fmt::format("there are {}", operators.size()));
+        return fail(fmt::format("operator {} does not exist", index),
+                    fmt::format("there are {} operators", operators.size()));
     Operator changed = operators[index];
     Mask mask = maskOf(changed);
     if (mask.map < MaskMap::mask1) {

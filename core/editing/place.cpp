@@ -41,7 +41,7 @@ Status checkRegion(const Groom& groom, const FaceSet& region) {
         return fail("no face of the head is selected", "select the scalp first");
     if (std::includes(groom.scalpSelection.begin(), groom.scalpSelection.end(), region.begin(), region.end()))
         return {};
-    return fail("the region reaches beyond the scalp selection", "faces that are selected");
+    return fail("the region reaches beyond the scalp selection", "expected only selected faces");
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ Result<std::unique_ptr<Command>> place(const Groom& groom, const PlaceRequest& r
     Deltas insertion;
     insertion.strands.insert(trial.groom, strands);
     if (auto command = commandOf("Place", std::move(insertion))) steps.push_back(std::move(command));
-    if (steps.empty()) return fail("nothing was placed", "a larger region or density");
+    if (steps.empty()) return fail("no root was placed", "use a larger region or density");
     auto triangulation =
         triangulateRoots(*trial.groom.scalp, trial.groom.scalpSelection, trial.groom.rootBindings());
     if (triangulation) trial.groom.triangulation = std::move(*triangulation);

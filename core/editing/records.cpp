@@ -63,7 +63,8 @@ MakeCommand readLayerList(JsonReader& reader) {
 
 Status checkBelow(const Indices& indices, std::size_t count, std::string_view what) {
     if (indices.empty() || indices.back() < count) return {};
-    return fail(fmt::format("{} {} is named", what, indices.back()), fmt::format("there are {}", count));
+    return fail(fmt::format("{} {} does not exist", what, indices.back()),
+                fmt::format("there are {}", count));
 }
 
 MakeCommand readStrands(JsonReader& reader) {
@@ -125,7 +126,7 @@ MakeCommand readTakeShape(JsonReader& reader) {
     std::vector<Vec3f> points(numbers.size() / 3);
     for (std::size_t i = 0; i < points.size(); ++i)
         points[i] = Vec3d(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]).cast<float>();
-    if (numbers.size() % 3 != 0) reader.complain("points", "has numbers beside those of points");
+    if (numbers.size() % 3 != 0) reader.complain("points", "has numbers that are not points");
     return [points, carriesWeight](const Document& document) -> CommandResult {
         return takeShape(document.model(), points, carriesWeight);
     };

@@ -132,8 +132,8 @@ StackCommand restack(const Model& model, Groom next, std::string name, std::stri
 
 Status checkIndex(const Model& model, std::size_t index, std::size_t end) {
     if (index < end) return {};
-    return fail(fmt::format("operator {} is named", index),
-                fmt::format("there are {}", model.groom.operators.size()));
+    return fail(fmt::format("operator {} does not exist", index),
+                fmt::format("there are {} operators", model.groom.operators.size()));
 }
 
 /// "Clump": for the history.
@@ -254,7 +254,7 @@ StackCommand soloOperator(const Model& model, std::size_t index) {
     for (std::size_t i = 0; i < operators.size(); ++i)
         isAlone = isAlone && (i == index || !operators[i].enabled);
     for (std::size_t i = 0; i < operators.size(); ++i) operators[i].enabled = isAlone || i == index;
-    const std::string name = (isAlone ? "All again" : "Solo " + labelOf(operators[index]));
+    const std::string name = (isAlone ? "Unsolo" : "Solo " + labelOf(operators[index]));
     return setOperators(model, std::move(operators), name);
 }
 
@@ -297,7 +297,7 @@ std::unique_ptr<Command> stackAfterStrands(const Model& model) {
     CacheOf cache(model);
     auto shape = evaluateStack(model.groom, cache.get());
     if (!shape) {
-        log::warning("the operators did not run: {}", shape.error().message());
+        log::warning("the operators failed: {}", shape.error().message());
         return nullptr;
     }
     Groom next = model.groom;
@@ -318,7 +318,7 @@ std::unique_ptr<Command> stackAfterStroke(const Model& model, std::span<const st
     CacheOf cache(model);
     const auto below = evaluateStack(groom, cache.get(), isNew ? kWholeStack : operators.size() - 1);
     if (!below) {
-        log::warning("the stroke is not kept by the operators: {}", below.error().message());
+        log::warning("the stroke could not be stored as an operator: {}", below.error().message());
         return nullptr;
     }
     const std::string attribute = sculptAttribute(operators.back().number);

@@ -33,7 +33,8 @@ Result<std::unique_ptr<Command>> takeShape(const Model& model, std::span<const V
         return fail(fmt::format("the shape has {} points", positions_ss.size()),
                     fmt::format("the hair has {}", groom.pointCount()));
     if (!std::ranges::all_of(positions_ss, [](const Vec3f& at) { return at.allFinite(); }))
-        return fail("the shape has positions that are not finite", "a frame that has not broken down");
+        return fail("the shape has positions that are not finite",
+                    "expected a frame before the simulation broke down");
     std::vector<Vec3f> shape(positions_ss.begin(), positions_ss.end());
     const auto authored = groom.positions();
     std::vector<float> lengths;
@@ -49,11 +50,11 @@ Result<std::unique_ptr<Command>> takeShape(const Model& model, std::span<const V
     if (!groom.operators.empty() && groom.strandCount() > 0) {
         if (groom.operators.size() >= kMaxOperators)
             return fail(fmt::format("{} operators", groom.operators.size()),
-                        "room for a sculpt, which holds the shape: bake some first");
+                        "expected fewer: bake some before you set the rest shape");
         if (auto sculpt = stackAfterStroke(next, allStrands(groom))) sculpt->exchange(next);
     }
     if (carriesWeight) carryWeight(next.groom.simulation);
-    return replaceGroom(model, std::move(next.groom), "Take shape",
+    return replaceGroom(model, std::move(next.groom), "Set rest shape",
                         recordOfShape(positions_ss, carriesWeight));
 }
 

@@ -39,13 +39,13 @@ Status checkIndices(const PolygonSoup& soup) {
     for (std::size_t f = 0; f + 1 < soup.offsets.size(); ++f)
         for (std::size_t c = soup.offsets[f]; c < soup.offsets[f + 1]; ++c)
             if (soup.corners[c] >= soup.positions.size())
-                return fail(fmt::format("face {} names vertex {}", f, soup.corners[c]),
+                return fail(fmt::format("face {} refers to vertex {}", f, soup.corners[c]),
                             fmt::format("an index below {}", soup.positions.size()));
     const auto checkNames = [](const std::vector<std::uint32_t>& indices, std::size_t names,
                                const char* kind) -> Status {
         for (std::size_t f = 0; f < indices.size(); ++f)
             if (indices[f] >= names)
-                return fail(fmt::format("face {} names {} {}", f, kind, indices[f]),
+                return fail(fmt::format("face {} refers to {} {}", f, kind, indices[f]),
                             fmt::format("an index below {}", names));
         return {};
     };
@@ -138,8 +138,8 @@ void cutFaces(const PolygonSoup& soup, const std::vector<std::uint32_t>& vertexO
             mesh.sourceFaces.push_back(f);
         }
     }
-    mesh.note("polygons cut into triangles", polygons);
-    mesh.note("polygons whose outline crosses itself fanned", crossings);
+    mesh.note("polygons triangulated", polygons);
+    mesh.note("polygons with a self-intersecting outline triangulated as fans", crossings);
     mesh.note("degenerate faces dropped", degenerate);
 }
 

@@ -62,7 +62,7 @@ Vec3f pointByDensity(Random& random, const Vec3f& densities) {
 }  // namespace
 
 Status checkPlacement(const ScalpMesh& mesh, const FaceSet& faces, std::span<const float> mask) {
-    if (faces.empty()) return fail("the scalp selection is empty", "at least one face");
+    if (faces.empty()) return fail("no face of the scalp is selected", "at least one face");
     if (!mask.empty() && mask.size() != mesh.vertexCount())
         return fail(fmt::format("the density mask has {} values", mask.size()),
                     fmt::format("one for each of the {} vertices", mesh.vertexCount()));
@@ -71,7 +71,7 @@ Status checkPlacement(const ScalpMesh& mesh, const FaceSet& faces, std::span<con
             return fail(fmt::format("the density mask is {} at vertex {}", mask[v], v),
                         "a value from 0 to 1");
     if (!(maskedArea(mesh, faces, mask) > 0))
-        return fail("the density mask is 0 on the whole scalp selection", "a positive value somewhere");
+        return fail("the density mask is 0 on the whole selection", "a positive value somewhere");
     return {};
 }
 
@@ -97,9 +97,8 @@ Result<std::size_t> requestedCount(const PlacementRequest& request, double maske
     if (byDensity && !(request.densityPerCm2 > 0 && std::isfinite(request.densityPerCm2)))
         return fail(fmt::format("a density of {} roots per cm²", request.densityPerCm2), "a positive number");
     if (wanted < 1)
-        return fail("the request asks for no root", byDensity
-                                                        ? fmt::format("at least {:.3g} per cm²", 1 / cm2)
-                                                        : std::string("a count of at least 1"));
+        return fail("the request is for no root", byDensity ? fmt::format("at least {:.3g} per cm²", 1 / cm2)
+                                                            : std::string("a count of at least 1"));
     if (wanted > maximum)
         return fail(fmt::format("{:.0f} roots on {:.4g} cm² are {:.4g} per cm²", wanted, cm2, wanted / cm2),
                     fmt::format("at most {:.4g} per cm²", maximum / cm2));

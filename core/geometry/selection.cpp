@@ -135,8 +135,8 @@ Result<FaceSet> facesListed(const ScalpMesh& mesh, const FaceSet& current, const
         std::uint32_t face = 0;
         const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), face);
         if (error != std::errc() || stop != line.data() + line.size())
-            return failIn(path, Line{lineNumber}, fmt::format("'{}' is no face", line.substr(0, 40)),
-                          "one face number on each line, from 0");
+            return failIn(path, Line{lineNumber}, fmt::format("'{}' is not a face", line.substr(0, 40)),
+                          "expected one face number per line, from 0");
         if (face >= faceCount)
             return failIn(path, Line{lineNumber}, fmt::format("the mesh has no face {}", face),
                           fmt::format("a number below {}", faceCount));
@@ -168,7 +168,7 @@ Result<FaceSet> applyWithArgument(const ScalpMesh& mesh, const FaceSet& current,
     const Result<double> rings = numberBetween(term, argument, 0, kMaxRings);
     if (!rings) return tl::unexpected(rings.error());
     if (*rings != std::floor(*rings))
-        return fail(fmt::format("selection '{}': '{}' is no whole number", term, argument));
+        return fail(fmt::format("selection '{}': '{}' is not a whole number", term, argument));
     return word == "grow" ? growSelection(mesh, current, static_cast<int>(*rings))
                           : shrinkSelection(mesh, current, static_cast<int>(*rings));
 }
@@ -185,10 +185,9 @@ Result<FaceSet> applyTerm(const ScalpMesh& mesh, const FaceSet& current, std::st
     constexpr std::string_view kWords[] = {"group", "material", "cap", "above", "faces", "grow", "shrink"};
     if (colon == std::string_view::npos ||
         std::find(std::begin(kWords), std::end(kWords), word) == std::end(kWords))
-        return fail(
-            fmt::format("selection '{}': unknown term", term.substr(0, 80)),
-            "all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, shrink:N, invert or "
-            "connected");
+        return fail(fmt::format("selection '{}': unknown term", term.substr(0, 80)),
+                    "expected all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "
+                    "shrink:N, invert or connected");
     return applyWithArgument(mesh, current, term, word, term.substr(colon + 1));
 }
 
@@ -208,7 +207,7 @@ Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression) 
         begin = end + 1;
     }
     if (current.empty())
-        return fail(fmt::format("selection '{}' holds no face after '{}'", expression, emptiedBy),
+        return fail(fmt::format("selection '{}' is empty after '{}'", expression, emptiedBy),
                     "at least one face");
     return current;
 }

@@ -31,7 +31,7 @@ Result<AttributeData> emptyOfType(std::string_view name) {
             return emptyAt(i, std::make_index_sequence<std::variant_size_v<AttributeData>>());
         }
     }
-    return fail(fmt::format("'{}' is no attribute type", name),
+    return fail(fmt::format("'{}' is not an attribute type", name),
                 fmt::format("expected one of {}", fmt::join(kTypeNames, ", ")));
 }
 

@@ -18,7 +18,7 @@ Status checkRequest(const ScalpMesh* scalp, std::span<const SurfacePoint> roots,
     if (!scalp) return fail("there is no scalp to grow hair on");
     if (!(length > 0) || !std::isfinite(length))
         return fail(fmt::format("length is {} m", length), "expected more than 0");
-    if (points < 2) return fail(fmt::format("{} points a strand", points), "expected at least 2");
+    if (points < 2) return fail(fmt::format("{} points per strand", points), "expected at least 2");
     if (roots.size() > std::numeric_limits<std::uint32_t>::max() / points) {
         return fail(
             fmt::format("{} strands of {} points", roots.size(), points),

@@ -36,7 +36,7 @@ void findWeights(const Groom& groom, std::vector<Finding>& findings) {
                   "set it within its range");
     if (groom.operators.size() > kMaxOperators)
         findings.push_back({Severity::Error, fmt::format("there are {} operators", groom.operators.size()),
-                            "operators", fmt::format("keep {} at most", kMaxOperators)});
+                            "operators", fmt::format("keep at most {}", kMaxOperators)});
 }
 
 void findSettings(const Groom& groom, std::vector<Finding>& findings) {

@@ -36,8 +36,8 @@ bool findOffsets(const Groom& groom, std::vector<Finding>& findings) {
     const auto offsets = groom.offsets.view();
     const auto wrong = [&](std::string what, std::string where) {
         findings.push_back({Severity::Error, std::move(what), std::move(where),
-                            "rebuild the offsets: strands + 1 "
-                            "numbers that begin with 0 and ascend to the number of points"});
+                            "rebuild the offsets: strands + 1 numbers that begin with 0 and ascend to the "
+                            "number of points"});
         return false;
     };
     if (offsets.empty()) return wrong("there are no offsets", "offsets");
@@ -66,7 +66,7 @@ bool findArrays(const AttributeSet& attributes, std::span<const KnownAttribute> 
     lengths.report(findings, Severity::Error,
                    fmt::format("an attribute does not have one value for each of the {} {}s", count, domain),
                    "remove the attribute or give it as many values");
-    types.report(findings, Severity::Error, "an attribute that Hairloom gives meaning to has the wrong type",
+    types.report(findings, Severity::Error, "an attribute with a reserved name has the wrong type",
                  "remove the attribute or store it with the expected type");
     return findings.size() == before;
 }
@@ -86,7 +86,8 @@ void findIndices(const Groom& groom, std::string_view name, std::size_t limit, s
     for (std::size_t s = 0; s < indices.size(); ++s) {
         if (indices[s] >= limit) places.strand(s);
     }
-    places.report(findings, Severity::Error, fmt::format("{} is no index into the {} {}", name, limit, into),
+    places.report(findings, Severity::Error,
+                  fmt::format("{} is not an index into the {} {}", name, limit, into),
                   fmt::format("assign the strands to one that exists"));
 }
 
@@ -127,7 +128,8 @@ void findTriangulation(const Groom& groom, std::vector<Finding>& findings) {
     for (std::size_t i = 0; i < groom.triangulation.alone.size(); ++i) {
         if (groom.triangulation.alone[i] >= strands) places.other("root alone", i);
     }
-    places.report(findings, Severity::Error, "the triangulation of the roots names strands that do not exist",
+    places.report(findings, Severity::Error,
+                  "the triangulation of the roots refers to strands that do not exist",
                   "triangulate the roots again");
 }
 
@@ -148,7 +150,7 @@ void findOperators(const Groom& groom, std::vector<Finding>& findings) {
     }
     places.report(findings, Severity::Error,
                   "the stack of operators lacks its base shape or the strokes of a sculpt",
-                  "remove the operators, or save the project again with the program that made it");
+                  "remove the operators, or save the project again with the program that created it");
 }
 
 }  // namespace

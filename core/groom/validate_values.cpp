@@ -32,7 +32,7 @@ void findNotFinite(const AttributeSet& attributes, std::string_view domain, std:
             },
             data);
         places.report(findings, Severity::Error, fmt::format("{} is not finite", name),
-                      "delete these strands or mend the values");
+                      "delete these strands or fix the values");
     }
 }
 
@@ -112,8 +112,7 @@ void findDye(const Groom& groom, std::vector<Finding>& findings) {
         const std::size_t count = groom.offsets[s + 1] - groom.offsets[s];
         if (!std::ranges::all_of(points.subspan(groom.offsets[s], count), isShare)) places.strand(s);
     }
-    places.report(findings, Severity::Error, "the mask of the dye is not from 0 to 1",
-                  "dye the strands again");
+    places.report(findings, Severity::Error, "the dye mask is not from 0 to 1", "dye the strands again");
 }
 
 void findTriangleBindings(const Groom& groom, std::span<const SurfacePoint> roots,
@@ -133,7 +132,7 @@ void findTriangleBindings(const Groom& groom, std::span<const SurfacePoint> root
             away.strand(s);
         }
     }
-    outside.report(findings, Severity::Warning, "a strand is rooted outside the scalp selection",
+    outside.report(findings, Severity::Warning, "a strand has its root outside the scalp selection",
                    "grow the selection or bind the strands to the scalp again");
     barycentric.report(findings, Severity::Error, "root barycentrics are negative or do not add up to 1",
                        "bind the strands to the scalp again");
@@ -167,7 +166,7 @@ void findBinding(const Groom& groom, std::vector<Finding>& findings) {
     const auto roots = groom.rootBindings();
     if (roots.empty()) {
         findings.push_back({Severity::Warning, "the strands are not bound to the scalp", "strands",
-                            "bind them, or they stay behind when the head moves"});
+                            "bind them, or they stay in place when the head moves"});
         return;
     }
     findTriangleBindings(groom, roots, findings);

@@ -25,7 +25,7 @@ Status checkRange(std::string_view name, float value, float low, float high) {
 
 Status checkSettings(const InterpolationSettings& settings, const PartingSettings& parting) {
     if (settings.followPerGuide > kMaxFollowPerGuide) {
-        return fail(fmt::format("{} follow hairs for each guide", settings.followPerGuide),
+        return fail(fmt::format("{} follow hairs per guide", settings.followPerGuide),
                     fmt::format("expected 0 to {}", kMaxFollowPerGuide));
     }
     auto status = checkRange("the wisp radius at the root", settings.wispRadiusRoot, 0, kLargestRadius);

@@ -10,7 +10,7 @@ bool canWriteCardMeshes() {
 
 Result<std::vector<std::string>> writeCardMeshes(const cards::Chain&, CardMeshFormat,
                                                  const std::filesystem::path&) {
-    return fail("this program is built without OBJ and FBX of cards", "glTF");
+    return fail("this build cannot export cards as OBJ or FBX", "glTF");
 }
 
 }  // namespace hairloom

@@ -16,31 +16,30 @@ void addFindings(const cards::Chain& chain, const Groom& groom, ExportReport& re
     const IdleCardEdits idle = idleCardEdits(chain, groom);
     if (idle.lost > 0) {
         report.findings.push_back({Severity::Warning,
-                                   fmt::format("{} cards shaped by hand have lost their hair", idle.lost),
-                                   kCardEditsPlace, "shape the cards that stand there now"});
+                                   fmt::format("{} edited cards have lost their hair", idle.lost),
+                                   kCardEditsPlace, "edit the cards that replaced them"});
     }
     if (idle.unmade > 0) {
         report.findings.push_back(
             {Severity::Warning,
-             fmt::format("{} cards shaped by hand are of levels that are not made", idle.unmade),
-             kCardEditsPlace, "make levels of as many cards as those were shaped in"});
+             fmt::format("{} edited cards are of levels that were not created", idle.unmade), kCardEditsPlace,
+             "create levels with the number of cards that these were edited in"});
     }
     if (chain.springFit) {
         report.findings.push_back(
             {Severity::Info,
              fmt::format(
-                 "while the head nods, springs keep joints {:.1f} mm from where strands would have them, "
-                 "{:.1f} mm at most",
+                 "while the head nods, springs keep joints {:.1f} mm from the strands, {:.1f} mm at most",
                  chain.springFit->after.meanMm, chain.springFit->after.largestMm),
              kSpringsPlace, ""});
     } else if (chain.rig.chains() > 0) {
-        report.findings.push_back({Severity::Warning,
-                                   "springs are not fitted: strands of this groom cannot be simulated",
-                                   kSpringsPlace, "tune stiffness and drag where the file is used"});
+        report.findings.push_back(
+            {Severity::Warning, "springs were not fitted: the strands of this groom cannot be simulated",
+             kSpringsPlace, "tune stiffness and drag in the program that uses the file"});
     }
     if (!groom.spheres.empty()) return;
     report.findings.push_back({Severity::Warning,
-                               "there are no collision spheres: chains swing through the head", "spheres",
+                               "there are no collision spheres: chains pass through the head", "spheres",
                                "add spheres to the groom"});
 }
 

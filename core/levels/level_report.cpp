@@ -46,9 +46,9 @@ std::vector<std::vector<std::string>> rowsOf(const Chain& chain) {
 /// Error against cost: the same diagram as that of accuracy.
 Plot plotOf(const Chain& chain) {
     Plot plot;
-    plot.title = "What levels lose, against what they take to draw";
+    plot.title = "Quality loss against draw time";
     plot.x = {.title = "triangles", .scale = Scale::Logarithmic};
-    plot.y = {.title = "FLIP to all strands, at the level's distance", .scale = Scale::Linear, .low = 0};
+    plot.y = {.title = "FLIP vs. all strands, at the level's distance", .scale = Scale::Linear, .low = 0};
     Series series{.name = "levels", .line = LineStyle::Dashed};
     for (const Level& level : chain.levels) {
         series.points.push_back(
@@ -80,26 +80,25 @@ void put(render::Image& page, const render::Image& picture, std::uint32_t left, 
 
 std::string springWords(const cards::SpringFit& fit) {
     return fmt::format(
-        "While the head makes the motion {} for {:g} s, springs keep the joints {:.1f} mm from where the "
-        "strands "
-        "would have them, {:.1f} mm at most; those that are not fitted {:.1f} and {:.1f} mm.",
+        "While the head makes the motion {} for {:g} s, springs keep the joints {:.1f} mm from the strands, "
+        "{:.1f} mm at most. Springs that are not fitted: {:.1f} and {:.1f} mm.",
         fit.motion, fit.seconds, fit.after.meanMm, fit.after.largestMm, fit.before.meanMm,
         fit.before.largestMm);
 }
 
 std::string html(const Chain& chain, const std::string& commandLine) {
     HtmlReport report("Levels of detail");
-    report.paragraph(fmt::format("{} hairs, judged from {} directions. Made in {:.1f} s.", chain.strands,
+    report.paragraph(fmt::format("{} hairs, compared from {} directions. Created in {:.1f} s.", chain.strands,
                                  chain.views.size(), chain.makeSeconds));
     report.command(commandLine);
     report.table(rowsOf(chain));
     report.drawing(svg(plotOf(chain)));
     if (chain.springFit) report.paragraph(springWords(*chain.springFit));
     report.paragraph(
-        "Coverage and light are those of the level's hair, times those of all strands. The step is the "
-        "largest change of light when a level takes over from the one before, and on the way to where the "
-        "next one does. Outlines are off by the area between them, by their length. FLIP is the mean of all "
-        "pixels and directions. Drawing is the judge's, on one core.");
+        "Coverage and light are relative to those of all strands. The step is the largest change of light "
+        "when a level replaces the one before it, and on the way to the next. The outline error is the area "
+        "between the outlines divided by their length. FLIP is the mean over all pixels and directions. Draw "
+        "time is that of the reference renderer on one core.");
     return report.html();
 }
 

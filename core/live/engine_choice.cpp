@@ -133,9 +133,9 @@ void EngineMemory::keep(const std::string& key, const EngineTimes& times) const 
 
 EngineChoice chooseEngine(EngineWish wish, gpu::Device* device, const Groom& groom,
                           const EngineMemory& memory, const std::function<Result<EngineTimes>()>& measure) {
-    if (wish == EngineWish::cpu) return {EngineKind::cpu, "asked for"};
+    if (wish == EngineWish::cpu) return {EngineKind::cpu, "you asked for it"};
     if (const std::string why = obstacle(device, groom); !why.empty()) return {EngineKind::cpu, why};
-    if (wish == EngineWish::gpu) return {EngineKind::gpu, "asked for"};
+    if (wish == EngineWish::gpu) return {EngineKind::gpu, "you asked for it"};
     const gpu::DeviceInfo& info = device->info();
     if (info.type == gpu::DeviceType::Cpu)
         return {EngineKind::cpu, fmt::format("{} is a software device", info.name)};
@@ -149,7 +149,7 @@ EngineChoice chooseEngine(EngineWish wish, gpu::Device* device, const Groom& gro
     }
     const bool gains = times->gpu < times->cpu;
     return {gains ? EngineKind::gpu : EngineKind::cpu,
-            fmt::format("{:.2f} ms a frame on {}, {:.2f} on the CPU", times->gpu, info.name, times->cpu)};
+            fmt::format("{:.2f} ms per frame on {}, {:.2f} on the CPU", times->gpu, info.name, times->cpu)};
 }
 
 EngineChoice chooseEngine(EngineWish wish, gpu::Device* device,

@@ -88,7 +88,7 @@ void readArea(JsonReader& reader, render::LightKind kind, render::Light& light) 
     }
     if (!reader.ok()) return;
     if (!(facing.norm() > 0)) {
-        reader.complain("facing", "is no direction", "expected the way that the light goes");
+        reader.complain("facing", "is not a direction", "expected the direction in which the light points");
         return;
     }
     if (!(facing.cross(up).norm() > 1e-4f * facing.norm())) up = Vec3f::UnitX();
@@ -194,7 +194,7 @@ Result<ViewFile> readViewFile(const std::string& path,
         const bool pair = size.is_array() && size.size() == 2 && size[0].is_number_unsigned() &&
                           size[1].is_number_unsigned();
         if (!pair) {
-            reader.complain("size", "is no size", "expected [width, height] in pixels");
+            reader.complain("size", "is not a size", "expected [width, height] in pixels");
         } else {
             view.size = {size[0].get<std::uint32_t>(), size[1].get<std::uint32_t>()};
         }

@@ -26,8 +26,7 @@ Status LiveHair::goOn(EngineKind engine, const runtime::State* state) {
     }
     auto made = Simulation::make(scene_.rest(), poseNow());
     if (!made) return tl::unexpected(made.error());
-    if (state && !made->setState(*state, time_))
-        return fail("the state of the hair does not fit its strands");
+    if (state && !made->setState(*state, time_)) return fail("the state does not belong to these strands");
     cpu_.emplace(std::move(*made));
     gpu_.reset();
     return {};

@@ -21,14 +21,14 @@ std::string tooltipOf(const PictureCostRun& run) {
 
 std::string pageOf(const PictureCost& cost, const std::string& groom, const std::string& commandLine,
                    const std::string& drawing) {
-    HtmlReport page("What a picture of " + groom + " costs");
+    HtmlReport page("Cost of render settings for " + groom + " costs");
     page.paragraph(
-        "Each setting of the picture at other values, all others as they are: the time of one frame in which "
-        "hair moves, and how different the picture looks from the best one of the same hair, light and view "
-        "(FLIP, Andersson et al. 2020: 0 is the same).");
+        "Each setting at other values while all others stay the same: the time of one frame of moving hair, "
+        "and the difference from the best image of the same hair, light and view (FLIP, Andersson et al. "
+        "2020, where 0 is identical).");
     page.drawing(drawing);
     if (!cost.notes.empty()) {
-        page.heading("To be known");
+        page.heading("Notes");
         page.list(cost.notes);
     }
     std::vector<std::vector<std::string>> rows{
@@ -42,14 +42,13 @@ std::string pageOf(const PictureCost& cost, const std::string& groom, const std:
         strong.push_back(run.now);
     }
     page.heading("Settings");
-    page.paragraph("Strong rows are the picture as it is. Light is that of the hair, times the right one.");
+    page.paragraph("Bold rows are the current settings. Light is relative to the reference image.");
     page.table(rows, strong);
     page.heading("What was drawn");
-    page.facts(
-        {{"Groom", groom},
-         {"Device", cost.device},
-         {"Picture", fmt::format("{}×{}, {} of {} hairs, {} frames averaged where pictures are compared",
-                                 cost.width, cost.height, cost.hairs, cost.allHairs, cost.frames)}});
+    page.facts({{"Groom", groom},
+                {"Device", cost.device},
+                {"Picture", fmt::format("{}×{}, {} of {} hairs, {} frames averaged in compared images",
+                                        cost.width, cost.height, cost.hairs, cost.allHairs, cost.frames)}});
     if (!commandLine.empty()) page.command(commandLine);
     return page.html();
 }
@@ -68,11 +67,11 @@ std::string pictureCostCsv(const PictureCost& cost) {
 
 Plot pictureCostPlot(const PictureCost& cost, const std::string& groom) {
     Plot plot;
-    plot.title = "What the picture's settings cost";
-    plot.note = fmt::format("{}, {} of {} hairs, {}×{}, on {}. Lines meet at the picture as it is.", groom,
-                            cost.hairs, cost.allHairs, cost.width, cost.height, cost.device);
+    plot.title = "Cost of the render settings";
+    plot.note = fmt::format("{}, {} of {} hairs, {}×{}, on {}. The lines meet at the current settings.",
+                            groom, cost.hairs, cost.allHairs, cost.width, cost.height, cost.device);
     plot.x = {.title = "a frame of moving hair", .unit = "ms", .scale = Scale::Logarithmic};
-    plot.y = {.title = "difference from the right picture (FLIP)", .scale = Scale::Logarithmic};
+    plot.y = {.title = "difference from the reference image (FLIP)", .scale = Scale::Logarithmic};
     for (const PictureCostRun& run : cost.runs) {
         if (plot.series.empty() || plot.series.back().name != run.setting)
             plot.series.push_back({.name = run.setting, .line = LineStyle::Solid});

@@ -25,20 +25,17 @@ using S = AttractSettings;
 
 constexpr std::array<const char*, 2> kTo = {"nearest", "along"};
 constexpr Field<S> kFields[] = {
-    choiceField<&S::to>("to",
-                        "where on the curve points are drawn to: what is nearest, or as far along it as they "
-                        "are along the strand",
-                        kTo),
-    field<&S::strength>("strength", "", 0, 1, "share of the way to the curve at the tip"),
+    choiceField<&S::to>(
+        "to", "target on the curve: nearest point, or the point at the same share of the length", kTo),
+    field<&S::strength>("strength", "", 0, 1,
+                        "how far the tip moves to the curve, as a share of the distance"),
     field<&S::profile>("profile", "", 0.1, 10,
-                       "how the pull grows from the root: 1 evenly, above 1 nearer to the tip"),
-    field<&S::reach>(
-        "reach", "m", 0, kAnywhere,
-        "distance of a root from the curve at which strands are not drawn at all; 0 reaches all"),
-    field<&S::spread>("spread", "m", 0, 0.5,
-                      "radius about the curve in which strands lie, each at its place"),
+                       "how the pull grows from the root: 1 linearly, above 1 nearer to the tip"),
+    field<&S::reach>("reach", "m", 0, kAnywhere,
+                     "largest distance of a root from the curve: 0 affects all strands"),
+    field<&S::spread>("spread", "m", 0, 0.5, "radius around the curve in which strands end up"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed gives strands other places about the curve"),
+    seedField<&S::seed>("seed", "random seed of the positions around the curve"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
@@ -77,7 +74,7 @@ Result<std::size_t> attract(Groom& groom, const S& settings, const Region& regio
 }  // namespace
 
 Operation attractOperation() {
-    return operation<S, attract>("attract", 24, "draws strands to a curve");
+    return operation<S, attract>("attract", 24, "pulls strands towards a curve");
 }
 
 }  // namespace hairloom

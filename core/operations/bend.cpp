@@ -18,12 +18,12 @@ using S = BendSettings;
 
 constexpr Field<S> kFields[] = {
     field<&S::inwardDegrees>("inwardDegrees", "°", -360, 360,
-                             "turn of the tip towards the head, below 0 away from it: tips turned in or out"),
-    field<&S::sidewaysDegrees>("sidewaysDegrees", "°", -360, 360, "turn of the tip along the skin"),
-    field<&S::start>("start", "", 0, 0.99, "share of the length from which hair bends; evenly from there on"),
-    field<&S::variation>("variation", "", 0, 1, "random share by which a strand may bend less"),
+                             "angle of the tip towards the head; negative bends away from it"),
+    field<&S::sidewaysDegrees>("sidewaysDegrees", "°", -360, 360, "angle of the tip along the skin"),
+    field<&S::start>("start", "", 0, 0.99, "share of the length where the bend begins"),
+    field<&S::variation>("variation", "", 0, 1, "largest random reduction of the bend per strand"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed varies the strands differently"),
+    seedField<&S::seed>("seed", "random seed of the variation"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
@@ -54,7 +54,7 @@ Result<std::size_t> bend(Groom& groom, const S& settings, const Region& region) 
 }  // namespace
 
 Operation bendOperation() {
-    return operation<S, bend>("bend", 66, "turns tips in, out or to the side");
+    return operation<S, bend>("bend", 66, "bends tips in, out or to the side");
 }
 
 }  // namespace hairloom

@@ -25,17 +25,17 @@ struct BraidSettings {
 using S = BraidSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::width>("width", "m", 0.002, 0.3, "of the braid where it begins"),
-    field<&S::widthTip>("widthTip", "m", 0.002, 0.3, "of the braid where it is tied"),
+    field<&S::width>("width", "m", 0.002, 0.3, "radius of the braid at its start"),
+    field<&S::widthTip>("widthTip", "m", 0.002, 0.3, "radius of the braid at its tie"),
     field<&S::crossing>("crossing", "m", 0.005, 1,
-                        "length of the braid over which each lock leads to the other side and back"),
-    field<&S::lift>("lift", "m", 0, 0.1, "height over the skin of hair on its way to the braid"),
+                        "length of braid in which each lock crosses over and back"),
+    field<&S::lift>("lift", "m", 0, 0.1, "height above the skin of hair on its way to the braid"),
     field<&S::reach>("reach", "m", 0, kAnywhere,
-                     "distance of roots from the braid's beginning that are braided; 0 braids all"),
-    field<&S::tail>("tail", "m", 0, 1, "length behind the tie that hangs loose"),
-    field<&S::loose>("loose", "", 0, 1, "random share by which hair lies outside its lock"),
+                     "largest distance of a root from the start of the braid: 0 braids all strands"),
+    field<&S::tail>("tail", "m", 0, 1, "length of loose hair after the tie"),
+    field<&S::loose>("loose", "", 0, 1, "how far strands may stray from their lock, at random"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed gives strands other places in their lock"),
+    seedField<&S::seed>("seed", "random seed of the positions within a lock"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
@@ -142,7 +142,7 @@ Result<std::size_t> braid(Groom& groom, const S& settings, const Region& region)
 }  // namespace
 
 Operation braidOperation() {
-    return operation<S, braid>("braid", 72, "braids hair in three along a curve that is drawn");
+    return operation<S, braid>("braid", 72, "braids three locks along a curve that you draw");
 }
 
 }  // namespace hairloom

@@ -24,18 +24,19 @@ struct BunSettings {
 using S = BunSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::centre>("centre", "m", -kAnywhere, kAnywhere,
-                      "middle of the bun, near the skin; zero with an axis of zero: high at the back"),
+    field<&S::centre>(
+        "centre", "m", -kAnywhere, kAnywhere,
+        "centre of the bun, near the skin. If centre and axis are zero, the bun is high at the back"),
     field<&S::axis>("axis", "", -kAnywhere, kAnywhere,
-                    "that hair is wound about; zero: straight out of the skin"),
-    field<&S::radius>("radius", "m", 0.005, 0.3, "from the axis to the middle of the roll"),
+                    "axis of the winding. Zero points straight out of the skin"),
+    field<&S::radius>("radius", "m", 0.005, 0.3, "distance from the axis to the middle of the roll"),
     field<&S::thickness>("thickness", "m", 0.002, 0.2, "radius of the roll"),
-    field<&S::twist>("twist", "", -10, 10, "turns about the roll while hair goes once around the axis"),
-    field<&S::lift>("lift", "m", 0, 0.1, "height over the skin of hair on its way to the bun"),
+    field<&S::twist>("twist", "", -10, 10, "twists of the roll for each turn of the hair around the axis"),
+    field<&S::lift>("lift", "m", 0, 0.1, "height above the skin of hair on its way to the bun"),
     field<&S::reach>("reach", "m", 0, kAnywhere,
-                     "distance of roots from the centre that are wound in; 0 winds all"),
+                     "largest distance of a root from the centre: 0 winds all strands"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed gives strands other places in the roll"),
+    seedField<&S::seed>("seed", "random seed of the positions within the roll"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;

@@ -15,13 +15,15 @@ namespace {
 using S = ClumpSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::spacing>("spacing", "m", 0.0005, 1, "distance that chosen roots keep; larger locks are fewer"),
-    field<&S::strength>("strength", "", 0, 1, "share of the way to the chosen strand at the tip"),
+    field<&S::spacing>("spacing", "m", 0.0005, 1,
+                       "distance between clump centres: larger gives fewer clumps"),
+    field<&S::strength>("strength", "", 0, 1,
+                        "how far the tip moves to the clump centre, as a share of the distance"),
     field<&S::profile>("profile", "", 0.1, 10,
-                       "how the pull grows from the root: 1 evenly, above 1 nearer to the tip"),
-    field<&S::variation>("variation", "", 0, 1, "random share by which the pull of a strand may be weaker"),
+                       "how the pull grows from the root: 1 linearly, above 1 nearer to the tip"),
+    field<&S::variation>("variation", "", 0, 1, "largest random reduction of the pull per strand"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed chooses other strands"),
+    seedField<&S::seed>("seed", "random seed of the clump centres"),
 };
 
 }  // namespace
@@ -49,7 +51,7 @@ Result<std::size_t> clump(Groom& groom, const S& settings, const Region& region)
 }
 
 Operation clumpOperation() {
-    return operation<S, clump>("clump", 30, "pulls strands together in locks");
+    return operation<S, clump>("clump", 30, "pulls strands together into clumps");
 }
 
 }  // namespace hairloom

@@ -9,8 +9,9 @@ namespace {
 using S = CollideSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::distance>("distance", "m", 0, 0.1,
-                        "distance that points keep from the skin; near the root half the arc length"),
+    field<&S::distance>(
+        "distance", "m", 0, 0.1,
+        "minimum distance of points from the skin; near the root, half the distance along the strand"),
 };
 
 }  // namespace

@@ -14,15 +14,14 @@ namespace {
 using S = CurlSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::radius>("radius", "m", 0, 0.1, "of the helix"),
+    field<&S::radius>("radius", "m", 0, 0.1, "radius of the helix"),
     field<&S::frequency>("frequency", "1/m", 0, 500,
-                         "turns for each metre of hair; segments limit it to one turn for four"),
-    field<&S::start>("start", "m", 0, 5,
-                     "distance from the root over which the radius grows to its full size"),
+                         "turns per metre of hair, limited to one turn per four segments"),
+    field<&S::start>("start", "m", 0, 5, "distance from the root over which the radius grows to full size"),
     field<&S::phaseVariation>("phaseVariation", "", 0, 1,
-                              "1 starts each strand at any angle, 0 all at the same"),
+                              "1 starts each strand at a random angle, 0 starts all at the same angle"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed gives other angles"),
+    seedField<&S::seed>("seed", "random seed of the angles"),
 };
 
 constexpr float kSegmentsPerTurn = 4;
@@ -61,7 +60,7 @@ Result<std::size_t> curl(Groom& groom, const S& settings, const Region& region) 
 }
 
 Operation curlOperation() {
-    return operation<S, curl>("curl", 50, "winds strands into helices");
+    return operation<S, curl>("curl", 50, "curls strands into helices");
 }
 
 }  // namespace hairloom

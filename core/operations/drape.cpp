@@ -10,9 +10,8 @@ namespace {
 using S = DrapeSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::amount>("amount", "", 0, 1, "share of the turn towards straight down at the tip"),
-    field<&S::rootAmount>("rootAmount", "", 0, 1,
-                          "share of the turn at the root; between, it changes evenly"),
+    field<&S::amount>("amount", "", 0, 1, "how far the tip turns straight down, as a share"),
+    field<&S::rootAmount>("rootAmount", "", 0, 1, "the same at the root. It changes linearly in between"),
     clearanceField<&S::clearance>(),
 };
 
@@ -46,7 +45,7 @@ Result<std::size_t> drape(Groom& groom, const S& settings, const Region& region)
 }
 
 Operation drapeOperation() {
-    return operation<S, drape>("drape", 70, "bends strands down as gravity does");
+    return operation<S, drape>("drape", 70, "bends strands downwards, as gravity does");
 }
 
 }  // namespace hairloom

@@ -13,7 +13,8 @@ DrawnCurve readCurve(JsonReader& reader) {
     DrawnCurve curve;
     if (!reader.has("curve")) return curve;
     curve.points = reader.vectors("curve", -kAnywhere, kAnywhere, kMaxCurvePoints);
-    if (curve.points.size() == 1) reader.complain("curve", "has one point", "expected none, or two at least");
+    if (curve.points.size() == 1)
+        reader.complain("curve", "has one point", "expected no points, or at least two");
     return curve;
 }
 

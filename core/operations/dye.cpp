@@ -12,12 +12,13 @@ namespace {
 using S = DyeSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::amount>("amount", "", 0, 1, "what the mask becomes: 1 is all of the material's dye"),
-    field<&S::centre>("centre", "m", -kAnywhere, kAnywhere, "middle of the ball in which roots are reached"),
-    field<&S::radius>("radius", "m", 0, kAnywhere, "of that ball; 0 reaches all roots"),
-    field<&S::softness>("softness", "m", 0, 1, "distance over which the reach fades at the ball's rim"),
-    field<&S::variation>("variation", "", 0, 1, "random share by which a strand's amount may be lower"),
-    seedField<&S::seed>("seed", "another seed varies the strands differently"),
+    field<&S::amount>("amount", "", 0, 1, "value that the mask is set to: 1 is full dye"),
+    field<&S::centre>("centre", "m", -kAnywhere, kAnywhere, "centre of the sphere that selects roots"),
+    field<&S::radius>("radius", "m", 0, kAnywhere, "radius of that sphere: 0 affects all roots"),
+    field<&S::softness>("softness", "m", 0, 1,
+                        "distance over which the effect fades at the edge of the sphere"),
+    field<&S::variation>("variation", "", 0, 1, "largest random reduction of the dye per strand"),
+    seedField<&S::seed>("seed", "random seed of the variation"),
 };
 
 /// 0 outside of the ball … 1 well inside.
@@ -67,8 +68,7 @@ Result<std::size_t> dye(Groom& groom, const S& settings, const Region& region) {
 }
 
 Operation dyeOperation() {
-    return lastingOperation<S, dye>("dye", 100,
-                                    "says which strands the material's dye colours, and how much");
+    return lastingOperation<S, dye>("dye", 100, "sets the dye mask of strands");
 }
 
 }  // namespace hairloom

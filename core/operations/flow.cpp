@@ -17,26 +17,26 @@ using S = FlowSettings;
 constexpr Field<S> kFields[] = {
     field<&S::crown>("crown", "m", -kAnywhere, kAnywhere,
                      "point of the head that hair flows away from; zero: a fifth behind the top of the head"),
-    field<&S::whorlDegrees>("whorlDegrees", "°", -180, 180, "turn of the flow near the crown"),
+    field<&S::whorlDegrees>("whorlDegrees", "°", -180, 180, "swirl of the flow near the crown"),
     field<&S::parting>("parting", "", 0, 1, "share of the flow that leads away from the parting plane"),
     field<&S::partingPoint>("partingPoint", "m", -kAnywhere, kAnywhere,
                             "the middle of the parting; zero: the top of the head"),
     field<&S::partingNormal>("partingNormal", "", -kAnywhere, kAnywhere,
-                             "of the parting plane; strands flow to the side of their root"),
+                             "normal of the parting plane. Strands flow to the side of their root"),
     field<&S::partingReach>("partingReach", "m", 0.001, kAnywhere,
-                            "distance from the middle at which the parting's share is down to 1/e"),
-    field<&S::sweep>("sweep", "", -10, 10, "direction that is added to the flow; its length is its weight"),
+                            "distance from the centre at which the parting's share falls to 1/e"),
+    field<&S::sweep>("sweep", "", -10, 10, "direction added to the flow, weighted by its length"),
     field<&S::gravity>("gravity", "", 0, 1, "share of straight down at the tip"),
     field<&S::fall>("fall", "", 0, 1, "share of straight down where the skin is steep"),
     field<&S::liftRoot>("liftRoot", "m", 0, 0.3,
-                        "height over the skin that hair near its root rises to: volume"),
-    field<&S::liftTip>("liftTip", "m", 0, 0.3, "height over the skin at the tip"),
+                        "volume: height above the skin that hair rises to near its root"),
+    field<&S::liftTip>("liftTip", "m", 0, 0.3, "height above the skin at the tip"),
     field<&S::rise>("rise", "m", 0.001, 1, "distance along the hair over which it rises"),
     field<&S::bend>("bend", "m", 0, 1,
-                    "distance along the hair over which it turns into the flow: larger is rounder"),
-    field<&S::variation>("variation", "", 0, 1, "random share by which the lift of a strand may be lower"),
+                    "distance along the hair over which it bends into the flow: larger is rounder"),
+    field<&S::variation>("variation", "", 0, 1, "largest random reduction of the lift per strand"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed varies the strands differently"),
+    seedField<&S::seed>("seed", "random seed of the variation"),
 };
 
 constexpr float kWhorlReach = 0.04f;    ///< metres from the crown at which the turn is down to 1/e
@@ -150,7 +150,7 @@ Result<std::size_t> flow(Groom& groom, const S& settings, const Region& region) 
 }
 
 Operation flowOperation() {
-    return operation<S, flow>("flow", 20, "lays strands along the head: from a crown, a parting, by a sweep");
+    return operation<S, flow>("flow", 20, "lays strands along the head from a crown, a parting or a sweep");
 }
 
 }  // namespace hairloom

@@ -20,12 +20,12 @@ struct FlyawaysSettings {
 using S = FlyawaysSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::share>("share", "", 0, 1, "share of the strands that leave the others"),
-    field<&S::angleDegrees>("angleDegrees", "°", 0, 120, "how far the tips of the wildest turn away"),
-    field<&S::start>("start", "", 0, 0.99, "share of the length from which they leave"),
-    field<&S::waves>("waves", "1/m", 0, 200, "bends of such a strand for each metre of hair"),
+    field<&S::share>("share", "", 0, 1, "share of strands that become flyaways"),
+    field<&S::angleDegrees>("angleDegrees", "°", 0, 120, "largest angle that tips turn away"),
+    field<&S::start>("start", "", 0, 0.99, "share of the length where they leave the others"),
+    field<&S::waves>("waves", "1/m", 0, 200, "bends per metre of flyaway hair"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed lets other strands go"),
+    seedField<&S::seed>("seed", "random seed of the flyaways"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
@@ -68,7 +68,7 @@ Result<std::size_t> flyaways(Groom& groom, const S& settings, const Region& regi
 }  // namespace
 
 Operation flyawaysOperation() {
-    return operation<S, flyaways>("flyaways", 86, "lets single strands leave the others");
+    return operation<S, flyaways>("flyaways", 86, "turns single strands into flyaways");
 }
 
 }  // namespace hairloom

@@ -20,13 +20,12 @@ struct FrizzSettings {
 using S = FrizzSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::angleDegrees>("angleDegrees", "°", 0, 90, "how far kinks turn hair from its course"),
-    field<&S::frequency>("frequency", "1/m", 1, 2000,
-                         "kinks for each metre of hair; segments limit it to one for each"),
-    field<&S::share>("share", "", 0, 1, "share of the strands that are frizzy; the others stay as they are"),
+    field<&S::angleDegrees>("angleDegrees", "°", 0, 90, "angle of the kinks"),
+    field<&S::frequency>("frequency", "1/m", 1, 2000, "kinks per metre of hair, limited to one per segment"),
+    field<&S::share>("share", "", 0, 1, "share of strands with frizz. The others do not change"),
     field<&S::start>("start", "m", 0, 5, "distance from the root over which kinks grow to their full angle"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed kinks other strands"),
+    seedField<&S::seed>("seed", "random seed of the kinks"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
@@ -61,7 +60,7 @@ Result<std::size_t> frizz(Groom& groom, const S& settings, const Region& region)
 }  // namespace
 
 Operation frizzOperation() {
-    return operation<S, frizz>("frizz", 42, "kinks strands at random, some more than others");
+    return operation<S, frizz>("frizz", 42, "adds random kinks to strands, to some more than to others");
 }
 
 }  // namespace hairloom

@@ -110,12 +110,13 @@ std::vector<std::uint32_t> medoids(const std::vector<std::uint32_t>& nearest,
 
 constexpr Field<GuidesSettings> kFields[] = {
     field<&GuidesSettings::count>("count", "", 1, 100'000,
-                                  "of guides; fewer where there are no more strands"),
-    field<&GuidesSettings::rootWeight>("rootWeight", "", 0, 100,
-                                       "how much the distance of roots counts beside that of shapes"),
+                                  "number of guides; fewer if there are fewer strands"),
+    field<&GuidesSettings::rootWeight>(
+        "rootWeight", "", 0, 100,
+        "weight of the distance between roots, relative to the difference in shape"),
     boolField<&GuidesSettings::alone>(
-        "alone", "true keeps the guides alone, and lets follow hairs stand for the others"),
-    seedField<&GuidesSettings::seed>("seed", "another seed begins with other strands"),
+        "alone", "true keeps only the guides and represents the other strands by follow hairs"),
+    seedField<&GuidesSettings::seed>("seed", "random seed of the clusters"),
 };
 
 }  // namespace

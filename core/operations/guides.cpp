@@ -44,8 +44,8 @@ Result<std::size_t> chooseGuides(Groom& groom, const GuidesSettings& settings, c
 }
 
 Operation guidesOperation() {
-    return lastingOperation<GuidesSettings, chooseGuides>(
-        "guides", 120, "finds few strands that stand for all, by clustering");
+    return lastingOperation<GuidesSettings, chooseGuides>("guides", 120,
+                                                          "reduces strands to a few guides by clustering");
 }
 
 }  // namespace hairloom

@@ -24,10 +24,10 @@ constexpr std::uint64_t kFormulaSeed = 0xf0a1;
 constexpr std::array<const char*, 7> kMaps = {"none", "density", "dye", "mask1", "mask2", "mask3", "mask4"};
 constexpr Field<Mask> kFields[] = {
     choiceField<&Mask::map>("map",
-                            "painted map whose value at a strand is the strength there; one that nobody has "
-                            "painted is 0 everywhere, density 1",
+                            "painted map that sets the strength per strand. A map without paint is 0 "
+                            "everywhere, except density, which is 1",
                             kMaps),
-    boolField<&Mask::invert>("invert", "takes 1 less the map"),
+    boolField<&Mask::invert>("invert", "uses one minus the map"),
     rampField<&Mask::ramp>("ramp", "strength from root to tip"),
 };
 

@@ -18,12 +18,12 @@ struct MirrorSettings {
 using S = MirrorSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::planePoint>("planePoint", "m", -kAnywhere, kAnywhere, "a point of the mirror"),
+    field<&S::planePoint>("planePoint", "m", -kAnywhere, kAnywhere, "a point on the mirror plane"),
     field<&S::planeNormal>("planeNormal", "", -kAnywhere, kAnywhere,
-                           "side whose hair is the model for the other; zero: nothing is mirrored"),
-    field<&S::reach>(
-        "reach", "m", 0.0005, 1,
-        "distance from a mirrored root within which a strand takes its shape; farther ones stay"),
+                           "normal that points to the source side. Zero mirrors nothing"),
+    field<&S::reach>("reach", "m", 0.0005, 1,
+                     "largest distance from a mirrored root at which a strand copies its shape. Farther "
+                     "strands do not change"),
     clearanceField<&S::clearance>(),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
@@ -59,7 +59,7 @@ Result<std::size_t> mirror(Groom& groom, const S& settings, const Region& region
 }  // namespace
 
 Operation mirrorOperation() {
-    return operation<S, mirror>("mirror", 88, "gives hair of one side the shape of that on the other");
+    return operation<S, mirror>("mirror", 88, "copies the shape of hair from one side to the other");
 }
 
 }  // namespace hairloom

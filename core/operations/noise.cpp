@@ -14,12 +14,13 @@ namespace {
 using S = NoiseSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::amplitude>("amplitude", "m", 0, 0.1, "how far waves lead aside at the tip"),
+    field<&S::amplitude>("amplitude", "m", 0, 0.1, "size of the waves at the tip"),
     field<&S::frequency>("frequency", "1/m", 0, 1000,
-                         "waves for each metre of hair; segments limit it to one wave for four"),
-    field<&S::rootShare>("rootShare", "", 0, 1, "amplitude at the root as a share of that at the tip"),
+                         "waves per metre of hair, limited to one wave per four segments"),
+    field<&S::rootShare>("rootShare", "", 0, 1,
+                         "amplitude at the root as a share of the amplitude at the tip"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed gives other waves"),
+    seedField<&S::seed>("seed", "random seed of the waves"),
 };
 
 constexpr float kSegmentsPerWave = 4;
@@ -56,7 +57,7 @@ Result<std::size_t> noise(Groom& groom, const S& settings, const Region& region)
 }
 
 Operation noiseOperation() {
-    return operation<S, noise>("noise", 40, "bends strands at random: frizz, an uneven fall");
+    return operation<S, noise>("noise", 40, "bends strands at random, for frizz or an uneven fall");
 }
 
 }  // namespace hairloom

@@ -22,9 +22,9 @@ using S = PartSettings;
 
 constexpr Field<S> kFields[] = {
     field<&S::strength>("strength", "", 0, 1, "how strongly hair is laid away from the parting"),
-    field<&S::reach>("reach", "m", 0.001, 1, "distance from the parting at which hair is as it was"),
-    field<&S::liftDegrees>("liftDegrees", "°", 0, 90, "angle to the skin at which hair leaves its root"),
-    field<&S::rise>("rise", "m", 0, 1, "distance from the root over which that angle is lost"),
+    field<&S::reach>("reach", "m", 0.001, 1, "distance from the parting where the effect ends"),
+    field<&S::liftDegrees>("liftDegrees", "°", 0, 90, "angle between hair and skin at the root"),
+    field<&S::rise>("rise", "m", 0, 1, "distance from the root over which that angle fades"),
     clearanceField<&S::clearance>(),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
@@ -97,7 +97,7 @@ Result<std::size_t> part(Groom& groom, const S& settings, const Region& region) 
 }  // namespace
 
 Operation partOperation() {
-    return operation<S, part>("part", 22, "lays strands away from a parting that is drawn on the scalp");
+    return operation<S, part>("part", 22, "lays strands away from a parting drawn on the scalp");
 }
 
 }  // namespace hairloom

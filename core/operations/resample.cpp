@@ -15,7 +15,7 @@ namespace {
 using S = ResampleSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::points>("points", "", 2, runtime::kMaxPoints, "of each strand, evenly spaced"),
+    field<&S::points>("points", "", 2, runtime::kMaxPoints, "points per strand, evenly spaced"),
 };
 
 template <class T>
@@ -80,7 +80,7 @@ Result<std::size_t> resample(Groom& groom, const S& settings, const Region& regi
 }
 
 Operation resampleOperation() {
-    return lastingOperation<S, resample>("resample", 110, "gives strands another number of points");
+    return lastingOperation<S, resample>("resample", 110, "resamples strands to a number of points");
 }
 
 }  // namespace hairloom

@@ -59,8 +59,8 @@ RunOperation onTopOfStack(Operator one, RunOperation run) {
             return fail(fmt::format("{}: frozen or locked strands in a hairstyle with operators", one.op),
                         "unfreeze them, or bake the operators first (bake_operators)");
         if (groom.operators.size() >= kMaxOperators)
-            return fail(fmt::format("{}: the hairstyle has {} operators", one.op, kMaxOperators),
-                        "bake some first (bake_operators)");
+            return fail(fmt::format("{}: the hairstyle already has {} operators", one.op, kMaxOperators),
+                        "bake some of them first (bake_operators)");
         auto touched = run(groom);
         if (touched) groom.operators.push_back(one);
         return touched;
@@ -77,8 +77,8 @@ Result<Script> parseScript(const std::string& file, std::string_view text,
     const auto version = reader.count("hairloom_script", 1, ~std::uint64_t{0});
     if (reader.ok() && version > kScriptVersion) {
         return failIn(file, {},
-                      fmt::format("script is version {}; this program reads versions up to {}", version,
-                                  kScriptVersion));
+                      fmt::format("the script is version {}, but this program reads versions up to {}",
+                                  version, kScriptVersion));
     }
     Script script;
     const auto names = operationNames(extensions);

@@ -12,17 +12,17 @@ namespace {
 using S = SetLengthSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::length>("length", "m", 0.001, 5, "length of strands before variation and gradient"),
-    field<&S::variation>("variation", "", 0, 1, "each strand is shortened by a random share of up to this"),
-    boolField<&S::rescale>("rescale",
-                           "true scales the shape; false cuts strands or lets them go on straight"),
+    field<&S::length>("length", "m", 0.001, 5, "strand length before variation and gradient"),
+    field<&S::variation>("variation", "", 0, 1, "shortens each strand by a random share up to this"),
+    boolField<&S::rescale>("rescale", "true scales the shape; false cuts strands or extends them straight"),
     field<&S::gradientPoint>("gradientPoint", "m", -kAnywhere, kAnywhere, "where the gradient begins"),
-    field<&S::gradientAxis>("gradientAxis", "", -kAnywhere, kAnywhere, "direction in which lengths change"),
+    field<&S::gradientAxis>("gradientAxis", "", -kAnywhere, kAnywhere, "direction of the gradient"),
     field<&S::gradientDistance>("gradientDistance", "m", 0, kAnywhere,
-                                "distance along the axis until farScale is reached; 0: no gradient"),
-    field<&S::farScale>("farScale", "", 0.01, 100, "length at the gradient's end over that at its beginning"),
+                                "distance along the axis to the end of the gradient: 0 is no gradient"),
+    field<&S::farScale>("farScale", "", 0.01, 100,
+                        "ratio of the length at the end of the gradient to the length at its start"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed varies the strands differently"),
+    seedField<&S::seed>("seed", "random seed of the variation"),
 };
 
 float gradientAt(const S& settings, const Vec3f& root) {
@@ -54,7 +54,7 @@ Result<std::size_t> setLength(Groom& groom, const S& settings, const Region& reg
 }
 
 Operation setLengthOperation() {
-    return operation<S, setLength>("set_length", 10, "gives strands a length");
+    return operation<S, setLength>("set_length", 10, "sets the length of strands");
 }
 
 }  // namespace hairloom

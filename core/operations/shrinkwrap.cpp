@@ -22,15 +22,15 @@ struct ShrinkwrapSettings {
 using S = ShrinkwrapSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::strength>("strength", "", 0, 1, "share of the way to the skin"),
-    field<&S::distance>("distance", "m", 0, 0.1, "height over the skin that hair is drawn to"),
-    field<&S::reach>("reach", "m", 0.001, 1, "height over the skin from which hair is not drawn at all"),
-    field<&S::variation>("variation", "", 0, 1, "random share by which the height of a strand may be lower"),
+    field<&S::strength>("strength", "", 0, 1, "how far points move to the skin, as a share of the distance"),
+    field<&S::distance>("distance", "m", 0, 0.1, "target height above the skin"),
+    field<&S::reach>("reach", "m", 0.001, 1, "height above the skin beyond which hair is not affected"),
+    field<&S::variation>("variation", "", 0, 1, "largest random reduction of the height per strand"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed varies the strands differently"),
-    field<&S::group>("group", "", 0, 65535,
-                     "draws to this group of the head's file, a cap or a helmet, by its number from 1; 0 to "
-                     "all of the head"),
+    seedField<&S::seed>("seed", "random seed of the variation"),
+    field<&S::group>(
+        "group", "", 0, 65535,
+        "group of the head file to wrap to, such as a cap or a helmet, numbered from 1: 0 is the whole head"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
@@ -84,7 +84,7 @@ Result<std::size_t> shrinkwrap(Groom& groom, const S& settings, const Region& re
 
 Operation shrinkwrapOperation() {
     return operation<S, shrinkwrap>("shrinkwrap", 26,
-                                    "draws strands to the skin of the head, or to a group of its file");
+                                    "wraps strands to the skin of the head or to a group of its file");
 }
 
 }  // namespace hairloom

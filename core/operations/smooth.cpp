@@ -13,8 +13,9 @@ namespace {
 using S = SmoothSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::amount>("amount", "", 0, 1, "share of the way to the middle of the neighbours in each pass"),
-    field<&S::passes>("passes", "", 1, 100, "more is smoother over longer stretches"),
+    field<&S::amount>("amount", "", 0, 1,
+                      "how far points move to the average of their neighbours in each pass"),
+    field<&S::passes>("passes", "", 1, 100, "number of passes: more smooths over longer stretches"),
     clearanceField<&S::clearance>(),
 };
 
@@ -40,7 +41,7 @@ Result<std::size_t> smooth(Groom& groom, const S& settings, const Region& region
 }
 
 Operation smoothOperation() {
-    return operation<S, smooth>("smooth", 60, "takes bends out of strands");
+    return operation<S, smooth>("smooth", 60, "smooths strands");
 }
 
 }  // namespace hairloom

@@ -40,8 +40,8 @@ Status saveOperators(const std::filesystem::path& path, std::span<const Operator
     std::ranges::copy_if(operators, std::back_inserter(kept),
                          [](const Operator& one) { return one.op != kSculpt; });
     if (kept.empty())
-        return failIn(path.string(), {}, "there is no operator to keep",
-                      "expected one at least that is no sculpt, whose strokes are of its hair alone");
+        return failIn(path.string(), {}, "there is no operator to save",
+                      "expected at least one that is not a sculpt, because a sculpt only fits its own hair");
     return writeFileAtomically(path, operatorsText(kept));
 }
 
@@ -59,7 +59,8 @@ std::vector<std::string> stackPresets(const std::filesystem::path& folder) {
 
 Result<std::filesystem::path> stackPresetFile(const std::filesystem::path& folder, const std::string& name) {
     if (name.empty() || name.find_first_of("/\\:*?\"<>|") != std::string::npos || name.front() == '.')
-        return fail("'" + name + "' is no name for a preset", "a name without / \\ : * ? \" < > |");
+        return fail("'" + name + "' is not a valid name for a preset",
+                    "expected a name without / \\ : * ? \" < > |");
     return folder / (name + std::string(kSuffix));
 }
 

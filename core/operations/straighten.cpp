@@ -19,10 +19,10 @@ struct StraightenSettings {
 using S = StraightenSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::amount>("amount", "", 0, 1, "share of the turn to the straight course"),
+    field<&S::amount>("amount", "", 0, 1, "how far strands turn to the straight course, as a share"),
     field<&S::over>("over", "m", 0, 5,
-                    "length of hair over which bends are taken out; longer ones stay, as a fall over the "
-                    "head; 0 makes a line of the whole strand"),
+                    "bends up to this length are removed. Longer bends, such as the fall over the head, "
+                    "stay. 0 straightens the whole strand"),
     clearanceField<&S::clearance>(),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
@@ -82,7 +82,7 @@ Result<std::size_t> straighten(Groom& groom, const S& settings, const Region& re
 }  // namespace
 
 Operation straightenOperation() {
-    return operation<S, straighten>("straighten", 62, "takes waves and curls out and leaves the fall");
+    return operation<S, straighten>("straighten", 62, "removes waves and curls and keeps the fall");
 }
 
 }  // namespace hairloom

@@ -15,14 +15,15 @@ namespace {
 constexpr std::size_t kGrain = 64;
 constexpr std::size_t kPointsToScreen = 20'000;  ///< fewer are searched for faster than the field is measured
 constexpr Field<Region> kRegionFields[] = {
-    field<&Region::point>("point", "m", -kAnywhere, kAnywhere, "a point of the plane that bounds the region"),
-    field<&Region::normal>("normal", "", -kAnywhere, kAnywhere,
-                           "side of the plane that is reached; zero reaches all strands"),
-    field<&Region::fade>("fade", "m", 0, 1, "width of the seam in which strands are reached at random"),
-    seedField<&Region::seed>("seed", "another seed reaches other strands of the seam"),
-    field<&Region::layer>("layer", "", 0, 1000, "number of the layer that is reached, from 1; 0 reaches all"),
+    field<&Region::point>("point", "m", -kAnywhere, kAnywhere, "a point on the plane that limits the region"),
+    field<&Region::normal>(
+        "normal", "", -kAnywhere, kAnywhere,
+        "normal of the plane, which points to the affected side. Zero affects all strands"),
+    field<&Region::fade>("fade", "m", 0, 1, "width of the edge in which strands are affected at random"),
+    seedField<&Region::seed>("seed", "random seed of the edge"),
+    field<&Region::layer>("layer", "", 0, 1000, "affected layer, numbered from 1: 0 is all layers"),
     field<&Region::group>("group", "", 0, 100'000,
-                          "number of the file's group that is reached, from 1; 0 reaches all"),
+                          "affected group of the hair file, numbered from 1: 0 is all groups"),
 };
 
 std::uint32_t idOf(const Groom& groom, std::size_t strand) {

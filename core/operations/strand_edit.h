@@ -62,7 +62,7 @@ std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& o
 /// A setting that operations have in common.
 template <auto M>
 constexpr auto clearanceField() {
-    return field<M>("clearance", "m", 0, 0.1, "distance kept from the skin");
+    return field<M>("clearance", "m", 0, 0.1, "minimum distance from the skin");
 }
 
 /// Fails with the first setting that lies outside its range.

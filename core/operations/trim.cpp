@@ -13,13 +13,14 @@ namespace {
 using S = TrimSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::planePoint>("planePoint", "m", -kAnywhere, kAnywhere, "a point of the cutting plane"),
-    field<&S::planeNormal>("planeNormal", "", -kAnywhere, kAnywhere, "side that is cut away; zero: no plane"),
-    field<&S::maxLength>("maxLength", "m", 0.001, 5, "what is longer is cut"),
+    field<&S::planePoint>("planePoint", "m", -kAnywhere, kAnywhere, "a point on the cutting plane"),
+    field<&S::planeNormal>("planeNormal", "", -kAnywhere, kAnywhere,
+                           "normal that points to the side to cut off. Zero uses no plane"),
+    field<&S::maxLength>("maxLength", "m", 0.001, 5, "cuts strands to this length"),
     field<&S::raggedness>("raggedness", "m", 0, 1,
-                          "each strand is cut shorter by a random length of up to this; 0 is blunt"),
-    field<&S::minLength>("minLength", "m", 0.001, 1, "length that a cut always leaves"),
-    seedField<&S::seed>("seed", "another seed gives other ragged ends"),
+                          "cuts each strand shorter by a random length up to this: 0 is blunt"),
+    field<&S::minLength>("minLength", "m", 0.001, 1, "minimum length that remains"),
+    seedField<&S::seed>("seed", "random seed of the ragged ends"),
 };
 
 /// Arc length at which the strand first crosses the plane; infinite when it does not.
@@ -58,7 +59,7 @@ Result<std::size_t> trim(Groom& groom, const S& settings, const Region& region) 
 }
 
 Operation trimOperation() {
-    return operation<S, trim>("trim", 80, "cuts strands by a plane or at a length, blunt or ragged");
+    return operation<S, trim>("trim", 80, "cuts strands by a plane or to a length, blunt or ragged");
 }
 
 }  // namespace hairloom

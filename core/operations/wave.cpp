@@ -22,18 +22,18 @@ struct WaveSettings {
 using S = WaveSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::amplitude>("amplitude", "m", 0, 0.1, "how far waves lead aside"),
+    field<&S::amplitude>("amplitude", "m", 0, 0.1, "amplitude of the waves"),
     field<&S::frequency>("frequency", "1/m", 0, 500,
-                         "waves for each metre of hair; segments limit it to one wave for four"),
-    field<&S::start>("start", "m", 0, 5, "distance from the root over which waves grow to their full size"),
+                         "waves per metre of hair, limited to one wave per four segments"),
+    field<&S::start>("start", "m", 0, 5, "distance from the root over which waves grow to full size"),
     field<&S::turnDegrees>("turnDegrees", "°", -180, 180,
-                           "turn of the waves about the hair: 0 waves along the skin, 90 out of it"),
+                           "direction of the waves: 0 is along the skin, 90 out of it"),
     field<&S::phaseVariation>("phaseVariation", "", 0, 1,
-                              "1 begins each strand anywhere in a wave, 0 all at the same place"),
+                              "1 starts each strand at a random phase, 0 starts all at the same phase"),
     field<&S::amplitudeVariation>("amplitudeVariation", "", 0, 1,
-                                  "random share by which waves of a strand may be smaller"),
+                                  "largest random reduction of the waves per strand"),
     clearanceField<&S::clearance>(),
-    seedField<&S::seed>("seed", "another seed varies the strands differently"),
+    seedField<&S::seed>("seed", "random seed of the variation"),
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
@@ -67,7 +67,7 @@ Result<std::size_t> wave(Groom& groom, const S& settings, const Region& region) 
 }  // namespace
 
 Operation waveOperation() {
-    return operation<S, wave>("wave", 46, "lays strands in flat waves");
+    return operation<S, wave>("wave", 46, "adds flat waves to strands");
 }
 
 }  // namespace hairloom

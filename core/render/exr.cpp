@@ -60,7 +60,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     const auto* const bytes = reinterpret_cast<const unsigned char*>(file->data());
     Loaded loaded;
     if (ParseEXRVersionFromMemory(&loaded.version, bytes, file->size()) != TINYEXR_SUCCESS)
-        return failed("is no OpenEXR");
+        return failed("is not an OpenEXR file");
     if (loaded.version.tiled != 0 || loaded.version.non_image != 0 || loaded.version.multipart != 0)
         return failed("is tiled, deep or of several parts");
     if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, file->size(), &loaded.error) !=

@@ -23,7 +23,7 @@ class Planner {
         planPicture();
         planOutput();
         planOverlay();
-        plan_.tables = {facts_.tableBytes, facts_.tableBytes > 0 ? "light in fibres is looked up in tables"
+        plan_.tables = {facts_.tableBytes, facts_.tableBytes > 0 ? "fibre scattering is read from tables"
                                                                  : "no hair, or a model without tables"};
         return std::move(plan_);
     }
@@ -58,7 +58,7 @@ class Planner {
         const bool on = cast && receivers && options_.shadows != Shadows::none;
         const std::string off = options_.shadows == Shadows::none ? "shadows are turned off"
                                 : !cast                           ? "no light casts shadows"
-                                                                  : "nothing would receive them";
+                                                                  : "nothing receives them";
         const bool hair = on && facts_.hair;
         const bool layers = hair && options_.shadows != Shadows::absorption;
         const bool first = hair && options_.shadows != Shadows::opacityMaps;
@@ -66,28 +66,28 @@ class Planner {
         pass(Pass::headDepth, on && facts_.meshes,
              !on ? off
              : facts_.meshes
-                 ? fmt::format("the head shades hair and itself from {} lights", facts_.shadowLights)
+                 ? fmt::format("the head shadows hair and itself from {} lights", facts_.shadowLights)
                  : "no head to cast shadows");
         pass(Pass::firstHair, first,
-             first  ? "depths in hair count from the first one that a light meets"
+             first  ? "depths in hair are relative to the first one that a light hits"
              : hair ? "fixed layers need no first depth"
                     : noHair);
         pass(Pass::opacity, layers,
-             layers ? (options_.shadows == Shadows::deepOpacity
-                           ? "hair is counted in three layers behind the first"
-                           : "hair is counted in four layers at fixed depths")
-             : hair ? "absorption takes hair to be spread evenly"
+             layers
+                 ? (options_.shadows == Shadows::deepOpacity ? "counts hair in three layers behind the first"
+                                                             : "counts hair in four layers at fixed depths")
+             : hair ? "absorption assumes evenly spread hair"
                     : noHair);
         atlas(TargetId::headDepth, options_.shadowResolution, facts_.shadowLights, on && facts_.meshes,
-              "what the head hides from the lights");
+              "parts of the head that occlude the lights");
         const std::uint64_t square = std::uint64_t{options_.shadowResolution} * options_.shadowResolution;
         const bool deep = options_.shadows == Shadows::deepOpacity;
         buffer(BufferId::firstHair, square * facts_.shadowLights, 4, first,
-               "where hair begins as seen from the lights");
+               "first hair seen from the lights");
         buffer(BufferId::layerCounts, square * (deep ? 3 : 4), 4, layers,
-               "fibres of one light's layers while they are counted");
+               "fibres of one light's layers during counting");
         buffer(BufferId::opacity, 2 * square * facts_.shadowLights, 4, layers,
-               deep ? "three layers and the depth they count from" : "four layers");
+               deep ? "three layers and the depth they are relative to" : "four layers");
     }
 
     void planSky() {
@@ -96,111 +96,116 @@ class Planner {
         const bool receivers = facts_.hair || facts_.meshes;
         const bool on = facts_.environment && receivers && options_.shadows != Shadows::none;
         const std::string off = options_.shadows == Shadows::none ? "shadows are turned off"
-                                : !facts_.environment             ? "no light from around"
-                                                                  : "nothing would receive it";
+                                : !facts_.environment             ? "no environment light"
+                                                                  : "nothing receives it";
         const bool hair = on && facts_.hair;
-        const std::string noHair = on ? "no hair to keep light from around off" : off;
+        const std::string noHair = on ? "no hair to occlude the environment" : off;
         pass(Pass::skyHead, on && facts_.meshes,
              !on             ? off
-             : facts_.meshes ? fmt::format("the head hides the sky, seen from {} sides", kMaps)
-                             : "no head to hide the sky");
-        pass(Pass::skyFirst, hair, hair ? "depths in hair count from the first one on each side" : noHair);
+             : facts_.meshes ? fmt::format("the head occludes the sky, seen from {} sides", kMaps)
+                             : "no head to occlude the sky");
+        pass(Pass::skyFirst, hair,
+             hair ? "depths in hair are relative to the first one from each side" : noHair);
         pass(Pass::skyLayers, hair,
-             hair ? fmt::format("hair is counted in three layers from {} sides", kMaps) : noHair);
-        pass(Pass::skySeen, hair, hair ? "each point of a curve sees its share of sky and head" : noHair);
+             hair ? fmt::format("counts hair in three layers from {} sides", kMaps) : noHair);
+        pass(Pass::skySeen, hair,
+             hair ? "each point of a curve looks up its visible share of the sky" : noHair);
         atlas(TargetId::skyHead, kSkyResolution, HAIRLOOM_SKY_MAPS, on && facts_.meshes,
-              "what the head hides from the sky");
-        buffer(BufferId::skyFirst, kSquare * kMaps, 4, hair, "where hair begins as seen from around");
-        buffer(BufferId::skyCounts, kSquare * 3, 4, hair,
-               "fibres of one side's layers while they are counted");
+              "parts of the head that occlude the sky");
+        buffer(BufferId::skyFirst, kSquare * kMaps, 4, hair, "first hair seen from each side");
+        buffer(BufferId::skyCounts, kSquare * 3, 4, hair, "fibres of one side's layers during counting");
         buffer(BufferId::skyLayers, 2 * kSquare * kMaps, 4, hair,
-               "three layers and the depth they count from");
+               "three layers and the depth they are relative to");
     }
 
     void planPicture() {
         const bool blends = facts_.hair && options_.transparency == Transparency::weighted;
         pass(Pass::curves, facts_.hair,
-             facts_.hair ? fmt::format("{} curve segments a segment of a strand", options_.subdivisions)
+             facts_.hair ? fmt::format("{} curve segments per segment of a strand", options_.subdivisions)
                          : "no hair");
         pass(Pass::shade, facts_.hair,
-             facts_.hair ? fmt::format("{} lights, once a point of a curve; {}", facts_.lights,
-                                       facts_.look ? "colour or absorption changes from place to place"
-                                                   : "all of a material's hair looks the same")
+             facts_.hair ? fmt::format("{} lights, once per point of a curve; {}", facts_.lights,
+                                       facts_.look ? "colour or absorption varies"
+                                                   : "all hair of a material looks the same")
                          : "no hair");
         const bool surface = options_.surface || options_.temporal;
         pass(Pass::surface, surface,
-             surface ? "depth, strand, velocity and albedo of what is nearest in each pixel"
-                     : "nobody asked what is in each pixel");
+             surface ? "depth, strand, velocity and albedo of the nearest surface in each pixel"
+                     : "no AOV was requested");
         pass(Pass::temporal, options_.temporal,
-             options_.temporal ? "frames before join, each pixel where its surface was"
-                               : "each frame or average stands for itself");
+             options_.temporal ? "accumulates frames, each pixel at the previous place of its surface"
+                               : "frames are not accumulated");
         for (const BufferId id : {BufferId::history, BufferId::otherHistory})
-            buffer(id, pixels(), 16, options_.temporal, "light of the frames before");
+            buffer(id, pixels(), 16, options_.temporal, "light of the previous frames");
         for (const BufferId id : {BufferId::historyPixels, BufferId::otherHistoryPixels})
-            buffer(id, pixels(), sizeof(shaders::TemporalPixel), options_.temporal, "what was seen in them");
-        buffer(BufferId::surfaceNearest, pixels(), 4, surface, "depth in the middle of each pixel");
-        buffer(BufferId::surfaceItem, pixels(), 4, surface, "which of all points or triangles it is");
+            buffer(id, pixels(), sizeof(shaders::TemporalPixel), options_.temporal,
+                   "surfaces of the previous frames");
+        buffer(BufferId::surfaceNearest, pixels(), 4, surface, "depth at the centre of each pixel");
+        buffer(BufferId::surfaceItem, pixels(), 4, surface, "index of the point or triangle");
         buffer(BufferId::surface, pixels(), sizeof(shaders::SurfacePixel), surface,
                "depth, strand, velocity and albedo");
         const bool kernels = options_.ribbons == Ribbons::compute;
         const bool sorts = kernels && facts_.hair && options_.transparency == Transparency::sorted;
         pass(Pass::nearest, kernels,
-             sorts     ? "what of the head is in front, and each pixel's nearest hairs"
-             : kernels ? "what is in front in each sample"
-                       : "the device's rasteriser finds what is in front");
+             sorts     ? "the head in front, and the nearest hairs of each pixel"
+             : kernels ? "the nearest surface in each sample"
+                       : "the rasteriser of the device finds the nearest surface");
         pass(Pass::draw, true,
-             sorts     ? "light of each pixel's nearest hairs, blended in their order"
-             : kernels ? "light of what is in front"
+             sorts     ? "light of the nearest hairs of each pixel, blended in order"
+             : kernels ? "light of the nearest surface"
              : blends  ? "the head, and hair that covers whole samples"
                        : "head, hair and background");
-        pass(Pass::blend, blends, blends ? "fine hair blends in any order" : "no hair is blended by weights");
-        pass(Pass::composite, blends, blends ? "blended hair goes over the head" : "nothing was blended");
+        pass(Pass::blend, blends,
+             blends ? "thin hair is blended in any order" : "no hair uses weighted transparency");
+        pass(Pass::composite, blends,
+             blends ? "blended hair is composited over the head" : "no hair was blended");
         const std::string many =
-            samples_ > 1 ? fmt::format("{} samples a pixel", samples_) : "one sample a pixel";
+            samples_ > 1 ? fmt::format("{} samples per pixel", samples_) : "one sample per pixel";
         picture(TargetId::colour, kColourFormat, samples_, !kernels, "linear light, " + many);
-        picture(TargetId::resolved, kColourFormat, 1, !kernels && samples_ > 1, "the samples' average");
-        picture(TargetId::depth, Format::D32Float, samples_, !kernels, "what is in front, " + many);
-        buffer(BufferId::nearest, pixels() * samples_, 4, kernels, "depth of what is in front, " + many);
+        picture(TargetId::resolved, kColourFormat, 1, !kernels && samples_ > 1, "average of the samples");
+        picture(TargetId::depth, Format::D32Float, samples_, !kernels, "nearest surface, " + many);
+        buffer(BufferId::nearest, pixels() * samples_, 4, kernels, "depth of the nearest surface, " + many);
         buffer(BufferId::light, pixels() * samples_, 4, kernels,
                "linear light with a common exponent, " + many);
         buffer(BufferId::fragmentDepths, pixels() * HAIRLOOM_FRAGMENTS, 4, sorts,
-               "depths of each pixel's nearest hairs");
+               "depths of the nearest hairs of each pixel");
         buffer(BufferId::fragmentLight, pixels() * HAIRLOOM_FRAGMENTS, 4, sorts,
                "their light with a common exponent");
         buffer(BufferId::fragmentCover, pixels() * HAIRLOOM_COVER_WORDS, 4, sorts,
-               "their shares of the pixel, and how much all hair lets through");
+               "their coverage, and the transmittance of all hair");
         picture(TargetId::blendSum, Format::Rgba16Float, samples_, blends, "weighted light of blended hair");
-        picture(TargetId::blendRest, Format::Rgba16Float, samples_, blends, "what blended hair lets through");
+        picture(TargetId::blendRest, Format::Rgba16Float, samples_, blends, "transmittance of blended hair");
         picture(TargetId::blendSumResolved, Format::Rgba16Float, 1, blends && samples_ > 1,
-                "the samples' average");
+                "average of the samples");
         picture(TargetId::blendRestResolved, Format::Rgba16Float, 1, blends && samples_ > 1,
-                "the samples' average");
+                "average of the samples");
     }
 
     void planOutput() {
         pass(Pass::accumulate, true,
-             options_.frames > 1 ? fmt::format("{} frames are averaged", options_.frames)
+             options_.frames > 1 ? fmt::format("averages {} frames", options_.frames)
                                  : "the frame is kept in single precision");
         buffer(BufferId::sum, pixels(), 16, true, "sum of the frames");
         planBlur();
         const bool filter = facts_.presents && options_.filter != PostFilter::none;
         pass(Pass::toneMap, facts_.presents,
-             facts_.presents ? "exposure and tone curve" : "no target to show the picture in");
+             facts_.presents ? "exposure and tone curve" : "no target to show the image in");
         pass(Pass::filter, filter,
-             filter            ? (options_.filter == PostFilter::fxaa ? "edges of the picture are softened"
-                                                                      : "edges are softened after a long search")
-             : facts_.presents ? "no filter is chosen"
-                               : "no target to show the picture in");
-        picture(TargetId::shown, Format::Rgba8Unorm, 1, filter, "what the filter reads");
+             filter            ? (options_.filter == PostFilter::fxaa ? "softens edges of the image"
+                                                                      : "softens edges after a long search")
+             : facts_.presents ? "no filter is selected"
+                               : "no target to show the image in");
+        picture(TargetId::shown, Format::Rgba8Unorm, 1, filter, "input of the filter");
     }
 
     void planBlur() {
         const bool shadows = runs(Pass::headDepth) || runs(Pass::firstHair) || runs(Pass::opacity);
         const bool on = shadows && options_.shadowBlur > 0;
         pass(Pass::shadowBlur, on,
-             on ? fmt::format("shadows are blurred by {} pixels; all is drawn twice, with them and without",
-                              options_.shadowBlur)
-             : shadows ? "shadows stay as they are"
+             on ? fmt::format(
+                      "blurs shadows by {} pixels and draws everything twice, with and without shadows",
+                      options_.shadowBlur)
+             : shadows ? "shadow blur is 0"
                        : "no shadows to blur");
         buffer(BufferId::litSum, pixels(), 16, on, "sum of the frames without shadows");
         buffer(BufferId::blurHalfway, 2 * pixels(), 16, on, "both sums, blurred along rows");
@@ -211,12 +216,12 @@ class Planner {
         const bool hidden = facts_.presents && facts_.overlay;
         const bool depth = hidden && facts_.meshes;
         pass(Pass::overlayDepth, hidden,
-             depth    ? "the head hides marks behind it"
-             : hidden ? "marks with nothing to hide them"
+             depth    ? "the head occludes marks behind it"
+             : hidden ? "marks without a surface to occlude them"
                       : "no such marks");
-        pass(Pass::overlay, hidden, hidden ? "marks that the head hides" : "no such marks");
+        pass(Pass::overlay, hidden, hidden ? "marks that the head occludes" : "no such marks");
         const bool top = facts_.presents && facts_.overlayOnTop;
-        pass(Pass::overlayOnTop, top, top ? "marks over everything" : "no such marks");
+        pass(Pass::overlayOnTop, top, top ? "marks on top of everything" : "no such marks");
         picture(TargetId::overlayDepth, Format::D32Float, 1, hidden, "depth of the head alone");
     }
 

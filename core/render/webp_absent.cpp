@@ -5,8 +5,8 @@
 namespace hairloom::render {
 
 Status writeAnimatedWebp(const std::filesystem::path& path, std::span<const Image>, std::uint32_t) {
-    return failIn(path.string(), {}, "this program was built without libwebp and writes no WebP",
-                  "a name that ends in .png");
+    return failIn(path.string(), {}, "this program was built without libwebp and cannot write WebP",
+                  "expected a name that ends in .png");
 }
 
 }  // namespace hairloom::render

@@ -46,7 +46,7 @@ Result<std::unique_ptr<HeadMotion>> makeClipMotion(std::shared_ptr<const Actor> 
         return fail(
             fmt::format("the character's mesh has {} vertices and {} triangles and is not the groom's scalp",
                         actor->mesh().vertexCount(), actor->mesh().triangleCount()),
-            "expected the file that the groom was created on");
+            "expected the file that the groom was created with");
     }
     return std::make_unique<ClipMotion>(std::move(actor), *index, groom.spheres);
 }

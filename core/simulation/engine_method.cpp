@@ -78,7 +78,8 @@ class EngineMethod : public StrandMethod {
             effects.push_back({runtime::effectName(effect), on, reasonAlone(engine_.plan().why(effect)),
                                milliseconds, engine_.effectBytes(effect)});
         }
-        effects.push_back({"solve", true, "on, moves the strands: all that no other row counts",
+        effects.push_back({"solve", true,
+                           "on, the shared strand solve, without the effects listed separately",
                            solveMilliseconds_ / frames, 0});
         if (volume_) {
             effects.push_back(
@@ -105,7 +106,7 @@ std::string reasonAlone(const std::string& why) {
 
 Status setEngineSettings(StrandMethod& method, const runtime::SimulationSettings& settings) {
     auto* engine = dynamic_cast<EngineMethod*>(&method);
-    if (!engine) return fail("this way of moving strands takes no other settings while it runs");
+    if (!engine) return fail("this method cannot change settings while it runs");
     if (const std::string problem = engine->setSettings(settings); !problem.empty()) return fail(problem);
     return {};
 }
@@ -127,8 +128,9 @@ Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
     std::optional<runtime::HairVolume> volume;
     if (hairHair) {
         if (!TakesVelocities<runtime::Engine>) {
-            return fail("the strand engine takes no velocities from outside, which hair against hair needs",
-                        "expected a run without it");
+            return fail(
+                "the strand engine does not take external velocities, which hair-hair collision needs",
+                "expected a run without it");
         }
         auto grid = runtime::HairVolume::make(*hairHair, applicationHost());
         if (!grid.volume) return fail(grid.error);

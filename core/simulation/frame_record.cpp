@@ -112,8 +112,8 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
     if (!file) return failIn(name, {}, "cannot be read", "expected a record of frames");
     noteInput(path);
     if (!file.read(reinterpret_cast<char*>(&header), sizeof(header)) || header.magic != kMagic) {
-        return failIn(name, Byte{0}, "is no record of frames",
-                      "expected a file that simulate --record wrote");
+        return failIn(name, Byte{0}, "is not a record of frames",
+                      "expected a file written by simulate --record");
     }
     if (header.version > kVersion) {
         return failIn(name, Byte{8}, fmt::format("is version {}", header.version),

@@ -85,13 +85,13 @@ std::vector<SaggingStrand> strandsThatSag(const Groom& groom, const Sag& sag, do
         const auto mm = static_cast<double>(sag.strandMm[s]);
         if (!(mm > limitMm)) continue;
         const float depth = depthOf(groom, s);
-        std::string reason = "it does not carry its weight";
+        std::string reason = "the strand does not carry its weight";
         if (limp) {
             reason = "its stiffness is zero";
         } else if (depth > 0) {
-            reason = "it stands in a collision sphere, which pushes it out";
+            reason = "it is inside a collision sphere, which pushes it out";
         } else if (groom.simulation.restGravity < 1) {
-            reason = "its shape carries a share of its weight only";
+            reason = "its rest shape carries only part of its weight";
         }
         strands.push_back({s, mm, reason});
     }

@@ -17,8 +17,9 @@ Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const 
     }
     if (options.method == SimulationMethod::strands) return makeEngineMethod(scene, options.hairHair);
     if (options.hairHair) {
-        return fail("hair against hair needs a method that takes velocities, and this one takes none",
-                    "expected the method 'strands'");
+        return fail(
+            "hair-hair collision needs a method with external velocities, which this one does not have",
+            "expected the method 'strands'");
     }
     return options.method == SimulationMethod::projective ? makeProjectiveMethod(scene)
                                                           : makeLatticeMethod(scene);

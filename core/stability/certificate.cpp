@@ -96,9 +96,9 @@ Result<StormEnd> runStorm(const Groom& groom, std::uint32_t number, std::uint32_
                       groom.simulation.lengthMethod == runtime::LengthMethod::constraint;
     end.calm = speed < kCalm;
     if (stats.nanCount > 0) {
-        end.failure = fmt::format("{} points are no number", stats.nanCount);
+        end.failure = fmt::format("{} points are not finite", stats.nanCount);
     } else if (stats.restoredStrands > 0) {
-        end.failure = fmt::format("{} strands were put back to rest", stats.restoredStrands);
+        end.failure = fmt::format("{} strands were reset to rest", stats.restoredStrands);
     } else if (held && !(stats.maxStretch <= kMaxStretch)) {
         end.failure = fmt::format("a segment stretched by {:.2g} %", 100 * stats.maxStretch);
     } else if (!(speed <= kFast + leftOfMotion(hair.groom, end.strength.rootSpeed))) {
@@ -181,12 +181,11 @@ std::string inWords(const Certificate& certificate) {
     const std::string first =
         failed.empty() ? "" : fmt::format(", storm {} first: {}", failed.front().number, failed.front().what);
     if (!(limits.step > 0))
-        return fmt::format("Withstands nothing that was tried: {} of {} random storms failed{}.",
+        return fmt::format("Does not withstand any tested storm: {} of {} random storms failed{}.",
                            failed.size(), certificate.storms, first);
     return fmt::format(
-        "Withstands {}, all at once and each with {:.0f} % to spare. {} of {} random storms were within "
-        "that, "
-        "none of which failed; {} failed beyond it{}.",
+        "Withstands {}, all at once and each with a margin of {:.0f} %. {} of {} random storms were within "
+        "these limits and none of them failed. Beyond them, {} failed{}.",
         inWords(limits), 100 * kStormMargin, certificate.within, certificate.storms, failed.size(), first);
 }
 

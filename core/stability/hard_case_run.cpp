@@ -18,8 +18,8 @@ constexpr double kMaxPenetration = 0.5;  // mm
 constexpr std::uint32_t kMaxSubsteps = 64;
 constexpr std::uint32_t kRodSubsteps = 2;
 constexpr const char* kLengthsAfterBending =
-    "lengths are held after bending has moved the points, and the two undo part of each other's work; only "
-    "position Verlet bends with the tension of the lengths";
+    "lengths are fixed after bending has moved the points, and the two undo part of each other's work. Only "
+    "position Verlet includes the tension of the lengths in bending";
 /// What an integrator claims lies this far inside of its stable region: about ten steps to the period of the
 /// fastest wave, where waves no longer resonate with the step (docs/stability.md).
 constexpr double kMargin = 0.3;

@@ -71,8 +71,7 @@ void reversingStorm(HardCaseRun& caseRun) {
 
 void freeSwing(HardCaseRun& caseRun) {
     if (!caseRun.method().rods())
-        caseRun.disclaim(
-            "springs hold lengths after they have bent, which does not keep energy without damping");
+        caseRun.disclaim("springs fix lengths after bending, which does not conserve energy without damping");
     SimulationSettings settings;
     settings.dampingTime = 0.0f;
     settings.bendDampingTime = 0.0f;
@@ -150,7 +149,7 @@ void windThatIsNoNumber(HardCaseRun& caseRun) {
         s.windDirection.y = bad;
         if (caseRun.engine().setSettings(s).empty()) ++taken;
     }
-    caseRun.expect("winds taken that are no number", "", taken, 0.0);
+    caseRun.expect("winds accepted that are not finite", "", taken, 0.0);
 
     // Time and poses reach the engine without a check of their own.
     SimulationSettings windy = caseRun.settings();

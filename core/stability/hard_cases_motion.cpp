@@ -114,7 +114,7 @@ void everythingAtOnce(HardCaseRun& caseRun) {
 }
 
 void randomStorms(HardCaseRun& caseRun) {
-    if (!caseRun.method().rods()) caseRun.disclaim("springs claim no storm; rods do");
+    if (!caseRun.method().rods()) caseRun.disclaim("springs claim no storm, rods do");
     double fastest = 0.0, calm = 0.0;
     for (std::uint32_t storm = 0; storm < caseRun.options().storms && !caseRun.over(); ++storm) {
         const double left = runStorm(caseRun, storm);

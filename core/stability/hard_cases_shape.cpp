@@ -11,9 +11,10 @@ namespace {
 using runtime::Float3;
 
 constexpr float kSegment = 0.012f;  // metres
-constexpr const char* kCurved = "the pulls of curved springs are not those of an energy, and feed the hair";
+constexpr const char* kCurved =
+    "the forces of curved springs do not derive from an energy, and drive the hair";
 constexpr const char* kUneven =
-    "springs hold lengths after they have bent, and with masses this uneven the two undo each other's work";
+    "springs fix lengths after bending, and with masses this uneven the two undo each other's work";
 
 /// Points down and a little aside, with steps of these lengths in metres.
 std::vector<Float3> strandOf(const std::vector<float>& segments, float x) {

@@ -9,11 +9,11 @@ namespace hairloom::hardcases {
 namespace {
 
 constexpr const char* kRinged =
-    "the pushes of spheres that lie evenly around a point cancel each other, and it stays between them";
+    "the pushes of spheres placed evenly around a point cancel, and it stays between them";
 
 constexpr const char* kFoundLate =
-    "a point that a substep itself presses into a sphere meets it a substep later, some tenths of a "
-    "millimetre inside";
+    "a point that a substep itself presses into a sphere collides with it one substep later, some tenths of "
+    "a millimetre inside";
 
 using runtime::Float3;
 using runtime::Sphere;

@@ -192,8 +192,8 @@ Plot stabilityPlot(const StabilityMap& map) {
     plot.title =
         fmt::format("{}, {} springs: stable steps", nameOf(map.integrator), coils ? "coil" : "angular");
     plot.note = fmt::format(
-        "A strand of 8 segments, undamped, pushed once, {} steps a cell. Stable: its swing "
-        "does not grow thrice. The line is the theory: {}.",
+        "A strand of 8 segments, undamped, pushed once, {} steps per cell. Stable: its swing does not grow "
+        "threefold. The line is the theory: {}.",
         map.steps,
         std::isfinite(map.limit) ? fmt::format("ω·h = {:.3g}", map.limit) : std::string("no limit"));
     plot.x = {.title = "time step", .unit = "ms", .scale = Scale::Logarithmic};

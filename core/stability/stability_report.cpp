@@ -54,7 +54,7 @@ void addLimits(const std::vector<StabilityResult>& results, HtmlReport& page) {
     for (const StabilityResult& r : results) {
         if (r.claimed) continue;
         rows.push_back({fmt::format("{} {}", r.number, r.name), r.integrator,
-                        r.failedAt ? std::to_string(*r.failedAt) : std::string("not at all"), r.limit});
+                        r.failedAt ? std::to_string(*r.failedAt) : std::string("never"), r.limit});
     }
     if (rows.size() == 1) return;
     page.heading("Limits");

@@ -44,8 +44,8 @@ struct Choice {
 const ExportTarget& pageTarget() {
     static const ExportTarget target{
         "browser",
-        "Browser, a page that moves",
-        "a folder with index.html, which opens without a network; it plays the runtime's asset",
+        "Web page with moving hair",
+        "A folder with index.html that opens without a network and plays the runtime asset",
         {}};
     return target;
 }
@@ -138,7 +138,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       points_(new QSpinBox),
       cards_(new QSpinBox),
       textures_(new QSpinBox),
-      certify_(new QCheckBox(tr("what a game may do to it"))),
+      certify_(new QCheckBox(tr("What your game may do to this hair"))),
       summary_(new QLabel),
       findings_(new QTreeWidget) {
     setWindowTitle(tr("Export hair"));
@@ -156,22 +156,22 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     format_->setObjectName("format");
     format_->setToolTip(tr("Formats that the program reads; the first carries most of the hair"));
     what_->addItem(tr("Guides: the strands of the document"), static_cast<int>(ExportedHair::guides));
-    what_->addItem(tr("Hairs: those that the picture shows"), static_cast<int>(ExportedHair::hairs));
+    what_->addItem(tr("Rendered hairs: what the viewport shows"), static_cast<int>(ExportedHair::hairs));
     what_->setObjectName("what");
-    what_->setToolTip(
-        tr("Guides for programs that interpolate hair themselves; else the hairs between them, too"));
+    what_->setToolTip(tr(
+        "Choose guides for programs that interpolate hair themselves. Choose rendered hairs for all others"));
     layers_->setObjectName("layers");
     layers_->addItem(tr("All layers"));
-    layers_->addItem(tr("Layers that are shown"));
+    layers_->addItem(tr("Visible layers"));
     for (const Layer& layer : document_.groom().layers)
         layers_->addItem(QString::fromStdString(layer.name), QString::fromStdString(layer.name));
-    layers_->setToolTip(tr("Strands of all layers, or of some"));
+    layers_->setToolTip(tr("Which layers to export"));
     frames_->setObjectName("frames");
     frames_->setRange(0, kMostFrames);
     frames_->setSpecialValueText(tr("at rest"));
-    frames_->setToolTip(tr(
-        "Frames of 1/60 s of the motion of the view, or of a nod, simulated for the file; more than one in a "
-        "format that can hold them"));
+    frames_->setToolTip(
+        tr("Number of 1/60 s frames to simulate for the file, with the motion of the viewport or a nod. "
+           "Formats without animation hold one frame"));
     note_->setProperty("role", "dim");
     note_->setWordWrap(true);
     problem_->setObjectName("problem");
@@ -185,13 +185,14 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
         tr("Closes this dialog and finds few strands that stand for all; the others follow them"));
     connect(cluster_, &QPushButton::clicked, this, [this] { done(kWantsClustering); });
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
-    unit_->setToolTip(tr("One unit of the file; a wrong one makes hair a hundred times too large or small"));
+    unit_->setToolTip(
+        tr("Length of one unit in the file. A wrong unit makes hair a hundred times too large or too small"));
     up_->addItems({tr("Y up"), tr("Z up")});
-    up_->setToolTip(tr("Axis of the file that points up"));
+    up_->setToolTip(tr("Up axis of the file"));
     points_->setRange(0, 1024);
-    points_->setSpecialValueText(tr("as they are"));
-    points_->setToolTip(tr("Points of every strand, resampled evenly"));
-    form_->addRow(tr("For"), target_);
+    points_->setSpecialValueText(tr("unchanged"));
+    points_->setToolTip(tr("Resamples every strand to this number of evenly spaced points"));
+    form_->addRow(tr("Target"), target_);
     form_->addRow(tr("Format"), format_);
     form_->addRow(QString(), note_);
     form_->addRow(QString(), problem_);
@@ -200,23 +201,23 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     form_->addRow(tr("Frames"), frames_);
     form_->addRow(tr("Unit"), unit_);
     form_->addRow(tr("Axis"), up_);
-    form_->addRow(tr("Points a strand"), points_);
+    form_->addRow(tr("Points per strand"), points_);
     const LevelBudget budget;
     cards_->setObjectName("cards");
     cards_->setRange(1, 4096);
     cards_->setValue(static_cast<int>(budget.cards));
     cards_->setToolTip(
-        tr("Cards of the nearest level, at most; farther ones have half and a quarter of them"));
+        tr("Maximum number of cards in the nearest level. Farther levels have a half and a quarter of them"));
     textures_->setObjectName("textures");
     textures_->setRange(1, 256);
     textures_->setValue(static_cast<int>(budget.chain.textures));
-    textures_->setToolTip(tr("Textures of a level, at most; cards that look alike share one"));
+    textures_->setToolTip(tr("Maximum number of textures in a level. Cards that look alike share one"));
     form_->addRow(tr("Cards"), cards_);
     form_->addRow(tr("Textures"), textures_);
     certify_->setObjectName("certify");
     certify_->setToolTip(
-        tr("Tries a thousand random storms; half a minute or so. The report has what was found, and a "
-           "runtime asset carries it"));
+        tr("Tests the hair in a thousand random storms, which takes about half a minute. The report has the "
+           "result, and a runtime asset carries it"));
     form_->addRow(tr("Stress test"), certify_);
     layout->addWidget(many_);
     layout->addWidget(cluster_, 0, Qt::AlignLeft);
@@ -235,7 +236,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     write_ = buttons->addButton(tr("Export…"), QDialogButtonBox::AcceptRole);
     write_->setDefault(true);
-    write_->setToolTip(tr("Asks for a file name and writes"));
+    write_->setToolTip(tr("Choose a file name and export"));
     layout->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     connect(write_, &QPushButton::clicked, this, &ExportDialog::choosePath);
@@ -363,7 +364,7 @@ void ExportDialog::choosePath() {
     const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
     const QString title = QFileInfo(document_.title()).completeBaseName();
     if (choice.isPage) {
-        const QString folder = QFileDialog::getExistingDirectory(this, tr("Folder that gets the page"));
+        const QString folder = QFileDialog::getExistingDirectory(this, tr("Folder for the web page"));
         if (!folder.isEmpty()) exportTo(folder + "/" + title);
         return;
     }
@@ -388,9 +389,9 @@ void ExportDialog::exportTo(const QString& path) {
     wanted.levels.chain.textures = static_cast<std::uint32_t>(textures_->value());
     wanted.layers = layersToWrite();
     if (layers_->currentIndex() == 1 && wanted.layers.empty())
-        return messages_.warn(tr("No layer is shown, so that nothing would be written"));
+        return messages_.warn(tr("No layer is visible, so there is nothing to export"));
     if (choice.isPage && frames_->value() > 0)
-        return messages_.warn(tr("A page plays the hair itself: set Frames to “at rest”"));
+        return messages_.warn(tr("A web page simulates the hair itself: set Frames to “at rest”"));
     auto motion = player_.makeMeasuredMotion();
     if (!motion) return messages_.warn(errorText(motion.error()));
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
@@ -418,7 +419,7 @@ void ExportDialog::exportTo(const QString& path) {
             return exportHair(groom, wanted, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
-            messages.say((report.levels.empty() ? tr("%1 written and read back") : tr("%1 written"))
+            messages.say((report.levels.empty() ? tr("Exported %1 and read it back") : tr("Exported %1"))
                              .arg(QFileInfo(path).fileName()));
             if (!self) return;
             self->report_ = std::move(report);
@@ -442,7 +443,7 @@ QString ExportDialog::summary() const {
                         .arg(report_.points)
                         .arg(size);
     if (report_.maxErrorMm)
-        words += ' ' + tr("Farthest point of the file from the hair: %1.")
+        words += ' ' + tr("Largest distance of a point in the file from the hair: %1.")
                            .arg(lengthText(1e-3 * *report_.maxErrorMm, preferences_));
     return words;
 }
@@ -461,27 +462,27 @@ void ExportDialog::showReport() {
                                       static_cast<double>(limits->rootSpeed),
                                       static_cast<double>(limits->turn), static_cast<double>(limits->wind)}),
             tr("certificate"),
-            tr("%1 random storms; %2 broke it beyond these limits")
+            tr("%1 random storms; %2 failed beyond these limits")
                 .arg(limits->storms)
                 .arg(limits->failed)
                 .toStdString());
     for (const std::string& companion : report_.companions)
-        add(companion, tr("beside it"), tr("written with the strands").toStdString());
-    for (const LeftBehind& left : report_.leftBehind) add(left.what, tr("left behind"), left.fix);
+        add(companion, tr("in a separate file"), tr("exported with the strands").toStdString());
+    for (const LeftBehind& left : report_.leftBehind) add(left.what, tr("not exported"), left.fix);
     for (const Finding& finding : report_.findings)
         add(finding.what, QString::fromStdString(finding.where), finding.fix);
     for (const ComparedAttribute& attribute : report_.attributes)
         add(attribute.name, tr("attribute"),
-            tr("carried, to %1").arg(attribute.maxError, 0, 'g', 3).toStdString());
+            tr("exported as %1").arg(attribute.maxError, 0, 'g', 3).toStdString());
     for (const WrittenLevel& level : report_.levels)
         add(level.name, tr("from %1 m").arg(level.distance, 0, 'f', 2),
-            tr("coverage %1, light %2 of the strands', FLIP %3")
+            tr("coverage %1, light %2 of the strands, FLIP %3")
                 .arg(level.coverage, 0, 'f', 3)
                 .arg(level.light, 0, 'f', 3)
                 .arg(level.flip, 0, 'f', 3)
                 .toStdString());
     if (findings_->topLevelItemCount() == 0)
-        findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to mend")}));
+        findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to fix")}));
     wrapRows(*findings_);
 }
 

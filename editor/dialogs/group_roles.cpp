@@ -21,14 +21,13 @@ struct RoleWords {
 };
 constexpr std::array<RoleWords, 3> kWords{
     {{"groupHead", QT_TR_NOOP("Keep"), QT_TR_NOOP("Head"),
-      QT_TR_NOOP("The selected groups are part of the head: shown, and hair may grow on them"),
-      QT_TR_NOOP("Part of the head: shown, and hair may grow on it")},
+      QT_TR_NOOP("Use the selected groups as part of the head, where hair can grow"),
+      QT_TR_NOOP("Part of the head: visible, and hair can grow on it")},
      {"groupLeaveOut", QT_TR_NOOP("Leave out"), QT_TR_NOOP("Left out"),
-      QT_TR_NOOP("The selected groups are not opened"), QT_TR_NOOP("Not opened")},
+      QT_TR_NOOP("Do not load the selected groups"), QT_TR_NOOP("Not loaded")},
      {"groupCollide", QT_TR_NOOP("Collide with"), QT_TR_NOOP("Collides"),
-      QT_TR_NOOP("The selected groups are not shown, but hair collides with spheres fitted to them, as to a "
-                 "collar or a hat"),
-      QT_TR_NOOP("Not shown, but hair collides with spheres fitted to it")}}};
+      QT_TR_NOOP("Hide the selected groups and fit collision spheres to them, as for a collar or a hat"),
+      QT_TR_NOOP("Hidden, but hair collides with spheres fitted to it")}}};
 
 GroupRole roleOf(const QTreeWidgetItem& item) {
     return static_cast<GroupRole>(item.data(kRole, Qt::UserRole).toInt());
@@ -46,12 +45,12 @@ GroupRoles::GroupRoles(const Preferences& preferences, QWidget* parent)
     layout->setSpacing(6);
     search_->setObjectName("headSearch");
     search_->setPlaceholderText(tr("Search groups"));
-    search_->setToolTip(tr("Shows the groups whose names have these words"));
+    search_->setToolTip(tr("Filter groups by name"));
     layout->addWidget(search_);
     list_->setObjectName("headGroups");
     list_->setHeaderLabels({tr("Group"), tr("Role")});
-    list_->headerItem()->setToolTip(kRole, tr("A click, or the space bar for all that are selected, changes "
-                                              "it"));
+    list_->headerItem()->setToolTip(
+        kRole, tr("Click to change the role, or press the space bar to change all selected groups"));
     list_->setRootIsDecorated(false);
     list_->setUniformRowHeights(true);
     list_->setAllColumnsShowFocus(true);

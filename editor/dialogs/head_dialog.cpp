@@ -79,18 +79,18 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     QStringList units;
     for (const LengthUnit& unit : lengthUnits()) units.append(unit.name);
     form->addRow(tr("Unit"), choices(*unit_, "headUnit", units,
-                                     tr("One unit of the file. FBX and glTF state theirs, which stands")));
-    form->addRow(tr("Up"),
-                 choices(*up_, "headUp", {tr("Y"), tr("Z")},
-                         tr("Axis of the file that points up. A head on its back needs the other")));
+                                     tr("Length of one unit in the file. FBX and glTF files state their "
+                                        "unit, so it is fixed for them")));
+    form->addRow(tr("Up"), choices(*up_, "headUp", {tr("Y"), tr("Z")},
+                                   tr("Up axis of the file. Change it if the head lies on its back")));
     side->addWidget(groups_, 1);
     spheres_->setObjectName("colliderSpheres");
     spheres_->setRange(1, static_cast<int>(editing::kMaxPartSpheres));
     spheres_->setValue(static_cast<int>(HeadImportOptions().colliderSpheres));
     spheres_->setKeyboardTracking(false);
     spheres_->setToolTip(
-        tr("Number of spheres for all groups that collide, shared by area: each has one at least and 64 at "
-           "most. More lie closer and cost more"));
+        tr("Number of spheres for all groups that collide, shared by area. Each group gets 1 to 64. More "
+           "spheres fit closer and cost more"));
     auto* colliders = new QFormLayout;
     colliders->addRow(tr("Spheres"), spheres_);
     side->addLayout(colliders);
@@ -98,7 +98,7 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     fit_->setProperty("role", "dim");
     fit_->setWordWrap(true);
     side->addWidget(fit_);
-    open_ = acceptOrCancel(*this, *side, tr("Open"), tr("Opens the head as shown"));
+    open_ = acceptOrCancel(*this, *side, tr("Open"), tr("Open the head as shown"));
     open_->setObjectName("headOpen");
     connect(unit_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
     connect(up_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
@@ -196,7 +196,7 @@ void HeadDialog::fit() {
     spheres_->setEnabled(!wanted.collideWith.empty());
     view_->show(Groom(), head_);
     if (!scene_ || wanted.collideWith.empty()) {
-        fit_->setText(tr("No group is to collide with"));
+        fit_->setText(tr("No group is set to collide"));
         return;
     }
     fit_->setText(tr("Fitting spheres…"));
@@ -223,7 +223,7 @@ void HeadDialog::show(const editing::SphereFit& fit) {
     const auto length = [this](float metres) {
         return lengthText(static_cast<double>(metres), preferences_);
     };
-    fit_->setText(tr("%n spheres: worst gap %1, mean %2; farthest bulge %3", nullptr,
+    fit_->setText(tr("%n spheres: worst gap %1, mean %2; largest bulge %3", nullptr,
                      static_cast<int>(fit.spheres.size()))
                       .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
     view_->show(Groom(), head_, fit.spheres);

@@ -40,14 +40,15 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
     unit_->setObjectName("unit");
     unit_->setToolTip(
-        tr("One unit of the file. Strands that are far too large or small for the head need another."));
+        tr("Length of one unit in the file. Change it if the strands are far too large or too small for the "
+           "head."));
     up_->setObjectName("up");
     up_->addItems({tr("Y up"), tr("Z up")});
-    up_->setToolTip(tr("Axis of the file that points up. Hair that lies on its side needs the other."));
+    up_->setToolTip(tr("Up axis of the file. Change it if the hair lies on its side."));
     segments_->setObjectName("segments");
     segments_->setRange(0, 65535);
     segments_->setSpecialValueText(tr("found"));
-    segments_->setToolTip(tr("Segments of each Cinema 4D ribbon; found from its faces where this is 0"));
+    segments_->setToolTip(tr("Segments of each Cinema 4D ribbon. 0 detects them from the faces"));
     order_->setObjectName("order");
     order_->addItems(
         {tr("Found"), tr("Left and right in turn"), tr("One edge, then the other"), tr("Around")});
@@ -80,7 +81,7 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     summary_->setAlignment(Qt::AlignTop);
     side->addWidget(summary_, 1);
     take_ = acceptOrCancel(*this, *side, tr("Import"),
-                           tr("Takes the strands as shown; on a head they are bound to its scalp"));
+                           tr("Import the strands as shown. On a head, they are bound to its scalp"));
     connect(unit_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(up_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(order_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);

@@ -20,7 +20,7 @@ class CurveView : public QWidget {
   public:
     explicit CurveView(const Preferences& preferences) : preferences_(preferences) {
         setFixedSize(120, 90);
-        setToolTip(QObject::tr("Right: harder on the pen. Up: more from the brush."));
+        setToolTip(QObject::tr("Right: more pen pressure. Up: more brush strength."));
         connect(&preferences, &Preferences::changed, this, [this] { update(); });
     }
 
@@ -72,28 +72,28 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
     form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
     layout->addLayout(form);
 
-    auto* theme = choice<Theme>({tr("Dark"), tr("Light")}, preferences.theme(), tr("Colours of the window"),
-                                [&preferences](Theme value) { preferences.setTheme(value); });
+    auto* theme =
+        choice<Theme>({tr("Dark"), tr("Light")}, preferences.theme(), tr("Colour theme of the window"),
+                      [&preferences](Theme value) { preferences.setTheme(value); });
     theme->setObjectName("theme");
     form->addRow(tr("Theme"), theme);
     auto* unit = choice<DisplayUnit>({tr("Metres"), tr("Centimetres"), tr("Millimetres"), tr("Inches")},
                                      preferences.unit(),
-                                     tr("Unit in which lengths are shown; documents are always in metres"),
+                                     tr("Display unit for lengths. Documents are always in metres"),
                                      [&preferences](DisplayUnit value) { preferences.setUnit(value); });
     unit->setObjectName("unit");
     form->addRow(tr("Lengths in"), unit);
-    auto* orbit = choice<OrbitStyle>({tr("Maya: Alt and a mouse button"), tr("Blender: middle mouse button")},
-                                     preferences.orbitStyle(),
-                                     tr("Maya: Alt + left turns, Alt + middle moves, Alt + right "
-                                        "zooms.\nBlender: middle turns, Shift + middle "
-                                        "moves, Ctrl + middle zooms.\nThe wheel zooms in both."),
-                                     [&preferences](OrbitStyle value) { preferences.setOrbitStyle(value); });
+    auto* orbit = choice<OrbitStyle>(
+        {tr("Maya: Alt and a mouse button"), tr("Blender: middle mouse button")}, preferences.orbitStyle(),
+        tr("Maya: Alt + left orbits, Alt + middle pans, Alt + right zooms.\nBlender: middle orbits, Shift + "
+           "middle pans, Ctrl + middle zooms.\nThe wheel zooms in both."),
+        [&preferences](OrbitStyle value) { preferences.setOrbitStyle(value); });
     orbit->setObjectName("orbitStyle");
-    form->addRow(tr("Turning the view"), orbit);
+    form->addRow(tr("Viewport navigation"), orbit);
 
     auto* curve = new NumberBox(0.25, 4, false);
     curve->setObjectName("tabletCurve");
-    curve->setToolTip(tr("Exponent from pen pressure to brush strength: above 1 needs a firmer hand"));
+    curve->setToolTip(tr("Exponent from pen pressure to brush strength. Above 1 needs more pressure"));
     curve->setValue(preferences.tabletCurve());
     connect(curve, &NumberBox::edited, &preferences, &Preferences::setTabletCurve);
     form->addRow(tr("Pen pressure"), curve);
@@ -101,8 +101,8 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
 
     auto* simulateOn = choice<SimulateOn>(
         {tr("Automatic"), tr("GPU"), tr("CPU")}, preferences.simulateOn(),
-        tr("What moves the hair while it plays. Automatic: whichever was measured to be faster with such a "
-           "hairstyle. Changing it goes on from where the hair is."),
+        tr("Device that simulates hair during playback. Automatic uses the one that was faster with a "
+           "similar hairstyle. After a change the hair continues from its current state."),
         [&preferences](SimulateOn value) { preferences.setSimulateOn(value); });
     simulateOn->setObjectName("simulateOn");
     form->addRow(tr("Simulate hair on"), simulateOn);
@@ -113,10 +113,9 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
     autosave->setSuffix(tr(" min"));
     autosave->setSpecialValueText(tr("never"));
     autosave->setValue(preferences.autosaveMinutes());
-    autosave->setToolTip(
-        tr("Minutes between copies of unsaved work, from which it comes back after a crash"));
+    autosave->setToolTip(tr("Minutes between recovery copies of unsaved work"));
     connect(autosave, &QSpinBox::valueChanged, &preferences, &Preferences::setAutosaveMinutes);
-    form->addRow(tr("Keep a copy every"), autosave);
+    form->addRow(tr("Autosave every"), autosave);
 
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);

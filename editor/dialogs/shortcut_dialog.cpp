@@ -24,9 +24,9 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     layout->setContentsMargins(16, 16, 16, 16);
     layout->setSpacing(10);
     auto* search = new QLineEdit;
-    search->setPlaceholderText(tr("Find an action"));
+    search->setPlaceholderText(tr("Search actions"));
     search->setClearButtonEnabled(true);
-    search->setToolTip(tr("Shows only the actions whose name contains this"));
+    search->setToolTip(tr("Show only actions whose name contains this text"));
     layout->addWidget(search);
     list_->setHeaderLabels({tr("Action"), tr("Shortcut")});
     list_->setRootIsDecorated(false);
@@ -41,7 +41,7 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     layout->addWidget(message_);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     auto* reset = buttons->addButton(tr("Reset all"), QDialogButtonBox::ResetRole);
-    reset->setToolTip(tr("Gives every action the shortcut that it came with"));
+    reset->setToolTip(tr("Restore the default shortcut of every action"));
     // Enter would press the first that may be pressed so.
     reset->setAutoDefault(false);
     buttons->button(QDialogButtonBox::Close)->setDefault(true);
@@ -64,7 +64,7 @@ void ShortcutDialog::fill() {
         list_->addTopLevelItem(item);
         auto* edit = new QKeySequenceEdit(actions_.get(info.id).shortcut());
         edit->setObjectName(info.id);
-        edit->setToolTip(tr("Click and press the new keys for: %1").arg(plainText(info.text)));
+        edit->setToolTip(tr("Click and press a new shortcut for: %1").arg(plainText(info.text)));
         list_->setItemWidget(item, 1, edit);
         connect(edit, &QKeySequenceEdit::editingFinished, this, [this, edit, id = info.id] {
             if (edit->keySequence() == actions_.get(id).shortcut()) return;

@@ -14,7 +14,7 @@ Tasks::~Tasks() {
 
 bool Tasks::start(const QString& name, std::function<Finish(TaskControl&)> work) {
     if (isBusy()) {
-        Q_EMIT failed(tr("%1 is still under way").arg(name_));
+        Q_EMIT failed(tr("%1 is still running").arg(name_));
         return false;
     }
     control_ = std::make_shared<TaskControl>();

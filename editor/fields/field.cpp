@@ -44,14 +44,14 @@ std::vector<Field> fieldsIn(S Groom::*section, editing::Part part) {
 }
 
 constexpr FieldInfo kDensity{
-    "layerDensity",   "", 0, kMaxLayerDensity, "times the follow hairs of each guide on the layer",
+    "layerDensity",   "", 0, kMaxLayerDensity, "multiplies the follow hairs per guide on this layer",
     FieldKind::Float, {}};
 
 std::unique_ptr<editing::Command> setLayersOf(const editing::Model& model, const Groom& groom) {
     return editing::setLayers(model, groom.layers);
 }
 
-constexpr FieldInfo kWeight{"weight",         "", 0, 1, "share of what the operator does to strands",
+constexpr FieldInfo kWeight{"weight",         "", 0, 1, "how much of the operator's effect is applied",
                             FieldKind::Float, {}};
 
 /// What fields of an operator share.

@@ -72,7 +72,7 @@ void FieldForm::addRow(const Field& field) {
     defaultValue->setIcon(icon("reset"));
     defaultValue->setIconSize({12, 12});
     defaultValue->setAutoRaise(true);
-    defaultValue->setToolTip(tr("Back to the default value"));
+    defaultValue->setToolTip(tr("Reset to the default value"));
     defaultValue->setAccessibleName(tr("%1: back to the default value").arg(field.label));
     connect(defaultValue, &QToolButton::clicked, this, [this, &field] {
         begin();

@@ -15,9 +15,9 @@ MaskRamp::MaskRamp(QtDocument& document, std::size_t index, SayError failed, QWi
       failed_(std::move(failed)) {
     setObjectName("maskRamp");
     setToolTip(
-        tr("<p><b>Strength from root to tip</b></p><p>Drag a key to change how strongly the operator acts "
-           "there: 0 is not at all, 1 wholly. A press on the line adds a key, the right button or Delete "
-           "removes it, arrows move the one that was touched last.</p>"));
+        tr("<p><b>Strength from root to tip</b></p><p>Drag a key to change the operator's strength there, "
+           "from 0 (off) to 1 (full). Click the line to add a key. Right-click or press Delete to remove "
+           "one. Arrow keys move the last key you touched.</p>"));
     connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
         if (contains(parts, editing::Part::Operators)) refresh();
     });

@@ -26,7 +26,7 @@ std::vector<Price>::const_iterator nowOf(const SettingPrices& prices) {
 PriceTag::PriceTag(const Prices& prices, const Preferences& preferences, const QString& setting,
                    QWidget* parent)
     : QWidget(parent), prices_(prices), preferences_(preferences), setting_(setting) {
-    setObjectName(setting + "Price");
+    setObjectName(setting + "Cost");
     connect(&prices_, &Prices::changed, this, &PriceTag::refresh);
     refresh();
 }
@@ -46,8 +46,8 @@ QString PriceTag::words() const {
     const double more = next->milliseconds - now->milliseconds;
     const QString less = amount(now->error - next->error, prices->unit);
     return text + ' ' +
-           (more > 0 ? tr("%1 adds %2 and takes %3 off.").arg(next->value, amount(more, tr("ms")), less)
-                     : tr("%1 takes %2 and %3 off.").arg(next->value, amount(-more, tr("ms")), less));
+           (more > 0 ? tr("%1 adds %2 and saves %3.").arg(next->value, amount(more, tr("ms")), less)
+                     : tr("%1 saves %2 and %3.").arg(next->value, amount(-more, tr("ms")), less));
 }
 
 void PriceTag::refresh() {
@@ -66,8 +66,7 @@ void PriceTag::refresh() {
     const QString age =
         prices->outdated ? tr("before the last change")
                          : tr("at %1").arg(QLocale().toString(prices->measured.time(), QLocale::ShortFormat));
-    setToolTip(tr("<p>What a frame costs, and how far it is from the truth</p><table>%1</table>"
-                  "<p>%2 Measured %3.</p>")
+    setToolTip(tr("<p>Frame time, and error against the reference</p><table>%1</table><p>%2 Measured %3.</p>")
                    .arg(rows, words().toHtmlEscaped(), age));
     setAccessibleDescription(words());
     update();

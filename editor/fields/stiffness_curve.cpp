@@ -8,11 +8,10 @@ namespace hairloom::editor {
 StiffnessCurve::StiffnessCurve(QtDocument& document, QWidget* parent)
     : RampEdit(parent), document_(document) {
     setObjectName("stiffnessCurve");
-    setToolTip(tr(
-        "<p><b>Stiffness from root to tip</b></p><p>Drag a key to change how strongly hair returns to its "
-        "shape "
-        "there: 0 is off, 0.5 real hair, 1 rigid. A press on the line adds a key, the right button or Delete "
-        "removes it, arrows move the one that was touched last.</p>"));
+    setToolTip(
+        tr("<p><b>Stiffness from root to tip</b></p><p>Drag a key to change how strongly hair returns to its "
+           "shape there: 0 is off, 0.5 is real hair, 1 is rigid. Click the line to add a key. Right-click or "
+           "press Delete to remove one. Arrow keys move the last key you touched.</p>"));
     connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
         if (contains(parts, editing::Part::Physics)) refresh();
     });

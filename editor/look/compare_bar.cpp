@@ -28,11 +28,12 @@ class CompareBar : public QWidget {
             row->addWidget(button, 1);
             return button;
         };
-        keep_ = add("compareKeep", tr("Keep as A"),
-                    tr("Remembers the look as it is now, to compare others with it"));
-        show_ = add("compareShow", tr("A | B"),
-                    tr("Shows A left of a line in the view and the look of now right of it; drag the line"));
-        swap_ = add("compareSwap", tr("Swap"), tr("Takes look A and keeps that of now as A; can be undone"));
+        keep_ =
+            add("compareKeep", tr("Set as A"), tr("Stores the current look as A, to compare others with it"));
+        show_ = add(
+            "compareShow", tr("A | B"),
+            tr("Split view: A on the left, the current look on the right. Drag the line to move the split"));
+        swap_ = add("compareSwap", tr("Swap"), tr("Swaps the current look with A. You can undo this"));
         show_->setCheckable(true);
         note_->setProperty("role", "dim");
         note_->setWordWrap(true);
@@ -78,9 +79,9 @@ class CompareBar : public QWidget {
 
     void refresh() {
         swap_->setEnabled(kept_.has_value());
-        note_->setText(!kept_               ? tr("Keep a look, change it, and compare.")
-                       : show_->isChecked() ? tr("Drag the line in the view.")
-                                            : tr("A is kept."));
+        note_->setText(!kept_               ? tr("Store a look, change it, and compare.")
+                       : show_->isChecked() ? tr("Drag the line in the viewport.")
+                                            : tr("A is stored."));
     }
 
     QtDocument& document_;

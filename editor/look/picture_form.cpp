@@ -61,42 +61,41 @@ class PictureForm : public OptionForm {
     }
 
     void addEdges() {
-        addPower(
-            "samples", tr("Samples"),
-            tr("Samples a pixel (MSAA); more give smoother edges and cost more. The device may have fewer."),
-            1, 4, tr("%1 a pixel"), &PictureQuality::samples);
+        addPower("samples", tr("Samples"),
+                 tr("MSAA samples per pixel. More samples give smoother edges and cost more. Your device may "
+                    "support fewer."),
+                 1, 4, tr("%1 per pixel"), &PictureQuality::samples);
         addPower("frames", tr("Frames"),
-                 tr("Frames that are averaged while nothing moves, each moved by part of a pixel: more give "
-                    "finer hair"),
+                 tr("Number of frames averaged while nothing moves, each with a sub-pixel offset. More "
+                    "frames resolve finer hair"),
                  1, 7, tr("%1 averaged"), &PictureQuality::frames);
         addBool(
             "joinsFrames", tr("Temporal anti-aliasing"),
-            tr("While something moves, each frame joins those before it where their hair was: thin hair is "
-               "smooth in place of grainy, and costs a little more"),
+            tr("While hair moves, reprojects and accumulates earlier frames. Thin hair looks smooth instead "
+               "of grainy, at a small cost"),
             [this] { return viewport_.quality().joinsFrames; },
             [this](bool on) {
                 PictureQuality quality = viewport_.quality();
                 quality.joinsFrames = on;
                 viewport_.setQuality(quality);
             });
-        addEnum("filter", tr("Filter"), tr("Softens the edges that are left in the finished picture"),
+        addEnum("filter", tr("Filter"), tr("Filters the remaining edges in the finished image"),
                 {tr("None"), tr("FXAA"), tr("FXAA, long search")}, &PictureQuality::filter);
         addEnum("transparency", tr("Transparency"),
-                tr("How hair that is thinner than a sample shows what lies behind it: as is nearest to the "
-                   "truth on the device, by the nearest hairs of a pixel in their order, by a random part "
-                   "of the samples, by a fixed part, or blended in any order"),
-                {tr("Automatic"), tr("In their order"), tr("Random samples"), tr("Fixed samples"),
-                 tr("Blended in any order")},
+                tr("How hair thinner than a sample shows what is behind it. Automatic picks the most "
+                   "accurate method for your device. Sorted blends the nearest hairs of a pixel in order. "
+                   "Stochastic covers a random part of the samples, Fixed samples a fixed part. Weighted "
+                   "blends in any order"),
+                {tr("Automatic"), tr("Sorted"), tr("Stochastic"), tr("Fixed samples"), tr("Weighted")},
                 &PictureQuality::transparency);
-        addEnum(
-            "ribbons", tr("Curves"),
-            tr("How curves become ribbons: as is fastest on the device, as strips, or tessellated, which is "
-               "finer near the eye and needs a device that can"),
-            {tr("Automatic"), tr("Strips"), tr("Tessellated")}, &PictureQuality::ribbons);
+        addEnum("ribbons", tr("Curves"),
+                tr("How curves become ribbons. Automatic picks the fastest method for your device. "
+                   "Tessellated curves are finer close up and need device support"),
+                {tr("Automatic"), tr("Strips"), tr("Tessellated")}, &PictureQuality::ribbons);
         addNumber(
             "subdivisions", tr("Subdivisions"),
-            tr("Pieces of curve for each segment of a strand: more are rounder"), "", 1, 8, true,
-            [this] { return static_cast<double>(viewport_.quality().subdivisions); },
+            tr("Segments drawn for each segment of a strand. More segments give rounder curves"), "", 1, 8,
+            true, [this] { return static_cast<double>(viewport_.quality().subdivisions); },
             [this](double value) {
                 PictureQuality quality = viewport_.quality();
                 quality.subdivisions = static_cast<std::uint32_t>(value);
@@ -106,26 +105,24 @@ class PictureForm : public OptionForm {
 
     void addShadows() {
         addEnum("shadows", tr("Shadows"),
-                tr("How hair stands in the light of other hair: layers behind the first hair, depth alone, "
-                   "layers at "
-                   "fixed depths, or none"),
+                tr("How hair shadows hair: opacity layers behind the first hair, absorption by depth alone, "
+                   "opacity maps at fixed depths, or none"),
                 {tr("None"), tr("Deep opacity"), tr("Absorption"), tr("Opacity maps")},
                 &PictureQuality::shadows);
         addPower("shadowResolution", tr("Shadow map"),
-                 tr("Pixels along the side of each light's shadow map: more are sharper"), 256, 5,
+                 tr("Width and height of each light's shadow map. More pixels give sharper shadows"), 256, 5,
                  tr("%1 px"), &PictureQuality::shadowResolution);
         addAmount("headAbsorption", tr("Through the head"),
-                  tr("Hair behind the head gets light that fades with its depth there, by this much a metre: "
-                     "softer and without dots, but light comes through thin parts. 0: all or nothing"),
+                  tr("Makes light on hair behind the head fade with depth, by this much per metre. This is "
+                     "softer and less noisy, but light leaks through thin parts. 0 blocks all light"),
                   "1/m", render::kMaxHeadAbsorption, &PictureQuality::headAbsorption);
-        addAmount(
-            "shadowBlur", tr("Shadow blur"),
-            tr("Pixels by which shadows are blurred in the picture while nothing moves. Hair looks out of "
-               "focus, and shadows bleed over edges into what is lit"),
-            "px", render::kMaxShadowBlur, &PictureQuality::shadowBlur);
+        addAmount("shadowBlur", tr("Shadow blur"),
+                  tr("Radius of the screen-space shadow blur while nothing moves. Hair looks less sharp, and "
+                     "shadows leak over edges into lit areas"),
+                  "px", render::kMaxShadowBlur, &PictureQuality::shadowBlur);
         addEnum("scattering", tr("Scattered light"),
-                tr("Light that other hairs have scattered: lost, or passed on (dual scattering); Marschner "
-                   "and Sadeghi"),
+                tr("Light scattered by other hairs: ignored (single) or added by dual scattering (dual). For "
+                   "Marschner and Sadeghi"),
                 {tr("Single"), tr("Dual")}, &PictureQuality::scattering);
     }
 

@@ -23,11 +23,11 @@ class PicturePrices : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(6);
-        auto* measure = new QPushButton(tr("Measure prices"));
+        auto* measure = new QPushButton(tr("Measure costs"));
         measure->setObjectName("pictureMeasure");
         measure->setToolTip(
-            tr("Draws this view at other values of each setting, and shows beside it what a frame costs and "
-               "how different it looks from the best picture (FLIP)"));
+            tr("Renders this view with other values of each setting, and shows their frame time and their "
+               "difference from the best image (FLIP)"));
         note_->setProperty("role", "dim");
         note_->setWordWrap(true);
         note_->setObjectName("pictureMeasured");
@@ -62,7 +62,7 @@ class PicturePrices : public QWidget {
         options.view.fibre.scattering = quality.scattering;
         options.picture.exposure = viewport_.exposure();
         tasks_.run<PictureCost>(
-            tr("Measuring the picture's settings"),
+            tr("Measuring render settings"),
             [groom, quality, size_px, options](TaskControl& control) mutable -> Result<PictureCost> {
                 const auto device = gpu::createDevice();
                 if (!device) return tl::unexpected(device.error());
@@ -102,13 +102,14 @@ class PicturePrices : public QWidget {
                                       run.milliseconds.median, run.flip, run.now});
         }
         prices_.set(Prices::Of::Picture, prices);
-        note_->setText(tr("Columns up: time of a frame while hair moves, of %1×%2 pixels on %3. Down: "
-                          "difference from the best picture. Lit: as it is now. %L4 of %L5 hairs were drawn.")
-                           .arg(cost.width)
-                           .arg(cost.height)
-                           .arg(QString::fromStdString(cost.device))
-                           .arg(cost.hairs)
-                           .arg(cost.allHairs));
+        note_->setText(
+            tr("Columns up: frame time while hair moves, at %1×%2 pixels on %3. Columns down: difference "
+               "from the best image. Highlighted: the current value. Drew %L4 of %L5 hairs.")
+                .arg(cost.width)
+                .arg(cost.height)
+                .arg(QString::fromStdString(cost.device))
+                .arg(cost.hairs)
+                .arg(cost.allHairs));
         note_->show();
     }
 

@@ -65,7 +65,7 @@ class PresetList : public QWidget {
         list_->setGridSize({kSide + 18, kSide + 28});
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         list_->setFixedHeight(2 * (kSide + 28) + 16);
-        list_->setToolTip(tr("Click a look to give it to the hair"));
+        list_->setToolTip(tr("Click a look to apply it to the hair"));
         layout->addWidget(list_);
         auto* row = new QHBoxLayout;
         auto* save = new QPushButton(tr("Save preset…"));

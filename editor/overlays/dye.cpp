@@ -22,12 +22,8 @@ void drawDye(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode dyeOverlay() {
-    return {"dye",
-            QT_TR_NOOP("Dye"),
-            QT_TR_NOOP("Where hair is dyed, as painted: strands in pink by the mask's share"),
-            drawDye,
-            100,
-            {"dye_paint"}};
+    return {"dye", QT_TR_NOOP("Dye"), QT_TR_NOOP("Shows the painted dye mask in pink"), drawDye,
+            100,   {"dye_paint"}};
 }
 
 }  // namespace hairloom::editor

@@ -71,11 +71,10 @@ void drawEffectCost(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode effectCostOverlay() {
-    return {
-        "effectCost", QT_TR_NOOP("Effect cost"),
-        QT_TR_NOOP("Strands by what the simulation spends on each while it plays: red is the dearest, grey "
-                   "rests and costs nothing"),
-        drawEffectCost, 110};
+    return {"effectCost", QT_TR_NOOP("Effect cost"),
+            QT_TR_NOOP("Colours strands by their simulation cost during playback. Red costs most, grey is at "
+                       "rest and costs nothing"),
+            drawEffectCost, 110};
 }
 
 }  // namespace hairloom::editor

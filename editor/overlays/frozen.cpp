@@ -22,7 +22,7 @@ void drawFrozen(const OverlayView& view, Marks& marks) {
 OverlayMode frozenOverlay() {
     return {"frozen",
             QT_TR_NOOP("Frozen"),
-            QT_TR_NOOP("Hair that brushes do not touch, in the blue of ice"),
+            QT_TR_NOOP("Shows hair that brushes do not affect, in ice blue"),
             drawFrozen,
             35,
             {"freeze"}};

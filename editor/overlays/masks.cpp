@@ -38,7 +38,7 @@ void drawMasks(const OverlayView& view, Marks& marks) {
 OverlayMode masksOverlay() {
     return {"masks",
             QT_TR_NOOP("Masks"),
-            QT_TR_NOOP("Where operators act, as painted: masks 1 to 4 in red, green, blue and yellow"),
+            QT_TR_NOOP("Shows the painted operator masks 1 to 4 in red, green, blue and yellow"),
             drawMasks,
             105,
             {"mask_paint"}};

@@ -29,7 +29,8 @@ void drawPenetration(const OverlayView& view, Marks& marks) {
 
 OverlayMode penetrationOverlay() {
     return {"penetration", QT_TR_NOOP("Penetration"),
-            QT_TR_NOOP("Points inside a sphere: the redder the deeper"), drawPenetration, 80};
+            QT_TR_NOOP("Shows points inside a sphere. A deeper red is a deeper penetration"), drawPenetration,
+            80};
 }
 
 }  // namespace hairloom::editor

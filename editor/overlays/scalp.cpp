@@ -21,7 +21,7 @@ void drawScalp(const OverlayView& view, Marks& marks) {
 OverlayMode scalpOverlay() {
     return {"scalp",
             QT_TR_NOOP("Scalp"),
-            QT_TR_NOOP("Tints the faces that carry hair"),
+            QT_TR_NOOP("Tints the faces where hair grows"),
             drawScalp,
             10,
             {"scalp_paint", "scalp_box", "scalp_lasso"}};

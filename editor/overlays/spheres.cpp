@@ -22,8 +22,7 @@ void drawSpheres(const OverlayView& view, Marks& marks) {
 }
 
 OverlayMode spheresOverlay() {
-    return {"spheres", QT_TR_NOOP("Spheres"), QT_TR_NOOP("The spheres that strands collide with"),
-            drawSpheres, 50};
+    return {"spheres", QT_TR_NOOP("Spheres"), QT_TR_NOOP("Shows the collision spheres"), drawSpheres, 50};
 }
 
 }  // namespace hairloom::editor

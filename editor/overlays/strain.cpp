@@ -25,7 +25,7 @@ void drawStrain(const OverlayView& view, Marks& marks) {
 
 OverlayMode strainOverlay() {
     return {"strain", QT_TR_NOOP("Strain"),
-            QT_TR_NOOP("Segments by how far they are stretched: green as authored, red by 1 % and more"),
+            QT_TR_NOOP("Colours segments by stretch. Green is the authored length, red is 1 % or more"),
             drawStrain, 70};
 }
 

@@ -21,8 +21,8 @@ void drawTriangulation(const OverlayView& view, Marks& marks) {
 
 OverlayMode triangulationOverlay() {
     return {"triangulation", QT_TR_NOOP("Root triangles"),
-            QT_TR_NOOP("The triangles between roots that follow hairs are blended in"), drawTriangulation,
-            40};
+            QT_TR_NOOP("Shows the triangles between roots in which follow hairs are interpolated"),
+            drawTriangulation, 40};
 }
 
 }  // namespace hairloom::editor

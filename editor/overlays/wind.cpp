@@ -38,8 +38,8 @@ void drawWind(const OverlayView& view, Marks& marks) {
 }
 
 OverlayMode windOverlay() {
-    return {"wind", QT_TR_NOOP("Wind"), QT_TR_NOOP("An arrow where the wind blows to; longer is stronger"),
-            drawWind, 120};
+    return {"wind", QT_TR_NOOP("Wind"),
+            QT_TR_NOOP("Shows wind direction as arrows. Longer arrows are stronger wind"), drawWind, 120};
 }
 
 }  // namespace hairloom::editor

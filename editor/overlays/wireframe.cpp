@@ -26,7 +26,8 @@ void drawWireframe(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode wireframeOverlay() {
-    return {"wireframe", QT_TR_NOOP("Wireframe"), QT_TR_NOOP("Edges of the head"), drawWireframe, 60};
+    return {"wireframe", QT_TR_NOOP("Wireframe"), QT_TR_NOOP("Shows the edges of the head mesh"),
+            drawWireframe, 60};
 }
 
 }  // namespace hairloom::editor

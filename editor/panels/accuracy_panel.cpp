@@ -54,10 +54,10 @@ class AccuracyPanel : public QWidget {
           words_(new QLabel),
           measure_(new QPushButton(tr("Measure"))),
           chosenWords_(new QLabel),
-          show_(new QPushButton(tr("Show in the view"))),
+          show_(new QPushButton(tr("Show in viewport"))),
           beside_(new QComboBox),
-          adopt_(new QPushButton(tr("Adopt"))),
-          worst_(new QPushButton(tr("Select the worst strands"))),
+          adopt_(new QPushButton(tr("Apply"))),
+          worst_(new QPushButton(tr("Select worst strands"))),
           view_(new RunView(parts, this)),
           pixels_(new NumberBox(0.01, 100, false)),
           milliseconds_(new NumberBox(0.01, 100, false)) {
@@ -70,36 +70,35 @@ class AccuracyPanel : public QWidget {
         layout->addWidget(measure_);
         addMeasures(*layout);
         layout->addWidget(plot_, 1);
-        addChoice(*layout, *pixels_, "accuracyPixels", tr("Cheapest within"), "px",
+        addChoice(*layout, *pixels_, "accuracyPixels", tr("Fastest within"), "px",
                   tr("Cheapest settings within this error in the view"));
         addChoice(*layout, *milliseconds_, "accuracyMs", tr("Most accurate within"), "ms",
                   tr("Most accurate settings within this frame time"));
         adopt_->setObjectName("accuracyAdopt");
         adopt_->setToolTip(
-            tr("Gives the document these settings, undoably. Another number of points makes the "
-               "hair as it is all there is: operators are gone"));
+            tr("Applies these settings to the document. You can undo this. A different number of points "
+               "bakes the operators"));
         measure_->setObjectName("accuracyMeasure");
         measure_->setToolTip(
-            tr("Runs this hair at a grid of settings, in the motion of the view or a nod, beside "
-               "a reference in double precision; half a minute or so"));
+            tr("Simulates this hair with a grid of settings and compares each with a reference in double "
+               "precision. Uses the motion of the viewport or a nod. Takes about half a minute"));
         chosenWords_->setObjectName("accuracyChosen");
         chosenWords_->setWordWrap(true);
         show_->setObjectName("accuracyShow");
         show_->setCheckable(true);
         show_->setToolTip(
-            tr("Plays the measured motion with these settings, over and over, without changing the document. "
-               "Over the hair lie the compared strands, from green, exact, to red, 5 px off; blue ones are "
-               "what they are shown beside"));
+            tr("Loops the measured motion with these settings and leaves the document unchanged. The "
+               "compared strands are drawn on top, from green (exact) to red (5 px error). Blue strands show "
+               "the comparison"));
         beside_->setObjectName("accuracyBeside");
-        beside_->addItems({tr("beside the reference"), tr("beside what takes as long"),
-                           tr("beside what is as exact"), tr("beside the document's setting")});
+        beside_->addItems({tr("vs. reference"), tr("vs. same frame time"), tr("vs. same error"),
+                           tr("vs. current settings")});
         beside_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
         beside_->setMinimumContentsLength(8);
         beside_->setToolTip(
-            tr("What the blue strands are: the truth, or another setting that takes as long, within a fifth, "
-               "and "
-               "differs most in its error; one that is as exact and differs most in its time; or the "
-               "document's"));
+            tr("What the blue strands show. Reference: the exact motion. Same frame time: within a fifth, "
+               "with the largest difference in error. Same error: with the largest difference in time. "
+               "Current settings: those of the document"));
         connect(beside_, &QComboBox::currentIndexChanged, this, [this] { choose(by_); });
         layout->addWidget(chosenWords_);
         layout->addWidget(parts_);
@@ -108,8 +107,7 @@ class AccuracyPanel : public QWidget {
         layout->addWidget(adopt_);
         worst_->setObjectName("accuracyWorst");
         worst_->setToolTip(
-            tr("Selects the twentieth of all strands that this setting takes farthest from where the most "
-               "exact one has them"));
+            tr("Selects the 5 % of strands where this setting differs most from the most accurate one"));
         connect(worst_, &QPushButton::clicked, this, &AccuracyPanel::selectWorst);
         layout->addWidget(worst_);
         pixels_->setValue(1);
@@ -170,7 +168,7 @@ class AccuracyPanel : public QWidget {
             measures_->setItemData(measures_->count() - 1, QString::fromUtf8(measure.meaning),
                                    Qt::ToolTipRole);
         }
-        measures_->setToolTip(tr("What the diagram shows upwards; less is better"));
+        measures_->setToolTip(tr("Error shown on the vertical axis. Lower is better"));
         connect(measures_, &QComboBox::currentIndexChanged, this, [this] { refresh(); });
         layout.addWidget(measures_);
     }
@@ -276,7 +274,7 @@ class AccuracyPanel : public QWidget {
         if (static_cast<Beside>(beside_->currentIndex()) == Beside::reference) return {};
         const auto other = beside();
         if (!other) return tr(" No matching measurement; the reference is shown in blue.");
-        return tr(" Beside it in blue: %1: %2.").arg(setting(*other), numbers(*other));
+        return tr(" Shown in blue: %1: %2.").arg(setting(*other), numbers(*other));
     }
 
     /// Those of all strands that the chosen setting, or that of the document, takes farthest from the most
@@ -285,7 +283,7 @@ class AccuracyPanel : public QWidget {
         const auto run = chosen_ ? chosen_ : runOf(*measured_, document_.groom());
         const auto best = mostExactWithinTime(*measured_, std::numeric_limits<double>::infinity());
         if (!run || !best || *run == *best || measured_->runs[*run].diverged)
-            return messages_.say(tr("Choose a setting that is not the most exact one"));
+            return messages_.say(tr("Choose a setting other than the most accurate one"));
         auto motion = player_.makeMeasuredMotion();
         if (!motion) return messages_.warn(errorText(motion.error()));
         const auto groom = std::make_shared<const Groom>(document_.groom());
@@ -305,9 +303,9 @@ class AccuracyPanel : public QWidget {
                 if (document_.groom().offsets.version() != groom->offsets.version()) return;
                 document_.perform(
                     editing::selectStrands(document_.editing().model(), strands, editing::Choice::Replace));
-                messages_.say(tr("%L1 strands are selected: the twentieth that is farthest from where the "
-                                 "most exact setting has it")
-                                  .arg(strands.size()));
+                messages_.say(
+                    tr("Selected %L1 strands: the 5 % that differ most from the most accurate setting")
+                        .arg(strands.size()));
             });
     }
 
@@ -316,7 +314,7 @@ class AccuracyPanel : public QWidget {
         const WorkPrecisionRun& run = measured_->runs[*chosen_];
         Groom groom = document_.groom();
         applyValues(measured_->options.axes, run.values, groom.simulation);
-        const std::string name = "Adopt " + describeRun(*measured_, *chosen_);
+        const std::string name = "Apply " + describeRun(*measured_, *chosen_);
         const auto points = findAxis(measured_->options.axes, kPointsAxis);
         adopting_ = true;
         if (points && run.values[*points] != maxPoints(groom)) {
@@ -343,16 +341,17 @@ class AccuracyPanel : public QWidget {
         const double pixels = (from.error.rmsMm - run.error.rmsMm) * pixelsPerMm();
         const double ms = (run.milliseconds.median - from.milliseconds.median) * timeScale();
         const QString nearer = QString::number(pixels, 'g', 2), time = QString::number(std::abs(ms), 'g', 2);
-        return ms > 0 ? tr("The next step, %1, buys %2 px for %3 ms.").arg(setting(to), nearer, time)
-                      : tr("%1 is nearer by %2 px, and %3 ms cheaper.").arg(setting(to), nearer, time);
+        return ms > 0 ? tr("The next step, %1, reduces the error by %2 px for %3 ms more.")
+                            .arg(setting(to), nearer, time)
+                      : tr("%1 is more accurate by %2 px and saves %3 ms.").arg(setting(to), nearer, time);
     }
 
     QString sentence() const {
-        if (document_.groom().strandCount() == 0) return tr("Place hair to see what its accuracy costs.");
+        if (document_.groom().strandCount() == 0) return tr("Place hair to measure its accuracy.");
         if (!measured_)
             return tr(
-                "How far is this hair from the truth, and what would be nearer? Measure it at other substeps "
-                "and points.");
+                "How accurate is this hair, and what would improve it? Measure it with other substeps and "
+                "points.");
         QString text;
         const auto now = runOf(*measured_, document_.groom());
         if (now) {
@@ -365,7 +364,7 @@ class AccuracyPanel : public QWidget {
             }
         }
         if (measured_->strands < measured_->groomStrands)
-            text += ' ' + tr("Times are those of %L1 strands in proportion.").arg(measured_->strands);
+            text += ' ' + tr("Times are scaled to all %L1 strands.").arg(measured_->strands);
         if (isOutdated()) text += ' ' + tr("Measured before the last change.");
         return text;
     }
@@ -418,13 +417,13 @@ class AccuracyPanel : public QWidget {
                                   tr("within %1 ms").arg(milliseconds_->value(), 0, 'g', 3)};
         const QString& limit = limits[static_cast<int>(by_)];
         if (!chosen_)
-            return by_ == Choice::click ? tr("Click a point, or set a limit")
-                                        : tr("Nothing that was tried is %1.").arg(limit);
-        const QString which = by_ == Choice::pixels         ? tr("Cheapest %1").arg(limit)
+            return by_ == Choice::click ? tr("Click a point or set a limit")
+                                        : tr("No measured setting is %1.").arg(limit);
+        const QString which = by_ == Choice::pixels         ? tr("Fastest %1").arg(limit)
                               : by_ == Choice::milliseconds ? tr("Most accurate %1").arg(limit)
                                                             : tr("Chosen");
         const QString has =
-            chosen_ == runOf(*measured_, document_.groom()) ? tr(" This hair has it.") : QString();
+            chosen_ == runOf(*measured_, document_.groom()) ? tr(" This is the current setting.") : QString();
         return tr("%1: %2: %3.").arg(which, setting(*chosen_), numbers(*chosen_)) + has + besideInWords();
     }
 

@@ -31,37 +31,37 @@ CardBox::CardBox(QtDocument& document, Messages& messages, ToolBox& tools)
     auto* form = new QFormLayout;
     form->setVerticalSpacing(6);
     width_->setObjectName("cardWidth");
-    width_->setToolTip(tr("Factor on the width of the card, 1 as its hair has it"));
+    width_->setToolTip(tr("Width of the card relative to the width of its hair"));
     bend_->setObjectName("cardBend");
     bend_->setToolTip(
-        tr("How far the edges of the card lie outwards beside its middle, as a share of half its "
-           "width; below 0 inwards, around the head"));
+        tr("How far the edges of the card bend outwards relative to half its width. Below 0 they bend "
+           "inwards, around the head"));
     form->addRow(tr("Width"), width_);
     form->addRow(tr("Bend"), bend_);
     layout->addLayout(form);
-    pick_ = pushButton("cardPick", tr("Pick"), tr("Takes the tool that picks cards in the view (Shift+K)"),
+    pick_ = pushButton("cardPick", tr("Pick"), tr("Activate the tool that picks cards in the view (Shift+K)"),
                        [this, &tools] { tools.activate(tool_); });
-    pin_ =
-        pushButton("cardPin", tr("Pin"),
-                   tr("The card stays where it is when levels are made anew, whatever "
-                      "its hair does"),
-                   [this] {
-                       change(QtDocument::nextMergeKey(),
-                              pin_->isChecked() ? tr("Pin card") : tr("Unpin card"), [this](CardEdit& edit) {
-                                  edit.strip.clear();
-                                  if (pin_->isChecked())
-                                      edit.strip = stationsOf(cards()->cards[*picked_].strip);
-                              });
+    pin_ = pushButton(
+        "cardPin", tr("Pin"),
+        tr("Keeps the card in place when levels are created again, whatever its hair does"), [this] {
+            change(QtDocument::nextMergeKey(), pin_->isChecked() ? tr("Pin card") : tr("Unpin card"),
+                   [this](CardEdit& edit) {
+                       edit.strip.clear();
+                       if (pin_->isChecked()) edit.strip = stationsOf(cards()->cards[*picked_].strip);
                    });
+        });
     pin_->setCheckable(true);
-    delete_ = pushButton("cardDelete", tr("Delete"), tr("No card stands for this hair any more"), [this] {
-        change(QtDocument::nextMergeKey(), tr("Delete card"), [](CardEdit& edit) { edit.deleted = true; });
-    });
-    forget_ = pushButton("cardForget", tr("Forget"), tr("Makes the card one like the others"),
+    delete_ =
+        pushButton("cardDelete", tr("Delete"), tr("Remove the card and leave its hair without one"), [this] {
+            change(QtDocument::nextMergeKey(), tr("Delete card"),
+                   [](CardEdit& edit) { edit.deleted = true; });
+        });
+    forget_ = pushButton("cardForget", tr("Reset"), tr("Resets the card to the shape of its hair"),
                          [this] { forget(false); });
-    forgetAll_ = pushButton("cardForgetAll", tr("Forget all"),
-                            tr("Makes all cards of this level like the others; deleted ones come back"),
-                            [this] { forget(true); });
+    forgetAll_ =
+        pushButton("cardForgetAll", tr("Reset all"),
+                   tr("Resets all cards of this level to the shape of their hair and restores deleted cards"),
+                   [this] { forget(true); });
     // In pairs they fit into a narrow panel.
     auto* buttons = new QGridLayout;
     int place = 0;
@@ -156,7 +156,7 @@ void CardBox::forget(bool all) {
     } else if (const auto index = editIndex()) {
         edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(*index));
     }
-    perform(QtDocument::nextMergeKey(), all ? tr("Forget cards by hand") : tr("Forget card by hand"), edits);
+    perform(QtDocument::nextMergeKey(), all ? tr("Reset cards") : tr("Reset card"), edits);
 }
 
 void CardBox::perform(quint64 key, const QString& name, const std::vector<CardEdit>& edits) {
@@ -187,7 +187,8 @@ void CardBox::refresh() {
         words_->setText(
             tr("Card %1, of %L2 hairs.").arg(*picked_ + 1).arg(cards()->cards[*picked_].strands.size()));
     } else {
-        words_->setText(tr("Pick a card in the view to shape it; it stays so when levels are made anew."));
+        words_->setText(
+            tr("Pick a card in the view to edit it. Your edits survive when levels are created again."));
     }
 }
 

@@ -22,8 +22,8 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
     words_->setWordWrap(true);
     certify_->setObjectName("certify");
     certify_->setToolTip(
-        tr("Tries a thousand random storms on this hair: how fast a head, how strong a wind and how long a "
-           "frame it withstands in a game; half a minute or so"));
+        tr("Tests this hair in a thousand random storms to find the head speed, wind and frame time that it "
+           "withstands in a game. Takes about half a minute"));
     layout->addWidget(words_);
     layout->addWidget(certify_);
     connect(certify_, &QPushButton::clicked, this, &CertificateBox::certify);
@@ -64,7 +64,7 @@ void CertificateBox::certify() {
 void CertificateBox::refresh() {
     certify_->setEnabled(document_.groom().strandCount() > 0);
     const QString age = triedChange_ != changes_ ? tr("Before the last change: ") : QString();
-    words_->setText(certificate_ ? tr("%1%2 Tried at %3.")
+    words_->setText(certificate_ ? tr("%1%2 Tested at %3.")
                                        .arg(age, QString::fromStdString(inWords(*certificate_)),
                                             QLocale().toString(triedAt_, QLocale::ShortFormat))
                                  : QString());

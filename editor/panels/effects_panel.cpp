@@ -43,7 +43,7 @@ class EffectsPanel : public QWidget {
           table_(new QTreeWidget),
           bars_(new CostBars(parts.preferences, table_)),
           note_(new QLabel),
-          measure_(new QPushButton(tr("Measure on and off"))),
+          measure_(new QPushButton(tr("Measure on/off"))),
           trial_(new QWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
@@ -87,11 +87,12 @@ class EffectsPanel : public QWidget {
   private:
     void makeBudget(QVBoxLayout& layout) {
         auto* row = new QHBoxLayout;
-        auto* words = new QLabel(tr("Budget of a frame"));
+        auto* words = new QLabel(tr("Frame budget"));
         words->setBuddy(budget_);
         budget_->setObjectName("effectsBudget");
-        budget_->setToolTip(tr(
-            "What the simulation may take of a frame: the line through the bars; what is beyond it is red"));
+        budget_->setToolTip(
+            tr("Simulation time that a frame may take, drawn as the line through the bars. Time beyond it is "
+               "red"));
         budget_->setShown(1, tr("ms"), 1);
         budget_->setValue(std::clamp(QSettings().value(kBudgetKey, kUsualBudget_ms).toDouble(), 0.1, 100.0));
         connect(budget_, &NumberBox::edited, this, [this](double milliseconds) {
@@ -124,8 +125,8 @@ class EffectsPanel : public QWidget {
     void makeMeasure() {
         measure_->setObjectName("effectsMeasure");
         measure_->setToolTip(
-            tr("Runs the hair with and without each effect, on the processor, and shows what each adds to a "
-               "frame: the only way to price effects that share one solve"));
+            tr("Runs the hair with and without each effect on the CPU and shows what each adds to a frame. "
+               "Effects that share one solve can only be measured this way"));
         connect(measure_, &QPushButton::clicked, this, &EffectsPanel::measure);
     }
 
@@ -175,18 +176,19 @@ class EffectsPanel : public QWidget {
             const Quartiles& ms = *cost->costMilliseconds;
             item.setText(kMs, lostInSpread(ms) ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
             item.setData(kMs, CostBars::kMilliseconds, std::max(ms.median, 0.0));
-            item.setToolTip(kMs,
-                            tr("%1 ms a frame with it, %2 without; half of the runs lie between %3 and %4")
-                                .arg(costs_->milliseconds.median, 0, 'f', 2)
-                                .arg(cost->millisecondsOff->median, 0, 'f', 2)
-                                .arg(ms.q1, 0, 'f', 3)
-                                .arg(ms.q3, 0, 'f', 3));
+            item.setToolTip(
+                kMs,
+                tr("%1 ms per frame with it, %2 without. The middle half of the runs is between %3 and %4")
+                    .arg(costs_->milliseconds.median, 0, 'f', 2)
+                    .arg(cost->millisecondsOff->median, 0, 'f', 2)
+                    .arg(ms.q1, 0, 'f', 3)
+                    .arg(ms.q3, 0, 'f', 3));
         } else if (measured && live > 0) {
             item.setText(kMs, QString::number(live, 'f', 3));
             item.setData(kMs, CostBars::kMilliseconds, live);
-            item.setToolTip(kMs, tr("Its share of the frame's time"));
+            item.setToolTip(kMs, tr("Share of the frame time"));
         } else if (measured) {
-            item.setToolTip(kMs, tr("Part of the strands' one solve; Measure on and off tells its price"));
+            item.setToolTip(kMs, tr("Part of the shared strand solve. Use Measure on/off to get its cost"));
         }
     }
 
@@ -215,7 +217,7 @@ class EffectsPanel : public QWidget {
         row->setContentsMargins(0, 0, 0, 0);
         auto* keep = new QPushButton(tr("Remove from document"));
         keep->setObjectName("effectsKeep");
-        keep->setToolTip(tr("Changes the document so that these effects are off; can be undone"));
+        keep->setToolTip(tr("Turns these effects off in the document. You can undo this"));
         auto* all = new QPushButton(tr("Re-enable all"));
         all->setObjectName("effectsAll");
         all->setToolTip(tr("Re-enable all effects"));
@@ -233,7 +235,7 @@ class EffectsPanel : public QWidget {
         }
         player_.setLeftOut({});
         document_.perform(
-            editing::setSettings(document_.editing().model(), groom, tr("Leave effects out").toStdString()));
+            editing::setSettings(document_.editing().model(), groom, tr("Disable effects").toStdString()));
     }
 
     void takeCheck(QTreeWidgetItem* item, int column) {
@@ -247,17 +249,17 @@ class EffectsPanel : public QWidget {
     }
 
     QString words(bool nothing) const {
-        if (nothing) return tr("Place hair to see what its simulation would run.");
+        if (nothing) return tr("Place hair to see which effects its simulation runs.");
         if (const EffectCosts* costs = this->costs()) {
             const QString age = costsChange_ != changes_ ? tr(" before the last change") : QString();
-            return tr("On and off, of %1 ms a frame on the processor, measured%2.")
+            return tr("Measured on and off, of %1 ms per frame on the CPU%2.")
                 .arg(costs->milliseconds.median, 0, 'f', 2)
                 .arg(age);
         }
         if (!player_.frame()) return tr("What will run. Press Play (Space) to see its cost.");
         const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu;
-        return onGpu ? tr("Live, on the GPU: one kernel moves the strands with all their effects")
-                     : tr("Live, on the processor: mean of the last half second");
+        return onGpu ? tr("Live, on the GPU: one kernel simulates the strands with all their effects")
+                     : tr("Live, on the CPU: mean of the last half second");
     }
 
     void refresh() {
@@ -296,7 +298,7 @@ class EffectsPanel : public QWidget {
             item.setData(kName, Qt::CheckStateRole, {});
         }
         item.setToolTip(kName, known ? tr("Uncheck to try the hair without it")
-                                     : tr("Follows from the hair's shape and speed"));
+                                     : tr("Depends on the shape and speed of the hair"));
         const QString none = QStringLiteral("–");
         showMilliseconds(item, effect, measured);
         item.setText(kMb,

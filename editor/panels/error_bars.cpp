@@ -26,14 +26,16 @@ ErrorBars::ErrorBars(const Preferences& preferences, QWidget* parent)
     setObjectName("accuracyParts");
     bars_[0].name = tr("Steps");
     bars_[0].meaning =
-        tr("from the same with up to %1 substeps; more substeps mend it").arg(kConvergedSubsteps);
+        tr("difference from the same setting with up to %1 substeps. Use more substeps to reduce it")
+            .arg(kConvergedSubsteps);
     bars_[1].name = tr("Points");
     bars_[1].meaning =
-        tr("from that to strands with twice the points of the finest that were tried; more points mend it");
+        tr("difference from strands with twice as many points as the finest measured setting. Use more "
+           "points to reduce it");
     bars_[2].name = tr("Model");
-    bars_[2].meaning =
-        tr("from the rod to the finest strands of this model: springs that sag, contact, single precision, "
-           "a head that is seen at the ends of frames only; neither steps nor points mend it");
+    bars_[2].meaning = tr(
+        "difference between the elastic rod and the finest strands of this model: stretching springs, "
+        "contact, single precision, a head sampled once per frame. More substeps or points do not reduce it");
     bars_[3].name = tr("Uncertainty");
     bars_[3].meaning = tr("of the reference (half the steps): smaller differences are noise");
 }

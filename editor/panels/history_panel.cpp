@@ -18,7 +18,7 @@ class HistoryPanel : public QWidget {
         list_->setObjectName("steps");
         list_->setToolTip(tr("Click a step, or Return, to go back or forward to it"));
         memory_->setProperty("role", "dim");
-        memory_->setToolTip(tr("Memory that undo holds; the oldest steps are forgotten beyond the bound"));
+        memory_->setToolTip(tr("Memory limit of the undo history. Beyond it, the oldest steps are deleted"));
         layout->addWidget(list_, 1);
         layout->addWidget(memory_);
         connect(list_, &QListWidget::itemClicked, this,
@@ -47,7 +47,7 @@ class HistoryPanel : public QWidget {
         }
         list_->setCurrentRow(document_.doneSteps());
         constexpr double kMega = 1 << 20;
-        memory_->setText(tr("Memory: %1 of at most %2 MB")
+        memory_->setText(tr("Memory: %1 of %2 MB")
                              .arg(static_cast<double>(document_.historyBytes()) / kMega, 0, 'f', 1)
                              .arg(static_cast<double>(document_.historyLimit()) / kMega, 0, 'f', 0));
     }

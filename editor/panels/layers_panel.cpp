@@ -28,31 +28,30 @@ class LayersPanel : public QWidget {
           preferences_(preferences),
           messages_(messages),
           list_(new QTreeWidget),
-          ownMaterial_(new QCheckBox(tr("Material of its own"))) {
+          ownMaterial_(new QCheckBox(tr("Own material"))) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
         makeList();
         layout->addWidget(list_);
         auto* first = new QHBoxLayout;
-        first->addWidget(pushButton("layerAdd", tr("Add"), tr("A new layer; selected strands move to it"),
-                                    [this] { add(); }));
+        first->addWidget(pushButton(
+            "layerAdd", tr("Add"), tr("Add a layer and move the selected strands to it"), [this] { add(); }));
         first->addWidget(pushButton("layerRemove", tr("Remove"),
-                                    tr("Takes the layer away; its strands go to the first of the others"),
+                                    tr("Remove the layer and move its strands to the first remaining one"),
                                     [this] { perform(editing::removeLayer(model(), chosen())); }));
-        first->addWidget(pushButton("layerSolo", tr("Solo"), tr("Shows this layer alone; again: all of them"),
-                                    [this] { solo(); }));
+        first->addWidget(pushButton("layerSolo", tr("Solo"),
+                                    tr("Show only this layer. Click again to show all"), [this] { solo(); }));
         layout->addLayout(first);
         auto* second = new QHBoxLayout;
         second->addWidget(pushButton("layerSelect", tr("Select strands"),
-                                     tr("Selects the strands of the layer"), [this] { select(); }));
+                                     tr("Select the strands of this layer"), [this] { select(); }));
         second->addWidget(
-            pushButton("layerMove", tr("Move here"), tr("Puts the selected strands on the layer"),
+            pushButton("layerMove", tr("Move here"), tr("Move the selected strands to this layer"),
                        [this] { perform(editing::moveToLayer(model(), selected(), chosen())); }));
         layout->addLayout(second);
         ownMaterial_->setObjectName("layerOwnMaterial");
-        ownMaterial_->setToolTip(
-            tr("Colour, thickness and light of the layer's hair apart from those of the hairstyle"));
+        ownMaterial_->setToolTip(tr("Gives the layer its own colour, thickness and shading"));
         connect(ownMaterial_, &QCheckBox::clicked, this, &LayersPanel::giveMaterial);
         settings_ = new QVBoxLayout;
         layout->addLayout(settings_);
@@ -88,8 +87,8 @@ class LayersPanel : public QWidget {
         for (const int column : {kVisible, kLocked, kStrands})
             list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
         list_->setToolTip(
-            tr("Strands that are shown, locked, operated on and exported together. Double-click a name to "
-               "change it; the region of an operator can name a layer."));
+            tr("Show, lock, edit and export strands together. Double-click a name to rename a layer. The "
+               "region of an operator can select a layer."));
     }
 
     void giveMaterial(bool own) {
@@ -137,7 +136,7 @@ class LayersPanel : public QWidget {
         }
         settings_->addWidget(new FieldForm(document_, preferences_, pick(layerMaterialFields(layer), most)));
         settings_->addWidget(
-            collapsible(tr("More of the material"), new FieldForm(document_, preferences_, others), false));
+            collapsible(tr("More material settings"), new FieldForm(document_, preferences_, others), false));
     }
 
     void perform(Result<std::unique_ptr<editing::Command>> command) {

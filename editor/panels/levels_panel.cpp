@@ -62,17 +62,17 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     table_->setRootIsDecorated(false);
     table_->setHeaderLabels({tr("Level"), tr("Cards"), tr("Tri."), tr("MB"), tr("m"), tr("Cov."), tr("Light"),
                              tr("FLIP"), tr("Step")});
-    table_->setToolTip(tr(
-        "Cards, triangles and memory of each level, the distance from which on it serves, and how far it is "
-        "from all strands there: coverage and light of its hair as a share of theirs, FLIP the difference "
-        "that people see, 0 none. Step: by how much light changes at most, in %, when it takes over from the "
-        "level before and on the way to the next. Click a level to see it"));
+    table_->setToolTip(
+        tr("Cards, triangles and memory of each level, and the distance at which it starts. Compared with "
+           "all strands at that distance: coverage and light as a share, and FLIP, the visible difference, "
+           "where 0 is none. Step: the largest change in light, in %, when the level replaces the one before "
+           "it or on the way to the next. Click a level to see it"));
     table_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->header()->setMinimumSectionSize(24);
     table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
     layout->addWidget(table_);
     plot_->setObjectName("levelsPlot");
-    plot_->setAxes(tr("triangles"), {}, tr("FLIP to all strands"));
+    plot_->setAxes(tr("triangles"), {}, tr("FLIP vs. all strands"));
     layout->addWidget(plot_);
     layout->addWidget(makeLook(parts));
     connect(table_, &QTreeWidget::currentItemChanged, this, &LevelsPanel::showChosen);
@@ -111,33 +111,35 @@ QWidget* LevelsPanel::makeBudget() {
     form->setVerticalSpacing(6);
     layout->addLayout(form);
     const LevelBudget standard;
-    cards_ = addBudget(*form, "levelCards", tr("Cards"),
-                       tr("Cards of the nearest level, at most; the next have half and a quarter of them"), 1,
-                       1000, standard.cards);
+    cards_ = addBudget(
+        *form, "levelCards", tr("Cards"),
+        tr("Maximum number of cards in the nearest level. The next levels have a half and a quarter of them"),
+        1, 1000, standard.cards);
     textures_ = addBudget(*form, "levelTextures", tr("Textures"),
-                          tr("Textures of a level, at most; cards that look alike share one"), 1, 128,
-                          standard.chain.textures);
+                          tr("Maximum number of textures in a level. Cards that look alike share one"), 1,
+                          128, standard.chain.textures);
     segments_ = addBudget(*form, "levelSegments", tr("Segments"),
-                          tr("Segments of a card, at most; fewer where a third of a pixel needs no more"), 1,
-                          24, standard.chain.segments);
+                          tr("Maximum number of segments per card. A card has fewer if they would not change "
+                             "its outline by a third of a pixel"),
+                          1, 24, standard.chain.segments);
     distance_ = new NumberBox(cards::distanceOf(512), cards::distanceOf(16), false);
     distance_->setObjectName("levelDistance");
     distance_->setShown(1, tr("m"), 2);
     distance_->setValue(cards::distanceOf(standard.headPx));
-    distance_->setToolTip(tr(
-        "Metres from which on the nearest cards serve, in a picture of 1080 lines and 40°; each level after "
-        "it serves from twice as far. Distances at which a head is 512, 256 … 16 pixels high"));
+    distance_->setToolTip(
+        tr("Distance in metres at which the nearest cards start, in an image of 1080 lines and 40° field of "
+           "view. Each further level starts at twice that distance. The choices are distances where a head "
+           "is 512, 256 … 16 pixels high"));
     form->addRow(tr("From"), distance_);
     connect(distance_, &NumberBox::edited, this,
             [this](double metres) { distance_->setValue(cards::distanceOf(headPxAt(metres))); });
     auto* row = new QHBoxLayout;
-    make_ =
-        pushButton("levelsMake", tr("Make"),
-                   tr("Makes the chain and holds each level against all strands; a minute or two for a full "
-                      "head of hair. The status line stops it"),
-                   [this] { make(); });
+    make_ = pushButton("levelsMake", tr("Create"),
+                       tr("Creates the levels and compares each with all strands. Takes one or two minutes "
+                          "for a full head of hair. You can cancel it in the status line"),
+                       [this] { make(); });
     export_ = pushButton("levelsExport", tr("Export glTF…"),
-                         tr("Writes cards and shell as they are shown, with textures, joints and springs"),
+                         tr("Export the cards and the shell as shown, with textures, joints and springs"),
                          [this] { choosePath(); });
     row->addWidget(make_);
     row->addWidget(export_);
@@ -150,10 +152,10 @@ QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
     auto* layout = new QVBoxLayout(look_);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(8);
-    over_ = new QCheckBox(tr("Cards over the strands"));
+    over_ = new QCheckBox(tr("Cards over strands"));
     over_->setObjectName("levelOver");
-    over_->setToolTip(
-        tr("Shows the cards of the level in the viewport, each in a colour, while the hair is at rest"));
+    over_->setToolTip(tr(
+        "Draws the cards of this level in the viewport, each in its own colour, while the hair is at rest"));
     connect(over_, &QCheckBox::toggled, this, [this] { viewport_.redraw(); });
     layout->addWidget(over_);
     card_ = new CardBox(document_, messages_, parts.tools);
@@ -173,14 +175,14 @@ QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
     layout->addWidget(viewWords_);
     view_ = new LevelView;
     view_->setObjectName("levelView");
-    view_->setToolTip(tr("All strands left of the line, the level right of it; drag the line"));
+    view_->setToolTip(tr("All strands on the left, the level on the right. Drag the line to move the split"));
     layout->addWidget(view_);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(6);
     direction_ = new NumberBox(1, 4, true);
     direction_->setObjectName("levelDirection");
     direction_->setValue(1);
-    direction_->setToolTip(tr("From before, from the left, from behind, from the right"));
+    direction_->setToolTip(tr("View from the front, left, back or right"));
     connect(direction_, &NumberBox::edited, this, &LevelsPanel::showChosen);
     form->addRow(tr("Side"), direction_);
     layout->addLayout(form);
@@ -188,13 +190,13 @@ QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
     map_ = new QComboBox;
     map_->setObjectName("levelMap");
     map_->setToolTip(
-        tr("Colour: albedo and coverage. Shape: flow, depth, ambient occlusion. Normal. Strand: "
-           "root to tip, number of the strand"));
+        tr("Colour: albedo and coverage. Shape: flow, depth, ambient occlusion. Normal. Strand: root to tip, "
+           "strand number"));
     connect(map_, &QComboBox::currentIndexChanged, this, &LevelsPanel::showTexture);
     layout->addWidget(map_);
     texture_ = new QLabel;
     texture_->setObjectName("levelTexture");
-    texture_->setToolTip(tr("The atlas of the level; cards that look alike share a place"));
+    texture_->setToolTip(tr("The texture atlas of the level. Cards that look alike share a region"));
     layout->addWidget(texture_);
     return look_;
 }
@@ -211,7 +213,7 @@ LevelBudget LevelsPanel::budget() const {
 void LevelsPanel::make() {
     const auto groom = std::make_shared<const Groom>(document_.groom());
     tasks_.run<MadeLevels>(
-        tr("Making levels"),
+        tr("Creating levels"),
         [groom, budget = budget()](TaskControl& control) { return makeShownLevels(*groom, budget, control); },
         [this, document = documents_, change = changes_](MadeLevels made) {
             if (document != documents_) return;
@@ -236,11 +238,11 @@ void LevelsPanel::exportTo(const QString& path) {
         return messages_.warn(errorText(written.error()));
     const QString size =
         locale().formattedDataSize(static_cast<qint64>(file.bytes.size()), 1, QLocale::DataSizeSIFormat);
-    QString words = tr("%1 written: %2 levels, %3")
+    QString words = tr("Exported %1: %2 levels, %3")
                         .arg(QFileInfo(path).fileName())
                         .arg(file.report.levels.size())
                         .arg(size);
-    if (madeAt_ != changes_) words += "; " + tr("as it was made before the last change");
+    if (madeAt_ != changes_) words += "; " + tr("as created before the last change");
     const auto warning = std::ranges::find(file.report.findings, Severity::Warning, &Finding::severity);
     if (warning == file.report.findings.end()) return messages_.say(words);
     messages_.warn(words + "; " + QString::fromStdString(warning->what));
@@ -254,15 +256,15 @@ void LevelsPanel::noteChange(editing::Part changed) {
 }
 
 QString LevelsPanel::sentence() const {
-    if (document_.groom().strandCount() == 0) return tr("Place hair to make levels of it.");
+    if (document_.groom().strandCount() == 0) return tr("Place hair to create levels of detail.");
     if (!made_)
         return tr(
-            "What stands for this hair farther away: fewer strands, cards, a shell, each held against all "
-            "strands at its distance.");
-    QString text = tr("Of %L1 hairs in %2 s.").arg(made_->strands).arg(made_->seconds, 0, 'f', 1);
+            "Replacements for this hair at a distance: fewer strands, cards and a shell. Each is compared "
+            "with all strands at its distance.");
+    QString text = tr("For %L1 hairs in %2 s.").arg(made_->strands).arg(made_->seconds, 0, 'f', 1);
     for (const Finding& finding : made_->file.report.findings)
         if (finding.where == kCardEditsPlace) text += ' ' + QString::fromStdString(finding.what) + '.';
-    if (madeAt_ != changes_) text += ' ' + tr("The hair has changed since: make them anew.");
+    if (madeAt_ != changes_) text += ' ' + tr("The hair has changed: create the levels again.");
     return text;
 }
 

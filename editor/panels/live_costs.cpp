@@ -18,7 +18,8 @@ void LiveCosts::add(const PlayedFrame& frame) {
     const std::uint64_t frames = frame.pose->onDevice ? 1 : stats.frames;
     const auto count = static_cast<double>(frames);
     Sums sums{frames, stats.millisecondsPerFrame * count, {}};
-    for (const EffectReport& effect : stats.effects) sums.effects[effect.name] = effect.milliseconds.value_or(0) * count;
+    for (const EffectReport& effect : stats.effects)
+        sums.effects[effect.name] = effect.milliseconds.value_or(0) * count;
     if (frame.pose->onDevice) return show(sums);
     const bool isFirst = from_.frames == 0;
     const std::uint64_t since = frames - std::min(frames, from_.frames);

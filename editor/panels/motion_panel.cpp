@@ -27,7 +27,8 @@ class MotionPanel : public QWidget {
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
         motion_->setObjectName("motion");
-        motion_->setToolTip(tr("How the head moves: at rest, a nod, a spin, or a clip of the character"));
+        motion_->setToolTip(
+            tr("Motion of the head: at rest, a nod, a spin, or an animation clip of the character"));
         layout->addWidget(motion_);
         auto* row = new QHBoxLayout;
         const auto add = [&](const char* name, const char* iconName, const QString& text,
@@ -38,9 +39,10 @@ class MotionPanel : public QWidget {
             row->addWidget(made);
             return made;
         };
-        auto* play = add("motionPlay", "play", tr("Play"), tr("Lets the hair move, or stops it (Space)"));
-        auto* step = add("motionStep", "step", tr("Step"), tr("One frame of 1/60 s"));
-        auto* reset = add("motionReset", "reset", tr("Reset"), tr("Hair back to its authored shape"));
+        auto* play = add("motionPlay", "play", tr("Play"), tr("Play or pause the simulation (Space)"));
+        auto* step = add("motionStep", "step", tr("Step"), tr("Advance by one frame of 1/60 s"));
+        auto* reset = add("motionReset", "reset", tr("Reset the hair to its authored shape"),
+                          tr("Hair back to its authored shape"));
         layout->addLayout(row);
         state_->setObjectName("motionState");
         state_->setTextFormat(Qt::RichText);
@@ -93,8 +95,8 @@ class MotionPanel : public QWidget {
             row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
             row(tr("Frame"), tr("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
             row(tr("Maximum stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
-            row(tr("Deepest in a sphere"), lengthText(1e-3 * stats.maxPenetrationMm, preferences_)) +
-            row(tr("Reset to rest"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
+            row(tr("Deepest penetration"), lengthText(1e-3 * stats.maxPenetrationMm, preferences_)) +
+            row(tr("Strands reset"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
     }
 
     const Preferences& preferences_;

@@ -51,14 +51,14 @@ class OperatorsPanel : public QWidget {
         auto* first = new QHBoxLayout;
         first->addWidget(makeAddButton());
         first->addWidget(pushButton("operatorBake", tr("Bake"),
-                                    tr("Makes the hair as it is all there is; the operators are gone"),
+                                    tr("Apply all operators permanently and clear the stack"),
                                     [this] { perform(editing::bakeOperators(model()), kNone); }));
         layout->addLayout(first);
         list_->setObjectName("operators");
         list_->setMinimumHeight(150);
         list_->setToolTip(
-            tr("What makes the hair out of its base shape, from the first on; unchecked ones do "
-               "nothing. Brush strokes go to a sculpt at the end."));
+            tr("Operators that build the hair from its base shape, in order from the top. Clear a checkbox "
+               "to mute an operator. Brush strokes go into a Sculpt operator at the end."));
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         list_->installEventFilter(this);
         layout->addWidget(list_);
@@ -145,7 +145,7 @@ class OperatorsPanel : public QWidget {
     QWidget* makeAddButton() {
         auto* add = new QPushButton(tr("Add"));
         add->setObjectName("operatorAdd");
-        add->setToolTip(tr("Adds an operator behind the chosen one"));
+        add->setToolTip(tr("Add an operator after the selected one"));
         auto* menu = new QMenu(add);
         menu->setToolTipsVisible(true);
         QString last;
@@ -178,23 +178,23 @@ class OperatorsPanel : public QWidget {
                            if (chosen() != kNone)
                                perform(editing::removeOperator(model(), chosen()), chosen());
                        }),
-            pushButton("operatorSolo", tr("Solo"), tr("Lets it act alone; again: all of them"),
+            pushButton("operatorSolo", tr("Solo"), tr("Apply only this operator. Click again to apply all"),
                        [this] {
                            if (chosen() != kNone) perform(editing::soloOperator(model(), chosen()), chosen());
                        }),
-            pushButton("operatorCopy", tr("Duplicate"), tr("Adds the same again behind it"),
+            pushButton("operatorCopy", tr("Duplicate"), tr("Duplicate the operator"),
                        [this] {
                            if (chosen() != kNone)
                                perform(editing::copyOperator(model(), chosen()), chosen() + 1);
                        }),
             makePresetsButton(),
             pushButton("operatorClip", tr("Copy"),
-                       tr("Puts the operator on the clipboard, for another project"),
+                       tr("Copy the operator to the clipboard, also for other projects"),
                        [this] {
                            if (chosen() != kNone) copy();
                        }),
             pushButton("operatorPaste", tr("Paste"),
-                       tr("Adds what is on the clipboard behind the chosen one"), [this] { paste(); })};
+                       tr("Paste operators from the clipboard after the selected one"), [this] { paste(); })};
         auto* grid = new QGridLayout;
         constexpr int kColumns = 3;
         for (int i = 0; i < static_cast<int>(std::size(buttons)); ++i)
@@ -245,7 +245,7 @@ class OperatorsPanel : public QWidget {
             shown->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
             shown->setIconSize({kThumbnail_px, kThumbnail_px});
             shown->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-            shown->setToolTip(tr("Adds its operators behind the chosen one"));
+            shown->setToolTip(tr("Adds these operators after the selected one"));
             if (const auto file = stackPresetFile(folderOfStacks(), name))
                 shown->setIcon(QIcon(QString::fromStdString(pictureOf(*file).string())));
             action->setDefaultWidget(shown);
@@ -296,7 +296,7 @@ class OperatorsPanel : public QWidget {
         layout->setContentsMargins(0, 0, 0, 0);
         layout->addWidget(new QLabel(tr("Curve")));
         layout->addWidget(pushButton("curveDraw", tr("Draw"),
-                                     tr("Takes the pen: draw over the head, or click point by point"),
+                                     tr("Draw over the head with the pen, or click point by point"),
                                      [this, index] {
                                          auto* tool = dynamic_cast<CurveTool*>(tools_.find("curve"));
                                          if (!tool) return;
@@ -304,7 +304,8 @@ class OperatorsPanel : public QWidget {
                                          tools_.activate(tool);
                                      }));
         layout->addWidget(pushButton(
-            "curveClear", tr("Clear"), tr("Without a curve the operator does nothing"), [this, index] {
+            "curveClear", tr("Clear"), tr("Delete the curve. Without a curve the operator has no effect"),
+            [this, index] {
                 if (index >= operators().size()) return;
                 Operator changed = operators()[index];
                 setCurveOf(changed, {});
@@ -421,8 +422,8 @@ class OperatorsPanel : public QWidget {
             new FieldForm(document_, preferences_, operatorMaskFields(document_.groom(), index, failed)));
         rows->addWidget(imageButton(
             "maskImage", tr("Mask from image…"),
-            tr("Fills the painted mask that the operator has with the values of a PNG at the root UVs; where "
-               "it has none of the four, the first that nothing uses, which it then has"),
+            tr("Fills the painted mask of the operator with the values of a PNG at the root UVs. If the "
+               "operator has no mask, it gets the first unused one"),
             [this, index](const MaskImage& image) { return takeMask(index, image); }, failed));
         rows->addWidget(new MaskRamp(document_, index, failed));
         rows->addWidget(new FormulaEdit(document_, index));

@@ -51,8 +51,8 @@ QWidget* makePresets(QtDocument& document) {
     auto* box = new QComboBox;
     box->setObjectName("preset");
     box->setToolTip(
-        QObject::tr("Stiffness, cross-section and colour of measured hair; settings of motion stay"));
-    box->addItem(QObject::tr("Preset of measured hair…"));
+        QObject::tr("Stiffness, cross-section and colour of measured hair. Motion settings do not change"));
+    box->addItem(QObject::tr("Measured hair preset…"));
     for (const runtime::HairPreset& preset : runtime::presets()) {
         box->addItem(labelOf(preset.name));
         box->setItemData(box->count() - 1, QString::fromUtf8(preset.description), Qt::ToolTipRole);
@@ -70,14 +70,15 @@ QWidget* makePresets(QtDocument& document) {
 }
 
 QWidget* makeHoldButton(QtDocument& document) {
-    auto* button = new QPushButton(QObject::tr("Hold this shape under gravity"));
+    auto* button = new QPushButton(QObject::tr("Keep shape under gravity"));
     button->setObjectName("hold-shape");
-    button->setToolTip(QObject::tr(
-        "Makes strands rods whose rest shape carries their weight: the hair hangs as it is drawn"));
+    button->setToolTip(
+        QObject::tr("Turns strands into rods whose rest shape already carries their weight, so the hair "
+                    "keeps the shape you drew"));
     QObject::connect(button, &QPushButton::clicked, button, [&document] {
         document.perform(editing::setPhysics(document.editing().model(),
                                              holdingItsShape(document.groom()).simulation,
-                                             QObject::tr("Hold shape under gravity").toStdString()));
+                                             QObject::tr("Keep shape under gravity").toStdString()));
     });
     return button;
 }
@@ -86,17 +87,17 @@ QWidget* makeHoldButton(QtDocument& document) {
 QWidget* makeMethods(Player& player) {
     auto* box = new QComboBox;
     box->setObjectName("play-method");
-    box->setToolTip(QObject::tr(
-        "What moves the hair while it plays here. Files and games take the strand engine: the others "
-        "are for a look at what they cost and lose"));
+    box->setToolTip(
+        QObject::tr("Method that simulates hair during playback here. Exported files and games use the "
+                    "strand engine. Try the others to compare their cost and accuracy"));
     const std::pair<QString, SimulationMethod> methods[] = {
         {QObject::tr("Strand engine (rods or springs)"), SimulationMethod::strands},
         {QObject::tr("Projective equations"), SimulationMethod::projective},
         {QObject::tr("Lattice, for distant hair"), SimulationMethod::lattice}};
     for (const auto& [name, method] : methods) box->addItem(name, static_cast<int>(method));
-    auto* hairs = new QCheckBox(QObject::tr("Hair against hair"));
+    auto* hairs = new QCheckBox(QObject::tr("Hair-hair collision"));
     hairs->setObjectName("play-hair-hair");
-    hairs->setToolTip(QObject::tr("Hair pushes hair apart through a volume between frames, on the CPU"));
+    hairs->setToolTip(QObject::tr("Keeps hair apart with a volume between frames, on the CPU"));
     const auto choose = [&player, box, hairs] {
         const auto method = static_cast<SimulationMethod>(box->currentData().toInt());
         const bool takesVelocities = method == SimulationMethod::strands;
@@ -121,7 +122,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
     layout->insertWidget(layout->count() - 1,
-                         collapsible(QObject::tr("While it plays"), makeMethods(player), false));
+                         collapsible(QObject::tr("During playback"), makeMethods(player), false));
     // Fields that the engine has gained since.
     QStringList others;
     for (const Field& field : fields) {

@@ -34,7 +34,7 @@ class ScalpPanel : public QWidget {
         area_->setProperty("role", "dim");
         area_->setWordWrap(true);
         groups_->setObjectName("scalpGroup");
-        groups_->setToolTip(tr("Takes all faces of a group or material of the head's file"));
+        groups_->setToolTip(tr("Selects all faces of a group or material of the head file"));
         connect(groups_, &QComboBox::activated, this, [this](int index) {
             if (index > 0) select(groups_->itemData(index).toString());
             groups_->setCurrentIndex(0);
@@ -42,10 +42,9 @@ class ScalpPanel : public QWidget {
         expression_->setObjectName("scalpExpression");
         expression_->setPlaceholderText(tr("cap:70, above:0.5 …"));
         expression_->setToolTip(
-            tr("Chooses faces in words, then Enter: all, group:NAME, material:NAME, cap:DEGREES "
-               "(leaning at most so far from up), above:SHARE of the height, grow:N, shrink:N, invert, "
-               "connected. A "
-               "comma means and."));
+            tr("Select faces by expression, then press Enter: all, group:NAME, material:NAME, cap:DEGREES "
+               "(faces that lean up to this angle from up), above:SHARE of the height, grow:N, shrink:N, "
+               "invert, connected. A comma combines terms."));
         connect(expression_, &QLineEdit::returnPressed, this, [this] { select(expression_->text()); });
         layout->addWidget(groups_);
         layout->addWidget(expression_);
@@ -80,7 +79,7 @@ class ScalpPanel : public QWidget {
         add("scalpSymmetric", tr("Mirror"), tr("Mirror selection"), [this] {
             return editing::symmetricFaces(mesh(), *document_.editing().surface(), groom().scalpSelection);
         });
-        add("scalpConnected", tr("Largest"), tr("Keeps the largest connected piece only"), [this] {
+        add("scalpConnected", tr("Largest"), tr("Keep only the largest connected piece"), [this] {
             const auto pieces = connectedPieces(mesh(), groom().scalpSelection);
             return pieces.empty() ? FaceSet() : pieces.front();
         });
@@ -114,7 +113,7 @@ class ScalpPanel : public QWidget {
             return;
         }
         const FaceSet& faces = groom().scalpSelection;
-        area_->setText(faces.empty() ? tr("No faces yet: paint them (P), or choose a group.")
+        area_->setText(faces.empty() ? tr("No faces selected: paint them (P) or choose a group.")
                                      : tr("%L1 faces, %2 cm²")
                                            .arg(faces.size())
                                            .arg(selectionArea(mesh(), faces) * 1e4, 0, 'f', 0));
@@ -154,21 +153,21 @@ class PlacePanel : public QWidget {
         auto* preview = new QPushButton(tr("Preview roots"));
         preview->setObjectName("placePreview");
         preview->setCheckable(true);
-        preview->setToolTip(tr("Shows where roots would go, and follows the settings"));
+        preview->setToolTip(tr("Shows where roots will be placed and updates as you change settings"));
         auto* place = new QPushButton(tr("Place hair"));
         place->setObjectName("place");
-        place->setToolTip(tr("Grows strands on the whole scalp, in place of those that are there"));
+        place->setToolTip(tr("Grows strands on the whole scalp and replaces the existing ones"));
         auto* row = new QHBoxLayout;
         row->addWidget(preview);
         row->addWidget(place);
         layout->addLayout(row);
         layout->addWidget(imageButton(
             "densityImage", tr("Density from image…"),
-            tr("Takes the density of roots from a PNG at the UVs of the head's vertices; hair is placed by "
-               "it "
-               "next time"),
+            tr("Reads the root density from a PNG at the UVs of the head's vertices. The next Place hair "
+               "uses it"),
             [this](const MaskImage& image) -> Status {
-                if (!document_.groom().scalp) return fail("there is no head to take densities", "open one");
+                if (!document_.groom().scalp)
+                    return fail("there is no head to apply densities to", "open one");
                 const auto values = valuesAtVertices(image, *document_.groom().scalp);
                 if (!values) return tl::unexpected(values.error());
                 document_.perform(editing::setDensity(document_.editing().model(), *values));
@@ -227,7 +226,7 @@ class PlacePanel : public QWidget {
              selection = document_.groom().scalpSelection](const Command& command) {
                 const Groom& groom = document_.groom();
                 if (groom.offsets.version() != strandsBefore || groom.scalpSelection != selection) {
-                    messages_.warn(tr("The hair has changed meanwhile; place it again"));
+                    messages_.warn(tr("The hair has changed in the meantime: place it again"));
                     return;
                 }
                 document_.perform(std::move(*command));

@@ -45,17 +45,17 @@ class SpheresPanel : public QWidget {
         list_->setMinimumHeight(200);
         list_->header()->resizeSection(0, 130);
         list_->header()->resizeSection(1, 80);
-        list_->setToolTip(tr("The spheres that hair collides with"));
+        list_->setToolTip(tr("Spheres that hair collides with"));
         layout->addWidget(list_, 1);
 
         auto* row = new QHBoxLayout;
         row->addWidget(pushButton("sphereMirror", tr("Mirror"),
-                                  tr("Adds the sphere again on the other side of the head"), [this] {
+                                  tr("Add a copy of the sphere on the other side of the head"), [this] {
                                       onSelected([](const editing::Model& model, std::size_t index) {
                                           return editing::mirrorSphere(model, index);
                                       });
                                   }));
-        row->addWidget(pushButton("sphereRemove", tr("Remove"), tr("Takes the sphere away"), [this] {
+        row->addWidget(pushButton("sphereRemove", tr("Remove"), tr("Remove the sphere"), [this] {
             onSelected([](const editing::Model& model, std::size_t index) {
                 return editing::removeSphere(model, index);
             });
@@ -63,16 +63,16 @@ class SpheresPanel : public QWidget {
         layout->addLayout(row);
         makeNumbers(*layout);
 
-        layout->addWidget(heading(tr("Fit to the head")));
+        layout->addWidget(heading(tr("Fit to head")));
         auto* fitRow = new QHBoxLayout;
         count_->setObjectName("sphereCount");
         count_->setRange(1, 64);
         count_->setValue(12);
         count_->setSuffix(tr(" spheres"));
-        count_->setToolTip(tr("Number of spheres; more lie closer to the skin and cost more"));
+        count_->setToolTip(tr("Number of spheres. More spheres fit closer to the skin and cost more"));
         auto* fit = pushButton("sphereFit", tr("Fit"),
-                               tr("Replaces the spheres by ones that cover head, neck and shoulders where "
-                                  "hair comes near; those of groups to collide with stay"),
+                               tr("Replaces the spheres with ones that cover head, neck and shoulders near "
+                                  "the hair. Spheres of colliding groups stay"),
                                [this] { this->fit(); });
         fitRow->addWidget(count_, 1);
         fitRow->addWidget(fit);
@@ -104,7 +104,7 @@ class SpheresPanel : public QWidget {
     void makeNumbers(QVBoxLayout& layout) {
         numbers_ = new OptionForm(preferences_);
         numbers_->addNumber(
-            "selectedRadius", tr("Radius"), tr("Radius of the chosen sphere"), "m", 0.001, 0.5, false,
+            "selectedRadius", tr("Radius"), tr("Radius of the selected sphere"), "m", 0.001, 0.5, false,
             [this] { return selected() ? static_cast<double>(spheres()[*selected()].radius) : 0.001; },
             [this](double radius) {
                 onSelected([radius](const editing::Model& model, std::size_t index) {
@@ -112,7 +112,7 @@ class SpheresPanel : public QWidget {
                 });
             });
         bone_->setObjectName("sphereBone");
-        bone_->setToolTip(tr("Bone that carries the sphere; without one it moves with the head as a whole"));
+        bone_->setToolTip(tr("Bone that carries the sphere. Without one it moves with the head"));
         connect(bone_, &QComboBox::activated, this, [this](int index) {
             const std::string bone = index == 0 ? std::string() : bone_->itemText(index).toStdString();
             onSelected([bone](const editing::Model& model, std::size_t at) {
@@ -133,7 +133,7 @@ class SpheresPanel : public QWidget {
     void onSelected(MakeCommand make) {
         const auto index = selected();
         if (!index) {
-            messages_.say(tr("Choose a sphere in the list first"));
+            messages_.say(tr("Select a sphere in the list first"));
             return;
         }
         document_.perform(make(document_.editing().model(), *index));
@@ -194,7 +194,7 @@ class SpheresPanel : public QWidget {
                 const auto length = [this](float metres) {
                     return lengthText(static_cast<double>(metres), preferences_);
                 };
-                fit_->setText(tr("Worst gap %1, mean %2; farthest bulge %3")
+                fit_->setText(tr("Worst gap %1, mean %2; largest bulge %3")
                                   .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
                 auto all = editing::spheresOfParts(spheres());
                 all.insert(all.end(), fit.spheres.begin(), fit.spheres.end());

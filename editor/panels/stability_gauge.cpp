@@ -41,7 +41,8 @@ StabilityGauge::StabilityGauge(QtDocument& document, const Preferences& preferen
     bar_->setRange(0, 100);
     bar_->setTextVisible(false);
     bar_->setFixedHeight(10);
-    bar_->setToolTip(tr("Margin to the longest stable step: empty is where the simulation would explode"));
+    bar_->setToolTip(
+        tr("Margin to the longest stable time step. When empty, the simulation is about to explode"));
     words_->setWordWrap(true);
     words_->setProperty("role", "dim");
     layout->addWidget(bar_);
@@ -93,11 +94,12 @@ void StabilityGauge::update() {
                                                                     : colours.good;
     bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));
     words_->setText(!advice_.words.empty() ? QString::fromStdString(advice_.words)
-                    : factor > 0 ? tr("Stable: at %1 % of the longest step").arg(100 * factor, 0, 'f', 0)
-                                 : tr("Stable at any step: nothing stiff is left explicit"));
+                    : factor > 0
+                        ? tr("Stable: at %1 % of the longest stable step").arg(100 * factor, 0, 'f', 0)
+                        : tr("Stable at any step: all stiff forces are implicit"));
     for (const runtime::StableOffer& offer : advice_.offers) {
         auto* button = new QPushButton(QString::fromStdString(offer.words));
-        button->setToolTip(tr("Changes the settings to these, undoably"));
+        button->setToolTip(tr("Applies these settings. You can undo this"));
         offers_->addWidget(button);
         connect(button, &QPushButton::clicked, this, [this, settings = offer.settings] {
             document_.perform(editing::setPhysics(document_.editing().model(), settings,

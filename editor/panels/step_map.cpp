@@ -112,8 +112,8 @@ bool StepMap::event(QEvent* event) {
     const std::size_t at =
         std::min(static_cast<std::size_t>(std::max(help->pos().y() / rowHeight(), 0)), rows_.size() - 1);
     const StableStep& row = rows_[at];
-    QString words = tr("%1, by linear theory around the shape at rest").arg(wordsOf(row));
-    if (row.isOfGroom) words += tr("; the hair has %1").arg(milliseconds(step_));
+    QString words = tr("%1, by linear theory around the rest shape").arg(wordsOf(row));
+    if (row.isOfGroom) words += tr(", while the hair has %1").arg(milliseconds(step_));
     QToolTip::showText(help->globalPos(), words, this);
     return true;
 }

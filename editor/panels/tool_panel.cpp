@@ -18,11 +18,10 @@ QWidget* makePages(ToolBox& tools) {
         text->setWordWrap(true);
         return options ? column({heading(title), text, options}) : column({heading(title), text});
     };
-    pages->addWidget(
-        page(QObject::tr("Move the view"),
-             QObject::tr("Drag turns the view, the middle button moves it, the wheel zooms. Choose a tool at "
-                         "the left to change something."),
-             nullptr));
+    pages->addWidget(page(QObject::tr("Navigate"),
+                          QObject::tr("Drag to orbit, drag with the middle button to pan, scroll to zoom. "
+                                      "Choose a tool on the left to edit."),
+                          nullptr));
     QHash<Tool*, QWidget*> pageOf;
     for (const auto& tool : tools.all()) {
         QWidget* const made = page(tool->info().name, tool->info().tip, tool->makeOptions());

@@ -34,8 +34,8 @@ QToolButton* overlayButton(const Actions& actions) {
     button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     button->setPopupMode(QToolButton::InstantPopup);
     button->setToolTip(
-        QObject::tr("What is drawn over the picture: roots, guides, strain … Some come with their tools: "
-                    "density while it is painted, say"));
+        QObject::tr("Overlays drawn on the viewport, such as roots, guides and strain. Some appear with "
+                    "their tool, for example density while you paint it"));
     auto* menu = new QMenu(button);
     menu->setToolTipsVisible(true);
     button->setMenu(menu);
@@ -56,8 +56,8 @@ QWidget* makeParts(const Actions& actions, Viewport& viewport) {
     auto* layout = new QHBoxLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(14);
-    auto* hair = check("hair", QObject::tr("Hair"), QObject::tr("Shows the hair"), true);
-    auto* head = check("head", QObject::tr("Head"), QObject::tr("Shows the head"), true);
+    auto* hair = check("hair", QObject::tr("Hair"), QObject::tr("Show the hair"), true);
+    auto* head = check("head", QObject::tr("Head"), QObject::tr("Show the head"), true);
     QObject::connect(hair, &QCheckBox::toggled, &viewport, &Viewport::setHairShown);
     QObject::connect(head, &QCheckBox::toggled, &viewport, &Viewport::setHeadShown);
     layout->addWidget(hair);
@@ -83,18 +83,18 @@ QWidget* makeLight(Viewport& viewport) {
         layout->addRow(label, box);
         return box;
     };
-    number("lightTurn", QObject::tr("Turn light"),
-           QObject::tr("Degrees by which the three lights are turned about the head"), {-180, 180}, 0,
+    number("lightTurn", QObject::tr("Light angle"),
+           QObject::tr("Rotates the three lights around the head, in degrees"), {-180, 180}, 0,
            [&viewport](float degrees) { viewport.setLightTurn(degrees); })
         ->setShown(1, QStringLiteral("°"), 0);
     number("exposure", QObject::tr("Exposure"),
-           QObject::tr("Factor on the brightness of the picture; 1.6 shows skin as it is"), {0.2, 6}, 1.6,
+           QObject::tr("Brightness of the image. 1.6 shows skin as it is"), {0.2, 6}, 1.6,
            [&viewport](float factor) { viewport.setExposure(factor); });
     number("lightScale", QObject::tr("Lights"),
-           QObject::tr("Factor on the key, fill and rim light; 1 as they come"), {0, 3}, 1,
+           QObject::tr("Strength of the key, fill and rim lights. 1 is the default"), {0, 3}, 1,
            [&viewport](float factor) { viewport.setLight(factor, viewport.environment()); });
     number("environment", QObject::tr("Environment"),
-           QObject::tr("Factor on the light from all around; 0 leaves the lights alone"), {0, 3}, 1,
+           QObject::tr("Strength of the environment light. 0 leaves only the lights"), {0, 3}, 1,
            [&viewport](float factor) { viewport.setLight(viewport.lightScale(), factor); });
     return widget;
 }
@@ -107,10 +107,10 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
     auto* row = new QHBoxLayout;
     auto* choose = new QPushButton(QObject::tr("Choose…"));
     choose->setObjectName("referenceChoose");
-    choose->setToolTip(QObject::tr("A picture behind the head, to groom after: PNG, JPEG"));
+    choose->setToolTip(QObject::tr("A reference image behind the head: PNG, JPEG"));
     auto* clear = new QPushButton(QObject::tr("Remove"));
     clear->setObjectName("referenceClear");
-    clear->setToolTip(QObject::tr("Takes the picture away"));
+    clear->setToolTip(QObject::tr("Remove the reference image"));
     clear->setEnabled(false);
     row->addWidget(choose);
     row->addWidget(clear);
@@ -118,7 +118,7 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
     auto* opacity = new NumberBox(0, 1, false);
     opacity->setObjectName("referenceOpacity");
     opacity->setValue(1);
-    opacity->setToolTip(QObject::tr("0 hides the picture, 1 shows it as it is"));
+    opacity->setToolTip(QObject::tr("Opacity of the reference image"));
     opacity->setEnabled(false);
     layout->addWidget(opacity);
     const auto show = [&viewport, opacity, clear](const QImage& image) {
@@ -127,12 +127,12 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
         clear->setEnabled(!image.isNull());
     };
     QObject::connect(choose, &QPushButton::clicked, widget, [&messages, widget, show] {
-        const QString path = QFileDialog::getOpenFileName(widget, QObject::tr("Reference picture"), {},
-                                                          QObject::tr("Pictures (*.png *.jpg *.jpeg *.bmp)"));
+        const QString path = QFileDialog::getOpenFileName(widget, QObject::tr("Reference image"), {},
+                                                          QObject::tr("Images (*.png *.jpg *.jpeg *.bmp)"));
         if (path.isEmpty()) return;
         const QImage image(path);
         if (image.isNull()) {
-            messages.warn(QObject::tr("%1 is no picture that can be read").arg(path));
+            messages.warn(QObject::tr("%1 cannot be read as an image").arg(path));
         } else {
             show(image);
         }
@@ -156,7 +156,7 @@ PanelInfo viewPanel() {
         [](const PanelParts& parts) -> QWidget* {
             return scrolled(column({heading(QObject::tr("Show")), makeParts(parts.actions, parts.viewport),
                                     heading(QObject::tr("Light")), makeLight(parts.viewport),
-                                    heading(QObject::tr("Reference picture")),
+                                    heading(QObject::tr("Reference image")),
                                     makeReference(parts.viewport, parts.messages)}));
         }};
 }

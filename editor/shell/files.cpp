@@ -53,7 +53,7 @@ Result<DocumentFiles::Opened> DocumentFiles::readHead(const std::string& path,
     opened.groom.spheres = std::move(head->colliders.spheres);
     QStringList notes;
     if (!opened.groom.spheres.empty()) {
-        notes += QObject::tr("Hair will collide with %n spheres beside it", nullptr,
+        notes += QObject::tr("Hair will collide with %n separate spheres", nullptr,
                              static_cast<int>(opened.groom.spheres.size()));
     }
     if (!scene.warnings.empty()) notes += QString::fromStdString(scene.warnings.front());
@@ -96,7 +96,7 @@ void DocumentFiles::show(Opened opened, const QString& path, const QString& name
     player_.setActor(std::move(opened.actor));
     const Groom& groom = document_.groom();
     const QString what = groom.strandCount() > 0 ? QObject::tr("%L1 strands").arg(groom.strandCount())
-                                                 : QObject::tr("a head; paint its scalp next");
+                                                 : QObject::tr("a head. Next, paint its scalp");
     messages_.say(opened.note.isEmpty() ? QObject::tr("%1: %2").arg(name, what)
                                         : QObject::tr("%1: %2. %3").arg(name, what, opened.note));
 }
@@ -130,9 +130,9 @@ FileKind kindOf(const QString& path) {
 QString openFilter() {
     const QString project = "*.hairloom", heads = patternsOf(meshFormats()),
                   hair = patternsOf(strandFormats());
-    return QObject::
-        tr("Everything that opens (%1 %2 %3);;Hairloom projects (%1);;Heads (%2);;Hair (%3);;All files (*)")
-            .arg(project, heads, hair);
+    return QObject::tr(
+               "All supported files (%1 %2 %3);;Hairloom projects (%1);;Heads (%2);;Hair (%3);;All files (*)")
+        .arg(project, heads, hair);
 }
 
 QString strandFilter() {
@@ -262,7 +262,7 @@ void DocumentFiles::importStrands(const QString& path, const StrandImportOptions
             if (!groom.scalp) {
                 show(std::move(opened), {}, name);
             } else if (groom.scalp != head || groom.scalpSelection != selection) {
-                messages_.warn(QObject::tr("The scalp has changed meanwhile; import the hair again"));
+                messages_.warn(QObject::tr("The scalp has changed in the meantime: import the hair again"));
                 return;
             } else {
                 replaceHair(groom, opened.groom);
@@ -291,7 +291,7 @@ void DocumentFiles::transferTo(const QString& path) {
             if (!done) return tl::unexpected(done.error());
             opened.record = transferRecord(file, done->taken);
             opened.farthest = *std::ranges::max_element(done->transfer.distances);
-            if (done->transfer.baked) opened.note = QObject::tr("; operators are baked");
+            if (done->transfer.baked) opened.note = QObject::tr(". Operators were baked");
             for (const std::string& word : done->words) opened.note += "; " + QString::fromStdString(word);
             return opened;
         },
@@ -299,7 +299,7 @@ void DocumentFiles::transferTo(const QString& path) {
             const Groom& now = document_.groom();
             if (now.scalp != before.scalp || now.pointAttributes.version(attribute::kPosition) !=
                                                  before.pointAttributes.version(attribute::kPosition))
-                return messages_.warn(QObject::tr("The hair has changed meanwhile; transfer it again"));
+                return messages_.warn(QObject::tr("The hair has changed in the meantime: transfer it again"));
             document_.perform(editing::replaceGroom(document_.editing().model(), std::move(opened.groom),
                                                     QObject::tr("Transfer to %1").arg(name).toStdString(),
                                                     opened.record));
@@ -324,7 +324,7 @@ void DocumentFiles::openRecovered(const RecoveryCopy& copy) {
             document_.restore(std::move(opened.groom), QString::fromStdString(copy.of.project.string()),
                               name);
             player_.setActor(std::move(opened.actor));
-            messages_.say(QObject::tr("%1 is back as it was; save it to keep it").arg(name));
+            messages_.say(QObject::tr("%1 is recovered. Save it to keep it").arg(name));
             recovered_ = copy;
         });
 }

@@ -58,13 +58,12 @@ void MainWindow::addFileActions() {
     const auto add = [&](const ActionInfo& info, std::function<void()> run) {
         menu->addAction(&actions_->add(info, std::move(run)));
     };
-    add({"file.new", tr("&New"), "new", tr("Closes the document and shows the start page"),
-         QKeySequence::New},
+    add({"file.new", tr("&New"), "new", tr("Close the document and show the start page"), QKeySequence::New},
         [this] { newDocument(); });
-    add({"file.open", tr("&Open…"), "open", tr("Opens a project, a head or hair"), QKeySequence::Open},
+    add({"file.open", tr("&Open…"), "open", tr("Open a project, a head or hair"), QKeySequence::Open},
         [this] { chooseAndOpen(); });
     add({"file.openHead", tr("Open &head…"), "",
-         tr("Opens a head after a look at its size, its unit, its axis and its groups"),
+         tr("Check the size, unit, axis and groups of a head before you open it"),
          QKeySequence("Ctrl+Shift+O")},
         [this] {
             const QString path = QFileDialog::getOpenFileName(this, tr("Open a head"), {}, headFilter());
@@ -73,8 +72,8 @@ void MainWindow::addFileActions() {
     recentMenu_ = menu->addMenu(icon("history"), tr("Open &recent"));
     recentMenu_->setToolTipsVisible(true);
     menu->addSeparator();
-    add({"file.save", tr("&Save"), "save", tr("Writes the project"), QKeySequence::Save}, [this] { save(); });
-    add({"file.saveAs", tr("Save &as…"), "", tr("Writes the project to another file"),
+    add({"file.save", tr("&Save"), "save", tr("Save the project"), QKeySequence::Save}, [this] { save(); });
+    add({"file.saveAs", tr("Save &as…"), "", tr("Save the project to another file"),
          QKeySequence("Ctrl+Shift+S")},
         [this] { saveAs(); });
     add({"file.revert",
@@ -88,17 +87,17 @@ void MainWindow::addFileActions() {
     add({"file.saveScript",
          tr("Save s&cript…"),
          "",
-         tr("Writes the steps since the document was opened, for hairloom-cli groom to repeat"),
+         tr("Save your steps since the document was opened, for hairloom-cli groom to replay"),
          {}},
         [this] { chooseAndSaveScript(); });
     menu->addSeparator();
     add({"file.import", tr("&Import hair…"), "import",
-         tr("Takes strands of another program onto the head, after a look at them"), QKeySequence("Ctrl+I")},
+         tr("Preview strands from another program and import them onto the head"), QKeySequence("Ctrl+I")},
         [this] { chooseAndImport(); });
     add({"file.transfer",
          tr("&Transfer to another head…"),
          "",
-         tr("Puts the hairstyle on the head of a file, sized and placed as that is"),
+         tr("Fit the hairstyle to the size and position of another head"),
          {}},
         [this] {
             const QString path =
@@ -106,14 +105,13 @@ void MainWindow::addFileActions() {
             if (!path.isEmpty()) files_.transferTo(path);
         });
     add({"file.export", tr("&Export hair…"), "export",
-         tr("Writes the hair for a game and reads it back to compare"), QKeySequence("Ctrl+E")},
+         tr("Export the hair for a game, then read it back and compare"), QKeySequence("Ctrl+E")},
         [this] {
             ExportDialog dialog(document_, preferences_, tasks_, messages_, player_, this);
             if (dialog.exec() == ExportDialog::kWantsClustering) chooseGuidesByClustering();
         });
     menu->addSeparator();
-    add({"file.quit", tr("&Quit"), "", tr("Leaves the program"), QKeySequence("Ctrl+Q")},
-        [this] { close(); });
+    add({"file.quit", tr("&Quit"), "", tr("Quit Hairloom"), QKeySequence("Ctrl+Q")}, [this] { close(); });
 }
 
 void MainWindow::addEditActions() {
@@ -142,7 +140,7 @@ void MainWindow::addEditActions() {
     connect(&document_, &QtDocument::replaced, this, enable);
     enable();
     menu->addSeparator();
-    add({"edit.preferences", tr("&Preferences…"), "settings", tr("Theme, units, mouse, pen, autosave"),
+    add({"edit.preferences", tr("&Preferences…"), "settings", tr("Theme, units, navigation, pen, autosave"),
          QKeySequence("Ctrl+,")},
         [this] {
             PreferencesDialog dialog(preferences_, this);
@@ -151,7 +149,7 @@ void MainWindow::addEditActions() {
     add({"edit.shortcuts",
          tr("&Keyboard shortcuts…"),
          "keyboard",
-         tr("Shows and changes the keys of all commands"),
+         tr("Show and change keyboard shortcuts"),
          {}},
         [this] {
             ShortcutDialog dialog(*actions_, this);
@@ -167,10 +165,10 @@ void MainWindow::addViewActions() {
         menu->addAction(&action);
         return action;
     };
-    add({"view.frame", tr("&Frame all"), "frame", tr("Shows all of the hair"), QKeySequence("Home")},
+    add({"view.frame", tr("&Frame all"), "frame", tr("Frame all hair"), QKeySequence("Home")},
         [this] { viewport_->frameAll(); });
     add({"view.frameSelection", tr("Frame s&election"), "",
-         tr("Shows the selected strands; where none is, the selected part of the head"),
+         tr("Frame the selected strands, or the selected part of the head if no strand is selected"),
          QKeySequence("Shift+Home")},
         [this] { frameSelection(); });
     const struct {
@@ -186,28 +184,24 @@ void MainWindow::addViewActions() {
         {"view.threeQuarter", QT_TR_NOOP("Three &quarters"), "0", render::View::ThreeQuarter},
     };
     for (const auto& view : kViews) {
-        add({view.id, tr(view.text), "", tr("Looks at the head from this side"), QKeySequence(view.key)},
+        add({view.id, tr(view.text), "", tr("View the head from this side"), QKeySequence(view.key)},
             [this, at = view.view] { viewport_->look(at); });
     }
     menu->addSeparator();
     QAction& ortho = add({"view.orthographic", tr("&Orthographic"), "ortho",
-                          tr("Takes perspective out of the view"), QKeySequence("5"), true},
+                          tr("Switch between perspective and orthographic"), QKeySequence("5"), true},
                          [] {});
     connect(&ortho, &QAction::toggled, viewport_, &Viewport::setOrthographic);
     QAction& turntable = add({"view.turntable", tr("&Turntable"), "turntable",
-                              tr("Turns the view about the head"), QKeySequence("Shift+T"), true},
+                              tr("Rotate the view around the head"), QKeySequence("Shift+T"), true},
                              [] {});
     connect(&turntable, &QAction::toggled, viewport_, &Viewport::setTurntable);
     menu->addSeparator();
     addOverlayActions(*menu);
     panelMenu_ = menu->addMenu(tr("&Panels"));
-    add({"view.resetLayout",
-         tr("Reset la&yout"),
-         "",
-         tr("Puts all panels back to where they were first"),
-         {}},
+    add({"view.resetLayout", tr("Reset la&yout"), "", tr("Restore the default panel layout"), {}},
         [this] { resetLayout(); });
-    add({"view.theme", tr("Light or &dark"), "theme", tr("Changes between the two themes"),
+    add({"view.theme", tr("Light or &dark"), "theme", tr("Switch between the two themes"),
          QKeySequence("Ctrl+T")},
         [this] {
             Preferences& preferences = preferences_;
@@ -244,18 +238,20 @@ void MainWindow::addPlayActions() {
         menu->addAction(&action);
         return action;
     };
-    QAction& toggle = add({"play.toggle", tr("&Play"), "play",
-                           tr("Lets the hair move, or stops it where it is"), QKeySequence("Space")},
-                          [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
-    add({"play.step", tr("&Step"), "step", tr("Moves the hair by one frame of 1/60 s"), QKeySequence(".")},
+    QAction& toggle =
+        add({"play.toggle", tr("&Play"), "play", tr("Play or pause the simulation"), QKeySequence("Space")},
+            [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
+    add({"play.step", tr("&Step"), "step", tr("Advance the simulation by one frame of 1/60 s"),
+         QKeySequence(".")},
         [this] { player_.step(); });
-    add({"play.reset", tr("&Reset to rest"), "reset", tr("Puts the hair back to its authored shape"),
+    add({"play.reset", tr("&Reset to rest"), "reset", tr("Reset the hair to its authored shape"),
          QKeySequence("Shift+Space")},
         [this] { player_.reset(); });
     add({"play.take",
-         tr("&Take this shape"),
+         tr("Set as rest s&hape"),
          "grow",
-         tr("Makes the hair as it is now its authored shape, on the head at rest; it holds under gravity"),
+         tr("Makes the current hair the authored shape on the head at rest. It keeps this shape under "
+            "gravity"),
          {}},
         [this] { takeShape(); });
     connect(&player_, &Player::stateChanged, this, [this, &toggle] {
@@ -268,11 +264,11 @@ void MainWindow::takeShape() {
     player_.pause();
     const auto frame = player_.frame();
     if (!frame) {
-        messages_.say(tr("Let the hair move first: the shape that it has now is the authored one"));
+        messages_.say(tr("Play the simulation first: its current shape becomes the rest shape"));
         return;
     }
     if (frame->pose->positions_ws.size() != document_.groom().pointCount()) {
-        messages_.warn(tr("This frame is on the graphics card alone; let the CPU simulate (Motion panel)"));
+        messages_.warn(tr("This frame is only on the GPU. Set the simulation to CPU (Edit ▸ Preferences)"));
         return;
     }
     const std::vector<Vec3f> shape =
@@ -284,7 +280,7 @@ void MainWindow::takeShape() {
     }
     player_.reset();
     document_.perform(std::move(*command));
-    messages_.say(tr("The hair keeps this shape"));
+    messages_.say(tr("The current shape is now the rest shape"));
 }
 
 void MainWindow::addToolActions() {
@@ -299,7 +295,7 @@ void MainWindow::addToolActions() {
                 [&action, tool](Tool* active) { action.setChecked(active == tool); });
     };
     add({"tool.view", tr("Move the view"), "navigate",
-         tr("Drag turns the view, the middle button moves it, the wheel zooms"), QKeySequence("Q"), true},
+         tr("Drag to orbit, drag with the middle button to pan, scroll to zoom"), QKeySequence("Q"), true},
         nullptr);
     for (const auto& tool : tools_.all()) {
         const ToolInfo& info = tool->info();

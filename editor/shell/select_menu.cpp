@@ -30,15 +30,15 @@ void MainWindow::chooseGuidesByClustering() {
     const Groom& groom = document_.groom();
     const std::vector<std::uint32_t> strands = strandsToEdit(groom, {});
     if (strands.size() < 2) {
-        messages_.say(tr("There are no strands to choose among"));
+        messages_.say(tr("There are no strands to choose from"));
         return;
     }
     bool taken = false;
     GuidesSettings settings;
-    settings.count = static_cast<std::uint32_t>(
-        QInputDialog::getInt(this, tr("Guides by clustering"), tr("Guides of %1 strands").arg(strands.size()),
-                             std::min<int>(200, static_cast<int>(strands.size() / 2)), 1,
-                             static_cast<int>(strands.size()), 1, &taken));
+    settings.count = static_cast<std::uint32_t>(QInputDialog::getInt(
+        this, tr("Cluster guides"), tr("Number of guides for %1 strands").arg(strands.size()),
+        std::min<int>(200, static_cast<int>(strands.size() / 2)), 1, static_cast<int>(strands.size()), 1,
+        &taken));
     if (!taken) return;
     const GuideClusters clusters = clusterGuides(groom, strands, settings);
     Groom guided = groom;
@@ -48,8 +48,8 @@ void MainWindow::chooseGuidesByClustering() {
     }
     const std::string record = fmt::format(R"({{"op":"guides","count":{}}})", settings.count);
     document_.perform(editing::replaceGroom(document_.editing().model(), std::move(guided),
-                                            tr("Guides by clustering").toStdString(), record));
-    messages_.say(tr("%1 guides stand for %2 strands, which are %3 from them on average, %4 at most")
+                                            tr("Cluster guides").toStdString(), record));
+    messages_.say(tr("%1 guides represent %2 strands, with a mean distance of %3 and at most %4")
                       .arg(clusters.guides.size())
                       .arg(strands.size())
                       .arg(lengthText(1e-3 * clusters.meanMm, preferences_),
@@ -75,21 +75,20 @@ void MainWindow::addSelectActions() {
     };
     using editing::Choice;
     add(
-        {"select.all", tr("&All strands"), "", tr("Selects every strand"), QKeySequence("Ctrl+A")},
+        {"select.all", tr("&All strands"), "", tr("Select all strands"), QKeySequence("Ctrl+A")},
         [](const editing::Model& model, const Strands&) {
             return editing::selectStrands(model, editing::allStrands(model.groom), Choice::Replace);
         },
         false);
     add(
-        {"select.none", tr("&None"), "", tr("Selects no strand: brushes touch all of them again"),
+        {"select.none", tr("&None"), "", tr("Deselect all strands, so that brushes affect all of them"),
          QKeySequence("Ctrl+Shift+A")},
         [](const editing::Model& model, const Strands&) {
             return editing::selectStrands(model, {}, Choice::Replace);
         },
         false);
     add(
-        {"select.invert", tr("&Invert"), "", tr("Selects the strands that are not selected"),
-         QKeySequence("Ctrl+Shift+I")},
+        {"select.invert", tr("&Invert"), "", tr("Invert the selection"), QKeySequence("Ctrl+Shift+I")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::selectStrands(model, others(model.groom, selected), Choice::Replace);
         },
@@ -99,49 +98,48 @@ void MainWindow::addSelectActions() {
     connect(groupMenu_, &QMenu::aboutToShow, this, &MainWindow::fillGroupMenu);
     menu->addSeparator();
     add(
-        {"select.hide", tr("&Hide selected"), "", tr("Hides the selected strands; brushes do not touch them"),
-         QKeySequence("Ctrl+H")},
+        {"select.hide", tr("&Hide selected"), "",
+         tr("Hide the selected strands and protect them from brushes"), QKeySequence("Ctrl+H")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::hideStrands(model, selected);
         },
         true);
     add(
-        {"select.hideOthers", tr("Hide &others"), "", tr("Hides all strands but the selected ones"),
+        {"select.hideOthers", tr("Hide &others"), "", tr("Hide all strands that are not selected"),
          QKeySequence("Ctrl+Shift+H")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::hideStrands(model, others(model.groom, selected));
         },
         true);
     add(
-        {"select.show", tr("&Show all"), "", tr("Shows the strands that were hidden"),
-         QKeySequence("Ctrl+Alt+H")},
+        {"select.show", tr("&Show all"), "", tr("Show all hidden strands"), QKeySequence("Ctrl+Alt+H")},
         [](const editing::Model& model, const Strands&) { return editing::showStrands(model); }, false);
     menu->addSeparator();
     add(
         {"select.freeze",
          tr("&Freeze selected"),
          "freeze",
-         tr("Keeps brushes from touching the selected strands"),
+         tr("Protect the selected strands from brushes"),
          {}},
         [](const editing::Model& model, const Strands& selected) {
             return editing::freezeStrands(model, selected, true);
         },
         true);
     add(
-        {"select.thaw", tr("&Thaw all"), "", tr("Lets brushes touch all strands again"), {}},
+        {"select.thaw", tr("&Thaw all"), "", tr("Let brushes affect all strands again"), {}},
         [](const editing::Model& model, const Strands&) {
             return editing::freezeStrands(model, editing::allStrands(model.groom), false);
         },
         false);
     menu->addAction(
         &actions_->add({"select.guides",
-                        tr("G&uides by clustering…"),
+                        tr("&Cluster guides…"),
                         "",
                         tr("Keeps few strands that stand for all; interpolated hairs come from them"),
                         {}},
                        [this] { chooseGuidesByClustering(); }));
     add(
-        {"select.delete", tr("&Delete selected"), "delete", tr("Removes the selected strands"),
+        {"select.delete", tr("&Delete selected"), "delete", tr("Delete the selected strands"),
          QKeySequence("Del")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::deleteStrands(model, selected);
@@ -156,7 +154,7 @@ void MainWindow::fillGroupMenu() {
         const std::vector<std::uint32_t> strands = editing::strandsOfGroup(groom, g);
         QAction* action = groupMenu_->addAction(
             tr("%1 (%L2 strands)").arg(QString::fromStdString(groom.groupNames[g])).arg(strands.size()));
-        action->setToolTip(tr("Selects the strands of this group"));
+        action->setToolTip(tr("Select the strands of this group"));
         connect(action, &QAction::triggered, this, [this, g] {
             const editing::Model& model = document_.editing().model();
             document_.perform(editing::selectStrands(model, editing::strandsOfGroup(model.groom, g),

@@ -78,10 +78,9 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     page->addSpacing(8);
     page->addLayout(recoveries_);
 
-    auto* open =
-        card(tr("Open a head, hair or project…"), "open",
-             tr("Meshes: OBJ, PLY, STL, FBX, glTF. Hair: .hair, .tfx, OBJ lines, Cinema 4D. Or drop a file "
-                "anywhere in this window."));
+    auto* open = card(tr("Open a head, hair or project…"), "open",
+                      tr("Meshes: OBJ, PLY, STL, FBX, glTF. Hair: .hair, .tfx, OBJ lines, Cinema 4D. You can "
+                         "also drop a file anywhere in this window."));
     open->setObjectName("open");
     connect(open, &QPushButton::clicked, this, &StartPage::openRequested);
     page->addWidget(open);
@@ -99,13 +98,13 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
         samples->addWidget(button, samples->count() / kColumns, samples->count() % kColumns);
     };
     if (folder.empty()) {
-        samples->addWidget(dim(tr("The samples were not found beside the program.")));
+        samples->addWidget(dim(tr("The samples folder was not found next to the program.")));
     } else {
         addSample({}, tr("Bare head"), tr("A bust with a skeleton and clips, no hair"));
         for (const std::string& name : sampleNames(folder)) {
             const QString sample = QString::fromStdString(name);
             addSample(sample, labelOf(sample),
-                      tr("Makes the hairstyle “%1” on the bust in a few seconds").arg(sample));
+                      tr("Creates the hairstyle “%1” on the bust in a few seconds").arg(sample));
         }
     }
     page->addWidget(heading(tr("Recent files")));
@@ -144,7 +143,7 @@ void StartPage::fillRecoveries() {
         layout->setContentsMargins(0, 0, 0, 0);
         QString title =
             tr("Unsaved work: %1, %2").arg(QString::fromStdString(copy.of.name), timeText(copy.when));
-        QString tip = tr("Brings back what was not saved when the program ended");
+        QString tip = tr("Recover the work that was not saved when the program ended");
         if (copy.isProjectChanged) {
             title = tr("%1 (the project was saved elsewhere since)").arg(title);
             tip += tr(". The project was saved by another program or window since; the copy lacks that");
@@ -153,7 +152,7 @@ void StartPage::fillRecoveries() {
         restore->setObjectName("recover");
         auto* discard = new QPushButton(tr("Discard"));
         discard->setObjectName("discardRecovery");
-        discard->setToolTip(tr("Deletes the copy for good"));
+        discard->setToolTip(tr("Delete this recovery copy permanently"));
         layout->addWidget(restore, 1);
         layout->addWidget(discard);
         connect(restore, &QPushButton::clicked, this, [this, copy] { files_.openRecovered(copy); });
@@ -185,14 +184,15 @@ void StartPage::addLeftOver(const LeftOver& leftOver) {
     const QString target = QString::fromStdString(leftOver.target);
     const QString file = QString::fromStdString(leftOver.file.string());
     const QString size = QLocale().formattedDataSize(static_cast<qint64>(leftOver.bytes));
-    auto* label = dim(
-        leftOver.whole
-            ? tr("%1 may be torn: the program was ended while it wrote. %2 has all of it.").arg(target, file)
-            : tr("A program was ended while it wrote %1, and left %2.").arg(target, size));
+    auto* label =
+        dim(leftOver.whole
+                ? tr("%1 may be damaged: the program ended while saving it. %2 has the complete content.")
+                      .arg(target, file)
+                : tr("The program ended while saving %1 and left %2.").arg(target, size));
     label->setToolTip(file);
     auto* remove = new QPushButton(tr("Remove"));
     remove->setObjectName("removeLeftOver");
-    remove->setToolTip(tr("Deletes what was left; %1 stays as it is").arg(target));
+    remove->setToolTip(tr("Delete the leftover file. %1 is not changed").arg(target));
     layout->addWidget(label, 1);
     layout->addWidget(remove);
     connect(remove, &QPushButton::clicked, row, [row, label, leftOver] {

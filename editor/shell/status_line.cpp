@@ -39,11 +39,11 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     progress_->setTextVisible(false);
     cancel_->setIcon(icon("close"));
     cancel_->setIconSize({12, 12});
-    cancel_->setToolTip(tr("Stops the work and drops what it found"));
+    cancel_->setToolTip(tr("Cancel this task and discard its result"));
     counts_->setObjectName("counts");
-    counts_->setToolTip(tr("Strands and points of the document, and how many strands are selected"));
-    frameTime_->setToolTip(tr("Milliseconds for the last picture, and for the last frame of the simulation"));
-    device_->setToolTip(tr("What draws the pictures"));
+    counts_->setToolTip(tr("Strands and points in the document, and the number of selected strands"));
+    frameTime_->setToolTip(tr("Milliseconds of the last rendered image and of the last simulation frame"));
+    device_->setToolTip(tr("Graphics device for rendering"));
     standing_->setObjectName("standing");
     standing_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     standing_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
@@ -153,9 +153,8 @@ void StatusLine::showHead() {
     const auto unit = std::ranges::find_if(units, [&](const LengthUnit& known) {
         return static_cast<float>(known.metres) == groom.characterMetresPerUnit;
     });
-    head_->setToolTip(unit == units.end()
-                          ? tr("Height of the head, in the unit that its file states or in metres")
-                          : tr("Height of the head; its file is in %1").arg(unit->name));
+    head_->setToolTip(unit == units.end() ? tr("Height of the head, in the unit of its file or in metres")
+                                          : tr("Height of the head. Its file is in %1").arg(unit->name));
 }
 
 void StatusLine::showEngine() {
@@ -164,7 +163,7 @@ void StatusLine::showEngine() {
                      : engine->kind == EngineKind::gpu ? tr("hair on the GPU")
                                                        : tr("hair on the CPU"));
     engine_->setToolTip(!engine ? QString()
-                                : tr("What simulates the hair: %1. Edit ▸ Preferences chooses")
+                                : tr("Simulated by: %1. To change this, choose Edit ▸ Preferences")
                                       .arg(QString::fromStdString(engine->why)));
 }
 

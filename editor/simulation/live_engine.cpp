@@ -48,7 +48,7 @@ class DeviceEngine final : public LiveEngine {
                       std::move(changes.spheres),
                       link_->wantsPositions()};
         underWay_.push_back(link_->post([step = std::move(step)](LiveWork* work) -> Stepped {
-            if (!work) return {fail("the device is gone"), {}};
+            if (!work) return {fail("the device was lost"), {}};
             const Status stepped = work->step(step);
             return {stepped, work->report()};
         }));
@@ -86,7 +86,7 @@ class DeviceEngine final : public LiveEngine {
 
     std::shared_ptr<const runtime::State> state() override {
         auto read = link_->post([](LiveWork* work) -> Result<std::shared_ptr<const runtime::State>> {
-            if (!work) return fail("the device is gone");
+            if (!work) return fail("the device was lost");
             return work->readState();
         });
         auto state = read.get();
@@ -120,7 +120,7 @@ Result<std::unique_ptr<LiveEngine>> makeCpuEngine(const LiveStart& start, double
     auto made = Simulation::make(*start.groom, start.pose, options);
     if (!made) return tl::unexpected(made.error());
     if (start.state && played.method == SimulationMethod::strands && !made->setState(*start.state, time))
-        return fail("the hair has other strands than before");
+        return fail("the number of strands has changed");
     return std::make_unique<CpuEngine>(std::move(*made), parameters);
 }
 

@@ -17,7 +17,7 @@ struct PlayedMethod {
     std::string whyCpu() const {
         if (method == SimulationMethod::projective) return "projective equations run there";
         if (method == SimulationMethod::lattice) return "lattices run there";
-        return hairHair ? "hair against hair runs there" : "";
+        return hairHair ? "hair-hair collision runs there" : "";
     }
     friend bool operator==(const PlayedMethod&, const PlayedMethod&) = default;
 };

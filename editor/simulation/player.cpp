@@ -22,7 +22,7 @@ constexpr QLatin1String kClip("clip:");
 Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::shared_ptr<const Actor>& actor,
                                              const Groom& groom) {
     if (!name.startsWith(kClip)) return makeRigidMotion(name.toStdString(), groom);
-    if (!actor) return fail("this head came without clips");
+    if (!actor) return fail("this head has no animation clips");
     return makeClipMotion(actor, name.mid(kClip.size()).toStdString(), groom);
 }
 
@@ -98,7 +98,7 @@ void Player::request(const std::function<void(WorkerRequests&)>& change) {
 
 void Player::play() {
     if (document_.groom().strandCount() == 0) {
-        Q_EMIT failed(tr("There are no strands to move yet"));
+        Q_EMIT failed(tr("There are no strands to simulate yet"));
         return;
     }
     capture();
@@ -368,7 +368,7 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
     start.pose = playing.motion->poseAt(static_cast<float>(playing.time));
     apply(taken.offset, start.pose);
 
-    EngineChoice choice{EngineKind::cpu, "asked for"};
+    EngineChoice choice{EngineKind::cpu, "selected in the preferences"};
     if (playing.deviceFailed) {
         choice = playing.choice;
     } else if (const std::string why = taken.method.whyCpu(); !why.empty()) {
@@ -418,7 +418,8 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         playing.choice = {EngineKind::cpu, "the device failed: " + stepped.error().message()};
         WorkerRequests again = taken;
         again.regroomed = true;
-        Q_EMIT failed(tr("The GPU stopped simulating (%1); the CPU goes on").arg(errorText(stepped.error())));
+        Q_EMIT failed(
+            tr("The GPU stopped simulating (%1). The CPU continues").arg(errorText(stepped.error())));
         if (!prepare(playing, again)) return;
         stepped = playing.engine->step(kFrameTime, playing.time, {}, *pose, refused);
     }

@@ -30,14 +30,16 @@ void BrushHand::addOptions(OptionForm& form, bool worksOnSkin, const std::functi
             });
     };
     if (!worksOnSkin)
-        add("brushThroughHair", QObject::tr("Through all hair"),
-            QObject::tr("Reaches all hair that is before the head; without, as deep as Depth says"),
+        add("brushThroughHair", QObject::tr("Through hair"),
+            QObject::tr(
+                "Affects all hair in front of the head. When off, the brush reaches as deep as Depth"),
             &BrushHand::throughHair, kThroughHair);
-    add("brushInPixels", QObject::tr("Size of the view"),
-        QObject::tr("The ring keeps its size in the view: near hair is brushed finer than far hair"),
+    add("brushInPixels", QObject::tr("View size"),
+        QObject::tr(
+            "Keeps the brush size constant on screen: the brush is finer on near hair than on far hair"),
         &BrushHand::inPixels, kInPixels);
-    add("brushSame", QObject::tr("One size for all"),
-        QObject::tr("Radius and strength are those of all brushes; without, each brush has its own"),
+    add("brushSame", QObject::tr("Unified size"),
+        QObject::tr("Shares radius and strength between all brushes. When off, each brush has its own"),
         &BrushHand::same, kSame);
 }
 

@@ -289,16 +289,16 @@ OptionForm* BrushTool::makeBasicOptions() {
                 changed();
             });
     };
-    number("brushRadius", tr("Radius"), tr("Reach of the brush. Keys: F and move, or [ and ]"), "m",
+    number("brushRadius", tr("Radius"), tr("Brush radius. Press F and move, or press [ and ]"), "m",
            kSmallest, kLargest, &editing::BrushSettings::radius);
     number("brushStrength", tr("Strength"),
-           tr("Share of the full effect that one dab has. Keys: Shift+F, or { and }"), "", 0, 1,
+           tr("Strength of one dab. Press Shift+F and move, or press { and }"), "", 0, 1,
            &editing::BrushSettings::strength);
     QStringList falloffs;
     for (const std::string_view name : editing::BrushCurve::falloffNames())
         falloffs.append(labelOf(text(name)));
     form->addChoice(
-        "brushFalloff", tr("Falloff"), tr("How the effect fades from the middle of the brush to its rim"),
+        "brushFalloff", tr("Falloff"), tr("How the effect fades from the centre of the brush to its edge"),
         falloffs,
         [this] {
             const auto names = editing::BrushCurve::falloffNames();
@@ -310,8 +310,8 @@ OptionForm* BrushTool::makeBasicOptions() {
         });
     if (!brush_.worksOnSkin) {
         form->addChoice(
-            "brushProfile", tr("Root to tip"), tr("Where along the strand the brush works most"),
-            {tr("Everywhere"), tr("More at the tip"), tr("More at the root")},
+            "brushProfile", tr("Root to tip"), tr("Which part of the strand the brush affects most"),
+            {tr("Uniform"), tr("More at the tip"), tr("More at the root")},
             [this] {
                 const auto& values = settings_.profile.values();
                 return values.empty() ? 0 : values.front() < values.back() ? 1 : 2;
@@ -322,20 +322,19 @@ OptionForm* BrushTool::makeBasicOptions() {
                                                  : editing::BrushCurve({1.0f, 0.0f});
             });
         number("brushDepth", tr("Depth"),
-               tr("How far before and behind its place the brush reaches, at least"), "m", 0, 0.3f,
+               tr("Minimum depth of the brush in front of and behind its position"), "m", 0, 0.3f,
                &editing::BrushSettings::depth);
     }
     hand_->addOptions(*form, brush_.worksOnSkin, [this] { handChanged(); });
     if (brush_.movesHair) {
-        number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
+        number("brushClearance", tr("Clearance"), tr("Minimum distance of hair from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
         form->addBool(
-            "brushCollide", tr("Keep out of the head"),
-            tr("Hair that a dab would push into the head stays out"), [this] { return settings_.collide; },
-            [this](bool on) { settings_.collide = on; });
+            "brushCollide", tr("Collide with head"), tr("Prevents dabs from pushing hair into the head"),
+            [this] { return settings_.collide; }, [this](bool on) { settings_.collide = on; });
     }
     form->addBool(
-        "brushSymmetric", tr("Symmetric"), tr("Each dab again on the other side of the head"),
+        "brushSymmetric", tr("Symmetric"), tr("Repeats each dab on the other side of the head"),
         [this] { return settings_.symmetric; },
         [this](bool on) {
             settings_.symmetric = on;
@@ -344,7 +343,7 @@ OptionForm* BrushTool::makeBasicOptions() {
     if (!brush_.inverse.empty()) {
         form->addBool(
             "brushInvert", tr("Invert"),
-            tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush_.inverse)),
+            tr("Does the opposite: %1. Hold Ctrl to invert a single stroke").arg(text(brush_.inverse)),
             [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
     }
     return form;

@@ -37,7 +37,7 @@ class CardTool : public Tool {
     ToolInfo info_{"card",
                    tr("Pick cards"),
                    "card",
-                   tr("Click a card of the level that the Levels panel shows, to shape it by hand"),
+                   tr("Click a card of the level shown in the Levels panel to edit it"),
                    QKeySequence("Shift+K"),
                    410};
 };

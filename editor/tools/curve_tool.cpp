@@ -34,7 +34,8 @@ CurveTool::CurveTool(const ToolParts& parts)
       info_{"curve",
             tr("Draw curve"),
             "curve",
-            tr("Draw the curve of an operator over the head: a parting, a braid; a click adds a point"),
+            tr("Draw the curve of an operator over the head, such as a parting or a braid. Click to add "
+               "points"),
             QKeySequence("Shift+C"),
             240} {
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
@@ -44,8 +45,8 @@ CurveTool::CurveTool(const ToolParts& parts)
 
 QString CurveTool::hint() const {
     const Operator* one = shown();
-    if (!one) return tr("Add a part, an attract or a braid in the Operators panel first");
-    return tr("%1. Now that of operator %2, %3")
+    if (!one) return tr("Add a Part, Attract or Braid operator in the Operators panel first");
+    return tr("%1. Now for operator %2, %3")
         .arg(info_.tip)
         .arg(shownIndex() + 1)
         .arg(QString::fromStdString(one->op));

@@ -15,7 +15,7 @@ class HeadTool : public Tool {
         });
     }
     const ToolInfo& info() const override { return info_; }
-    QString hint() const override { return tr("%1. Shift turns it instead").arg(info_.tip); }
+    QString hint() const override { return tr("%1. Hold Shift to rotate it").arg(info_.tip); }
 
     void press(const Pointer& pointer) override {
         held_ = true;

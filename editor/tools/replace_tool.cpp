@@ -100,7 +100,7 @@ class ReplaceTool : public Tool {
     QWidget* makeOptions() override {
         form_ = new OptionForm(preferences_);
         form_->addNumber(
-            "replaceRadius", tr("Radius"), tr("Reach of the brush on the skin. Keys: [ and ]"), "m",
+            "replaceRadius", tr("Radius"), tr("Brush radius on the skin. Press [ and ]"), "m",
             static_cast<double>(kSmallest), static_cast<double>(kLargest), false,
             [this] { return static_cast<double>(radius_); },
             [this](double value) {
@@ -108,8 +108,8 @@ class ReplaceTool : public Tool {
                 Q_EMIT updated();
             });
         form_->addNumber(
-            "replaceReach", tr("Keep shape"),
-            tr("How far away hair may be whose shape the new hair takes; 0 grows straight hair"), "m", 0, 0.2,
+            "replaceReach", tr("Copy shape"),
+            tr("New hair copies the shape of hair within this distance. 0 grows straight hair"), "m", 0, 0.2,
             false, [this] { return static_cast<double>(reach_); },
             [this](double value) { reach_ = static_cast<float>(value); });
         return form_;
@@ -132,12 +132,10 @@ class ReplaceTool : public Tool {
     Messages& messages_;
     Player& player_;
     Viewport& viewport_;
-    ToolInfo info_{"replace",
-                   tr("Replant"),
-                   "place",
-                   tr("Paint over the scalp; hair there is placed anew with the settings of the Scalp panel"),
-                   QKeySequence("N"),
-                   60};
+    ToolInfo info_{
+        "replace",         tr("Replant"),
+        "place",           tr("Paint over the scalp to regrow hair with the settings of the Scalp panel"),
+        QKeySequence("N"), 60};
     float radius_ = 0.02f;
     float reach_ = 0.03f;
     bool painting_ = false;

@@ -14,23 +14,23 @@ class StrandSelectTool : public OutlineTool {
     explicit StrandSelectTool(const ToolParts& parts)
         : OutlineTool(parts, Shape::Lasso,
                       {"select", tr("Select strands"), "select",
-                       tr("Click a strand or draw around some; brushes then touch only these"),
+                       tr("Click a strand or draw around several. Brushes then affect only the selection"),
                        QKeySequence("E"), 70}) {}
 
-    QString hint() const override { return tr("%1. Shift adds, Ctrl takes away").arg(info().tip); }
+    QString hint() const override { return tr("%1. Shift adds, Ctrl subtracts").arg(info().tip); }
 
     QWidget* makeOptions() override {
         auto* form = new OptionForm(preferences());
         form->addChoice(
-            "selectShape", tr("Shape"), tr("Outline that a drag draws"), {tr("Box"), tr("Lasso")},
+            "selectShape", tr("Shape"), tr("Shape of the selection"), {tr("Box"), tr("Lasso")},
             [this] { return static_cast<int>(shape()); },
             [this](int index) { setShape(static_cast<Shape>(index)); });
         form->addChoice(
-            "selectPart", tr("Part"), tr("Part of a strand that must be inside"),
+            "selectPart", tr("Part"), tr("Part of the strand that must be inside"),
             {tr("Any"), tr("Root"), tr("Tip")}, [this] { return static_cast<int>(options_.part); },
             [this](int index) { options_.part = static_cast<editing::StrandPart>(index); });
         form->addBool(
-            "selectThrough", tr("Through the head"), tr("Strands behind the head count too"),
+            "selectThrough", tr("Through head"), tr("Include strands behind the head"),
             [this] { return options_.throughHead; }, [this](bool on) { options_.throughHead = on; });
         return form;
     }

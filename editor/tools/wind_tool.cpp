@@ -70,12 +70,13 @@ class WindTool : public Tool {
     QtDocument& document_;
     Player& player_;
     Viewport& viewport_;
-    ToolInfo info_{"wind",
-                   tr("Wind"),
-                   "wind",
-                   tr("Drag from the middle of the view to where the wind blows; farther is stronger"),
-                   QKeySequence("W"),
-                   410};
+    ToolInfo info_{
+        "wind",
+        tr("Wind"),
+        "wind",
+        tr("Drag from the middle of the view in the direction of the wind. A longer drag is stronger wind"),
+        QKeySequence("W"),
+        410};
     std::optional<runtime::SimulationSettings> before_;
     quint64 drag_ = 0;  ///< merge key: one drag is one step of the history
 };

@@ -49,7 +49,7 @@ Status LiveWork::start(const LiveStart& start) {
 }
 
 Status LiveWork::step(const LiveStep& step) {
-    if (!hair_) return fail("nothing plays on the device");
+    if (!hair_) return fail("no hair is playing on the device");
     if (step.settings) {
         if (auto set = hair_->setSettings(*step.settings); !set) return set;
     }

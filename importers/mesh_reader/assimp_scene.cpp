@@ -49,7 +49,7 @@ Error explain(std::string message, const std::string& alias, const char* file) {
            (std::isspace(static_cast<unsigned char>(message.back())) || message.back() == '.')) {
         message.pop_back();
     }
-    Error error{{}, {}, message.empty() ? "cannot be read, and the reader does not say why" : message, {}};
+    Error error{{}, {}, message.empty() ? "cannot be read, without a reason from the reader" : message, {}};
     const std::size_t at = message.find("line ");
     if (at != message.npos && std::isdigit(static_cast<unsigned char>(message[at + 5]))) {
         error.place = Line{std::strtoull(message.c_str() + at + 5, nullptr, 10)};
@@ -68,7 +68,7 @@ Eigen::Affine3f axesToWorld(const aiMetadata& settings, std::vector<std::string>
         if (axis >= 0 && axis < 3) rotation(row, axis) = sign < 0 ? -1.0f : 1.0f;
     }
     if (std::abs(rotation.determinant() - 1) > 1e-3f) {
-        warnings.push_back("the file's axes are no right-handed system; they are taken as Y up");
+        warnings.push_back("the file's axes are not right-handed, so Y is taken as up");
         rotation.setIdentity();
     }
     return Eigen::Affine3f(rotation);
@@ -193,10 +193,10 @@ class Converter {
     void finish() {
         PolygonSoup& soup = scene_.soup;
         if (leftOut_ != 0)
-            scene_.warnings.push_back(fmt::format("{} points and lines are left out", leftOut_));
+            scene_.warnings.push_back(fmt::format("{} points and lines were left out", leftOut_));
         if (badNormals_ != 0) {
             scene_.warnings.push_back(
-                fmt::format("{} normals are unusable; all are computed from the faces", badNormals_));
+                fmt::format("{} normals are unusable, so all are computed from the faces", badNormals_));
         }
         if (badNormals_ != 0 || !allNormals_) soup.normals.clear();
         if (scene_.bones.empty()) scene_.skin = {};

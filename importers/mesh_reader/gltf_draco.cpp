@@ -24,10 +24,10 @@ namespace {
 
 Result<std::span<const unsigned char>> bytesOf(const tinygltf::Model& model, int number) {
     if (number < 0 || static_cast<std::size_t>(number) >= model.bufferViews.size())
-        return fail(fmt::format("{} names buffer view {}", kName, number));
+        return fail(fmt::format("{} refers to buffer view {}", kName, number));
     const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(number)];
     if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
-        return fail(fmt::format("{} names buffer {}", kName, view.buffer));
+        return fail(fmt::format("{} refers to buffer {}", kName, view.buffer));
     const auto& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
     if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
         return fail("a compressed primitive goes beyond its buffer");
@@ -100,7 +100,7 @@ Result<DracoPrimitive> readDraco(const GltfFile& file, const tinygltf::Primitive
 #else
 
 Result<DracoPrimitive> readDraco(const GltfFile&, const tinygltf::Primitive&) {
-    return fail("is compressed by draco, which this build does not have",
+    return fail("is compressed by draco, which this build cannot read",
                 "expected a file exported without compression");
 }
 

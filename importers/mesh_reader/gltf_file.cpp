@@ -128,8 +128,9 @@ Status checkExtensions(const nlohmann::json& gltf) {
         return {};
     for (const auto& name : gltf["extensionsRequired"]) {
         if (name.is_string() && !isKnownExtension(name.get<std::string>()))
-            return fail(fmt::format("requires the extension {}, which is not read", name.get<std::string>()),
-                        "expected a file exported without it");
+            return fail(
+                fmt::format("requires the extension {}, which is not supported", name.get<std::string>()),
+                "expected a file exported without it");
     }
     return {};
 }
@@ -151,7 +152,7 @@ Result<std::vector<std::byte>> loadable(std::span<const std::byte> bytes) {
 std::string firstLine(std::string text) {
     text = text.substr(0, text.find('\n'));
     while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
-    return text.empty() ? "cannot be read, and the reader does not say why" : text;
+    return text.empty() ? "cannot be read, without a reason from the reader" : text;
 }
 
 std::uint32_t sizeOfComponent(int type) {

@@ -112,7 +112,7 @@ Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
     const bool isRotation = source.target_path == "rotation";
     if (!isRotation && source.target_path != "translation" && source.target_path != "scale") return {};
     if (source.sampler < 0 || static_cast<std::size_t>(source.sampler) >= animation.samplers.size())
-        return fail(fmt::format("a channel names sampler {}", source.sampler),
+        return fail(fmt::format("a channel refers to sampler {}", source.sampler),
                     fmt::format("there are {}", animation.samplers.size()));
     const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(source.sampler)];
     Keys keys;
@@ -120,7 +120,7 @@ Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
     keys.isCubic = sampler.interpolation == "CUBICSPLINE";
     keys.isStep = sampler.interpolation == "STEP";
     if (!keys.isCubic && !keys.isStep && !sampler.interpolation.empty() && sampler.interpolation != "LINEAR")
-        return fail(fmt::format("keys follow each other by '{}'", sampler.interpolation),
+        return fail(fmt::format("the interpolation of keys is '{}'", sampler.interpolation),
                     "expected LINEAR, STEP or CUBICSPLINE");
     auto times = file.numbers(sampler.input, 1, "times of keys");
     if (!times) return tl::unexpected(times.error());

@@ -32,7 +32,7 @@ Eigen::Affine3f localOf(const tinygltf::Node& node) {
 }
 
 tl::unexpected<Error> noNode(const char* what, int node) {
-    return fail(fmt::format("{} names node {}", what, node), "expected a node of the file");
+    return fail(fmt::format("{} refers to node {}", what, node), "expected a node of the file");
 }
 
 }  // namespace
@@ -54,13 +54,12 @@ Status GltfNodes::findParents() {
             if (child < 0 || static_cast<std::size_t>(child) >= nodes.size())
                 return noNode("a node's child", child);
             auto& parent = parents_[static_cast<std::size_t>(child)];
-            if (parent != kNoBone) return fail(fmt::format("node {} hangs on two nodes", child));
+            if (parent != kNoBone) return fail(fmt::format("node {} has two parents", child));
             parent = node;
         }
     }
     // Each has one parent at most: what no root reaches goes round in a circle.
-    if (inOrder().size() != nodes.size())
-        return fail("nodes hang on one another in a circle", "expected a tree");
+    if (inOrder().size() != nodes.size()) return fail("nodes form a cycle", "expected a tree");
     return {};
 }
 
@@ -125,7 +124,7 @@ Status GltfNodes::readSkins() {
     }
     for (const tinygltf::Node& node : model.nodes) {
         if (node.skin >= 0 && static_cast<std::size_t>(node.skin) >= skins_.size())
-            return fail(fmt::format("a node names skin {}", node.skin),
+            return fail(fmt::format("a node refers to skin {}", node.skin),
                         fmt::format("there are {}", skins_.size()));
     }
     return {};
@@ -249,7 +248,7 @@ Status GltfNodes::addWeights(std::uint32_t node, std::size_t count,
     for (std::size_t vertex = 0; vertex < count; ++vertex) {
         for (auto& [joint, weight] : influences[vertex]) {
             if (joint >= bones.size())
-                return fail(fmt::format("a vertex names joint {}", joint),
+                return fail(fmt::format("a vertex refers to joint {}", joint),
                             fmt::format("there are {}", bones.size()));
             if (bones[joint] == kNoBone)
                 bones[joint] =
@@ -299,7 +298,7 @@ Status GltfNodes::addClips() {
     }
     if (morphs > 0)
         scene_->warnings.push_back(
-            fmt::format("{} clips move morph targets, which stay as the file has them at rest", morphs));
+            fmt::format("{} clips animate morph targets, which stay in their rest pose", morphs));
     return {};
 }
 

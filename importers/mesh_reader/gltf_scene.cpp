@@ -112,7 +112,7 @@ class PrimitiveReader {
         if (beyond != indices.end())
             return wrong(Error{{},
                                {},
-                               fmt::format("a face names vertex {}", *beyond),
+                               fmt::format("a face refers to vertex {}", *beyond),
                                fmt::format("there are {} vertices", result_.vertices)});
         result_.triangles = trianglesOf(compressed_.vertices == 0 ? source_.mode : TINYGLTF_MODE_TRIANGLES,
                                         std::move(indices));
@@ -202,7 +202,7 @@ class Converter {
         const tinygltf::Node& node = model_.nodes[number];
         if (node.mesh < 0) return {};
         if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size())
-            return fail(fmt::format("a node names mesh {}", node.mesh),
+            return fail(fmt::format("a node refers to mesh {}", node.mesh),
                         fmt::format("there are {}", model_.meshes.size()));
         const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
         for (const tinygltf::Primitive& source : mesh.primitives) {
@@ -263,11 +263,12 @@ class Converter {
     void finish() {
         if (leftOut_ != 0)
             scene_.warnings.push_back(
-                fmt::format("{} primitives of points and lines are left out", leftOut_));
-        if (morphTargets_ != 0) scene_.warnings.push_back("morph targets are taken at their weights of rest");
+                fmt::format("{} primitives of points and lines were left out", leftOut_));
+        if (morphTargets_ != 0)
+            scene_.warnings.push_back("morph targets keep the weights of their rest pose");
         if (badNormals_ != 0)
             scene_.warnings.push_back(
-                fmt::format("{} normals are unusable; all are computed from the faces", badNormals_));
+                fmt::format("{} normals are unusable, so all are computed from the faces", badNormals_));
         if (badNormals_ != 0 || !allNormals_) scene_.soup.normals.clear();
         if (scene_.bones.empty()) scene_.skin = {};
     }

@@ -52,7 +52,7 @@ bool LimitedFolder::allows(const std::string& file) const {
 }
 
 Result<std::vector<std::byte>> LimitedFolder::read(const std::string& file) const {
-    if (!allows(file)) return fail("lies outside the file's folder or is no regular file");
+    if (!allows(file)) return fail("is outside the file's folder or is not a regular file");
     return readFile(pathOf(file), kLargestFile);
 }
 

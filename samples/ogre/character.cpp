@@ -35,7 +35,7 @@ std::vector<double> numbersOf(const tinygltf::Model& model, int index) {
     for (std::size_t e = 0; e < accessor.count; ++e) {
         for (std::size_t c = 0; c < width; ++c) {
             const std::size_t at = view.byteOffset + accessor.byteOffset + e * stride + c * bytes;
-            if (at + bytes > buffer.size()) throw std::runtime_error("an accessor ends behind its buffer");
+            if (at + bytes > buffer.size()) throw std::runtime_error("an accessor ends after its buffer");
             const unsigned char* from = &buffer[at];
             const auto take = [&](auto value) {
                 std::memcpy(&value, from, sizeof value);
@@ -55,7 +55,7 @@ std::vector<double> numbersOf(const tinygltf::Model& model, int index) {
                     numbers.push_back(take(float{}));
                     break;
                 default:
-                    throw std::runtime_error("an accessor of another type than are read here");
+                    throw std::runtime_error("an accessor has an unsupported type");
             }
         }
     }

@@ -214,7 +214,7 @@ void play(const Options& options) {
         if (options.picture.empty() || f == options.frames) root.renderOneFrame();
     }
     if (!options.picture.empty()) window->writeContentsToFile(options.picture);
-    std::printf("%zu hairs, %.2f ms a frame, roots hold to the skin within %.4f mm, state %016llx\n",
+    std::printf("%zu hairs, %.2f ms per frame, roots within %.4f mm of the skin, state %016llx\n",
                 hair.hairs(), stepped / options.frames, static_cast<double>(1e3f * slip),
                 static_cast<unsigned long long>(hair.instance().hash()));
     hair.detachFromParent();

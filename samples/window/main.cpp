@@ -28,13 +28,13 @@ struct Options {
 
 Result<Groom> sample(const std::string& style, const std::filesystem::path& programFolder) {
     const auto samples = findSamples(programFolder);
-    if (samples.empty()) return fail("the folder of the samples is not found", "HAIRLOOM_SAMPLES");
+    if (samples.empty()) return fail("the samples folder was not found", "HAIRLOOM_SAMPLES");
     return makeSample(samples, style);
 }
 
 /// Says now and then how many pictures have been shown.
 void say(std::uint64_t pictures, double seconds) {
-    fmt::print("{} pictures, {:.1f} a second\n", pictures, static_cast<double>(pictures) / seconds);
+    fmt::print("{} images, {:.1f} per second\n", pictures, static_cast<double>(pictures) / seconds);
     std::fflush(stdout);
 }
 
@@ -77,22 +77,21 @@ int run(int argc, char** argv) {
     Options options;
     CLI::App program("Shows a sample hairstyle turning in the wind.", "hairloom-window");
     program.allow_windows_style_options(false);
-    program.add_option("style", options.style, "A file of samples/hairstyles, without its ending");
-    program
-        .add_option("--backend", options.backend, "Graphics API; the system's own where this is not given")
+    program.add_option("style", options.style, "Name of a file in samples/hairstyles, without extension");
+    program.add_option("--backend", options.backend, "Graphics API (default: that of the system)")
         ->check(CLI::IsMember({"vulkan", "d3d11"}));
     program
         .add_option("--engine", options.engine,
-                    "What moves the hair: the CPU, the GPU, or whichever was measured to be faster")
+                    "Device that simulates: the CPU, the GPU, or the one that was measured to be faster")
         ->check(CLI::IsMember({"auto", "gpu", "cpu"}));
     program.add_option("--width", options.size.width, "Pixels")->check(CLI::Range(64, 8192));
     program.add_option("--height", options.size.height, "Pixels")->check(CLI::Range(64, 8192));
-    program.add_option("--wind", options.wind, "Metres per second")->check(CLI::Range(0, 50));
+    program.add_option("--wind", options.wind, "Wind speed in metres per second")->check(CLI::Range(0, 50));
     program.add_flag("--guides", options.guides,
-                     "Without the hairs between the simulated ones, which take a software device long");
-    program.add_option("--pictures", options.pictures, "Ends after so many; 0: when the window is closed");
-    program.add_option("--hold", options.hold, "Seconds for which the last picture stays")
-        ->check(CLI::Range(0, 3600));
+                     "Draw only the guides, which is faster on a software device");
+    program.add_option("--pictures", options.pictures,
+                       "Number of frames, or 0 to run until you close the window");
+    program.add_option("--hold", options.hold, "Seconds to show the last image")->check(CLI::Range(0, 3600));
     CLI11_PARSE(program, argc, argv);
     const auto folder = std::filesystem::path(argv[0]).parent_path();
     if (const auto status = show(options, folder); !status) {

@@ -49,7 +49,7 @@ TEST(Certificate, WhatExplodesAtRestHasNoLimitsAndSaysSo) {
     ASSERT_TRUE(certificate) << certificate.error().message();
     EXPECT_FALSE(certificate->failed.empty());
     EXPECT_EQ(certificate->limits.step, 0);
-    EXPECT_THAT(inWords(*certificate), HasSubstr("Withstands nothing"));
+    EXPECT_THAT(inWords(*certificate), HasSubstr("Does not withstand any tested storm"));
     EXPECT_THAT(inWords(*certificate), HasSubstr(certificate->failed.front().what));
 }
 

@@ -158,7 +158,7 @@ TEST(WorkPrecision, WhatTremblesAtRestIsNotRecommended) {
         EXPECT_FALSE(run.onFront);
         EXPECT_GT(run.trembling, 0.005);
     }
-    EXPECT_THAT(result->notes, Contains(HasSubstr("trembles where the head stands still")));
+    EXPECT_THAT(result->notes, Contains(HasSubstr("trembles while the head is still")));
     groom.simulation.strandModel = runtime::StrandModel::rods;
     options.axes[0].values = {0};
     const auto rods = measureWorkPrecision(groom, **motion, options, EngineConverged(8));
@@ -345,7 +345,7 @@ TEST(Report, EachMeasureHasAChartAndAFrontOfItsOwn) {
     result.runs[1].other.returnMm = 0.2;
     EXPECT_THAT(frontBy(result, Measure::afterShake), ElementsAre(true, true, false, true));
     const Plot plot = workPrecisionPlot(result, {}, Measure::drop);
-    EXPECT_EQ(plot.y.title, "drop at rest");
+    EXPECT_EQ(plot.y.title, "sag at rest");
     double lowest = 1e9;
     for (const Series& series : plot.series) {
         for (const PlotPoint& point : series.points) lowest = std::min(lowest, point.y);
@@ -421,7 +421,7 @@ TEST(EffectCosts, EveryEffectReportsReasonAndCost) {
         if (effect.name == "collision") {
             EXPECT_EQ(effect.why, "off, no spheres");
         }
-        EXPECT_THAT(effect.note, testing::Not(HasSubstr("stays on"))) << effect.name;
+        EXPECT_THAT(effect.note, testing::Not(HasSubstr("cannot be turned off"))) << effect.name;
     }
     EXPECT_GE(on, 4u);
 }

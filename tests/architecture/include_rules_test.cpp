@@ -71,7 +71,7 @@ std::vector<std::map<std::string, Rooms>> readTables() {
         const auto columns = split(line, '|');
         if (columns.size() < 4) {
             inside = false;
-        } else if (columns[1] == "room" || columns[1] == "folder") {
+        } else if (columns[1] == "module" || columns[1] == "folder") {
             tables.emplace_back();
             inside = true;
         } else if (inside && columns[1].rfind("---", 0) != 0) {

@@ -122,7 +122,7 @@ TEST_F(OutputFileTest, WhatWasReadIsKeptAndAProjectMayBeSavedOver) {
     put("p.hairloom", "HAIRLOOM one");
     ASSERT_TRUE(readFile(folder / "a.txt"));
     ASSERT_TRUE(readFile(folder / "p.hairloom"));
-    EXPECT_THAT(writeError("a.txt", "other words"), HasSubstr("is what was read"));
+    EXPECT_THAT(writeError("a.txt", "other words"), HasSubstr("is an input of this job"));
     EXPECT_EQ(writeError("p.hairloom", "HAIRLOOM two"), "");
     EXPECT_EQ(writeError("b.txt", "one"), "");
     ASSERT_TRUE(readFile(folder / "b.txt"));
@@ -266,7 +266,7 @@ TEST_F(OutputFileTest, SymbolicLinksAreFollowedAlsoWhereTheyLeadToNothingYet) {
     EXPECT_TRUE(fs::is_symlink(folder / "dangling"));
     EXPECT_EQ(get("there/a.txt"), "new");
     EXPECT_EQ(get("there/new.txt"), "new");
-    EXPECT_THAT(writeError("circle", "new"), HasSubstr("circle of links"));
+    EXPECT_THAT(writeError("circle", "new"), HasSubstr("circular link"));
 }
 
 TEST_F(OutputFileTest, ModeOwnerAttributesAndTimeOfAccessAreKept) {

@@ -32,8 +32,8 @@ TEST(LevelSpecs, SayWhatIsWrong) {
     for (const auto& [text, problem] : std::vector<std::pair<std::string, std::string>>{
              {"", "unknown kind"},
              {"cards:12@100", "pixels out of range"},
-             {"cards:12@x", "no number"},
-             {"cards:1.5", "no whole number"},
+             {"cards:12@x", "not a number"},
+             {"cards:1.5", "not a whole number"},
              {"cards:nan", "out of range"},
              {"strands:2", "out of range"},
              {"cards:50@64,cards:20@128", "nearer than the one before"},
@@ -139,7 +139,7 @@ TEST(Levels, OfferTheNearestTargetWhereOneCannotBeMet) {
     options.targetPx = 0.05f;
     const auto chain = makeChain(hair, *specs, options, noProgress, nullptr);
     ASSERT_FALSE(chain);
-    EXPECT_THAT(chain.error().message(), HasSubstr("more than the 0.05 asked for; a target of "));
+    EXPECT_THAT(chain.error().message(), HasSubstr("more than the 0.05 asked for; use a limit of "));
 }
 
 TEST(Levels, StopWhenTheyAreCancelled) {

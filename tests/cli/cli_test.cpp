@@ -34,6 +34,37 @@ TEST_F(Cli, WrongUsageEndsWith2AndHelpWith0) {
     EXPECT_EQ(run("--help").exitCode, 0);
 }
 
+TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
+    const std::pair<const char*, const char*> wrong[] = {
+        {"", "error: a job is required; see `hairloom-cli --help`\n"},
+        {"smulate hair.hairloom", "error: there is no job 'smulate'; did you mean simulate?\n"},
+        {"simulate x --substep 3", "error: there is no option --substep; did you mean --substeps?\n"},
+        {"simulate x --frobnicate=3",
+         "error: there is no option --frobnicate=3; see `hairloom-cli simulate --help`\n"},
+        {"simulate x y", "error: unexpected argument 'y'; see `hairloom-cli simulate --help`\n"},
+        {"simulate x --method strand",
+         "error: --method is 'strand'; expected one of strands, projective, lattice (did you mean "
+         "strands?)\n"},
+        {"simulate x --frames 0", "error: --frames is '0'; expected 1 to 100000\n"},
+        {"simulate x --frames", "error: --frames has no value; expected 1 to 100000\n"},
+        {"simulate x --frames ten", "error: --frames is 'ten'; expected 1 to 100000\n"},
+        {"simulate --motoin nod", "error: there is no option --motoin; did you mean --motion?\n"},
+        {"simulate", "error: groom is required; see `hairloom-cli simulate --help`\n"},
+    };
+    for (const auto& [arguments, message] : wrong) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, 2) << arguments;
+        EXPECT_EQ(outcome.errors, message) << arguments;
+        EXPECT_EQ(outcome.output, "") << arguments;
+        const auto error = run(std::string(arguments) + " --json").json()["error"];
+        EXPECT_EQ(
+            "error: " + error["what"].get<std::string>() + "; " + error["expected"].get<std::string>() + "\n",
+            message);
+    }
+    runJson(createArguments());
+    EXPECT_THAT(run("simulate hair.hairloom --motion jump").errors, HasSubstr("clip:NAME"));
+}
+
 TEST_F(Cli, EveryJobHasHelpWithAnExample) {
     const std::string help = run("--help").output;
     std::istringstream lines(help.substr(help.find("Subcommands:")));
@@ -320,8 +351,7 @@ TEST_F(Cli, FollowHairsAreExportedWhenAskedFor) {
     const auto guides = runJson("export full.hairloom --format hair -o guides.hair");
     EXPECT_EQ(guides["strands"], 300);
     const auto saysThatHairsStay = [](const nlohmann::json& report) {
-        return report["findings"].dump().find("5 follow hairs for each guide are left out") !=
-               std::string::npos;
+        return report["findings"].dump().find("5 follow hairs per guide are left out") != std::string::npos;
     };
     EXPECT_TRUE(saysThatHairsStay(guides)) << guides.dump(2);
     const auto hairs = runJson("export full.hairloom --format hair --what hairs -o hairs.hair");

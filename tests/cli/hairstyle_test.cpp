@@ -163,7 +163,7 @@ TEST_F(Hairstyle, LayersAreMadeByScriptsShownAndExportedAlone) {
     runJson("set red.hairloom layers.Fringe.material=null -o plain.hairloom");
     EXPECT_EQ(runJson("layers plain.hairloom")["layers"][1]["own_material"], false);
     EXPECT_THAT(run("set red.hairloom layers.Beard.density=1 -o b.hairloom").errors,
-                HasSubstr("/layers/Beard is no layer"));
+                HasSubstr("/layers/Beard is not a layer"));
     EXPECT_THAT(run("set red.hairloom layers.Fringe.density=9 -o b.hairloom").errors,
                 HasSubstr("/layers/Fringe/density is 9"));
     EXPECT_THAT(run("set red.hairloom layers.Fringe=1 -o b.hairloom").errors, HasSubstr("/layers/Fringe"));

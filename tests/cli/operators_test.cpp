@@ -42,7 +42,7 @@ TEST_F(OperatorsCli, StacksAreKeptAndAddedToOtherHair) {
     EXPECT_EQ(before["operators"][0], kept["operators"][0]);
     const Outcome outcome = run("stack styled.hairloom --only 9");
     EXPECT_EQ(outcome.exitCode, 1);
-    EXPECT_THAT(outcome.errors, HasSubstr("operator 9 is asked for; there are 3"));
+    EXPECT_THAT(outcome.errors, HasSubstr("operator 9 does not exist; there are 3 operators"));
     EXPECT_EQ(run("stack styled.hairloom --solo 0").exitCode, 2) << "needs -o";
 }
 

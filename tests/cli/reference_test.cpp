@@ -50,7 +50,7 @@ TEST_F(Reference, GroomListsOperationsAndBrushesWithTheirFields) {
         return rows;
     };
     const nlohmann::json radius{{"field", "radius"}, {"unit", "m"},      {"min", 0},
-                                {"max", 0.1},        {"default", 0.006}, {"meaning", "of the helix"}};
+                                {"max", 0.1},        {"default", 0.006}, {"meaning", "radius of the helix"}};
     EXPECT_EQ(named(listed["operators"], "curl")["fields"][0], radius);
     const auto& puff = named(listed["brushes"], "puff");
     EXPECT_EQ(puff["fields"][0]["field"], "height");

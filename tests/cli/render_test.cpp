@@ -122,7 +122,7 @@ TEST_F(RenderJob, SequencesAreNumberedAndJoined) {
 TEST_F(RenderJob, HairIsSimulatedWhileItIsDrawnOnEitherEngine) {
     const auto cpu = picture("--motion nod --wind 3,0,0 --frame 6 --engine cpu");
     EXPECT_EQ(cpu["engine"], "cpu");
-    EXPECT_EQ(cpu["why"], "asked for");
+    EXPECT_EQ(cpu["why"], "you asked for it");
     const std::string onCpu = readText(folder / "hair.png");
     const auto gpu = picture("--motion nod --wind 3,0,0 --frames 0,6,6 --engine gpu");
     EXPECT_EQ(gpu["engine"], "gpu");

@@ -68,7 +68,7 @@ class EngineChoiceTest : public testing::Test {
 TEST_F(EngineChoiceTest, AutomaticMeasuresOnceAndTakesTheFaster) {
     const EngineChoice first = choose(EngineWish::automatic, &gpu_, EngineTimes{4, 0.5});
     EXPECT_EQ(first.kind, EngineKind::gpu);
-    EXPECT_EQ(first.why, "0.50 ms a frame on Example 9000, 4.00 on the CPU");
+    EXPECT_EQ(first.why, "0.50 ms per frame on Example 9000, 4.00 on the CPU");
     // Remembered, also by the next program.
     EXPECT_EQ(choose(EngineWish::automatic, &gpu_, EngineTimes{0.1, 0.5}), first);
     EXPECT_EQ(measured_, 1);

@@ -395,7 +395,7 @@ TEST(StrokeRecord, NamesWhatIsWrong) {
     };
     EXPECT_THAT(problem(R"({"op": "stroke", "tool": "mow", "dabs": []})"), HasSubstr("no brush 'mow'"));
     EXPECT_THAT(problem(R"({"op": "stroke", "tool": "comb", "dabs": [{"at": [0, 1]}]})"),
-                HasSubstr("/operations/0/dabs/0/at is no such vector"));
+                HasSubstr("/operations/0/dabs/0/at is not a vector"));
     EXPECT_THAT(problem(R"({"op": "stroke", "tool": "comb", "parameters": {"x": 1}, "dabs": []})"),
                 HasSubstr("comb has no parameter 'x'"));
     EXPECT_THAT(problem(R"({"op": "stroke", "tool": "puff", "parameters": {"height": 9}, "dabs": []})"),
@@ -403,7 +403,7 @@ TEST(StrokeRecord, NamesWhatIsWrong) {
     EXPECT_THAT(problem(R"({"op": "stroke", "tool": "comb", "radius": 3, "dabs": []})"),
                 HasSubstr("radius is 3; expected a number from 0.0001 to 1 m"));
     EXPECT_THAT(problem(R"({"op": "stroke", "tool": "comb", "falloff": [2], "dabs": []})"),
-                HasSubstr("falloff is no such list"));
+                HasSubstr("falloff is not a list"));
     EXPECT_THAT(
         problem(R"({"op": "stroke", "tool": "comb", "dabs": [{"at": [0, 1, 0], "view": [1, 1, 0]}]})"),
         HasSubstr("direction is 1.41"));

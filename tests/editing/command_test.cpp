@@ -304,11 +304,11 @@ TEST(Records, NameWhatIsWrong) {
                 HasSubstr("/operations/0/strands does not ascend at value 2"));
     EXPECT_THAT(problem(R"({"op": "strands", "do": "delete", "strands": [3]})"), HasSubstr("odd number"));
     EXPECT_THAT(problem(R"({"op": "strands", "do": "delete", "strands": [20, 1]})"),
-                HasSubstr("strand 20 is named; there are 20"));
+                HasSubstr("strand 20 does not exist; there are 20"));
     EXPECT_THAT(problem(R"({"op": "strands", "do": "delete", "strands": [0, 4294967295]})"),
                 HasSubstr("expected ascending runs"));
     EXPECT_THAT(problem(R"({"op": "scalp", "faces": [99999, 1], "expression": ""})"),
-                HasSubstr("face 99999 is named"));
+                HasSubstr("face 99999 does not exist"));
     EXPECT_THAT(problem(R"({"op": "density", "values": [1]})"), HasSubstr("1 densities"));
     EXPECT_THAT(problem(R"({"op": "layers", "layers": []})"), HasSubstr("0 layers"));
     EXPECT_THAT(problem(R"({"op": "material", "settings": {"specular": 9}})"),

@@ -80,7 +80,7 @@ TEST_F(Layers, ALayerThatGoesLeavesItsStrandsAndRenumbersOperators) {
     addNoiseOf(3);
     const auto refused = removeLayer(document.model(), 2);
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message(), HasSubstr("operator 0 is of the layer Flyaways"));
+    EXPECT_THAT(refused.error().message(), HasSubstr("operator 0 uses the layer Flyaways"));
     perform(removeLayer(document.model(), 1));
     EXPECT_EQ(groom().layers.size(), 2u);
     EXPECT_EQ(groom().layers[1].name, "Flyaways");

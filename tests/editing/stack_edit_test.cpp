@@ -314,8 +314,8 @@ TEST_F(StackEdit, WholeStackFromAList) {
 TEST(StackErrors, NameThePlaceAndWhatToDo) {
     Document document(hairOnHead());
     EXPECT_THAT(removeOperator(document.model(), 0).error().message(),
-                HasSubstr("operator 0 is named; there are 0"));
-    EXPECT_THAT(moveOperator(document.model(), 1, 0).error().message(), HasSubstr("operator 1 is named"));
+                HasSubstr("operator 0 does not exist; there are 0 operators"));
+    EXPECT_THAT(moveOperator(document.model(), 1, 0).error().message(), HasSubstr("operator 1 does not exist"));
     EXPECT_EQ(*bakeOperators(document.model()), nullptr);
     std::vector<Operator> many(kMaxOperators + 1, operatorWith("collide"));
     EXPECT_THAT(setOperators(document.model(), many, "Many").error().message(),

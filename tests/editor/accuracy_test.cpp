@@ -55,7 +55,7 @@ TEST_F(AccuracyTest, WhatTheNextStepBuysIsSaidAndAdopted) {
     EXPECT_TRUE(setting.contains(QString("%1 substep").arg(groom().simulation.substeps)))
         << setting.toStdString();
     EXPECT_NE(hash(), before);
-    EXPECT_TRUE(words().contains("Nothing that was tried is nearer")) << words().toStdString();
+    EXPECT_TRUE(words().contains("No measured setting is more accurate")) << words().toStdString();
     EXPECT_EQ(document().stepCount(), 1);
     EXPECT_FALSE(words().contains("before the last change")) << "the adopted setting has been measured";
     trigger("edit.undo");
@@ -167,7 +167,7 @@ TEST_F(AccuracyTest, ASettingIsShownBesideItsPair) {
     find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
     EXPECT_FALSE(chosen().contains("in blue")) << "blue is the reference";
     beside->setCurrentIndex(3);
-    EXPECT_TRUE(chosen().contains("Beside it in blue: 2 substeps, 12 points")) << chosen().toStdString();
+    EXPECT_TRUE(chosen().contains("Shown in blue: 2 substeps, 12 points")) << chosen().toStdString();
     find<QPushButton>("accuracyShow")->click();
     finishWork();
     ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }, 60'000));
@@ -200,7 +200,7 @@ TEST_F(AccuracyTest, AThousandStormsSayWhatTheHairWithstands) {
     finishWork();
     EXPECT_TRUE(words->text().startsWith("Withstands frames of")) << words->text().toStdString();
     EXPECT_TRUE(words->text().contains("1000 random storms"));
-    EXPECT_TRUE(words->text().contains("Tried at")) << words->text().toStdString();
+    EXPECT_TRUE(words->text().contains("Tested at")) << words->text().toStdString();
     Groom changed = groom();
     changed.simulation.windSpeed = 3;
     change("Wind", changed);
@@ -221,7 +221,7 @@ TEST_F(AccuracyTest, WhatChangesWhileItMeasuresIsTold) {
     openFirstStrands(5);
     finishWork();
     EXPECT_FALSE(adopt().isEnabled()) << "was of another document";
-    EXPECT_TRUE(words().contains("How far")) << words().toStdString();
+    EXPECT_TRUE(words().contains("How accurate")) << words().toStdString();
 }
 
 TEST_F(AccuracyTest, ACancelledRunDoesNotMakeTheLastOneNew) {
@@ -238,13 +238,13 @@ TEST_F(AccuracyTest, ACancelledRunDoesNotMakeTheLastOneNew) {
 TEST_F(AccuracyTest, WhatIsCheapestWithinTheLimitIsChosenAtOnce) {
     EXPECT_FALSE(adopt().isEnabled());
     measure();
-    EXPECT_TRUE(chosen().startsWith("Cheapest within 1 px: ")) << chosen().toStdString();
+    EXPECT_TRUE(chosen().startsWith("Fastest within 1 px: ")) << chosen().toStdString();
     find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
     adopt().click();
-    EXPECT_TRUE(chosen().contains("This hair has it")) << chosen().toStdString();
+    EXPECT_TRUE(chosen().contains("This is the current setting")) << chosen().toStdString();
     EXPECT_FALSE(adopt().isEnabled()) << "it would be a step that changes nothing";
     find<NumberBox>("accuracyMs")->spinBox().setValue(0.01);
-    EXPECT_TRUE(chosen() == "Nothing that was tried is within 0.01 ms." || chosen().contains("0.01 ms: "))
+    EXPECT_TRUE(chosen() == "No measured setting is within 0.01 ms." || chosen().contains("0.01 ms: "))
         << chosen().toStdString();
     // Pixels are the view's: nearer, the same limit asks for more.
     find<NumberBox>("accuracyPixels")->spinBox().setValue(0.5);
@@ -266,7 +266,8 @@ TEST_F(AccuracyTest, APointOfAnOldDiagramIsNoneOfTheNewOne) {
     for (std::size_t run = 21; run-- > 0;)
         QTest::mouseClick(plot, Qt::LeftButton, {}, plot->place_px(run % 18).toPoint());
     finishWork();
-    EXPECT_TRUE(chosen().contains("4 points") || chosen().startsWith("Nothing")) << chosen().toStdString();
+    EXPECT_TRUE(chosen().contains("4 points") || chosen().startsWith("No measured setting"))
+        << chosen().toStdString();
     expectSound();
 }
 

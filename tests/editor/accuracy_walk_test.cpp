@@ -84,16 +84,16 @@ TEST_F(AccuracyWalkTest, TheCheapestSettingUnderOnePixelIsFoundByWordsInFourClic
     click("Measure");
     finishWork();
     const QString found = said("accuracyChosen");
-    EXPECT_TRUE(found.startsWith("Cheapest within 1 px: ")) << found.toStdString();
+    EXPECT_TRUE(found.startsWith("Fastest within 1 px: ")) << found.toStdString();
     EXPECT_LE(pixelsIn(found), 1) << found.toStdString();
     shoot("2-measured");
-    click("Adopt");
+    click("Apply");
     EXPECT_LE(clicks(), 4);
     EXPECT_NE(hash(), before);
     const QString now = said("accuracyWords");
     EXPECT_TRUE(now.startsWith("Now ")) << now.toStdString();
     EXPECT_EQ(pixelsIn(now), pixelsIn(found)) << now.toStdString();
-    EXPECT_TRUE(said("accuracyChosen").contains("This hair has it"));
+    EXPECT_TRUE(said("accuracyChosen").contains("This is the current setting"));
     shoot("3-adopted");
     // What else there is: points that say what they are, another limit, and the way back.
     auto* plot = find<AccuracyPlot>("accuracyPlot");

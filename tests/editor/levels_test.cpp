@@ -87,7 +87,7 @@ class LevelsTest : public WindowTest {
 };
 
 TEST_F(LevelsTest, AChainIsMadeLookedAtMadeAnewAndExported) {
-    EXPECT_TRUE(words().contains("stands for this hair"));
+    EXPECT_TRUE(words().contains("Replacements for this hair"));
     EXPECT_FALSE(table().isVisibleTo(window.get()));
     EXPECT_FALSE(find<QPushButton>("levelsExport")->isEnabled());
     const auto before = hash();
@@ -120,11 +120,11 @@ TEST_F(LevelsTest, AChainIsMadeLookedAtMadeAnewAndExported) {
     table().setCurrentItem(table().topLevelItem(5));
     EXPECT_EQ(find<QComboBox>("levelMap")->count(), 0);
     // The strands change: the panel says so until the chain is made anew.
-    EXPECT_FALSE(words().contains("changed since"));
+    EXPECT_FALSE(words().contains("hair has changed"));
     changeColour();
-    EXPECT_TRUE(words().contains("changed since")) << words().toStdString();
+    EXPECT_TRUE(words().contains("hair has changed")) << words().toStdString();
     make();
-    EXPECT_FALSE(words().contains("changed since")) << words().toStdString();
+    EXPECT_FALSE(words().contains("hair has changed")) << words().toStdString();
     EXPECT_EQ(cell(5, 0), "shell-800");
     find<LevelsPanel>("levels")->exportTo(inFolder("few.glb"));
     QFile file(inFolder("few.glb"));
@@ -152,12 +152,12 @@ TEST_F(LevelsTest, ACardShapedByHandStaysSoWhenTheRestIsMadeAnew) {
     EXPECT_FLOAT_EQ(shaped.bend, -0.5f);
     EXPECT_EQ(shaped.strip.size(), kCardStations);
     EXPECT_EQ(document().stepCount(), 3);
-    EXPECT_TRUE(words().contains("changed since")) << words().toStdString();
+    EXPECT_TRUE(words().contains("hair has changed")) << words().toStdString();
     // The strands change, the level is made anew: the card is there as it was shaped.
     changeStrands();
     ASSERT_EQ(groom().cardEdits.size(), 1u);
     make();
-    EXPECT_FALSE(words().contains("changed since"));
+    EXPECT_FALSE(words().contains("hair has changed"));
     EXPECT_FALSE(words().contains("lost")) << words().toStdString();
     ASSERT_TRUE(pick([this] { return width() == 2; }));
     EXPECT_EQ(find<NumberBox>("cardBend")->value(), -0.5);
@@ -173,12 +173,12 @@ TEST_F(LevelsTest, ACardShapedByHandStaysSoWhenTheRestIsMadeAnew) {
     trigger("edit.undo");
     EXPECT_EQ(groom().cardEdits.size(), 1u);
     find<LevelsPanel>("levels")->exportTo(inFolder("few.glb"));
-    EXPECT_TRUE(window->statusLine().message().contains("few.glb written"))
+    EXPECT_TRUE(window->statusLine().message().contains("Exported few.glb"))
         << window->statusLine().message().toStdString();
     // With other budgets the card is of a level that is not made.
     find<NumberBox>("levelCards")->spinBox().setValue(20);
     make();
-    EXPECT_TRUE(words().contains("1 cards shaped by hand are of levels that are not made"))
+    EXPECT_TRUE(words().contains("1 edited cards are of levels that were not created"))
         << words().toStdString();
     EXPECT_FALSE(pick([this] { return width() == 2; }));
     // Scripts and projects have it.
@@ -207,7 +207,7 @@ TEST_F(LevelsTest, StoppedWorkAndAnotherDocumentLeaveNothing) {
     parts().tasks.cancel();
     finishWork();
     EXPECT_TRUE(table().isVisibleTo(window.get())) << "what was made stays";
-    EXPECT_TRUE(words().contains("changed since"));
+    EXPECT_TRUE(words().contains("hair has changed"));
     openBust();
     EXPECT_FALSE(table().isVisibleTo(window.get()));
     EXPECT_TRUE(words().contains("Place hair"));

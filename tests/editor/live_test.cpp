@@ -97,7 +97,7 @@ TEST_F(LiveTest, OtherMethodsMoveTheHairAndSayWhatTheyCost) {
     hairs->setChecked(true);
     EXPECT_TRUE(costs("hair-hair"));
     EXPECT_TRUE(goesOn());
-    EXPECT_EQ(parts().player.engine()->why, "hair against hair runs there");
+    EXPECT_EQ(parts().player.engine()->why, "hair-hair collision runs there");
     method->setCurrentIndex(1);
     EXPECT_FALSE(hairs->isEnabled()) << "those take no velocities";
     EXPECT_TRUE(costs("projective equations"));
@@ -192,7 +192,7 @@ TEST_F(LiveTest, ADeviceThatIsLostLeavesTheCpu) {
         gpu::validationOf(**device)->loseDevice(2);
         const double before = player.frame()->time;
         ASSERT_TRUE(plays(before + 0.3));
-        EXPECT_TRUE(problem.contains("the CPU goes on")) << problem.toStdString();
+        EXPECT_TRUE(problem.contains("The CPU continues")) << problem.toStdString();
         EXPECT_EQ(player.engine()->kind, EngineKind::cpu);
         EXPECT_FALSE(player.engine()->why.empty());
         EXPECT_TRUE(player.isPlaying());

@@ -276,7 +276,7 @@ TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
     chooseInMenu("Simulation", "Play");
     ASSERT_TRUE(played(0.2));
     const auto before = hash();
-    chooseInMenu("Simulation", "Take this shape");
+    chooseInMenu("Simulation", "Set as rest shape");
     EXPECT_NE(hash(), before) << window->statusLine().message().toStdString();
 
     // Saved under the name that is proposed, changed, killed, recovered.

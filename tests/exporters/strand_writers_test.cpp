@@ -177,7 +177,7 @@ TEST_F(StrandWriters, UnusableStrandsAreLeftOutAndReported) {
     ASSERT_TRUE(report) << report.error().message();
     EXPECT_EQ(report->strands, 2u);
     EXPECT_TRUE(says(*report, "2 strands of no length"));
-    EXPECT_TRUE(says(*report, "segments of no length"));
+    EXPECT_TRUE(says(*report, "segments without length"));
     EXPECT_TRUE(says(*report, "no widths"));
     EXPECT_LT(report->maxErrorMm.value(), 1e-4);
     for (const Finding& finding : report->findings) {
@@ -202,7 +202,7 @@ TEST_F(StrandWriters, RootsFarFromTheScalpAreReported) {
     groom.scalp = std::make_shared<const ScalpMesh>(ScalpMesh::make(soup).value());
     const auto report = writeHair(groom, folder / "a.hair");
     ASSERT_TRUE(report) << report.error().message();
-    EXPECT_TRUE(says(*report, "roots lie up to 10 mm"));
+    EXPECT_TRUE(says(*report, "roots are up to 10 mm"));
 }
 
 TEST_F(StrandWriters, FailuresLeaveTheOldFile) {

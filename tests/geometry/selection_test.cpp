@@ -56,7 +56,7 @@ TEST(Selection, TermsApplyFromLeftToRight) {
     for (const std::uint32_t t : groupFirst)
         EXPECT_GE(mesh.pointAt(t, Vec3f::Constant(1.0f / 3)).y(), 0.5f - 1e-5f);
     EXPECT_NEAR(selectionArea(mesh, groupFirst), 2 * kPi * 0.5, 0.2);
-    EXPECT_THAT(refusal(mesh, "above:0.75,group:low"), HasSubstr("no face"));
+    EXPECT_THAT(refusal(mesh, "above:0.75,group:low"), HasSubstr("is empty after"));
     EXPECT_EQ(selected(mesh, "group:low").size(), 1280u);  // both parts of that name
     EXPECT_EQ(selected(mesh, "group:low,invert"), selected(mesh, "group:high"));
     const auto ofGroups = [&](std::vector<std::string> names) { return facesOfGroups(mesh, names); };

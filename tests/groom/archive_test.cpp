@@ -62,7 +62,7 @@ TEST(Archive, RefusesHostileHeads) {
         {headWith(R"("a":)" + entry("18446744073709551615", "0")), "/arrays/a/count is 18446744073709551615"},
         {headWith(R"("a":)" + entry("0", "18446744073709551615")),
          "/arrays/a/offset is 18446744073709551615"},
-        {headWith(R"("a":)" + entry("0", "0", "float16")), "'float16' is no attribute type"},
+        {headWith(R"("a":)" + entry("0", "0", "float16")), "'float16' is not an attribute type"},
         {headWith(R"("a":{"type":"float","count":0,"offset":0})"), "/arrays/a/checksum is missing"},
         {headWith(R"("a":{"type":"float","count":0,"offset":0,"checksum":"0x"})"),
          "/arrays/a/checksum is malformed"},

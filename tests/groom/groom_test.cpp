@@ -35,7 +35,7 @@ TEST(AttributeSet, NamesTypesOfAllArrays) {
     }
     const auto unknown = emptyOfType("double");
     ASSERT_FALSE(unknown);
-    EXPECT_THAT(unknown.error().message(), testing::HasSubstr("'double' is no attribute type"));
+    EXPECT_THAT(unknown.error().message(), testing::HasSubstr("'double' is not an attribute type"));
     EXPECT_THAT(unknown.error().message(), testing::HasSubstr("uint8"));
 }
 

@@ -117,7 +117,7 @@ TEST(Project, ReadsTheStiffnessAtTheTipOfVersion3AsAStraightCurve) {
     project.head["simulation"]["angularTipShare"] = 0.35;
     const auto both = project.load(3);
     ASSERT_FALSE(both);
-    EXPECT_THAT(both.error().message(), HasSubstr("/simulation/angularTipShare stands beside angularCurve"));
+    EXPECT_THAT(both.error().message(), HasSubstr("/simulation/angularTipShare cannot be used together with angularCurve"));
     project.head["simulation"].erase("angularCurve");
     const auto loaded = project.load(3);
     ASSERT_TRUE(loaded) << loaded.error().message();
@@ -158,7 +158,7 @@ TEST(Project, ReadsTheNamesOfVersion4) {
     project.head["placement"]["placement"] = "random";
     const auto both = project.load(4);
     ASSERT_FALSE(both);
-    EXPECT_THAT(both.error().message(), HasSubstr("/placement/darts stands beside placement"));
+    EXPECT_THAT(both.error().message(), HasSubstr("/placement/darts cannot be used together with placement"));
     project.head["placement"].erase("placement");
     project.head["simulation"]["pearlRadiusTip"] = -1;
     const auto outside = project.load(4);
@@ -224,7 +224,7 @@ TEST(Project, NamesThePlaceOfDamage) {
     EXPECT_THAT(loadError(path), HasSubstr("does not match its checksum"));
     ASSERT_TRUE(writeFileAtomically(path, std::as_bytes(std::span(std::string_view("v 0 0 0\n"))),
                                     Replacing::Anything));
-    EXPECT_THAT(loadError(path), HasSubstr("is no Hairloom file"));
+    EXPECT_THAT(loadError(path), HasSubstr("is not a Hairloom file"));
 }
 
 /// A project whose parts a test bends before it is sealed with right checksums, as a hostile program would
@@ -281,7 +281,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = kProjectVersion + 2;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 11; this program reads versions up to 9"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 11, but this program reads versions up to 9"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
@@ -289,7 +289,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     bytes[8] = std::byte{9};
     ASSERT_TRUE(writeFileAtomically(other.path, bytes, Replacing::Anything));
     EXPECT_THAT(loadError(other.path),
-                HasSubstr("container is version 9; this program reads versions up to 1"));
+                HasSubstr("container is version 9, but this program reads versions up to 1"));
 }
 
 TEST(HostileProject, HeadsAreReadStrictly) {
@@ -310,14 +310,14 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) {
              h["material"]["rootColour"] = {0, 1};
          },
-         "/material/rootColour is no such vector"},
+         "/material/rootColour is not a vector"},
         {[](Json& h) { h["simulation"]["integrator"] = "sideways"; },
          "/simulation/integrator is \"sideways\""},
         {[](Json& h) { h["simulation"]["substeps"] = 1.5; }, "/simulation/substeps is 1.5"},
         {[](Json& h) {
              h["simulation"]["angularCurve"] = {1, 2};
          },
-         "/simulation/angularCurve is no such list"},
+         "/simulation/angularCurve is not a list"},
         {[](Json& h) {
              h["simulation"]["angularCurve"] = {{0, 1}, {0.5, 1}};
          },
@@ -374,7 +374,7 @@ TEST(HostileProject, ArraysAreReadStrictly) {
         {[&](Arrays& a) { numbers(a, "triangulation/triangles").pop_back(); },
          "has 5 values; expected a multiple of 3"},
         {[&](Arrays& a) { numbers(a, "triangulation/triangles")[0] = 77; },
-         "names strands that do not exist"},
+         "refers to strands that do not exist"},
         {[&](Arrays& a) { numbers(a, "scalp/triangles")[4] = 77; }, "has corner"},
         {[&](Arrays& a) { numbers(a, "scalp/triangles")[0] = numbers(a, "scalp/triangles")[1]; },
          "three different vertices"},

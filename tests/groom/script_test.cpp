@@ -67,7 +67,7 @@ TEST(Script, NamesWhatIsWrongAndWhatIsAllowed) {
     EXPECT_THAT(parseError(R"({"operations": []})"), HasSubstr("/hairloom_script is missing"));
     EXPECT_THAT(parseError(R"({"hairloom_script": 1})"), HasSubstr("/operations is missing"));
     EXPECT_THAT(parseError(R"({"hairloom_script": 2, "operations": []})"),
-                HasSubstr("script is version 2; this program reads versions up to 1"));
+                HasSubstr("the script is version 2, but this program reads versions up to 1"));
     EXPECT_THAT(parseError("{"), HasSubstr("s.json@1: JSON is damaged"));
     EXPECT_EQ(parseError(oneStep(R"({"op": "smooth"})")), "it was parsed");
 }

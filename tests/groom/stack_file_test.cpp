@@ -48,7 +48,7 @@ TEST_F(StackFile, NamesWhatIsWrong) {
     EXPECT_FALSE(stackPresetFile(folder_, ""));
     const auto none = saveOperators(folder_ / "a.stack.json", std::vector<Operator>{newOperator(kSculpt)});
     ASSERT_FALSE(none);
-    EXPECT_THAT(none.error().message(), HasSubstr("a.stack.json: there is no operator to keep"));
+    EXPECT_THAT(none.error().message(), HasSubstr("a.stack.json: there is no operator to save"));
     EXPECT_TRUE(stackPresets(folder_ / "nowhere").empty());
     const auto unknown = parseOperators("clipboard", R"({"operators": [{"op": "perm"}]})");
     ASSERT_FALSE(unknown);

@@ -322,7 +322,7 @@ TEST(DrawnCurve, ComplaintsNameTheMember) {
     using testing::HasSubstr;
     EXPECT_THAT(problemOf(R"({"op": "part", "curve": [[0, 1, 0]]})"), HasSubstr("/curve has one point"));
     EXPECT_THAT(problemOf(R"({"op": "part", "curve": [[0, 1], [0, 2, 0]]})"),
-                HasSubstr("/curve is no such list"));
+                HasSubstr("/curve is not a list"));
     EXPECT_THAT(problemOf(R"({"op": "part", "curve": [[0, 1, 0], [0, 1e9, 0]]})"), HasSubstr("/curve"));
     EXPECT_THAT(problemOf(R"({"op": "wave", "curve": [[0, 1, 0], [0, 2, 0]]})"), HasSubstr("curve"));
     EXPECT_EQ(problemOf(R"({"op": "part", "curve": []})"), "none");

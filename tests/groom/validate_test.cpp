@@ -81,7 +81,7 @@ std::vector<Broken> brokenGrooms() {
              g.strandAttributes.set(attribute::kDye, std::vector<float>(g.strandCount(), 0.5f));
              g.strandAttributes.edit<float>(attribute::kDye)[3] = 1.5f;
          },
-         error, "mask of the dye", "strand 3"},
+         error, "dye mask", "strand 3"},
         {"RepeatedId",
          [](Groom& g) { g.strandAttributes.edit<std::uint32_t>(attribute::kStrandId)[4] = 101; }, error,
          "same id", "id 101"},

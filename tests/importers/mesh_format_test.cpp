@@ -37,7 +37,7 @@ TEST_F(SceneFile, OtherFormatsAreRefusedNamingThoseThatAreRead) {
     EXPECT_THAT(refusal("mesh.obj", "OFF\n3 1 0\n"),
                 HasSubstr("expected a mesh in OBJ, PLY, STL, FBX, glTF or GLB"));
     EXPECT_THAT(importScene(folder / "none.obj").error().message(), HasSubstr("no such file"));
-    EXPECT_THAT(importScene(folder).error().message(), HasSubstr("is no regular file"));
+    EXPECT_THAT(importScene(folder).error().message(), HasSubstr("is not a regular file"));
 }
 
 constexpr std::string_view kStl =
@@ -127,14 +127,14 @@ TEST(RawScene, ValidationRefusesWhatDoesNotFit) {
         return status ? std::string() : status.error().message();
     };
     EXPECT_TRUE(validate(everything()));
-    EXPECT_THAT(problem([](RawScene& s) { s.soup.corners[1] = 3; }), HasSubstr("face 0 names vertex 3"));
+    EXPECT_THAT(problem([](RawScene& s) { s.soup.corners[1] = 3; }), HasSubstr("face 0 refers to vertex 3"));
     EXPECT_THAT(problem([](RawScene& s) { s.soup.offsets = {0}; }), HasSubstr("no faces"));
     EXPECT_THAT(problem([](RawScene& s) { s.soup.offsets = {0, 9, 3}; }), HasSubstr("corner ranges"));
     EXPECT_THAT(problem([](RawScene& s) { s.soup.positions[2].x() = std::nanf(""); }),
                 HasSubstr("not a finite"));
     EXPECT_THAT(problem([](RawScene& s) { s.soup.faceGroups = {1}; }), HasSubstr("face 0 is in group 1"));
     EXPECT_THAT(problem([](RawScene& s) { s.soup.uvs.pop_back(); }), HasSubstr("texture coordinates"));
-    EXPECT_THAT(problem([](RawScene& s) { s.bones[0].parent = 0; }), HasSubstr("hang on themselves"));
+    EXPECT_THAT(problem([](RawScene& s) { s.bones[0].parent = 0; }), HasSubstr("form a cycle"));
     EXPECT_THAT(problem([](RawScene& s) { s.skin.bones[1][0] = 4; }), HasSubstr("vertex 1 follows bone 4"));
     EXPECT_THAT(problem([](RawScene& s) { s.clips[0].channels[0].bone = 1; }), HasSubstr("moves bone 1"));
 }

@@ -76,7 +76,7 @@ TEST(ObjMesh, NumbersAreReadAsWrittenOrRefused) {
 
 TEST(ObjMesh, InvalidIndicesAreReportedWithTheirLine) {
     EXPECT_THAT(refusal(kSquare + "f 1 2 5\n"),
-                HasSubstr("x.obj:5: a face names vertex 5; the file has 4 vertices"));
+                HasSubstr("x.obj:5: a face refers to vertex 5; the file has 4 vertices"));
     EXPECT_THAT(refusal(kSquare + "f 0 1 2\n"), HasSubstr("x.obj:5: found '0'"));
     EXPECT_THAT(refusal(kSquare + "f 1 2 99999999999999999999\n"), HasSubstr("x.obj:5"));
     EXPECT_EQ(read(kSquare + "f 5 2 3\nv 7 7 7\n").soup.corners[0], 4u) << "a vertex may come after its face";
@@ -120,7 +120,7 @@ TEST_F(ObjFile, AnImplausibleSizeNamesTheUnitThatWouldFit) {
     EXPECT_THAT(warningOf("175"), HasSubstr("unit cm"));
     EXPECT_THAT(warningOf("250"), HasSubstr("unit mm"));
     EXPECT_THAT(warningOf("69"), HasSubstr("unit inch"));
-    EXPECT_THAT(warningOf("1e6"), HasSubstr("no unit"));
+    EXPECT_THAT(warningOf("1e6"), HasSubstr("No unit"));
     MeshImportOptions decimetres;
     decimetres.metresPerUnit = 0.1f;
     const auto scene = importScene(write("human.obj", head("17")), decimetres);

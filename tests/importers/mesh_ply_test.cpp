@@ -83,7 +83,7 @@ TEST(PlyMesh, HostileCountsAreRefusedBeforeAllocation) {
     const std::string vertex = "property float x\nproperty float y\nproperty float z\n";
     EXPECT_THAT(
         refusal("ply\nformat ascii 1.0\nelement vertex 4000000000\n" + vertex + "end_header\n1 2 3\n"),
-        HasSubstr("4000000000 rows of 'vertex' are promised"));
+        HasSubstr("4000000000 rows of 'vertex' were announced"));
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex -1\n" + vertex + "end_header\n"),
                 HasSubstr("x.ply:3"));
     EXPECT_THAT(
@@ -92,7 +92,7 @@ TEST(PlyMesh, HostileCountsAreRefusedBeforeAllocation) {
         HasSubstr("a list of 4294967295 values"));
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\n" + vertex +
                         "element face 1\nproperty list int int vertex_index\nend_header\n1 2 3\n3 0 -1 0\n"),
-                HasSubstr("x.ply:11: a face names vertex -1"));
+                HasSubstr("x.ply:11: a face refers to vertex -1"));
 }
 
 TEST(PlyMesh, DamagedHeadersAreReportedWithTheirLine) {
@@ -102,10 +102,10 @@ TEST(PlyMesh, DamagedHeadersAreReportedWithTheirLine) {
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\nproperty float x\nend_header\n"),
                 HasSubstr("before any element"));
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\nend_header\n"),
-                HasSubstr("x.ply:4: 'real' is no type"));
+                HasSubstr("x.ply:4: 'real' is not a type"));
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\nend_header\n"),
-                HasSubstr("no type of whole numbers"));
-    EXPECT_THAT(refusal("ply\nend_header\n"), HasSubstr("names no format"));
+                HasSubstr("not an integer type"));
+    EXPECT_THAT(refusal("ply\nend_header\n"), HasSubstr("has no format"));
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\n"), HasSubstr("no end"));
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\nwhatever\nend_header\n"),
                 HasSubstr("x.ply:3: found 'whatever'"));

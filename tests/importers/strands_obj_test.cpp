@@ -73,7 +73,7 @@ TEST(StrandsRibbons, OrderAndParticleCanBeChosen) {
     EXPECT_TRUE(imported->groom.strand(1)[2].isApprox(curlPoint(1, 2, 5) + Vec3f(0, 0, 0.0005f), 1e-6f));
     const auto wrong = read(ribbonObj(2, 4, RibbonOrder::Interleaved), options);
     ASSERT_FALSE(wrong);
-    EXPECT_THAT(wrong.error().message(), HasSubstr("does not lie between neighbouring"));
+    EXPECT_THAT(wrong.error().message(), HasSubstr("is not between neighbouring"));
 }
 
 TEST(StrandsRibbons, RemaindersAreErrors) {
@@ -233,9 +233,9 @@ TEST(StrandsLines, ErrorsNameTheLine) {
     };
     EXPECT_THAT(messageOf("v 0 0 0\nv 0 1\nl 1 2\n"), HasSubstr("test:2: a vertex has 2 coordinates"));
     EXPECT_THAT(messageOf("v 0 0 x\n"), HasSubstr("test:1: 'x' is not a number"));
-    EXPECT_THAT(messageOf("v 0 0 0\nl 1 2\n"), HasSubstr("test:2: a line names vertex 2"));
-    EXPECT_THAT(messageOf("v 0 0 0\nl 1 0\n"), HasSubstr("names vertex 0"));
-    EXPECT_THAT(messageOf("v 0 0 0\nf 1 -2 1\n"), HasSubstr("a face names vertex -2"));
+    EXPECT_THAT(messageOf("v 0 0 0\nl 1 2\n"), HasSubstr("test:2: a line refers to vertex 2"));
+    EXPECT_THAT(messageOf("v 0 0 0\nl 1 0\n"), HasSubstr("refers to vertex 0"));
+    EXPECT_THAT(messageOf("v 0 0 0\nf 1 -2 1\n"), HasSubstr("a face refers to vertex -2"));
     EXPECT_THAT(messageOf("v 0 0 0\n\nl 1 \\\n1.5\n"), HasSubstr("test:3: '1.5' in a line is not an index"));
     EXPECT_THAT(messageOf("hello"), HasSubstr("without a vertex"));
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exports grooms in every format, has each file judged by a program that is not Hairloom, and writes what came out as
+"""Exports grooms in every format, has each file checked by a program that is not Hairloom, and writes what came out as
 the table of docs/exchange.md. Fails where a judge finds other counts, or a point farther than 0.001 mm."""
 import argparse
 import json
@@ -139,7 +139,7 @@ def main():
                 errors.append(error)
             own.append(report["max_error_mm"])
             carried |= {attribute["name"] for attribute in report["attributes"]}
-        verdict = f"{max(errors):.2g} mm" if errors else "not judged"
+        verdict = f"{max(errors):.2g} mm" if errors else "not checked"
         if errors and max(errors) > CLOSE_MM:
             failed += 1
         print(f"{name}: {judge}: {verdict}")
@@ -147,7 +147,7 @@ def main():
     if asked.table and not failed:
         text = open(asked.table).read()
         begin, end = text.index("| format |"), text.index("<!-- end of the table -->")
-        head = "| format | in | out | attributes of the samples | judged by | farthest point |\n|---|---|---|---|---|---|\n"
+        head = "| format | in | out | attributes of the samples | checked by | farthest point |\n|---|---|---|---|---|---|\n"
         with open(asked.table, "w") as page:
             page.write(text[:begin] + head + "\n".join(lines) + "\n" + text[end:])
     return 1 if failed else 0

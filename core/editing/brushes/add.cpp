@@ -15,15 +15,15 @@ namespace {
 constexpr std::size_t kGrain = 256;
 
 constexpr BrushParameter kParameters[] = {
-    parameter("density", "1/cm²", 0.01, 1000, 5, "roots per area that are not exceeded"),
+    parameter("density", "1/cm²", 0.01, 1000, 5, "largest density of roots that the brush fills to"),
     parameter("reach", "m", 0, 0.2, 0.03f,
-              "how far away hair may be whose shape new hair takes; 0: straight"),
+              "new hair copies the shape of hair within this distance: 0 grows straight hair"),
 };
 constexpr BrushInfo kInfo{
     .name = "add",
     .label = "Add",
-    .meaning = "grows hair between the hair that is there",
-    .tip = "Drag over the scalp to grow hair between the hair that is there",
+    .meaning = "adds hair between existing hair",
+    .tip = "Drag over the scalp to add hair between existing hair",
     .key = "A",
     .parameters = kParameters,
     .needsHead = true,

@@ -7,8 +7,8 @@ namespace {
 constexpr BrushInfo kInfo{
     .name = "brush",
     .label = "Brush",
-    .meaning = "turns hair into the direction of the stroke",
-    .tip = "Drag to turn hair into the direction of the stroke",
+    .meaning = "turns hair in the direction of the stroke",
+    .tip = "Drag to turn hair in the direction of the stroke",
     .key = "B",
     .inverse = "turns hair against the direction of the stroke",
     .drags = true,

@@ -12,15 +12,15 @@ namespace {
 
 constexpr BrushParameter kParameters[] = {
     parameter("profile", "", 0.1, 10, 1.5f,
-              "how the pull grows from the root: 1 evenly, above 1 nearer to the tip"),
+              "how the pull grows from the root: 1 linearly, above 1 nearer to the tip"),
 };
 constexpr BrushInfo kInfo{
     .name = "clump",
     .label = "Clump",
-    .meaning = "gathers hair under the brush in a lock",
-    .tip = "Drag to gather the hair under the brush in a lock",
+    .meaning = "gathers hair under the brush into a clump",
+    .tip = "Drag to gather hair under the brush into a clump",
     .key = "K",
-    .inverse = "spreads the lock",
+    .inverse = "spreads the clump",
     .parameters = kParameters,
     .order = 162,
 };

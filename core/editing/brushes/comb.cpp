@@ -8,7 +8,7 @@ constexpr BrushInfo kInfo{
     .name = "comb",
     .label = "Comb",
     .meaning = "drags hair along with the brush",
-    .tip = "Drag to comb hair along; lengths stay",
+    .tip = "Drag to comb hair. Lengths do not change",
     .key = "C",
     .drags = true,
     .order = 110,

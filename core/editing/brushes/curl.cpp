@@ -9,18 +9,18 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("curlRadius", "m", 0.0005, 0.05, 0.006f, "of the curls"),
-    parameter("turns", "1/m", 1, 300, 25,
-              "turns for each metre of hair; segments limit it to one turn for four"),
-    parameter("variation", "", 0, 1, 0.1f, "1 starts each strand at any angle, 0 all at the same"),
+    parameter("curlRadius", "m", 0.0005, 0.05, 0.006f, "radius of the curls"),
+    parameter("turns", "1/m", 1, 300, 25, "turns per metre of hair, limited to one turn per four segments"),
+    parameter("variation", "", 0, 1, 0.1f,
+              "1 starts each strand at a random angle, 0 starts all at the same angle"),
 };
 constexpr BrushInfo kInfo{
     .name = "curl",
     .label = "Curl",
-    .meaning = "winds hair into curls",
-    .tip = "Drag to wind hair into curls",
+    .meaning = "curls hair",
+    .tip = "Drag to curl hair",
     .key = "J",
-    .inverse = "winds the other way",
+    .inverse = "curls hair the other way",
     .parameters = kParameters,
     .turnsSegments = true,
     .order = 144,

@@ -9,7 +9,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("shortest", "m", 0.001, 1, 0.005f, "length that a cut always leaves"),
+    parameter("shortest", "m", 0.001, 1, 0.005f, "minimum length that remains"),
 };
 constexpr BrushInfo kInfo{
     .name = "cut",

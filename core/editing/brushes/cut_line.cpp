@@ -9,13 +9,13 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("shortest", "m", 0.001, 1, 0.005f, "length that a cut always leaves"),
+    parameter("shortest", "m", 0.001, 1, 0.005f, "minimum length that remains"),
 };
 constexpr BrushInfo kInfo{
     .name = "cut_line",
     .label = "Cut along line",
-    .meaning = "cuts hair where it crosses the line that is drawn",
-    .tip = "Draw a line; hair is cut where it crosses it",
+    .meaning = "cuts hair along a drawn line",
+    .tip = "Draw a line to cut hair along it",
     .key = "Shift+X",
     .parameters = kParameters,
     .keepsLengths = false,

@@ -6,13 +6,13 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    boolParameter("roots", true, "takes strands by their roots alone; without, by any part of them"),
+    boolParameter("roots", true, "affects strands only by their roots; when off, by any part of them"),
 };
 constexpr BrushInfo kInfo{
     .name = "delete",
     .label = "Delete",
-    .meaning = "removes hair",
-    .tip = "Drag to remove hair",
+    .meaning = "deletes hair",
+    .tip = "Drag to delete hair",
     .key = "D",
     .parameters = kParameters,
     .order = 210,

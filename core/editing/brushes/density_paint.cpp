@@ -8,15 +8,15 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("density", "", 0, 1, 0, "density of roots that is painted; inverted, what is left to 1"),
+    parameter("density", "", 0, 1, 0, "root density to paint. Inverted, one minus this value"),
 };
 constexpr BrushInfo kInfo{
     .name = "density_paint",
     .label = "Paint density",
-    .meaning = "brings the density of roots nearer to a value",
-    .tip = "Drag over the scalp to set how dense hair grows",
+    .meaning = "paints the density of roots",
+    .tip = "Drag over the scalp to paint how dense hair grows",
     .key = "Shift+P",
-    .inverse = "brings it nearer to 1 less the value",
+    .inverse = "paints one minus the value",
     .parameters = kParameters,
     .needsHead = true,
     .worksOnSkin = true,

@@ -8,16 +8,16 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("amount", "", 0, 1, 1, "what the mask becomes; 1 is all of the material's dye"),
-    boolParameter("smooth", false, "brings the mask nearer to its mean under the brush instead"),
+    parameter("amount", "", 0, 1, 1, "mask value to paint: 1 is full dye"),
+    boolParameter("smooth", false, "smooths the mask under the brush instead"),
 };
 constexpr BrushInfo kInfo{
     .name = "dye_paint",
     .label = "Paint dye",
-    .meaning = "brings the material's dye onto hair",
-    .tip = "Drag to bring the material's dye onto hair",
+    .meaning = "paints the dye of the material",
+    .tip = "Drag to paint the dye of the material",
     .key = "Y",
-    .inverse = "takes dye off",
+    .inverse = "removes dye",
     .parameters = kParameters,
     .movesHair = false,
     .order = 220,

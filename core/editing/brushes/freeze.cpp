@@ -8,13 +8,13 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    boolParameter("roots", false, "takes strands by their roots alone"),
+    boolParameter("roots", false, "affects strands only by their roots"),
 };
 constexpr BrushInfo kInfo{
     .name = "freeze",
     .label = "Freeze",
-    .meaning = "keeps brushes from touching hair",
-    .tip = "Drag to keep brushes from touching hair",
+    .meaning = "protects hair from other brushes",
+    .tip = "Drag to protect hair from other brushes",
     .key = "Z",
     .inverse = "thaws hair",
     .parameters = kParameters,

@@ -7,8 +7,8 @@ namespace {
 constexpr BrushInfo kInfo{
     .name = "grab",
     .label = "Grab",
-    .meaning = "takes hold of hair and carries it along until it is let go",
-    .tip = "Drag to take hair along and let it go elsewhere",
+    .meaning = "grabs hair and moves it",
+    .tip = "Drag to grab hair and move it",
     .key = "G",
     .order = 130,
 };

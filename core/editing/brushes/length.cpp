@@ -9,18 +9,18 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("rate", "", 0, 1, 0.1f, "share of its length that a dab of full strength adds or takes"),
-    boolParameter("rescale", true, "scales the shape; without, hair goes on straight or is cut"),
-    parameter("shortest", "m", 0.001, 1, 0.005f, "length below which no hair is shortened"),
-    parameter("longest", "m", 0.001, 5, 2, "length above which no hair grows"),
+    parameter("rate", "", 0, 1, 0.1f, "change in length by a dab of full strength, as a share of the length"),
+    boolParameter("rescale", true, "scales the shape; when off, hair extends straight or is cut"),
+    parameter("shortest", "m", 0.001, 1, 0.005f, "minimum length when the brush shortens"),
+    parameter("longest", "m", 0.001, 5, 2, "maximum length when the brush grows"),
 };
 constexpr BrushInfo kInfo{
     .name = "length",
     .label = "Length",
-    .meaning = "makes hair longer",
-    .tip = "Drag to make hair longer",
+    .meaning = "lengthens hair",
+    .tip = "Drag to lengthen hair",
     .key = "L",
-    .inverse = "makes hair shorter",
+    .inverse = "shortens hair",
     .parameters = kParameters,
     .keepsLengths = false,
     .order = 170,

@@ -10,14 +10,14 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    boolParameter("grow", true, "lets hair that ends short of the height go on straight to it"),
-    parameter("longest", "m", 0.001, 5, 2, "length above which no hair grows"),
+    boolParameter("grow", true, "extends hair that is too short straight up to the height"),
+    parameter("longest", "m", 0.001, 5, 2, "maximum length when the brush grows"),
 };
 constexpr BrushInfo kInfo{
     .name = "level",
     .label = "Length to height",
-    .meaning = "brings tips to the height at which the stroke began",
-    .tip = "Press at a height and drag: tips come to it",
+    .meaning = "brings tips to the height where the stroke began",
+    .tip = "Press at a height and drag to bring tips to it",
     .key = "Shift+L",
     .parameters = kParameters,
     .keepsLengths = false,

@@ -9,17 +9,17 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("mask", "", 1, kPaintedMasks, 1, "number of the mask that is painted"),
-    parameter("value", "", 0, 1, 1, "what the mask becomes: strength of the operators that it is chosen for"),
-    boolParameter("roots", false, "takes strands by their roots alone, as on a map of the scalp"),
+    parameter("mask", "", 1, kPaintedMasks, 1, "number of the mask to paint"),
+    parameter("value", "", 0, 1, 1, "mask value to paint: strength of the operators that use this mask"),
+    boolParameter("roots", false, "affects strands only by their roots, like a map of the scalp"),
 };
 constexpr BrushInfo kInfo{
     .name = "mask_paint",
     .label = "Paint mask",
-    .meaning = "paints where operators act",
-    .tip = "Drag to paint where operators act that have this mask",
+    .meaning = "paints where operators apply",
+    .tip = "Drag to paint where the operators with this mask apply",
     .key = "Shift+Y",
-    .inverse = "brings the mask to 0",
+    .inverse = "paints the mask with 0",
     .parameters = kParameters,
     .movesHair = false,
     .order = 225,

@@ -12,13 +12,14 @@ namespace {
 
 constexpr BrushParameter kParameters[] = {
     parameter("reach", "m", 0.001, 0.1, 0.02f,
-              "distance from a mirrored root within which a strand takes its shape; farther ones stay"),
+              "largest distance from a mirrored root at which a strand copies its shape. Farther strands do "
+              "not change"),
 };
 constexpr BrushInfo kInfo{
     .name = "mirror",
     .label = "Mirror",
-    .meaning = "gives hair the shape of that on the other side of the head",
-    .tip = "Drag over hair to give it the shape of that on the other side",
+    .meaning = "copies the shape of hair from the other side of the head",
+    .tip = "Drag over hair to copy its shape from the other side",
     .key = "Shift+I",
     .parameters = kParameters,
     .keepsLengths = false,

@@ -9,15 +9,15 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("amplitude", "m", 0, 0.05, 0.006f, "how far waves lead aside at the tip"),
+    parameter("amplitude", "m", 0, 0.05, 0.006f, "size of the waves at the tip"),
     parameter("frequency", "1/m", 0, 1000, 20,
-              "waves for each metre of hair; segments limit it to one wave for four"),
+              "waves per metre of hair, limited to one wave per four segments"),
 };
 constexpr BrushInfo kInfo{
     .name = "noise",
     .label = "Noise",
     .meaning = "bends hair at random",
-    .tip = "Drag to bend hair at random: frizz with many waves a metre, an uneven fall with few",
+    .tip = "Drag to bend hair at random: many waves per metre give frizz, few give an uneven fall",
     .key = "V",
     .parameters = kParameters,
     .turnsSegments = true,

@@ -10,8 +10,8 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("lift", "°", 0, 90, 25, "angle to the skin at which hair leaves its root"),
-    parameter("rise", "m", 0, 0.3, 0.03f, "distance from the root over which that angle is lost"),
+    parameter("lift", "°", 0, 90, 25, "angle between hair and skin at the root"),
+    parameter("rise", "m", 0, 0.3, 0.03f, "distance from the root over which that angle fades"),
 };
 constexpr BrushInfo kInfo{
     .name = "part",

@@ -7,10 +7,10 @@ namespace {
 constexpr BrushInfo kInfo{
     .name = "pinch",
     .label = "Pinch",
-    .meaning = "draws hair together under the brush",
-    .tip = "Drag to draw hair together",
+    .meaning = "pulls hair together under the brush",
+    .tip = "Drag to pull hair together",
     .key = "I",
-    .inverse = "spreads hair away from the middle of the brush",
+    .inverse = "spreads hair away from the centre of the brush",
     .order = 160,
 };
 

@@ -5,7 +5,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("height", "m", 0, 0.1, 0.01f, "how far a dab of full strength lifts"),
+    parameter("height", "m", 0, 0.1, 0.01f, "height that a dab of full strength lifts"),
 };
 constexpr BrushInfo kInfo{
     .name = "puff",

@@ -11,10 +11,10 @@ namespace {
 constexpr BrushInfo kInfo{
     .name = "scalp_paint",
     .label = "Paint scalp",
-    .meaning = "adds faces to the part of the head that carries hair",
-    .tip = "Drag over the head to say where hair grows",
+    .meaning = "adds faces to the scalp, where hair grows",
+    .tip = "Drag over the head to paint where hair grows",
     .key = "P",
-    .inverse = "takes faces away",
+    .inverse = "removes faces from the scalp",
     .needsHead = true,
     .worksOnSkin = true,
     .movesHair = false,

@@ -6,13 +6,13 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("passes", "", 1, 20, 2, "more is smoother over longer stretches with each dab"),
+    parameter("passes", "", 1, 20, 2, "number of passes: more smooths over longer stretches with each dab"),
 };
 constexpr BrushInfo kInfo{
     .name = "smooth",
     .label = "Smooth",
-    .meaning = "takes bends out of hair",
-    .tip = "Drag to take bends out of hair",
+    .meaning = "smooths hair",
+    .tip = "Drag to smooth hair",
     .key = "S",
     .parameters = kParameters,
     .turnsSegments = true,

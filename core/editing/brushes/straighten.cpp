@@ -9,13 +9,13 @@ namespace {
 
 constexpr BrushParameter kParameters[] = {
     parameter("over", "m", 0, 1, 0.08f,
-              "length of hair over which bends are taken out; longer ones stay; 0 makes lines"),
+              "bends up to this length are removed. Longer bends stay. 0 makes straight lines"),
 };
 constexpr BrushInfo kInfo{
     .name = "straighten",
     .label = "Straighten",
-    .meaning = "takes waves and curls out and leaves the fall",
-    .tip = "Drag to take waves and curls out; the fall over the head stays",
+    .meaning = "removes waves and curls and keeps the fall",
+    .tip = "Drag to remove waves and curls. The fall over the head stays",
     .key = "T",
     .parameters = kParameters,
     .turnsSegments = true,

@@ -11,15 +11,15 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("angle", "°", 1, 180, 30, "turn of the tips by a dab of full strength"),
+    parameter("angle", "°", 1, 180, 30, "rotation of the tips by a dab of full strength"),
 };
 constexpr BrushInfo kInfo{
     .name = "twist",
     .label = "Twist",
-    .meaning = "winds hair under the brush about its middle, as a lock between fingers",
-    .tip = "Drag along a lock to wind it about its middle",
+    .meaning = "twists hair under the brush around its centre",
+    .tip = "Drag along a lock to twist it",
     .key = "R",
-    .inverse = "winds the other way",
+    .inverse = "twists the other way",
     .parameters = kParameters,
     .order = 164,
 };

@@ -50,7 +50,7 @@ bool allZero(std::span<const std::byte> bytes) {
 }
 
 std::string newerVersion(std::string_view what, std::uint64_t found, std::uint32_t newest) {
-    return fmt::format("{} is version {}; this program reads versions up to {}", what, found, newest);
+    return fmt::format("{} is version {}, but this program reads versions up to {}", what, found, newest);
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ Status ArchiveReader::readPreamble() {
     ByteReader reader(file_, bytes_);
     const auto preamble = reader.read<Preamble>("a Hairloom file's preamble");
     if (!startsAsArchive(bytes_))
-        return failIn(file_, Byte{0}, "is no Hairloom file", "expected it to begin with HAIRLOOM");
+        return failIn(file_, Byte{0}, "is not a Hairloom file", "expected it to begin with HAIRLOOM");
     if (!preamble) return tl::unexpected(preamble.error());
     if (preamble->version > kArchiveVersion || preamble->version == 0) {
         return failIn(file_, Byte{8}, newerVersion("container", preamble->version, kArchiveVersion));

@@ -70,7 +70,7 @@ Result<json> parseJson(const std::string& file, std::string_view text, std::uint
         if (event == json::parse_event_t::object_start) open.emplace_back();
         if (event == json::parse_event_t::object_end) open.pop_back();
         if (event == json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second) {
-            throw Refused{fmt::format("JSON names {} twice in one object", quoted(parsed))};
+            throw Refused{fmt::format("JSON has {} twice in one object", quoted(parsed))};
         }
         return true;
     };
@@ -104,7 +104,7 @@ void JsonReader::alsoReadFormer(std::span<const FormerMember> members) {
     if (!value_->is_object()) return;
     for (const FormerMember& member : members) {
         if (member.former != member.name && value_->contains(member.former) && value_->contains(member.name))
-            complain(member.former, "stands beside " + member.name, "expected one of the two");
+            complain(member.former, "cannot be used together with " + member.name, "expected one of the two");
     }
 }
 
@@ -204,8 +204,7 @@ Vec3d JsonReader::exactVector(std::string_view key, double min, double max, std:
         if (good) result[static_cast<Eigen::Index>(i)] = part.get<double>();
     }
     if (good) return result;
-    complain(key, "is no such vector",
-             "expected an array of three numbers from " + rangeText(min, max, unit));
+    complain(key, "is not a vector", "expected an array of three numbers from " + rangeText(min, max, unit));
     return Vec3d::Zero();
 }
 
@@ -219,7 +218,7 @@ std::vector<std::string> JsonReader::strings(std::string_view key) {
         if (good) result.push_back((*value)[i].get<std::string>());
     }
     if (good) return result;
-    complain(key, "is no list of names", "expected an array of texts");
+    complain(key, "is not a list of names", "expected an array of strings");
     return {};
 }
 
@@ -235,7 +234,7 @@ std::vector<double> JsonReader::numbers(std::string_view key, double min, double
     }
     if (good) return result;
     complain(
-        key, "is no such list",
+        key, "is not a list of numbers",
         fmt::format("expected an array of up to {} numbers from {}", maximum, rangeText(min, max, unit)));
     return {};
 }
@@ -255,7 +254,7 @@ std::vector<std::pair<double, double>> JsonReader::pairs(std::string_view key, d
         if (good) result.emplace_back(pair[0].get<double>(), pair[1].get<double>());
     }
     if (good) return result;
-    complain(key, "is no such list",
+    complain(key, "is not a list of pairs",
              fmt::format("expected an array of up to {} pairs of numbers from {}", maximum,
                          rangeText(min, max, {})));
     return {};
@@ -277,7 +276,7 @@ std::vector<Vec3f> JsonReader::vectors(std::string_view key, double min, double 
         result.push_back(read);
     }
     if (good) return result;
-    complain(key, "is no such list",
+    complain(key, "is not a list of vectors",
              fmt::format("expected an array of up to {} arrays of three numbers from {}", maximum,
                          rangeText(min, max, {})));
     return {};

@@ -157,7 +157,7 @@ Status takeArrays(const ArchiveReader& archive, const Counts& counts, Groom& gro
     return tl::unexpected(archive.errorAt(
         section::kOffsets,
         fmt::format("describes {} strands of {} points", groom.strandCount(), groom.pointCount()),
-        fmt::format("the head names {} strands of {} points", counts.strands, counts.points)));
+        fmt::format("the header has {} strands of {} points", counts.strands, counts.points)));
 }
 
 }  // namespace

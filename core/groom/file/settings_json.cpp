@@ -23,7 +23,8 @@ void readTipShare(JsonReader& reader, runtime::SimulationSettings& settings) {
     if (!reader.has(kTipShare)) return;
     const auto tip = static_cast<float>(reader.number(kTipShare, 0, 1));
     if (reader.has("angularCurve"))
-        return reader.complain(kTipShare, "stands beside angularCurve", "expected one of the two");
+        return reader.complain(kTipShare, "cannot be used together with angularCurve",
+                               "expected one of the two");
     settings.angularCurve = runtime::Ramp::straight(1, tip);
 }
 
