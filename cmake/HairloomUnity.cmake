@@ -47,6 +47,11 @@ function(hairloom_batches target)
         if(NOT EXISTS "${file}")
             continue()   # one that the build writes
         endif()
+        file(STRINGS "${file}" opened REGEX "^using namespace" LIMIT_COUNT 1)
+        if(opened)
+            set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)   # opens it for those behind, too
+            continue()
+        endif()
         hairloom_local_names(names "${file}")
         set(chosen ${batches})
         foreach(batch RANGE ${batches})

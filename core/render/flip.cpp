@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/math.h"
 #include "core/base/parallel.h"
@@ -14,7 +15,6 @@
 namespace hairloom::render {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kColourExponent = 0.7;   // q_c
 constexpr double kFeatureExponent = 0.5;  // q_f
 constexpr double kCompressed = 0.4;       // p_c
@@ -92,7 +92,7 @@ struct ContrastFilter {
     std::vector<Vec3d> weights;  ///< rows of a square, sum 1 in each channel
 
     explicit ContrastFilter(double pixelsPerDegree) {
-        radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * pixelsPerDegree));
+        radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * std::numbers::pi * std::numbers::pi)) * pixelsPerDegree));
         Vec3d sum = Vec3d::Zero();
         for (int y = -radius; y <= radius; ++y) {
             for (int x = -radius; x <= radius; ++x) {
@@ -100,7 +100,7 @@ struct ContrastFilter {
                 Vec3d w = Vec3d::Zero();
                 for (int c = 0; c < 3; ++c) {
                     for (const auto& [weight, spread] : channels[static_cast<std::size_t>(c)])
-                        w[c] += weight * std::sqrt(kPi / spread) * std::exp(-kPi * kPi * squared / spread);
+                        w[c] += weight * std::sqrt(std::numbers::pi / spread) * std::exp(-std::numbers::pi * std::numbers::pi * squared / spread);
                 }
                 weights.push_back(w);
                 sum += w;
