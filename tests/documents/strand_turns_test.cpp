@@ -87,7 +87,9 @@ void expectSound(const Groom& before, const Groom& after, bool keepsLengths) {
         }
     }
     EXPECT_EQ(roots, 0u) << "roots moved";
-    if (keepsLengths) EXPECT_EQ(lengths, 0u) << "segments changed their lengths";
+    if (keepsLengths) {
+        EXPECT_EQ(lengths, 0u) << "segments changed their lengths";
+    }
     EXPECT_EQ(inside, 0u) << "points were moved into the skin";
 }
 
