@@ -110,7 +110,7 @@ class FormulaReader {
 
     void complain(const std::string& problem, const std::string& expected) {
         if (!error_)
-            error_ = Error{fmt::format("formula, column {}: {}", at_ + 1, problem), {}, {}, expected};
+            error_ = Error{{}, {}, fmt::format("formula, column {}: {}", at_ + 1, problem), expected};
     }
     void add(Op op, FormulaName name = {}, float number = 0) {
         if (error_) return;

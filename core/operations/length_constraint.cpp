@@ -12,8 +12,6 @@ namespace {
 constexpr float kNoDirection = 1e-9f;  ///< metres; shorter differences point nowhere
 constexpr int kTurns = 6;              ///< towards the offset surface, which one reaches where it is flat
 constexpr int kHalvings = 10;          ///< of the turn towards the normal
-constexpr float kCatchUp = 0.5f;       ///< share of what a strand is behind that a segment makes up for; at
-                                       ///< most 13 degrees from one to the next
 constexpr float kSlack = 1e-5f;        ///< metres by which a clearance may be missed
 
 Vec3f directionOr(const Vec3f& difference, const Vec3f& fallback) {
@@ -53,7 +51,7 @@ class Follow {
         const float given = longer > 0 ? longer : -std::min(-longer, std::max(0.0f, behind_.dot(along_)));
         behind_ += given * along_;
         const Vec3f ahead = behind_ - std::min(0.0f, behind_.dot(along_)) * along_;
-        return directionOr(along_ * length + kCatchUp * ahead, along_);
+        return directionOr(along_ * length + ahead, along_);
     }
     /// Where that segment went in truth.
     void went(const Vec3f& direction, float length) { behind_ -= length * (direction - along_); }
@@ -157,37 +155,29 @@ Vec3f placeOutside(const SkinQuery& skin, const Vec3f& from, const Vec3f& direct
 bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
                  float clearance, std::size_t first) {
     assert(points.size() >= 2 && lengths.size() + 1 == points.size() && first >= 1);
-    Follow follow(points);
+    Lead lead(points);
     float arc =
         std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(first - 1), 0.0f);
     float known = 0;  // distance from the skin, at least
     bool moved = false;
-    Vec3f before = points[first - 1];
     for (std::size_t i = first; i < points.size(); ++i) {
         const float length = lengths[i - 1];
-        const Vec3f segment = points[i] - before;
-        before = points[i];
         arc += length;
-        Vec3f direction = Vec3f::Zero();
         if (moved) {
-            direction = follow.direction(segment, length);
-            points[i] = points[i - 1] + direction * length;
+            lead.follow(points[i] - points[i - 1]);
+            points[i] = points[i - 1] + lead.over(length);
         }
         // Over a way of length w the distance changes by w at most.
         known -= length;
         const float wanted = clearanceAt(arc, clearance);
-        const bool near = known <= wanted;
-        const SkinDistance sample =
-            near ? skin.distanceUpTo(points[i], wanted) : SkinDistance{known, Vec3f::UnitY()};
+        if (known > wanted) continue;
+        const SkinDistance sample = skin.distanceUpTo(points[i], wanted);
         known = sample.distance;
-        if (near && known < wanted - kSlack) {
-            if (!moved) direction = follow.direction(segment, length);
-            points[i] = placeOutsideFrom(sample, skin, points[i - 1], direction, length, wanted);
-            direction = directionOr(points[i] - points[i - 1], direction);
-            known = 0;
-            moved = true;
-        }
-        if (moved) follow.went(direction, length);
+        if (!(known < wanted - kSlack)) continue;
+        if (!moved) lead.follow(points[i] - points[i - 1]);
+        points[i] = placeOutsideFrom(sample, skin, points[i - 1], lead.direction(), length, wanted);
+        known = 0;
+        moved = true;
     }
     return moved;
 }

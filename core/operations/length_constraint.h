@@ -16,7 +16,7 @@ void measureSegments(std::span<const Vec3f> points, std::vector<float>& lengths)
 
 /// Gives segments these lengths again, root to tip, after points 1 … n−1 were moved: each segment keeps the
 /// direction that the move gave it. Where points were drawn farther apart than hair reaches, segments behind
-/// lead on to where they were wanted, little by little, and never back: no segment turns round that the move
+/// lead on to where they were wanted, and never back: no segment turns round that the move
 /// itself did not turn. With `keepFirst` the first segment is left as it is.
 void restoreLengths(std::span<Vec3f> points, std::span<const float> lengths, bool keepFirst = false);
 

@@ -270,7 +270,9 @@ TEST_F(HabitsTest, ATargetThatCannotWorkHereSaysSoFirst) {
     EXPECT_TRUE(problem->isVisible());
     EXPECT_TRUE(problem->text().contains("./dev web")) << problem->text().toStdString();
     for (const auto* button : dialog.findChildren<QPushButton*>()) {
-        if (button->text() == "Export…") EXPECT_FALSE(button->isEnabled());
+        if (button->text() == "Export…") {
+            EXPECT_FALSE(button->isEnabled());
+        }
     }
     dialog.findChild<QComboBox*>("target")->setCurrentText("Yuksel .hair");
     EXPECT_FALSE(problem->isVisible());

@@ -234,6 +234,49 @@ TEST(LengthConstraint, RestoresLengthsTowardsThePoints) {
     EXPECT_NEAR((collapsed[2] - collapsed[1]).norm(), 2, 1e-6f);
 }
 
+float largestTurn(std::span<const Vec3f> points) {
+    float largest = 0;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        const Vec3f a = points[i] - points[i - 1], b = points[i + 1] - points[i];
+        largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / kPi);
+    }
+    return largest;
+}
+
+/// Where points are drawn together the strand gets ahead of them; it goes on and does not turn round.
+TEST(LengthConstraint, WhatIsDrawnTogetherDoesNotTurnRound) {
+    for (const float share : {0.3f, 0.7f, 0.95f}) {
+        std::vector<Vec3f> points;
+        const std::vector<float> lengths(24, 0.005f);
+        for (int i = 0; i < 25; ++i) {
+            const float along = 0.005f * share * static_cast<float>(i);
+            points.emplace_back(0.01f * std::sin(40 * along), along, 0);
+        }
+        const float asked = largestTurn(points);
+        restoreLengths(points, lengths);
+        EXPECT_LT(largestTurn(points), asked + 0.5f) << share;
+        for (std::size_t i = 1; i < points.size(); ++i)
+            EXPECT_NEAR((points[i] - points[i - 1]).norm(), 0.005f, 1e-7f);
+    }
+}
+
+/// Hair whose end is carried farther than it reaches follows smoothly and as far as it can.
+TEST(LengthConstraint, WhatIsDrawnApartFollowsAndIsSmooth) {
+    const std::vector<float> lengths(30, 0.01f);
+    std::vector<Vec3f> points, turnedOnly;
+    for (int i = 0; i < 31; ++i) {
+        const float share = std::clamp((static_cast<float>(i) - 8) / 12, 0.0f, 1.0f);
+        points.emplace_back(0.12f * share * share * (3 - 2 * share), 0.01f * static_cast<float>(i), 0);
+    }
+    const Vec3f wanted = points.back();
+    const float asked = largestTurn(points);
+    turnedOnly = points;
+    restoreLengths(points, lengths);
+    restoreLengthsByDirection(turnedOnly, lengths);
+    EXPECT_LT((points.back() - wanted).norm(), (turnedOnly.back() - wanted).norm());
+    EXPECT_LT(largestTurn(points), asked + 30);
+}
+
 /// Answers as little as a query up to a distance may.
 class LazySkin final : public SkinQuery {
   public:
