@@ -167,7 +167,7 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
                                      "; expected " + std::to_string(kSavedVersion)};
     if (head.bytes != bytes.size()) return damaged("is of another size than it says");
     if (head.asset != asset_) return damaged("is of another asset");
-    if ((head.hasLevels != 0) != hasLevels()) return damaged("has levels where this has none, or none");
+    if (head.hasLevels != (levels_ ? 1u : 0u)) return damaged("has levels where this has none, or none");
     if (head.checksum != asset::checksum(bytes.subspan(sizeof head))) return damaged("has another checksum");
 
     Reader reader(bytes.subspan(sizeof head));
