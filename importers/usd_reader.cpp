@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <set>
 
 #include "importers/curve_set.h"
-#include "importers/frame_times.h"
 #include "importers/hermite_curves.h"
+#include "importers/sample_times.h"
 #include "importers/strand_parts.h"
 #include "importers/usd_values.h"
 
@@ -153,14 +154,17 @@ class Reader {
                          "time", "import with --record to keep all of them"));
             return {};
         }
-        std::vector<double> seconds;
-        for (const double time : times_) seconds.push_back(time / codesPerSecond_);
-        const auto planned = frameTimes(seconds, static_cast<double>(options_.framesPerSecond),
-                                        usdNumber(stage_.metadata, "framesPerSecond", 0));
-        if (!planned)
-            return fail("its samples in time are more frames than are kept", "ask for fewer with --fps");
-        if (!planned->said.empty()) strands_.warnings.push_back(fileNote(planned->said, "time"));
-        strands_.framesPerSecond = static_cast<float>(planned->rate);
+        // All times of the stage, none of which repeats.
+        SampleTimes samples{std::numeric_limits<double>::infinity(), {}};
+        for (const double time : times_) samples.times.push_back(time / codesPerSecond_);
+        const MovingProperty moving{&samples, static_cast<std::uint32_t>(times_.size()), "the stage"};
+        const auto planned =
+            recordTimes(std::span(&moving, 1), usdNumber(stage_.metadata, "framesPerSecond", 0),
+                        static_cast<double>(options_.framesPerSecond));
+        if (!planned) return tl::unexpected(planned.error());
+        if (!planned->words.empty()) strands_.warnings.push_back(fileNote(planned->words, "time"));
+        strands_.framesPerSecond = static_cast<float>(planned->framesPerSecond);
+        strands_.isResampled = planned->isResampled;
         for (const double second : planned->seconds) frames_.push_back(second * codesPerSecond_);
         return {};
     }

@@ -65,7 +65,7 @@ TEST(Usd, StageTransformsAttributesAndIndices) {
     EXPECT_EQ(groom.strandAttributes.view<std::uint8_t>(attribute::kGuide)[0], 1u);
     EXPECT_EQ(groom.groupNames[groom.strandAttributes.view<std::uint32_t>(attribute::kGroup)[0]], "group 7");
     EXPECT_TRUE(imported->frames.empty());
-    EXPECT_THAT(imported->warnings.front().what, HasSubstr("2 samples in time"));
+    EXPECT_THAT(imported->warnings.front().what, HasSubstr("2 time samples"));
 }
 
 TEST(Usd, StrandsThatMoveGiveTheirFrames) {
