@@ -24,7 +24,7 @@ const CLI::App* jobOf(const CLI::App& app) {
 }
 
 std::string helpOf(const CLI::App* job) {
-    return fmt::format("see `hairloom-cli {}--help`", job ? job->get_name() + ' ' : "");
+    return fmt::format("see hairloom-cli {}--help", job ? job->get_name() + ' ' : "");
 }
 
 std::size_t distanceOf(std::string_view a, std::string_view b) {
@@ -143,6 +143,7 @@ Error usageError(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App* job = jobOf(app);
     const std::string kind = error.get_name();
     std::string words = error.what();
+    std::ranges::replace(words, '\n', ' ');
     const auto after = [&](std::string_view mark) {
         const auto at = words.find(mark);
         return at == std::string::npos ? std::string() : words.substr(at + mark.size());

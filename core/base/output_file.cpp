@@ -47,7 +47,7 @@ Status mayReplace(const fs::path& path, const fs::path& target, std::string_view
     if (input == InputState::ChangedSinceWritten && kind == content::kProject)
         return refuse("was changed by another program since it was written");
     if (input == InputState::AsRead && kind != content::kProject)
-        return refuse("is an input of this job and would be replaced");
+        return refuse("is an input file and would be replaced");
     const std::string_view there = contentKind(readBeginning(path, kContentKindBytes));
     if (there == kind || state.bytes == 0) return {};
     return refuse(fmt::format("is {} and would be replaced by {}", there, kind));

@@ -44,7 +44,7 @@ struct Choice {
 const ExportTarget& pageTarget() {
     static const ExportTarget target{
         "browser",
-        "Web page with moving hair",
+        "Browser, web page with moving hair",
         "A folder with index.html that opens without a network and plays the runtime asset",
         {}};
     return target;

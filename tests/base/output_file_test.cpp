@@ -122,7 +122,7 @@ TEST_F(OutputFileTest, WhatWasReadIsKeptAndAProjectMayBeSavedOver) {
     put("p.hairloom", "HAIRLOOM one");
     ASSERT_TRUE(readFile(folder / "a.txt"));
     ASSERT_TRUE(readFile(folder / "p.hairloom"));
-    EXPECT_THAT(writeError("a.txt", "other words"), HasSubstr("is an input of this job"));
+    EXPECT_THAT(writeError("a.txt", "other words"), HasSubstr("is an input file"));
     EXPECT_EQ(writeError("p.hairloom", "HAIRLOOM two"), "");
     EXPECT_EQ(writeError("b.txt", "one"), "");
     ASSERT_TRUE(readFile(folder / "b.txt"));

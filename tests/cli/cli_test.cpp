@@ -36,12 +36,12 @@ TEST_F(Cli, WrongUsageEndsWith2AndHelpWith0) {
 
 TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
     const std::pair<const char*, const char*> wrong[] = {
-        {"", "error: a job is required; see `hairloom-cli --help`\n"},
+        {"", "error: a job is required; see hairloom-cli --help\n"},
         {"smulate hair.hairloom", "error: there is no job 'smulate'; did you mean simulate?\n"},
         {"simulate x --substep 3", "error: there is no option --substep; did you mean --substeps?\n"},
         {"simulate x --frobnicate=3",
-         "error: there is no option --frobnicate=3; see `hairloom-cli simulate --help`\n"},
-        {"simulate x y", "error: unexpected argument 'y'; see `hairloom-cli simulate --help`\n"},
+         "error: there is no option --frobnicate=3; see hairloom-cli simulate --help\n"},
+        {"simulate x y", "error: unexpected argument 'y'; see hairloom-cli simulate --help\n"},
         {"simulate x --method strand",
          "error: --method is 'strand'; expected one of strands, projective, lattice (did you mean "
          "strands?)\n"},
@@ -49,7 +49,7 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
         {"simulate x --frames", "error: --frames has no value; expected 1 to 100000\n"},
         {"simulate x --frames ten", "error: --frames is 'ten'; expected 1 to 100000\n"},
         {"simulate --motoin nod", "error: there is no option --motoin; did you mean --motion?\n"},
-        {"simulate", "error: groom is required; see `hairloom-cli simulate --help`\n"},
+        {"simulate", "error: groom is required; see hairloom-cli simulate --help\n"},
     };
     for (const auto& [arguments, message] : wrong) {
         const Outcome outcome = run(arguments);

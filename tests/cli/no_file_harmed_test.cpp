@@ -46,7 +46,7 @@ class NoFileHarmed : public CommandLineTest {
 };
 
 TEST_F(NoFileHarmed, AJobSavesOverItsProjectAndExportsNeverDo) {
-    expectRefused("export g.hairloom --format hair -o g.hairloom", "is an input of this job");
+    expectRefused("export g.hairloom --format hair -o g.hairloom", "is an input file");
     expectRefused("simulate g.hairloom --frames 2 --record g.hairloom", "is a Hairloom project");
     expectRefused("reference -o g.hairloom", "is a Hairloom project");
     runJson("set g.hairloom simulation.windSpeed=1 -o g.hairloom");
