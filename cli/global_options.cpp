@@ -18,8 +18,7 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& options) {
                  "Allow overwriting an input, another kind of file, a read-only file, a device or a FIFO");
     app.add_flag(
         "--allow-unconfined", options.allowUnconfined,
-        "Read foreign files also where the process that reads them cannot be confined as this system "
-        "could (docs/security.md)");
+        "Read foreign files even if the process that reads them cannot be confined (docs/security.md)");
 }
 
 }  // namespace hairloom::cli

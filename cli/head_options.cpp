@@ -11,7 +11,7 @@ void addHeadOptions(CLI::App& job, HeadOptions& options, const std::string& pref
     const std::string dashes = "--" + prefix;
     addUnitOption(job, options.unit, dashes + "unit", "the head mesh");
     job.add_option(dashes + "up", options.up,
-                   "Axis of the mesh file that points up; found from the shape where the file states none")
+                   "Up axis of the mesh file. Detected from the shape if the file has none")
         ->check(CLI::IsMember({"y", "z"}));
     job.add_option_function<float>(
            "--turn",
@@ -19,11 +19,11 @@ void addHeadOptions(CLI::App& job, HeadOptions& options, const std::string& pref
                options.turn = degrees;
                options.saysTurn = true;
            },
-           "Degrees to turn the head about the vertical, from +Z towards +X, so that it looks along +Z")
+           "Degrees to turn the head around the vertical, from +Z towards +X, so that it faces +Z")
         ->check(CLI::Range(-360.0, 360.0));
     job.add_option("--leave-out", options.leaveOut,
-                   "Groups of the mesh to do without, as helpers and joints: NAME or BEGINNING*, with commas "
-                   "between")
+                   "Groups of the mesh to leave out, such as helpers and joints: NAME or PREFIX*, separated "
+                   "by commas")
         ->delimiter(',');
 }
 

@@ -158,15 +158,14 @@ int main(int argc, char** argv) {
     } catch (const hairloom::cli::WrongUsage& error) {
         return failUsage(error.error(), options.json);
     } catch (const std::bad_alloc&) {
-        return failWith(
-            {{}, {}, "the job needs more memory than there is", "a smaller input, or more memory"},
-            options.json);
+        return failWith({{}, {}, "the job ran out of memory", "expected a smaller input, or more memory"},
+                        options.json);
     } catch (const std::exception& error) {
-        return failWith(
-            {{},
-             {},
-             fmt::format("the job stopped at something unforeseen ({}); nothing was written", error.what()),
-             "please report it with the command and its input"},
-            options.json);
+        return failWith({{},
+                         {},
+                         fmt::format("the job stopped with an unexpected error ({}), and nothing was written",
+                                     error.what()),
+                         "please report it with the command and its input"},
+                        options.json);
     }
 }

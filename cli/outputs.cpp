@@ -49,10 +49,10 @@ bool isPipe(const std::string& path) {
 /// Refuses a pipe that cannot hold what the job writes to it.
 void takePipe(const std::string& path, std::size_t outputs, ReadBack readBack) {
     if (readBack == ReadBack::Yes)
-        throw WrongUsage(fmt::format("{} is a pipe, and this job reads back what it writes", path),
+        throw WrongUsage(fmt::format("{} is a pipe, but this job reads back what it writes", path),
                          "expected the name of a file");
     if (outputs > 1)
-        throw WrongUsage(fmt::format("{} is a pipe, and this job writes {} files", path, outputs),
+        throw WrongUsage(fmt::format("{} is a pipe, but this job writes {} files", path, outputs),
                          "expected the name of a file");
     const bool isOutput =
         path == kStandardOutput || fileVersion(path).identity == fileVersion("/dev/stdout").identity;

@@ -165,10 +165,9 @@ JobRun declare(CLI::App& job) {
     job.add_option("--points", options->points, "Points per strand")->check(CLI::Range(2, 1024));
     job.add_option("--seed", options->seed, "Random seed");
     addHeadOptions(job, options->head);
-    job.add_option(
-        "--scalp-mesh", options->scalpMesh,
-        "Mesh of the scalp alone, in unit and place of the head: faces of the head that lie on it carry "
-        "hair, of those that --scalp names");
+    job.add_option("--scalp-mesh", options->scalpMesh,
+                   "Mesh of the scalp alone, in the unit and place of the head. Hair grows on the faces of "
+                   "the head that are on it, among those of --scalp");
     auto* collide = job.add_option("--collide-with", options->collideWith,
                                    "Groups that are not part of the head but that hair collides with, "
                                    "through spheres fitted to them. NAME or PREFIX*, separated by commas")

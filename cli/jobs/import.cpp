@@ -206,10 +206,9 @@ JobRun declare(CLI::App& job) {
     addUnitOption(job, options->unit);
     addHeadOptions(job, options->head, "mesh-");
     job.add_option("--up", options->up, "Up axis of the hair file")->check(CLI::IsMember({"y", "z"}));
-    job.add_option(
-           "--segments", options->segments,
-           "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces, or from the distances "
-           "between its vertices where it has none")
+    job.add_option("--segments", options->segments,
+                   "Segments per strand of a Cinema 4D OBJ. 0 detects them from its faces, or from the "
+                   "distances between its vertices if it has none")
         ->check(CLI::Range(0, 65535));
     job.add_option("--order", options->order, "Vertex order of a Cinema 4D OBJ")
         ->check(CLI::IsMember({"auto", "interleaved", "edges", "around"}));
@@ -221,22 +220,19 @@ JobRun declare(CLI::App& job) {
                    "Frames per second of the record. 0 uses those of the file")
         ->check(CLI::Range(0.0, 1000.0))
         ->needs(record);
-    job.add_option(
-           "--points-per-strand", options->pointsPerStrand,
-           "Points of each strand in a file that holds nothing but points; 0 finds them from the distances "
-           "between these")
+    job.add_option("--points-per-strand", options->pointsPerStrand,
+                   "Points per strand, for files that only have points. 0 detects them from the distances "
+                   "between the points")
         ->check(CLI::Range(0, 65536));
-    auto* guides =
-        job.add_option("--guides", options->guides,
-                       "Guides of the same hair in a file of their own: they come behind its strands, "
-                       "which then follow them");
-    auto* clean =
-        job.add_flag("--clean", options->clean,
-                     "Make reconstructed hair usable: outliers, loops and jumps out, strands turned, roots "
-                     "snapped to the scalp, kept out of the head, resampled");
+    auto* guides = job.add_option(
+        "--guides", options->guides,
+        "File with guides of the same hair. They are added after its strands, which then follow them");
+    auto* clean = job.add_flag("--clean", options->clean,
+                               "Clean reconstructed hair: removes outliers, loops and jumps, reverses "
+                               "strands, snaps roots to the scalp, keeps hair out of the head, resamples");
     clean->excludes(record);
     guides->excludes(record);
-    job.add_option("--points", options->cleaning.points, "Points of each strand after --clean")
+    job.add_option("--points", options->cleaning.points, "Points per strand after --clean")
         ->check(CLI::Range(2, 1024))
         ->needs(clean);
     job.add_option("-o,--output", options->output, "Project to write")->required();

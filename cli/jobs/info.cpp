@@ -38,8 +38,8 @@ Report missingFiles(const std::string& path, const Groom& groom) {
     Report rows = Report::array();
     std::error_code code;
     if (groom.characterFile.empty() || std::filesystem::exists(groom.characterFile, code)) return rows;
-    const std::string fix = "put it beside the project, or name it: set GROOM --character FILE -o GROOM";
-    log::warning("{}: its head's file {} is not there, and with it skeleton and clips; {}", path,
+    const std::string fix = "put it next to the project, or set it: set GROOM --character FILE -o GROOM";
+    log::warning("{}: its head file {} was not found, so skeleton and clips are missing; {}", path,
                  groom.characterFile, fix);
     rows.push_back(Report{{"what", "character"}, {"file", groom.characterFile}, {"fix", fix}});
     return rows;

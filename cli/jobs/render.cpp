@@ -161,7 +161,7 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
     const std::uint64_t step = options.frames.size() == 3 ? options.frames[2] : 1;
     if (step == 0 || options.frames[1] < options.frames[0] ||
         (options.frames[1] - options.frames[0]) / step >= kMaxShots) {
-        throw WrongUsage("--frames goes backwards, stands still or is more than 10000 pictures",
+        throw WrongUsage("--frames runs backwards, has step 0 or has more than 10000 frames",
                          "FIRST,LAST[,STEP]");
     }
     std::vector<Shot> shots;
@@ -374,7 +374,7 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter", "top", "bottom"}));
     auto* view = job.add_option("--view", options->view, "JSON file with camera, lights, head and hair");
     job.add_option("--images", options->imageFolders,
-                   "Folders that the view may name images in, beside its own, with commas between")
+                   "Folders with images for the view, in addition to its own, separated by commas")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->needs(view);

@@ -163,7 +163,7 @@ JobRun declare(CLI::App& job) {
                    "Strand attribute of numbers from 0 to 1 with the strength of the dye")
         ->excludes(image);
     job.add_option("--character", options->character,
-                   "File of the head, where the project does not find it any more: mesh, skeleton and clips");
+                   "Head file with mesh, skeleton and clips, if the project no longer finds it");
     job.add_option("--from", options->from, "JSON file of sections with fields");
     auto* output = job.add_option("-o,--output", options->output, "Project to write");
     job.final_callback([listing, input, output] {

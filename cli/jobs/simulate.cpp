@@ -137,7 +137,7 @@ std::optional<DrawnDepthMeter> depthMeter(const Groom& groom) {
     if (!groom.scalp) return std::nullopt;
     auto meter = DrawnDepthMeter::make(groom);
     if (meter) return std::move(*meter);
-    log::warning("hair is not measured against the head: {}", meter.error().message());
+    log::warning("hair was not compared with the head: {}", meter.error().message());
     return std::nullopt;
 }
 

@@ -50,7 +50,7 @@ Result<Report> transferHair(const TransferOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<TransferOptions>();
     job.add_option("groom", options->input, "Hair that grows on a head")->required();
-    job.add_option("--to", options->to, "Head to put it on")->required();
+    job.add_option("--to", options->to, "New head")->required();
     addHeadOptions(job, options->head);
     job.add_option("-o,--output", options->output, "Project to write")->required();
     return [options](const std::string&) {

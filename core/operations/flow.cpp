@@ -15,12 +15,13 @@ namespace {
 using S = FlowSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::crown>("crown", "m", -kAnywhere, kAnywhere,
-                     "point of the head that hair flows away from; zero: a fifth behind the top of the head"),
+    field<&S::crown>(
+        "crown", "m", -kAnywhere, kAnywhere,
+        "point on the head that hair flows away from. Zero is a fifth behind the top of the head"),
     field<&S::whorlDegrees>("whorlDegrees", "°", -180, 180, "swirl of the flow near the crown"),
     field<&S::parting>("parting", "", 0, 1, "share of the flow that leads away from the parting plane"),
     field<&S::partingPoint>("partingPoint", "m", -kAnywhere, kAnywhere,
-                            "the middle of the parting; zero: the top of the head"),
+                            "centre of the parting. Zero is the top of the head"),
     field<&S::partingNormal>("partingNormal", "", -kAnywhere, kAnywhere,
                              "normal of the parting plane. Strands flow to the side of their root"),
     field<&S::partingReach>("partingReach", "m", 0.001, kAnywhere,

@@ -96,8 +96,8 @@ const std::vector<Program>& programs() {
 QString problemOf(const Choice& choice) {
     if (choice.isPage && findWebPlayer(programFolder()).empty())
         return ExportDialog::tr(
-            "Not here: the page's player was not built with this program. `./dev web` builds "
-            "it, or set HAIRLOOM_WEB to a folder that holds one.");
+            "Not available: this program was built without the page's player. Build it with `./dev web`, or "
+            "set HAIRLOOM_WEB to its folder.");
     return {};
 }
 
@@ -152,9 +152,9 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     layout->addLayout(form_);
     for (const Program& program : programs()) target_->addItem(program.name);
     target_->setObjectName("target");
-    target_->setToolTip(tr("Sets format, unit, axis and points as this program expects them"));
+    target_->setToolTip(tr("Sets the format, unit, up axis and point count that this program expects"));
     format_->setObjectName("format");
-    format_->setToolTip(tr("Formats that the program reads; the first carries most of the hair"));
+    format_->setToolTip(tr("Formats that the program reads, with the most complete one first"));
     what_->addItem(tr("Guides: the strands of the document"), static_cast<int>(ExportedHair::guides));
     what_->addItem(tr("Rendered hairs: what the viewport shows"), static_cast<int>(ExportedHair::hairs));
     what_->setObjectName("what");
@@ -182,7 +182,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     cluster_->setObjectName("cluster");
     cluster_->setAutoDefault(false);
     cluster_->setToolTip(
-        tr("Closes this dialog and finds few strands that stand for all; the others follow them"));
+        tr("Closes this dialog and reduces the strands to a few guides that the others follow"));
     connect(cluster_, &QPushButton::clicked, this, [this] { done(kWantsClustering); });
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
     unit_->setToolTip(
@@ -307,15 +307,14 @@ void ExportDialog::showWhatWillBeWritten() {
     }
     many_->setVisible(isAsset && guides > kManyGuides);
     cluster_->setVisible(isAsset && guides > kManyGuides);
-    many_->setText(tr("A game would move all %L1 guides by themselves, which takes long. Fewer guides with "
-                      "follow hairs look the same and cost a tenth.")
+    many_->setText(tr("A game would simulate all %L1 guides, which is slow. Fewer guides with follow hairs "
+                      "look the same and cost a tenth.")
                        .arg(guides));
     if (choice.writer->holdsCards()) {
-        summary_->setText(
-            tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is held against "
-               "the strands at its distance.")
-                .arg(cards_->value())
-                .arg(strands.size()));
+        summary_->setText(tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is "
+                             "compared with the strands at its distance.")
+                              .arg(cards_->value())
+                              .arg(strands.size()));
         return;
     }
     std::size_t count = strands.size();

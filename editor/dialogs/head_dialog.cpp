@@ -143,7 +143,7 @@ void HeadDialog::take(std::shared_ptr<const ImportedScene> scene) {
     if (known != units.end()) unit_->button(static_cast<int>(known - units.begin()))->setChecked(true);
     for (QAbstractButton* button : unit_->buttons()) {
         button->setEnabled(!statesUnit_);
-        if (statesUnit_) button->setToolTip(tr("The file states its unit, which stands"));
+        if (statesUnit_) button->setToolTip(tr("The file states its unit, so it is fixed"));
     }
     up_->button(guess.zUp ? 1 : 0)->setChecked(true);
     groups_->setGroups(scene_->mesh, guess.helpers);

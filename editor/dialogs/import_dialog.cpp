@@ -53,25 +53,24 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     order_->addItems(
         {tr("Found"), tr("Left and right in turn"), tr("One edge, then the other"), tr("Around")});
     order_->setToolTip(
-        tr("How the vertices of a Cinema 4D ribbon follow each other. In a wrong order strands "
-           "zigzag, or their tips lie where roots should"));
+        tr("Vertex order of a Cinema 4D ribbon. If it is wrong, strands zigzag, or tips are where roots "
+           "should be"));
     particle_->setObjectName("particle");
     particle_->addItems({tr("First edge"), tr("Middle")});
-    particle_->setToolTip(
-        tr("Where the particles of a Cinema 4D ribbon are: on every second vertex, or between its "
-           "edges"));
+    particle_->setToolTip(tr(
+        "Position of the particles within a Cinema 4D ribbon: on every second vertex, or between its edges"));
     points_->setObjectName("pointsPerStrand");
     points_->setRange(0, 65536);
     points_->setSpecialValueText(tr("found"));
     points_->setToolTip(
-        tr("Points of each strand of a file that holds nothing but points; found from the distances "
-           "between them where this is 0"));
+        tr("Points per strand, for files that only have points. 0 detects them from the distances between "
+           "the points"));
     form_->addRow(tr("Unit"), unit_);
     form_->addRow(tr("Axis"), up_);
     form_->addRow(tr("Vertex order"), order_);
     form_->addRow(tr("Particles"), particle_);
     form_->addRow(tr("Segments"), segments_);
-    form_->addRow(tr("Points a strand"), points_);
+    form_->addRow(tr("Points per strand"), points_);
     auto* legend =
         new QLabel(tr("<span style='color:%1'>●</span> root &nbsp; <span style='color:%2'>●</span> tip")
                        .arg(StrandPreview::rootColour().name(), StrandPreview::tipColour().name()));

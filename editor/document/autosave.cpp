@@ -146,8 +146,8 @@ void Autosave::written(quint64 generation, const Status& status) {
         Q_EMIT upToDate();
     } else {
         dirty_ = true;
-        Q_EMIT failed(tr("No copy of unsaved work: %1. Make room or change the folder's rights, or save the "
-                         "project; it is tried again every %n seconds",
+        Q_EMIT failed(tr("Unsaved work could not be copied: %1. Free some space, change the folder's rights, "
+                         "or save the project. The next attempt is in %n seconds",
                          nullptr, kRetry_ms / 1000)
                           .arg(errorText(status.error())));
     }

@@ -109,7 +109,8 @@ void FieldForm::addRow(const Field& field) {
 QWidget* FieldForm::pickButton(const Field& field) {
     auto* button = new QPushButton(tr("Pick on head"));
     button->setObjectName(QString::fromUtf8(field.name) + "Pick");
-    button->setToolTip(tr("Takes the handles: click the head to put it there, or drag it in the view"));
+    button->setToolTip(
+        tr("Activates the handles: click the head to place the point, or drag it in the viewport"));
     connect(button, &QPushButton::clicked, this, [&field] { field.pick(); });
     return button;
 }

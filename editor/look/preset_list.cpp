@@ -70,7 +70,7 @@ class PresetList : public QWidget {
         auto* row = new QHBoxLayout;
         auto* save = new QPushButton(tr("Save preset…"));
         save->setObjectName("saveLook");
-        save->setToolTip(tr("Saves all settings of this panel's material under a name, for other documents"));
+        save->setToolTip(tr("Saves all material settings of this panel as a preset for any document"));
         row->addWidget(save);
         row->addStretch(1);
         layout->addLayout(row);

@@ -273,7 +273,7 @@ class AccuracyPanel : public QWidget {
     QString besideInWords() const {
         if (static_cast<Beside>(beside_->currentIndex()) == Beside::reference) return {};
         const auto other = beside();
-        if (!other) return tr(" No matching measurement; the reference is shown in blue.");
+        if (!other) return tr(" No matching measurement. The reference is shown in blue.");
         return tr(" Shown in blue: %1: %2.").arg(setting(*other), numbers(*other));
     }
 
@@ -449,7 +449,7 @@ class AccuracyPanel : public QWidget {
                               run.diverged ? 0 : valueOf(run, measure.measure) * upwards, run.diverged,
                               front[r], setting(r)});
         }
-        plot_->setAxes(tr("Cost: time of a frame"), tr("ms"), QString::fromUtf8(measure.label));
+        plot_->setAxes(tr("Cost: time per frame"), tr("ms"), QString::fromUtf8(measure.label));
         plot_->setPoints(std::move(points), measure.length ? tr("px") : QString::fromUtf8(measure.unit));
         plot_->setMarked(runOf(*measured_, document_.groom()), chosen_);
     }

@@ -118,8 +118,9 @@ class EffectsPanel : public QWidget {
         table_->header()->setSectionResizeMode(kWhy, QHeaderView::Stretch);
         table_->setItemDelegateForColumn(kMs, bars_);
         table_->setToolTip(
-            tr("What each effect takes of a frame, while it plays of the last half second; megabytes of its "
-               "own; and why it runs or does not. Uncheck an effect to try the hair without it."));
+            tr("Frame time of each effect, averaged over the last half second of playback, its memory in "
+               "megabytes, and why it runs or does not. Clear a checkbox to preview the hair without that "
+               "effect."));
     }
 
     void makeMeasure() {
@@ -256,7 +257,7 @@ class EffectsPanel : public QWidget {
                 .arg(costs->milliseconds.median, 0, 'f', 2)
                 .arg(age);
         }
-        if (!player_.frame()) return tr("What will run. Press Play (Space) to see its cost.");
+        if (!player_.frame()) return tr("Effects that will run. Press Play (Space) to see their cost.");
         const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu;
         return onGpu ? tr("Live, on the GPU: one kernel simulates the strands with all their effects")
                      : tr("Live, on the CPU: mean of the last half second");
@@ -297,13 +298,13 @@ class EffectsPanel : public QWidget {
             item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
             item.setData(kName, Qt::CheckStateRole, {});
         }
-        item.setToolTip(kName, known ? tr("Uncheck to try the hair without it")
+        item.setToolTip(kName, known ? tr("Clear to preview the hair without this effect")
                                      : tr("Depends on the shape and speed of the hair"));
         const QString none = QStringLiteral("–");
         showMilliseconds(item, effect, measured);
         item.setText(kMb,
                      effect.on ? QString::number(static_cast<double>(effect.bytes) / 1e6, 'f', 1) : none);
-        item.setText(kWhy, leftOut ? tr("disabled for a trial") : QString::fromStdString(effect.why));
+        item.setText(kWhy, leftOut ? tr("disabled for preview") : QString::fromStdString(effect.why));
         item.setToolTip(kWhy, item.text(kWhy));
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
         item.setTextAlignment(kMb, Qt::AlignRight | Qt::AlignVCenter);

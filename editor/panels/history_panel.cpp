@@ -16,7 +16,7 @@ class HistoryPanel : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(12, 8, 12, 12);
         list_->setObjectName("steps");
-        list_->setToolTip(tr("Click a step, or Return, to go back or forward to it"));
+        list_->setToolTip(tr("Click a step, or press Return, to undo or redo to it"));
         memory_->setProperty("role", "dim");
         memory_->setToolTip(tr("Memory limit of the undo history. Beyond it, the oldest steps are deleted"));
         layout->addWidget(list_, 1);

@@ -165,15 +165,16 @@ class OperatorsPanel : public QWidget {
 
     QLayout* makeButtons() {
         QWidget* const buttons[] = {
-            pushButton("operatorUp", tr("Move up"), tr("Lets it act before the one above it (Alt+Up)"),
+            pushButton("operatorUp", tr("Move up"), tr("Move the operator up, to apply it earlier (Alt+Up)"),
                        [this] {
                            if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
                        }),
-            pushButton("operatorDown", tr("Move down"), tr("Lets it act after the one below it (Alt+Down)"),
+            pushButton("operatorDown", tr("Move down"),
+                       tr("Move the operator down, to apply it later (Alt+Down)"),
                        [this] {
                            if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
                        }),
-            pushButton("operatorRemove", tr("Remove"), tr("Removes the operator (Delete)"),
+            pushButton("operatorRemove", tr("Remove"), tr("Remove the operator (Delete)"),
                        [this] {
                            if (chosen() != kNone)
                                perform(editing::removeOperator(model(), chosen()), chosen());
@@ -205,7 +206,7 @@ class OperatorsPanel : public QWidget {
     QWidget* makePresetsButton() {
         auto* presets = new QPushButton(tr("Presets"));
         presets->setObjectName("operatorPresets");
-        presets->setToolTip(tr("Operators that you saved, for all projects"));
+        presets->setToolTip(tr("Operators that you saved for any project"));
         auto* menu = new QMenu(presets);
         connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillPresets(*menu); });
         fillPresets(*menu);
@@ -377,8 +378,8 @@ class OperatorsPanel : public QWidget {
         }
         if (index == kNone) {
             auto* none =
-                new QLabel(tr("No operators yet. Add one to shape all of the hair, and change it at any "
-                              "time: start with Flow, which lays hair along the head."));
+                new QLabel(tr("No operators yet. Add one to shape all hair. You can change it at any time. "
+                              "Start with Flow, which lays hair along the head."));
             none->setObjectName("operatorsNone");
             none->setProperty("role", "dim");
             none->setWordWrap(true);

@@ -72,7 +72,7 @@ Result<DocumentFiles::Opened> DocumentFiles::openProject(const std::string& path
     const QString head = QString::fromStdString(groom->characterFile);
     if (!head.isEmpty() && !QFileInfo::exists(head)) {
         opened.missing = head;
-        opened.note = QObject::tr("the head's file %1 is not there, and with it its clips").arg(head);
+        opened.note = QObject::tr("the head file %1 was not found, and its clips are missing").arg(head);
     }
     opened.groom = std::move(*groom);
     return opened;
@@ -224,7 +224,7 @@ void DocumentFiles::findHead(const QString& path) {
             document_.perform(editing::replaceGroom(document_.editing().model(), std::move(groom),
                                                     QObject::tr("Find %1").arg(name).toStdString()));
             player_.setActor(std::move(opened.actor));
-            messages_.say(QObject::tr("%1 is the head's file again; save to keep it").arg(name));
+            messages_.say(QObject::tr("%1 is the head file again. Save to keep it").arg(name));
         });
 }
 

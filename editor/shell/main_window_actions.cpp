@@ -79,7 +79,7 @@ void MainWindow::addFileActions() {
     add({"file.revert",
          tr("Re&vert to saved"),
          "",
-         tr("Opens the project again as it is in its file; asks before it drops changes"),
+         tr("Reload the saved project. Asks before it discards changes"),
          {}},
         [this] {
             if (mayLeaveDocument()) reload();
@@ -315,7 +315,7 @@ void MainWindow::addHelpActions() {
     menu->addAction(&actions_->add({"help.security",
                                     tr("&Guard of foreign files…"),
                                     "",
-                                    tr("Tries what the process that reads files of other programs cannot do"),
+                                    tr("Tests what the process that reads foreign files cannot do"),
                                     {}},
                                    [this] { showSecurity(); }));
 }
@@ -325,11 +325,10 @@ void MainWindow::showSecurity() {
     tasks_.run<Rows>(
         tr("Trying the guard"), [](TaskControl&) { return readerSecurity(); },
         [this](const Rows& rows) {
-            auto* box =
-                new QMessageBox(QMessageBox::Information, tr("Guard of foreign files"),
-                                tr("Meshes of other programs are read in a process of their own. On this "
-                                   "system it was tried what that process cannot do:"),
-                                QMessageBox::Close, this);
+            auto* box = new QMessageBox(QMessageBox::Information, tr("Guard of foreign files"),
+                                        tr("A separate process reads meshes of other programs. This system "
+                                           "was tested for what that process cannot do:"),
+                                        QMessageBox::Close, this);
             box->setObjectName("security");
             box->setInformativeText(securityText(rows));
             box->setAttribute(Qt::WA_DeleteOnClose);

@@ -59,17 +59,16 @@ void MainWindow::showHeadDialog(const QString& path, bool mayLeave) {
 }
 
 void MainWindow::askForHead(const QString& missing) {
-    auto* question =
-        new QMessageBox(QMessageBox::Question, tr("Head not found"),
-                        tr("The file of the head, %1, is not there any more. Without it the hairstyle "
-                           "has neither skeleton nor clips.")
-                            .arg(missing),
-                        QMessageBox::NoButton, this);
+    auto* question = new QMessageBox(
+        QMessageBox::Question, tr("Head not found"),
+        tr("The head file %1 no longer exists. Without it the hairstyle has neither skeleton nor clips.")
+            .arg(missing),
+        QMessageBox::NoButton, this);
     question->setObjectName("missingHead");
     question->setAttribute(Qt::WA_DeleteOnClose);
     QAbstractButton* find = question->addButton(tr("Find it…"), QMessageBox::AcceptRole);
     find->setObjectName("findHead");
-    question->addButton(tr("Go on without"), QMessageBox::RejectRole);
+    question->addButton(tr("Continue without it"), QMessageBox::RejectRole);
     connect(find, &QAbstractButton::clicked, this, [this, missing] {
         const QString path = QFileDialog::getOpenFileName(
             this, tr("Find %1").arg(QFileInfo(missing).fileName()), {}, headFilter());
@@ -215,14 +214,15 @@ void MainWindow::lookAtDisk() {
     const QString name = document_.title();
     if (const FileVersion now = fileVersion(file); isChangedByOthers(file) && now != toldOf_) {
         toldOf_ = now;
-        return messages_.warn(tr("%1 was saved by another program or window: saving asks what to do, File ▸ "
-                                 "Revert to saved opens theirs")
+        return messages_.warn(tr("%1 was saved by another program or window. Saving will ask what to do, and "
+                                 "File ▸ Revert to saved opens that version")
                                   .arg(name));
     }
     const std::size_t windows = autosave_->otherWindows().size();
     if (windows > toldWindows_)
         messages_.warn(
-            tr("%1 is open in another window, too: each is told before it overwrites the other").arg(name));
+            tr("%1 is also open in another window. Each window warns you before it overwrites the other")
+                .arg(name));
     toldWindows_ = windows;
 }
 

@@ -85,15 +85,15 @@ ChangedAnswer askAboutChangedProject(QWidget* parent, const QString& path) {
     const QString when = QLocale().toString(QFileInfo(path).lastModified(), QLocale::ShortFormat);
     const int choice =
         ask(parent, tr("Changed on disk"), tr("%1 was saved by another program or window.").arg(nameOf(path)),
-            tr("It was saved at %1, after you opened or saved it here. Overwriting it loses what was saved "
-               "there.")
+            tr("It was saved at %1, after you opened or saved it here. If you overwrite it, that version is "
+               "lost.")
                 .arg(when),
-            {{"changedSaveAs", tr("Save &as…"), tr("Keeps both: writes yours to another file"),
+            {{"changedSaveAs", tr("Save &as…"), tr("Keep both: save yours to another file"),
               QMessageBox::AcceptRole},
-             {"changedOverwrite", tr("&Overwrite"), tr("Keeps yours alone"), QMessageBox::DestructiveRole},
-             {"changedReload", tr("&Reload"), tr("Keeps theirs alone: opens the file again, and drops yours"),
-              QMessageBox::DestructiveRole},
-             {"changedCancel", tr("Cancel"), tr("Saves nothing"), QMessageBox::RejectRole}});
+             {"changedOverwrite", tr("&Overwrite"), tr("Keep only yours"), QMessageBox::DestructiveRole},
+             {"changedReload", tr("&Reload"),
+              tr("Keep only theirs: reload the file and discard your changes"), QMessageBox::DestructiveRole},
+             {"changedCancel", tr("Cancel"), tr("Do not save"), QMessageBox::RejectRole}});
     return static_cast<ChangedAnswer>(choice);
 }
 
@@ -101,37 +101,38 @@ ElsewhereAnswer askAboutOpenProject(QWidget* parent, const QString& path,
                                     const std::vector<OpenDocument>& windows) {
     const int choice =
         ask(parent, tr("Open in another window"), tr("%1 is open in another window.").arg(nameOf(path)),
-            tr("Process %1 has it. If both save, each is told before it overwrites the other.")
+            tr("Process %1 has opened it. If both save, each warns you before it overwrites the other.")
                 .arg(processesOf(windows)),
-            {{"elsewhereOpen", tr("&Open anyway"), tr("Opens the same file in this window, too"),
+            {{"elsewhereOpen", tr("&Open anyway"), tr("Open the same file in this window, too"),
               QMessageBox::AcceptRole},
-             {"elsewhereCopy", tr("Open a &copy"), tr("Opens what it holds; saving asks for another name"),
-              QMessageBox::ActionRole},
-             {"elsewhereCancel", tr("Cancel"), tr("Opens nothing"), QMessageBox::RejectRole}});
+             {"elsewhereCopy", tr("Open a &copy"),
+              tr("Open its content, and ask for another name when you save"), QMessageBox::ActionRole},
+             {"elsewhereCancel", tr("Cancel"), tr("Do not open it"), QMessageBox::RejectRole}});
     return static_cast<ElsewhereAnswer>(choice);
 }
 
 bool askToReplaceOpenProject(QWidget* parent, const QString& path, const std::vector<OpenDocument>& windows) {
     return ask(parent, tr("Open in another window"), tr("%1 is open in another window.").arg(nameOf(path)),
-               tr("Process %1 has it. That window is told when it saves; what the file holds now is "
-                  "replaced.")
+               tr("Process %1 has opened it. That window warns you when it saves. The current content of the "
+                  "file is replaced.")
                    .arg(processesOf(windows)),
-               {{"replaceOverwrite", tr("&Overwrite"), tr("Replaces the file"), QMessageBox::DestructiveRole},
-                {"replaceCancel", tr("Cancel"), tr("Saves nothing"), QMessageBox::RejectRole}}) == 0;
+               {{"replaceOverwrite", tr("&Overwrite"), tr("Replace the file"), QMessageBox::DestructiveRole},
+                {"replaceCancel", tr("Cancel"), tr("Do not save"), QMessageBox::RejectRole}}) == 0;
 }
 
 WaitingAnswer askAboutWaitingCopy(QWidget* parent, const QString& path, const RecoveryCopy& copy) {
-    QString more = tr("A copy from %1 has what was not saved when the program ended. Opening the saved "
-                      "project keeps the copy; the start page shows it.")
+    QString more = tr("A copy from %1 has the work that was not saved when the program ended. If you open "
+                      "the saved project, the copy is kept and the start page shows it.")
                        .arg(timeText(copy.when));
     if (copy.isProjectChanged)
-        more += ' ' + tr("The project was saved by another program or window since; the copy lacks that.");
-    const int choice = ask(
-        parent, tr("Unsaved work"), tr("There is unsaved work on %1.").arg(nameOf(path)), more,
-        {{"waitingRecover", tr("&Recover"), tr("Brings back what was not saved"), QMessageBox::AcceptRole},
-         {"waitingOpen", tr("&Open the saved project"), tr("Opens the project as it is in its file"),
-          QMessageBox::ActionRole},
-         {"waitingCancel", tr("Cancel"), tr("Opens nothing"), QMessageBox::RejectRole}});
+        more += ' ' + tr("Since then the project was saved by another program or window. The copy does not "
+                         "have those changes.");
+    const int choice =
+        ask(parent, tr("Unsaved work"), tr("There is unsaved work on %1.").arg(nameOf(path)), more,
+            {{"waitingRecover", tr("&Recover"), tr("Recover the unsaved work"), QMessageBox::AcceptRole},
+             {"waitingOpen", tr("&Open the saved project"), tr("Open the saved project"),
+              QMessageBox::ActionRole},
+             {"waitingCancel", tr("Cancel"), tr("Do not open it"), QMessageBox::RejectRole}});
     return static_cast<WaitingAnswer>(choice);
 }
 

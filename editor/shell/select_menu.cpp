@@ -131,13 +131,13 @@ void MainWindow::addSelectActions() {
             return editing::freezeStrands(model, editing::allStrands(model.groom), false);
         },
         false);
-    menu->addAction(
-        &actions_->add({"select.guides",
-                        tr("&Cluster guides…"),
-                        "",
-                        tr("Keeps few strands that stand for all; interpolated hairs come from them"),
-                        {}},
-                       [this] { chooseGuidesByClustering(); }));
+    menu->addAction(&actions_->add(
+        {"select.guides",
+         tr("&Cluster guides…"),
+         "",
+         tr("Reduces many strands to a few guides by clustering, and interpolates follow hairs from them"),
+         {}},
+        [this] { chooseGuidesByClustering(); }));
     add(
         {"select.delete", tr("&Delete selected"), "delete", tr("Delete the selected strands"),
          QKeySequence("Del")},

@@ -146,7 +146,9 @@ void StartPage::fillRecoveries() {
         QString tip = tr("Recover the work that was not saved when the program ended");
         if (copy.isProjectChanged) {
             title = tr("%1 (the project was saved elsewhere since)").arg(title);
-            tip += tr(". The project was saved by another program or window since; the copy lacks that");
+            tip +=
+                tr(". Since then the project was saved by another program or window, and the copy does not "
+                   "have those changes");
         }
         auto* restore = card(title, "warning", tip);
         restore->setObjectName("recover");

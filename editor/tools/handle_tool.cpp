@@ -56,7 +56,7 @@ HandleTool::HandleTool(const ToolParts& parts)
       info_{"handles",
             tr("Handles"),
             "frame",
-            tr("Drag the points, planes and directions of the operator that is chosen"),
+            tr("Drag the points, planes and directions of the selected operator"),
             QKeySequence("Shift+H"),
             242} {
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
@@ -73,8 +73,8 @@ QString HandleTool::name(const Handle& handle) const {
 }
 
 QString HandleTool::hint() const {
-    if (picking_) return tr("Click the head to put “%1” there").arg(name(*picking_));
-    if (handles().empty()) return tr("Choose an operator with a point or a direction in the Operators panel");
+    if (picking_) return tr("Click the head to place “%1”").arg(name(*picking_));
+    if (handles().empty()) return tr("Select an operator with a point or a direction in the Operators panel");
     return info_.tip;
 }
 
@@ -156,7 +156,7 @@ void HandleTool::press(const Pointer& pointer) {
     if (picking_) {
         const BrushPlace place = skinUnder(document_, viewport_, pointer.at_px);
         if (!place.skin) {
-            messages_.warn(tr("The pointer is beside the head: click on it"));
+            messages_.warn(tr("The pointer is not on the head: click on it"));
             return;
         }
         store(*std::exchange(picking_, std::nullopt), place.position_ss);

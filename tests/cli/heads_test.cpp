@@ -166,7 +166,7 @@ TEST_F(HeadsTest, AProjectFindsItsHeadFromAnyFolder) {
     ASSERT_EQ(missing.exitCode, 0);
     ASSERT_EQ(missing.json()["missing"].size(), 1u);
     EXPECT_EQ(missing.json()["missing"][0]["what"], "character");
-    EXPECT_THAT(missing.errors, HasSubstr("is not there"));
+    EXPECT_THAT(missing.errors, HasSubstr("was not found"));
     runJson("set elsewhere/deep/shot/a.hairloom --character gone.obj -o found.hairloom");
     EXPECT_TRUE(runJson("info found.hairloom")["missing"].empty());
 }

@@ -55,7 +55,7 @@ TEST_F(AccuracyTest, WhatTheNextStepBuysIsSaidAndAdopted) {
     EXPECT_TRUE(setting.contains(QString("%1 substep").arg(groom().simulation.substeps)))
         << setting.toStdString();
     EXPECT_NE(hash(), before);
-    EXPECT_TRUE(words().contains("No measured setting is more accurate")) << words().toStdString();
+    EXPECT_TRUE(words().contains("No measured setting has a smaller error")) << words().toStdString();
     EXPECT_EQ(document().stepCount(), 1);
     EXPECT_FALSE(words().contains("before the last change")) << "the adopted setting has been measured";
     trigger("edit.undo");
