@@ -35,7 +35,7 @@ Status attach(std::vector<CollisionSphere>& spheres, const Groom& groom, const S
     if (!actor && !options.character.empty()) return tl::unexpected(actor.error());
     if (!actor) {
         log::warning(
-            "{}; the spheres are on no bone and stand still while a clip moves the head: name the file "
+            "{}. The spheres are on no bone and stay still while a clip moves the head. Name the file "
             "with --character",
             actor.error().message());
         return {};
@@ -91,9 +91,8 @@ JobRun declare(CLI::App& job) {
     job.add_option("--near", options->near,
                    "With --fit: skin within this distance of hair counts, in metres. 0 uses all of it")
         ->check(CLI::Range(0.0, 10.0));
-    job.add_option(
-        "--character", options->character,
-        "fit: file with the skeleton whose bones carry the spheres, instead of the one the scalp came from");
+    job.add_option("--character", options->character,
+                   "With --fit: file with the skeleton for the spheres, if other than the scalp's file");
     job.add_option("--seed", options->seed, "With --fit: random seed of the points on the skin");
     job.add_flag("--replace", options->replace,
                  "Remove existing spheres. With --fit, those of colliding groups stay (create)");
