@@ -37,11 +37,8 @@ void negativeRadius(HardCaseRun& caseRun);
 
 // Contact of rods.
 void noStiffness(HardCaseRun& caseRun);
-void deepRoots(HardCaseRun& caseRun);
-void handOnHair(HardCaseRun& caseRun);
 void viceOfSpheres(HardCaseRun& caseRun);
 void bouncingStrand(HardCaseRun& caseRun);
-void wallOverRoots(HardCaseRun& caseRun);
 void sphereOfAKilometre(HardCaseRun& caseRun);
 
 // Stiffness, wind and energy.

@@ -22,17 +22,6 @@ SimulationSettings awake() {
     return settings;
 }
 
-/// `count` by `count` strands that stand on a plane, 4 mm apart.
-StrandSet brush(int count, float length, std::uint32_t points) {
-    StrandSet strands;
-    for (int i = 0; i < count * count; ++i) {
-        const Float3 root{0.004f * static_cast<float>(i % count - count / 2), 0.0f,
-                          0.004f * static_cast<float>(i / count - count / 2)};
-        strands.add(root, {0.0f, 1.0f, 0.0f}, length / static_cast<float>(points - 1), points);
-    }
-    return strands;
-}
-
 /// Hair that stands out level, 24 points over 29 cm.
 StrandSet level() {
     StrandSet strands;
@@ -78,23 +67,6 @@ void noStiffness(HardCaseRun& caseRun) {
     }
 }
 
-void deepRoots(HardCaseRun& caseRun) {
-    claimedByRods(caseRun);
-    caseRun.start(tuft(), awake());
-    caseRun.setSpheres({{{0.0f, 0.07f, 0.0f}, 0.05f}});
-    caseRun.settle(kToRest);
-}
-
-void handOnHair(HardCaseRun& caseRun) {
-    claimedByRods(caseRun);
-    caseRun.start(brush(8, 0.03f, 10), awake());
-    for (int f = 1; f <= 30; ++f) {
-        caseRun.setSpheres({{{0.003f, 0.1f - 0.035f * static_cast<float>(f) / 30.0f, 0.001f}, 0.05f}});
-        caseRun.frame();
-    }
-    caseRun.settle(kToRest);
-}
-
 void viceOfSpheres(HardCaseRun& caseRun) {
     claimedByRods(caseRun);
     caseRun.start(tuft(), awake());
@@ -117,13 +89,6 @@ void bouncingStrand(HardCaseRun& caseRun) {
         caseRun.frames(static_cast<int>(kToRest / static_cast<double>(kFrame)));
         caseRun.expect("speed", "m/s", caseRun.greatestSpeed(), 0.005);
     }
-}
-
-void wallOverRoots(HardCaseRun& caseRun) {
-    claimedByRods(caseRun);
-    caseRun.start(brush(4, 0.15f, 16), awake());
-    caseRun.setSpheres({{{0.1f, 0.005f - 5.0f, 0.0f}, 5.0f}});
-    caseRun.settle(kToRest);
 }
 
 void sphereOfAKilometre(HardCaseRun& caseRun) {
