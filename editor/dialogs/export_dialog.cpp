@@ -312,7 +312,7 @@ void ExportDialog::showWhatWillBeWritten() {
                        .arg(guides));
     if (choice.writer->holdsCards()) {
         summary_->setText(
-            tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is held against "
+            tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is compared with "
                "the strands at its distance.")
                 .arg(cards_->value())
                 .arg(strands.size()));
