@@ -33,6 +33,14 @@ namespace {
 
 class HabitsTest : public WindowTest {
   protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        activate();
+    }
+    void activate() {
+        window->activateWindow();
+        ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
+    }
     /// Notches of a wheel over the middle of a control, as the window system tells of them.
     static void turnWheel(QWidget& over, int notches) {
         const QPointF at(over.rect().center());
@@ -115,7 +123,8 @@ TEST_F(HabitsTest, DecimalsAreTakenWithPointAndComma) {
 TEST_F(HabitsTest, NumbersLookAlikeInEveryLocale) {
     const QLocale own;
     for (const QLocale::Language language : {QLocale::German, QLocale::French, QLocale::English}) {
-        TearDown();
+        window->close();
+        window.reset();
         QLocale::setDefault(QLocale(language));
         open();
         openSampleHair("short");
