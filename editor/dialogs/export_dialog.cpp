@@ -104,8 +104,8 @@ QString problemOf(const Choice& choice) {
 /// Bytes of a point in the formats' files, measured on the samples; text takes what its digits take.
 double bytesOfPoint(const StrandWriter& writer) {
     static const std::map<std::string, double> bytes{
-        {"abc", 16}, {"abc-unreal", 16}, {"hair", 16}, {"obj-c4d", 70}, {"obj-lines", 36},
-        {"ply", 20}, {"runtime", 8},     {"tfx", 16},  {"usda", 42},    {"usdc", 16}};
+        {"abc", 17}, {"abc-unreal", 21}, {"hair", 16}, {"obj-c4d", 98}, {"obj-lines", 42},
+        {"ply", 20}, {"runtime", 11},    {"tfx", 16},  {"usda", 55},    {"usdc", 17}};
     const auto found = bytes.find(writer.name);
     return found == bytes.end() ? 16 : found->second;
 }
@@ -312,7 +312,7 @@ void ExportDialog::showWhatWillBeWritten() {
                        .arg(guides));
     if (choice.writer->holdsCards()) {
         summary_->setText(
-            tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is held against "
+            tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is compared with "
                "the strands at its distance.")
                 .arg(cards_->value())
                 .arg(strands.size()));
