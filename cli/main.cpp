@@ -21,6 +21,7 @@
 #include "cli/help_format.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
+#include "cli/usage_error.h"
 #include "core/base/log.h"
 #include "core/base/output_file.h"
 #include "core/base/parallel.h"
@@ -111,20 +112,9 @@ int failUsage(const hairloom::Error& error, bool json) {
     return kWrongUsage;
 }
 
-/// "hairloom-cli set --help", of the job that was named, if one was.
-std::string helpOf(const CLI::App& app) {
-    std::string words = "hairloom-cli";
-    for (const CLI::App* job : app.get_subcommands()) words += " " + job->get_name();
-    return "see " + words + " --help";
-}
-
 /// What the parser says goes where it belongs: help and version are answers, all else is wrong usage.
 int endParsing(const CLI::App& app, const CLI::ParseError& error, bool json) {
-    if (error.get_exit_code() != 0) {
-        std::string what = error.what();
-        std::ranges::replace(what, '\n', ' ');
-        return failUsage({{}, {}, what, helpOf(app)}, json);
-    }
+    if (error.get_exit_code() != 0) return failUsage(hairloom::cli::usageError(app, error), json);
     app.exit(error);
     if (const auto flushed = hairloom::cli::flushOutput(); !flushed) return failWith(flushed.error(), false);
     return kDone;

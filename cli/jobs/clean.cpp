@@ -77,7 +77,7 @@ JobRun declare(CLI::App& job) {
                  "Include files with the complete content of a target that may be damaged")
         ->needs(remove);
     job.add_flag("--copies", options->copies,
-                 "Also the window's copies of unsaved work, of windows that no longer run")
+                 "Remove copies of unsaved work, too, of windows that no longer run")
         ->needs(remove);
     return [options](const std::string&) { return clean(*options); };
 }
@@ -85,7 +85,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job cleanJob() {
-    return {"clean", "List or remove temporary files that killed runs left, and copies of unsaved work",
+    return {"clean", "List or remove temporary files of interrupted runs, and copies of unsaved work",
             "--remove out", declare};
 }
 

@@ -146,10 +146,11 @@ void Autosave::written(quint64 generation, const Status& status) {
         Q_EMIT upToDate();
     } else {
         dirty_ = true;
-        Q_EMIT failed(tr("No copy of unsaved work: %1. Make room or change the folder's rights, or save the "
-                         "project; it is tried again every %n seconds",
-                         nullptr, kRetry_ms / 1000)
-                          .arg(errorText(status.error())));
+        Q_EMIT failed(
+            tr("No copy of unsaved work: %1. Free some space or change the folder's rights, or save the "
+               "project; it is tried again every %n seconds",
+               nullptr, kRetry_ms / 1000)
+                .arg(errorText(status.error())));
     }
     schedule();
 }
