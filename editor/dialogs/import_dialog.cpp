@@ -71,7 +71,7 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     form_->addRow(tr("Vertex order"), order_);
     form_->addRow(tr("Particles"), particle_);
     form_->addRow(tr("Segments"), segments_);
-    form_->addRow(tr("Points a strand"), points_);
+    form_->addRow(tr("Points per strand"), points_);
     auto* legend =
         new QLabel(tr("<span style='color:%1'>●</span> root &nbsp; <span style='color:%2'>●</span> tip")
                        .arg(StrandPreview::rootColour().name(), StrandPreview::tipColour().name()));
