@@ -134,13 +134,13 @@ void readAttributes(const runtime::Asset& from, RawStrands& raw) {
 Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&& given,
                                const StrandImportOptions&) {
     // Memory of whole files is aligned so; a piece of another buffer need not be.
-    struct alignas(asset::kAlignment) Piece {
+    struct alignas(asset::kAlignment) Aligned {
         std::byte bytes[asset::kAlignment];
     };
-    std::vector<Piece> aligned;
+    std::vector<Aligned> aligned;
     std::span<const std::byte> bytes = given;
     if (reinterpret_cast<std::uintptr_t>(given.data()) % asset::kAlignment != 0) {
-        aligned.resize(given.size() / sizeof(Piece) + 1);
+        aligned.resize(given.size() / sizeof(Aligned) + 1);
         std::memcpy(aligned.data(), given.data(), given.size());
         bytes = std::as_bytes(std::span(aligned)).first(given.size());
     }

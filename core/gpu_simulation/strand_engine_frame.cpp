@@ -366,6 +366,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     spheresBefore = frameSpheres.usable;
     substep = context.h;
     wakeAll = rodsFresh = false;
+    rodEnergyKnown = true;
     return {};
 }
 

@@ -47,6 +47,8 @@ struct StrandEngine::Impl {
     bool restsVoid = false;                          ///< other settings: nothing sleeps
     bool tensionsVoid = false;                       ///< those on the device are of a plan that is over
     bool wakeAll = false;
+    runtime::SimulationSettings rodSettings;  ///< that rodRest was made with
+    bool rodEnergyKnown = true;  ///< what rods had before the frame is energy under these settings
     bool rodsFresh = false;      ///< the device has places of rods, and nothing else yet
     bool rootsMoved = false;     ///< in the last frame, as the device knows
     bool rootsOfDevice = false;  ///< `roots` are of an earlier frame: the device found them itself since

@@ -36,6 +36,9 @@ Status StrandEngine::Impl::takeRods(const runtime::SimulationSettings& settings)
     }
     // Strands that were none before go on from where they are.
     rodsFresh = rodsFresh || rodRest.planes.empty();
+    rodEnergyKnown =
+        rodEnergyKnown && (rodRest.planes.empty() || runtime::haveEqualRodEnergy(settings, rodSettings));
+    rodSettings = settings;
     rodRest = runtime::makeRodRest(*shape, settings);
     for (StrandBatch& batch : batches) {
         if (auto made = makeRodBuffers(batch); !made) return made;
@@ -114,7 +117,7 @@ shaders::RodConstants StrandEngine::Impl::rodConstants(const runtime::SubstepCon
     c.stepRatio = substep > 0.0f ? context.h / substep : runtime::kRodFirstRatio;
     c.sweeps = context.sweeps ? 1 : 0;
     c.conservative = context.air == runtime::Air::moving ? 0 : context.spheresRest ? 2 : 1;
-    c.fresh = rodsFresh ? 1 : 0;
+    c.fresh = rodsFresh ? HAIRLOOM_RODS_FRESH : rodEnergyKnown ? 0 : HAIRLOOM_RODS_OF_OTHER_ENERGY;
     c.points = batch.shape.points;
     for (std::size_t m = 0; m < runtime::kWindModes; ++m) {
         const float turns = run.wind.wind.modes[m].turnsPerSecond * context.h;

@@ -35,6 +35,12 @@ void rootThroughSphere(HardCaseRun& caseRun);
 void shrinkingSphere(HardCaseRun& caseRun);
 void negativeRadius(HardCaseRun& caseRun);
 
+// Contact of rods.
+void noStiffness(HardCaseRun& caseRun);
+void viceOfSpheres(HardCaseRun& caseRun);
+void bouncingStrand(HardCaseRun& caseRun);
+void sphereOfAKilometre(HardCaseRun& caseRun);
+
 // Stiffness, wind and energy.
 void stiffnessTimesMillion(HardCaseRun& caseRun);
 void reversingStorm(HardCaseRun& caseRun);

@@ -42,6 +42,10 @@ constexpr HardCase kCases[] = {
     {24, "changes in mid-run", "motion", "integrator, substeps and number of segments change every few frames", changesInMidRun},
     {25, "6, 8, 9 and 11 at once", "motion", "turning at 10 rev/s in a reversing storm, stiffness x 10^6, frames of 1 to 1,000 ms", everythingAtOnce},
     {26, "random storms", "motion", "jumps of metres, any rotation, frames of 1 ms to 1 s, gusts to 300 m/s and spheres at once, on hair of 2 to 200 points, straight and curled, then still", randomStorms},
+    {27, "stiffness 0", "stiffness", "no stiffness at all, then none at the tip and none at the root, straight and curled; shaken, then on a sphere", noStiffness},
+    {28, "vice", "spheres", "two spheres of 5 cm close on hanging hair until they touch", viceOfSpheres},
+    {29, "bounce", "spheres", "level hair falls on a sphere with a restitution of 0.2, 0.5 and 1", bouncingStrand},
+    {30, "sphere of 1 km", "spheres", "level hair falls on a sphere of 1 km", sphereOfAKilometre},
 };
 // clang-format on
 

@@ -71,7 +71,9 @@ QString spokenName(const QWidget& control) {
     if (const auto* button = qobject_cast<const QAbstractButton*>(&control); name.isEmpty() && button)
         name = button->text();
     if (name.isEmpty()) name = labelFor(control);
-    if (name.isEmpty()) name = plain(control.toolTip()).section('\n', 0, 0);
+    for (const QWidget* widget = &control; name.isEmpty() && widget && !widget->isWindow();
+         widget = widget->parentWidget())
+        name = plain(widget->toolTip()).section('\n', 0, 0);
     return name.remove('&').trimmed();
 }
 

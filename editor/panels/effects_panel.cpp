@@ -110,7 +110,6 @@ class EffectsPanel : public QWidget {
         table_->setRootIsDecorated(false);
         table_->setWordWrap(true);
         table_->setSelectionMode(QAbstractItemView::NoSelection);
-        table_->setFocusPolicy(Qt::NoFocus);
         table_->setMinimumHeight(340);
         table_->header()->resizeSection(kName, 104);
         table_->header()->resizeSection(kMs, 86);

@@ -105,8 +105,10 @@ void Engine::Impl::placeLane(std::size_t index, std::uint32_t lane, const Float3
 
 std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (std::string error = validationError(settings); !error.empty()) return error;
+    const bool sameEnergy = haveEqualRodEnergy(settings, settings_);
     settings_ = settings;
     makeRods();
+    if (!sameEnergy) forgetRodEnergy(*shape_, state_);
     scratch_ = {};
     wind_ = {makeWind(settings), false};
     bend_.substep = 0.0f;

@@ -199,12 +199,14 @@ ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segm
     const Real3 g = rodTimes(m, mad3(moment, relative.w, cross(moment, v)));
     const Real3 swing = rodTimes(m, v), bv = swing * bend;
     RodSymmetric S;
-    S.m[0] = Y0 + negMad(bv.x, swing.x, bend);
+    // Nothing but the vertex resists the twist of a segment. Where it hardly does, rounding would.
+    const Real firm = mad(absolute(Y0) + absolute(Y3) + absolute(Y5), ROD_NUMBER(HAIRLOOM_ROD_FIRMNESS), bend);
+    S.m[0] = Y0 + negMad(bv.x, swing.x, firm);
     S.m[1] = negMad(bv.x, swing.y, Y1);
     S.m[2] = negMad(bv.x, swing.z, Y2);
-    S.m[3] = Y3 + negMad(bv.y, swing.y, bend);
+    S.m[3] = Y3 + negMad(bv.y, swing.y, firm);
     S.m[4] = negMad(bv.y, swing.z, Y4);
-    S.m[5] = Y5 + negMad(bv.z, swing.z, bend);
+    S.m[5] = Y5 + negMad(bv.z, swing.z, firm);
     if (section.twists)
         rodAddOuter(S, rodTimes(m, mad3(section.axis, relative.w, cross(section.axis, v))), section.twist);
     if (section.isFlat)

@@ -7,6 +7,8 @@
 /// rounding takes.
 #define HAIRLOOM_ROD_LEAST_PIVOT 0.0375
 #define HAIRLOOM_ROD_PIVOT_ROUNDING 9.5367431640625e-7
+/// Share of what resists a segment's turns by inertia that a vertex resists it with at least, while it is solved.
+#define HAIRLOOM_ROD_FIRMNESS 1e-5
 /// Radians by which the predicted rotation of a substep turns a segment at most.
 #define HAIRLOOM_ROD_LARGEST_PREDICTION 0.5
 /// The scheme of second order fades to backward Euler while a substep turns a segment by 0.25 to 0.5 radians.
@@ -32,6 +34,8 @@
 #define HAIRLOOM_ROD_CONTACT_NEAR 1e-3
 /// Metres of penetration or lift that a second look at the end of a step mends.
 #define HAIRLOOM_ROD_CONTACT_LOOK 1e-5
+/// Share of the way along a shape that its surface may have turned away by.
+#define HAIRLOOM_ROD_CONTACT_CURVED 0.25
 /// Metres per second: below, contact is rest. Of a strand's points in the root mean square, below which contacts
 /// with shapes that rest are not looked at for energy that they add; of a point's approach.
 #define HAIRLOOM_ROD_CONTACT_SPEED 5e-3

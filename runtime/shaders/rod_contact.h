@@ -53,12 +53,21 @@ ROD_FUNCTION Real3 rodContactForce(RodContact c, Real3 x) {
     return c.gradient * ROD_NUMBER(-1.0) - rodContactTimes(c, x);
 }
 
-/// Whether a shape holds the node. What it pressed in the last substep it holds while a guess lifts that off
-/// by a little, and what starts well inside it holds at the surface, where it comes out.
-ROD_FUNCTION RodMask rodHolds(RodTouch touch, Real load) {
-    const Real lifted =
-        choose(absolute(load) > ROD_NUMBER(0.0), ROD_NUMBER(-HAIRLOOM_ROD_CONTACT_REACH), ROD_NUMBER(0.0));
-    return either(touch.depth > lifted, touch.before > ROD_NUMBER(HAIRLOOM_ROD_CONTACT_DEEP));
+/// Whether a shape holds the node, which may be outside by `slack` metres. What starts well inside it holds
+/// at the surface, where it comes out.
+ROD_FUNCTION RodMask rodHolds(RodTouch touch, Real slack) {
+    return either(touch.depth > ROD_NUMBER(0.0) - slack,
+                  touch.before > ROD_NUMBER(HAIRLOOM_ROD_CONTACT_DEEP));
+}
+/// What was pressed in the last substep is held while a prediction lifts it off by a little.
+ROD_FUNCTION Real rodSlackAfter(Real load) {
+    return choose(absolute(load) > ROD_NUMBER(0.0), ROD_NUMBER(HAIRLOOM_ROD_CONTACT_REACH), ROD_NUMBER(0.0));
+}
+/// What a step presses it has led along a plane, off a surface that curves away. `x`: beyond the guess.
+ROD_FUNCTION Real rodSlackOf(RodContact c, Real3 x) {
+    const RodMask pressed = dot(rodContactForce(c, x), c.normal) > ROD_NUMBER(0.0);
+    const Real along = root(dot(x, x)) * ROD_NUMBER(HAIRLOOM_ROD_CONTACT_CURVED);
+    return choose(pressed, maximum(along, ROD_NUMBER(HAIRLOOM_ROD_CONTACT_REACH)), ROD_NUMBER(0.0));
 }
 
 /// Adds what a shape that holds the node does to it: ½ k (depth − n·x)², which keeps it out, and
@@ -74,13 +83,15 @@ ROD_FUNCTION void rodPress(RodTouch touch, RodMask held, RodNode node, Real pace
     const Real back = (approach / pace - minimum(touch.before, none)) * restitution;
     const Real depth = touch.depth + choose(bounces, back, none);
     const Real k = choose(held, node.stiffness, none);
-    // Coulomb, with the force of the last substep and at most what stops the node. What was stuck has hardly
+    // Coulomb, with the force of the last substep, of a new contact with what stops the node alone, and at
+    // most what holds it. What slides goes on with the last change of its speed. What was stuck has hardly
     // moved: where it gives way it slides by what the force beyond friction does to its own mass.
     const Real3 slip = negMad3(n, dot(n, moved), moved);
-    const Real3 next = slip + mad3(n, none - dot(n, node.faster), node.faster) * (ROD_NUMBER(1.0) / pace);
-    const Real size = root(dot(slip, slip)), most = absolute(node.load) * friction;
+    const Real3 next = slip + negMad3(n, dot(n, node.faster), node.faster) * (ROD_NUMBER(1.0) / pace);
+    const Real size = root(dot(slip, slip)), fresh = node.weight * maximum(depth, none);
+    const Real most = choose(node.load == none, fresh, absolute(node.load)) * friction;
     const Real excess = maximum(mad(k, size, none - most), none) / node.weight;
-    const Real slid = choose(node.load < none, root(dot(next, next)), maximum(size, excess));
+    const Real slid = choose(node.load > none, maximum(size, excess), root(dot(next, next)));
     const Real grip = minimum(most / maximum(slid, ROD_NUMBER(1e-12)), k);
     const Real g = choose(held, grip, none), push = k * depth;
     const Real3 nn = n * (k - g);

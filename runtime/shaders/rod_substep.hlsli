@@ -107,7 +107,7 @@ RodContact meet(uint j, RodNode node) {
         RodTouch touch;
         if (touchSphere(k, rootAtEnd(), node, touch)) {
             near = true;
-            press(touch, rodHolds(touch, node.load), node, found);
+            press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, found);
         }
     }
     gTouched = max(gTouched, found.touching);
@@ -256,13 +256,15 @@ bool lookAgain() {
         position = mad3(tangent, segmentLength(j), position);
         if (isNear(j)) {
             const RodNode node = nodeOf(j + 1, newDisplacement(j), tangent, position, target(j).w);
-            const bool held = gScratch[slotOf(CONTACT_PLANE + 10, j)] > 0.0;
-            bool inside = false, lifted = held;
+            const RodContact met = contact(j);
+            const bool held = met.touching > 0.0;
+            const float slack = rodSlackOf(met, newDisplacement(j) - predictedDisplacement(j));
+            bool inside = false, lifted = held && slack == 0.0;
             EACH_SPHERE(k) {
                 RodTouch touch;
                 if (touchSphere(k, rootAtEnd(), node, touch)) {
                     inside = inside || touch.depth > HAIRLOOM_ROD_CONTACT_LOOK;
-                    if (rodHolds(touch, 0.0) || touch.depth > -HAIRLOOM_ROD_CONTACT_LOOK) lifted = false;
+                    lifted = lifted && !rodHolds(touch, HAIRLOOM_ROD_CONTACT_LOOK);
                 }
             }
             wrong = wrong || lifted || (inside && !held);
@@ -277,10 +279,11 @@ bool lookAgain() {
         position = mad3(tangent, segmentLength(i), position);
         if (isNear(i)) {
             const RodNode node = nodeOf(i + 1, moved, tangent, position, aimed.w);
+            const float slack = rodSlackOf(contact(i), moved - predictedDisplacement(i));
             RodContact found = noContact();
             EACH_SPHERE(k) {
                 RodTouch touch;
-                if (touchSphere(k, rootAtEnd(), node, touch)) press(touch, rodHolds(touch, 0.0), node, found);
+                if (touchSphere(k, rootAtEnd(), node, touch)) press(touch, rodHolds(touch, slack), node, found);
             }
             setContact(i, found);
         }

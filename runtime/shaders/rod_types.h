@@ -18,6 +18,11 @@ namespace hairloom::shaders {
 #define HAIRLOOM_ROD_WORK_PLANES 49
 #define HAIRLOOM_ROD_CONTACT_PLANES 15
 
+/// Strands were no rods before, and go on as rods through their points.
+#define HAIRLOOM_RODS_FRESH 1
+/// Settings have changed what energy rods have: what they had tells nothing of what they may have.
+#define HAIRLOOM_RODS_OF_OTHER_ENERGY 2
+
 struct RodConstants {
     float4 gravity;         ///< m/s²; w: drag of the air, 1/s, 0 without air
     float rootDamping;      ///< 1/s
@@ -27,7 +32,7 @@ struct RodConstants {
     uint points;            ///< that a strand of the batch may have
     uint sweeps;            ///< not 0: spheres are met where fast points come in
     uint conservative;      ///< not 0: nothing but motion of roots and spheres adds energy; 2: nor do spheres
-    uint fresh;             ///< not 0: strands were none before, and go on as rods through their points
+    uint fresh;             ///< HAIRLOOM_RODS_FRESH, HAIRLOOM_RODS_OF_OTHER_ENERGY or 0
     float flat;             ///< (EI₂ − EI)/EI, of the softer bend; 0 of a round section
     uint unused0, unused1, unused2;
     float4 windTurns[HAIRLOOM_WIND_MODES];  ///< x: turns of a wave in a substep

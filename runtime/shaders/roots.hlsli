@@ -71,7 +71,8 @@ float3 rootNormal() { return rotate(gRotation, gNormalAtRest); }
 /// Takes the way of the root through the frame.
 void enterFrame() {
 #if HAIR_RODS
-    if (gRod.fresh != 0u) placeRodOnPoints();
+    if (gRod.fresh == HAIRLOOM_RODS_FRESH) placeRodOnPoints();
+    if (gRod.fresh == HAIRLOOM_RODS_OF_OTHER_ENERGY) setEnergyBefore(HAIRLOOM_ROD_NO_ENERGY);
 #endif
     float3 from = float3(rootRow(0), rootRow(1), rootRow(2));
     float4 rotationFrom = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));

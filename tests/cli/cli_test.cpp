@@ -113,7 +113,7 @@ TEST_F(Cli, SetAndInfoWarnOfSpringsThatTremble) {
 TEST_F(Cli, StabilityWritesItsCasesAndMaps) {
     const auto report =
         runJson("stability -o out --integrators rk4 --cells 4 --steps 200 --steps-at-rest 8000");
-    EXPECT_EQ(report["cases"].size(), 26u);
+    EXPECT_EQ(report["cases"].size(), 30u);
     EXPECT_EQ(report["cases"][8]["integrator"], "rk4");
     EXPECT_TRUE(report["cases"][8]["threshold"].is_number());
     EXPECT_EQ(report["maps"].size(), 2u);

@@ -412,7 +412,7 @@ TEST_F(ShellTest, APageForBrowsersIsExportedAtRest) {
     }
     qputenv("HAIRLOOM_WEB", inFolder("player").toUtf8());
     ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
-    dialog.findChild<QComboBox*>("target")->setCurrentText("Browser");
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Web page with moving hair");
     auto* frames = dialog.findChild<QSpinBox*>("frames");
     frames->setValue(3);
     dialog.exportTo(inFolder("page"));

@@ -167,6 +167,7 @@ TEST_F(RuntimeVersions, ALogHearsOfHairThatWasPutBack) {
     ASSERT_EQ(hl_instance_make_hosted(asset_.get(), HL_GUIDES, &host, &made, &error_), HL_OK)
         << error_.what();
     const std::unique_ptr<hl_instance, void (*)(hl_instance*)> hair(made, hl_instance_free);
+    std::array<float, 12> head{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     Frame frame;
     frame.head = head.data();
     const float wind[3] = {900, 900, 900};

@@ -27,7 +27,7 @@ TEST_P(HardCases, DeviceMeetsTheCpusHardCases) {
                              << result.closest().threshold;
 }
 
-constexpr std::size_t kCases = 26;
+constexpr std::size_t kCases = 30;
 INSTANTIATE_TEST_SUITE_P(Rods, HardCases, testing::Range(std::size_t{0}, kCases));
 
 /// The list above is as long as theirs.

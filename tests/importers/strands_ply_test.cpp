@@ -54,7 +54,7 @@ TEST(StrandsPly, WhatContradictsItselfIsRefused) {
         return imported ? std::string() : imported.error().message();
     };
     const std::string list = "element strand 1\nproperty list uchar int vertex_indices\n";
-    EXPECT_THAT(refusal(list, "3 0 1 7\n"), HasSubstr("names a vertex that there is not; there are 3"));
+    EXPECT_THAT(refusal(list, "3 0 1 7\n"), HasSubstr("refers to a vertex that does not exist; there are 3"));
     EXPECT_THAT(refusal(list, "3 0 1 -1\n"), HasSubstr("refers to vertex -1"));
     EXPECT_THAT(refusal(list, "200 0 1 2\n"), HasSubstr("a list of 200 values"));
     EXPECT_THAT(refusal("element vertex 1\nproperty float x\n", "1\n"), HasSubstr("in two elements"));

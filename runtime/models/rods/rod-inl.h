@@ -295,7 +295,7 @@ class RodStrip {
         auto near = noLane();
         forEachTouch(lanes_, rootPosition(), node, context_, [&](const RodTouch& touch, RodMask here) {
             near = either(near, here);
-            press(touch, rodHolds(touch, node.load), node, point.contact);
+            press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, point.contact);
         });
         touched_ = hn::Max(touched_, point.contact.touching);
         near_ = either(near_, near);
@@ -327,19 +327,20 @@ class RodStrip {
         auto wrong = noLane();
         forEachNode([&](const RodPoint& point, const RodNode& node, RodMask near) {
             const auto held = point.contact.touching > hn::Zero(D());
-            auto inside = noLane(), lifted = held;
+            const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
+            auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
             forEachTouch(lanes_, root, node, context_, [&](const RodTouch& touch, RodMask) {
                 inside = either(inside, touch.depth > reach);
-                lifted =
-                    hn::AndNot(either(rodHolds(touch, hn::Zero(D())), touch.depth > hn::Neg(reach)), lifted);
+                lifted = hn::AndNot(rodHolds(touch, reach), lifted);
             });
             wrong = either(wrong, both(near, either(lifted, hn::AndNot(held, inside))));
         });
         if (hn::AllFalse(D(), wrong)) return false;
         forEachNode([&](RodPoint& point, const RodNode& node, RodMask near) {
+            const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
             RodContact found = noContact();
             forEachTouch(lanes_, root, node, context_, [&](const RodTouch& touch, RodMask) {
-                press(touch, both(near, rodHolds(touch, hn::Zero(D()))), node, found);
+                press(touch, both(near, rodHolds(touch, slack)), node, found);
             });
             point.contact = rodChosen(wrong, found, point.contact);
         });

@@ -400,6 +400,12 @@ RodSectionRatios rodSectionRatios(const SimulationSettings& settings) {
     return {1.0 / ratio, torsion - 1.0, ratio * ratio - 1.0};
 }
 
+bool haveEqualRodEnergy(const SimulationSettings& a, const SimulationSettings& b) {
+    return a.gravity == b.gravity && a.restGravity == b.restGravity && a.clampedPoints == b.clampedPoints &&
+           a.angularStiffness == b.angularStiffness && a.angularCurve == b.angularCurve &&
+           a.torsionRatio == b.torsionRatio && a.sectionRatio == b.sectionRatio;
+}
+
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings) {
     RodRest rest;
     rest.planeCount = rodSectionRatios(settings).flat != 0.0 ? kRodFlatRestPlanes : kRodRestPlanes;

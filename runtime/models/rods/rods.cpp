@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "models/rods/rods.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hairloom::runtime {
@@ -110,6 +111,14 @@ void turnRodAlong(const BlockView& view, std::size_t i, Quat turn) {
     x[pitch] = q.y;
     x[2 * pitch] = q.z;
     x[3 * pitch] = q.w;
+}
+
+void forgetRodEnergy(const RestShape& shape, State& state) {
+    if (state.rodLanes.empty()) return;
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        float* const energy = state.rodLanes.data() + (b * kRodLaneRows + 1) * kBlockLanes;
+        std::fill_n(energy, kBlockLanes, kRodNoEnergy);
+    }
 }
 
 RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std::size_t index) {

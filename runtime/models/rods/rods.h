@@ -32,6 +32,9 @@ struct RodSectionRatios {
 };
 RodSectionRatios rodSectionRatios(const SimulationSettings& settings);
 
+/// Whether a rod has as much energy of shape and weight under both.
+bool haveEqualRodEnergy(const SimulationSettings& a, const SimulationSettings& b);
+
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings);
 
 /// Puts lane `lane` of block `index` at rest on its row of state.roots, without a step before.
@@ -45,6 +48,9 @@ void placeRodOnPoints(const RestShape& shape, const RodRest& rest, State& state,
 
 /// Turns segment and vertex `i` of a rod along with its root: what BlockView's positions do not hold.
 void turnRodAlong(const BlockView& view, std::size_t i, Quat turn);
+
+/// Settings have changed what energy rods have: what they had tells nothing of what they may have.
+void forgetRodEnergy(const RestShape& shape, State& state);
 
 /// The rods of a block; all null where there are none.
 RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std::size_t index);
