@@ -62,8 +62,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job guidesJob() {
-    return {"guides",
-            "Reduce strands to a few guides by clustering, and report how far the others are from them",
+    return {"guides", "Reduce strands to a few guides by clustering",
             "hair.hairloom --count 200 -o guides.hairloom", declare};
 }
 

@@ -64,7 +64,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job lodJob() {
-    return {"lod", "Create levels of detail: strands, cards and a shell, each measured against the strands",
+    return {"lod", "Create levels of detail: strands, cards and a shell",
             "hair.hairloom -o levels --cards 200 --json", declare};
 }
 

@@ -159,9 +159,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job referenceJob() {
-    return {"reference",
-            "Write the reference page of settings, operations, brushes and jobs, or the manual pages",
-            "-o docs/reference.md", declare};
+    return {"reference", "Write the reference page, or the manual pages", "-o docs/reference.md", declare};
 }
 
 }  // namespace hairloom::cli

@@ -209,10 +209,8 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job stabilityJob() {
-    return {
-        "stability",
-        "Run the hard cases of the strand engine and map where each integrator is stable, or certify a groom",
-        "-o stability --integrators verlet,rk4", declare};
+    return {"stability", "Run hard cases and map stable steps, or certify a groom",
+            "-o stability --integrators verlet,rk4", declare};
 }
 
 }  // namespace hairloom::cli

@@ -45,9 +45,9 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
         {"simulate x --method strand",
          "error: --method is 'strand'; expected one of strands, projective, lattice (did you mean "
          "strands?)\n"},
-        {"simulate x --frames 0", "error: --frames is '0'; expected 1 to 100000\n"},
-        {"simulate x --frames", "error: --frames has no value; expected 1 to 100000\n"},
-        {"simulate x --frames ten", "error: --frames is 'ten'; expected 1 to 100000\n"},
+        {"simulate x --frames 0", "error: --frames is '0'; expected 1 to 1000000\n"},
+        {"simulate x --frames", "error: --frames has no value; expected 1 to 1000000\n"},
+        {"simulate x --frames ten", "error: --frames is 'ten'; expected 1 to 1000000\n"},
         {"simulate --motoin nod", "error: there is no option --motoin; did you mean --motion?\n"},
         {"simulate", "error: groom is required; see hairloom-cli simulate --help\n"},
     };
@@ -56,7 +56,7 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
         EXPECT_EQ(outcome.exitCode, 2) << arguments;
         EXPECT_EQ(outcome.errors, message) << arguments;
         EXPECT_EQ(outcome.output, "") << arguments;
-        const auto error = run(std::string(arguments) + " --json").json()["error"];
+        const auto error = run("--json " + std::string(arguments)).json()["error"];
         EXPECT_EQ(
             "error: " + error["what"].get<std::string>() + "; " + error["expected"].get<std::string>() + "\n",
             message);

@@ -51,7 +51,7 @@ TEST(Archive, RefusesHostileHeads) {
     const std::string deep = R"({"kind":)" + std::string(1000000, '[');
     const std::vector<std::pair<std::string, std::string>> cases = {
         {deep, "f@71: JSON is nested too deeply"},
-        {R"({"kind":"test","kind":"test","version":1,"arrays":{}})", "names \"kind\" twice"},
+        {R"({"kind":"test","kind":"test","version":1,"arrays":{}})", "has \"kind\" twice"},
         {R"({"kind":"test","version":1,"arrays":{},})", "JSON is damaged"},
         {R"({"kind":"test","version":1e999,"arrays":{}})", "JSON cannot be read"},
         {R"({"kind":"test","version":-1,"arrays":{}})", "/version is -1"},
