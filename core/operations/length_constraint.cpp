@@ -6,13 +6,16 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/geometry/curve.h"
+
 namespace hairloom {
 namespace {
 
 constexpr float kNoDirection = 1e-9f;  ///< metres; shorter differences point nowhere
 constexpr int kTurns = 6;              ///< towards the offset surface, which one reaches where it is flat
 constexpr int kHalvings = 10;          ///< of the turn towards the normal
-constexpr float kSlack = 1e-5f;        ///< metres by which a clearance may be missed
+constexpr float kMostTurn = 28 * kPi / 180;  ///< of a bend from a segment to the next
+constexpr float kSlack = 1e-5f;              ///< metres by which a clearance may be missed
 
 Vec3f directionOr(const Vec3f& difference, const Vec3f& fallback) {
     const float norm = difference.norm();
@@ -61,6 +64,20 @@ class Follow {
     Vec3f along_ = Vec3f::UnitY();
     Vec3f behind_ = Vec3f::Zero();  ///< metres, from where the strand is to where it was wanted
 };
+
+/// Radians; 0 where one has no length.
+float angleBetween(const Vec3f& a, const Vec3f& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// The unit vector `to`, or where that is farther from the unit vector `from`, what lies `maximum` radians on
+/// the way to it.
+Vec3f turnedAtMost(const Vec3f& from, const Vec3f& to, float maximum) {
+    const float angle = angleBetween(from, to);
+    if (!(angle > maximum)) return to;
+    const Quatf whole = shortestArc(from, to);
+    return (Quatf::Identity().slerp(maximum / angle, whole) * from).normalized();
+}
 
 float clearanceAt(float arcLength, float clearance) {
     return std::min(clearance, 0.5f * arcLength);
@@ -160,13 +177,25 @@ bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const 
         std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(first - 1), 0.0f);
     float known = 0;  // distance from the skin, at least
     bool moved = false;
+    Vec3f before = points[first - 1];  // as it was, of the point that was placed last
+    // Segments keep their own directions. What leads steeply into the skin would flip there to where it came
+    // from: it turns from the last segment by no more than it did, or than a bend.
+    Vec3f led =
+        first >= 2 ? directionOr(points[first - 1] - points[first - 2], Vec3f::Zero()) : Vec3f(Vec3f::Zero());
+    Vec3f ledBefore = led;
     for (std::size_t i = first; i < points.size(); ++i) {
         const float length = lengths[i - 1];
         arc += length;
+        lead.follow(points[i] - before);
+        before = points[i];
+        const Vec3f own = lead.direction();
+        Vec3f direction = own;
         if (moved) {
-            lead.follow(points[i] - points[i - 1]);
-            points[i] = points[i - 1] + lead.over(length);
+            direction = turnedAtMost(led, own, std::max(kMostTurn, angleBetween(ledBefore, own)));
+            points[i] = points[i - 1] + direction * length;
         }
+        ledBefore = own;
+        led = direction;
         // Over a way of length w the distance changes by w at most.
         known -= length;
         const float wanted = clearanceAt(arc, clearance);
@@ -174,8 +203,8 @@ bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const 
         const SkinDistance sample = skin.distanceUpTo(points[i], wanted);
         known = sample.distance;
         if (!(known < wanted - kSlack)) continue;
-        if (!moved) lead.follow(points[i] - points[i - 1]);
-        points[i] = placeOutsideFrom(sample, skin, points[i - 1], lead.direction(), length, wanted);
+        points[i] = placeOutsideFrom(sample, skin, points[i - 1], direction, length, wanted);
+        led = directionOr(points[i] - points[i - 1], direction);
         known = 0;
         moved = true;
     }

@@ -24,9 +24,10 @@ void restoreLengths(std::span<Vec3f> points, std::span<const float> lengths, boo
 /// for bends whose shape matters more than their place (curls, noise).
 void restoreLengthsByDirection(std::span<Vec3f> points, std::span<const float> lengths);
 
-/// Points nearer to the skin than `clearance` (metres) are moved out, and what hangs on them follows as in
-/// restoreLengths(); near the root the clearance grows with half the arc length. The strand is unchanged
-/// where none is too near, and before the point `first` (≥ 1) in any case. True when it moved.
+/// Points nearer to the skin than `clearance` (metres) are moved out, and what hangs on them is carried
+/// along: segments keep their directions, as far as the skin lets them, and turn by no more than 28 degrees
+/// from the last, or than they did. Near the root the clearance grows with half the arc length. The strand is
+/// unchanged where none is too near, and before the point `first` (≥ 1) in any case. True when it moved.
 bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
                  float clearance, std::size_t first = 1);
 

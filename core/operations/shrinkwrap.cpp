@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <cmath>
+#include <vector>
 
-#include "core/operations/length_constraint.h"
+#include "core/operations/lay_along.h"
 #include "core/operations/operation.h"
 #include "core/operations/strand_frames.h"
 
@@ -76,7 +76,10 @@ Result<std::size_t> shrinkwrap(Groom& groom, const S& settings, const Region& re
             const float wanted = std::min(height, 0.5f * arc);
             strand.points[i] += settings.strength * fade * (wanted - skin.distance) * skin.outward;
         }
-        restoreLengths(strand.points, strand.lengths);
+        // Along the way that they were drawn to, which hugs the skin: directions alone would leave where it
+        // curves.
+        layAlong(strand.points, strand.lengths,
+                 std::vector<Vec3f>(strand.points.begin(), strand.points.end()));
     });
 }
 
