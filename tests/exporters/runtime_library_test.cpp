@@ -371,7 +371,7 @@ TEST_F(RuntimeLibrary, WrongWordsAreRefusedAndChangeNothing) {
         EXPECT_EQ(hair.hash(), before) << words;
     };
     float values[24] = {};
-    for (const float dt : {0.0f, -1.0f, 1e-12f, 1e-38f, kNaN, std::numeric_limits<float>::infinity()}) {
+    for (const float dt : {-1.0f, 1e-12f, 1e-38f, kNaN, std::numeric_limits<float>::infinity()}) {
         Frame wrong(dt);
         refused(wrong, HL_BAD_VALUE, "dt is");
     }
