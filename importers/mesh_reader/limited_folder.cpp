@@ -47,7 +47,12 @@ bool LimitedFolder::allows(const std::string& file) const {
         if (refused_.empty() && liesIn(folder_, asked)) refused_ = textOf(asked.lexically_relative(folder_));
         return false;
     }
-    if (!std::filesystem::is_regular_file(path, code)) return false;
+    if (!std::filesystem::is_regular_file(path, code)) {
+        // Where the folder is all that there is, a link out of it leads nowhere.
+        if (refused_.empty() && liesIn(folder_, asked) && std::filesystem::is_symlink(path, code))
+            refused_ = textOf(asked.lexically_relative(folder_));
+        return false;
+    }
     return std::filesystem::file_size(path, code) <= kLargestFile && !code;
 }
 

@@ -78,8 +78,11 @@ class Harm:
         self.must("create", "--mesh", head, "--scalp", "material:scalp", "--count", 60, "--placement", "dart", "--length", 0.1, "--points", 8, "--seed", 3,
                   "-o", "g.hairloom")
         self.must("simulate", "g.hairloom", "--frames", 3, "--motion", "nod", "--record", "g.frames")
-        self.must("stack", "g.hairloom", "--keep", "stack.json")
-        (self.folder / "script.json").write_text('[{"op": "lengthen", "factor": 1.1}]' if self.knows("lengthen") else "[]")
+        script = '{"hairloom_script": 1, "operations": [{"op": "curl", "radius": 0.01, "frequency": 40}]}'
+        (self.folder / "script.json").write_text(script)
+        self.must("groom", "g.hairloom", "--script", "script.json", "-o", "s.hairloom")
+        (self.folder / "stack.json").write_text(script.replace('"hairloom_script": 1, "operations"', '"operators"'))
+        self.must("stack", "g.hairloom", "--from", "stack.json", "-o", "k.hairloom")
         (self.folder / "motion.json").write_text('{"keys": [{"t": 0}, {"t": 1, "translate": [0, 0.1, 0]}]}')
         shutil.copy(head, self.folder / "bust.glb")
         kinds = [("g.hairloom", ("info",)), ("g.hairloom", ("validate",)), ("bust.glb", ("validate",)),
@@ -92,9 +95,6 @@ class Harm:
             self.must("export", "g.hairloom", "--format", name, *extra, "--force", "-o", f"{name}.{suffix}")
             kinds.append((f"{name}.{suffix}", ("import", "-o", "i.hairloom", "--force")))
         return kinds
-
-    def knows(self, operation):
-        return f'"{operation}"' in self.run("groom", "--list", "--json").stdout
 
     def damage(self, data):
         data = bytearray(data)
