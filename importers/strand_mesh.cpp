@@ -176,7 +176,7 @@ tl::unexpected<Error> noGrid(const std::string& file, const ObjStrandText& obj, 
     const std::uint32_t face = pieces.faces[std::min(begin + farthest, pieces.faceOffsets[piece + 1] - 1)];
     return failIn(
         file, Line{obj.faceLines[face]},
-        "this face does not lie between neighbouring cross-sections of one hair ribbon or tube",
+        "this face is not between neighbouring cross-sections of one hair ribbon or tube",
         fmt::format("expected the {} vertices that faces join with vertex {} to be a strand, or OBJ "
                     "lines",
                     vertices.size(), vertices.front() + 1));

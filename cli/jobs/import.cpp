@@ -130,6 +130,32 @@ Status addGuides(const ImportOptions& options, const StrandImportOptions& strand
     return {};
 }
 
+/// Whether hair lies on a head as the two were read.
+bool liesOn(const ImportOptions& options, StrandImportOptions strandsAs, const ScalpMesh& mesh) {
+    strandsAs.scalp = &mesh;
+    strandsAs.frames = false;
+    const auto imported = importStrands(options.file, strandsAs);
+    return imported &&
+           std::ranges::find(imported->warnings, "roots", &Finding::where) == imported->warnings.end();
+}
+
+/// Takes the head's Z axis for the one that is up where the hair lies on it so, and not as it is.
+void layHeadToHair(const ImportOptions& options, const StrandImportOptions& strandsAs,
+                   std::shared_ptr<const ScalpMesh>& mesh, HeadImportOptions& taken, Report& head) {
+    if (liesOn(options, strandsAs, *mesh)) return;
+    HeadImportOptions laid = taken;
+    laid.zUp = true;
+    laid.guessUnit = laid.guessUp = false;
+    auto other = importHead(options.mesh, laid);
+    if (!other || !liesOn(options, strandsAs, other->scene.mesh)) return;
+    other->words.emplace_back(
+        "has its Z axis taken as up, because the hair lies on it so. --mesh-up y leaves it as it is");
+    log::warning("{}: {}", options.mesh, other->words.back());
+    mesh = std::make_shared<const ScalpMesh>(std::move(other->scene.mesh));
+    taken = other->taken;
+    head = headReport(taken, other->words);
+}
+
 Result<Report> import(const ImportOptions& options) {
     StrandImportOptions strandsAs = strandOptions(options);
     std::shared_ptr<const ScalpMesh> mesh;
@@ -137,11 +163,13 @@ Result<Report> import(const ImportOptions& options) {
     HeadImportOptions taken;
     Report head;
     if (!options.mesh.empty()) {
-        auto imported = importHead(options.mesh, headImportOptions(options.head));
-        if (!imported) return tl::unexpected(imported.error());
-        taken = imported->taken;
-        head = headReport(taken, imported->words);
-        mesh = std::make_shared<const ScalpMesh>(std::move(imported->scene.mesh));
+        auto read = importHead(options.mesh, headImportOptions(options.head));
+        if (!read) return tl::unexpected(read.error());
+        taken = read->taken;
+        mesh = std::make_shared<const ScalpMesh>(std::move(read->scene.mesh));
+        head = headReport(taken, read->words);
+        if (taken.guessUp && !taken.zUp && !read->scene.statesUnit)
+            layHeadToHair(options, strandsAs, mesh, taken, head);
         auto selected = selectFaces(*mesh, options.scalp);
         if (!selected) return tl::unexpected(selected.error());
         faces = std::move(*selected);
@@ -162,6 +190,9 @@ Result<Report> import(const ImportOptions& options) {
     }
     report["format"] = imported->format;
     report["warnings"] = toReport(imported->warnings);
+    report["layers"] = Report::array();
+    for (const Layer& layer : groom.layers) report["layers"].push_back(layer.name);
+    report["groups"] = groom.groupNames;
     if (imported->ribbons) report["ribbons"] = ribbonReport(*imported->ribbons);
     if (!options.guides.empty()) {
         if (auto added = addGuides(options, strandsAs, groom, report); !added)

@@ -69,6 +69,15 @@ PolygonSoup soupOf(const ScalpMesh& mesh, const FaceSet& faces, const Mat3f& tur
     return soup;
 }
 
+/// Whether a head is where that of a standing character is, if Z is up: far along it, and at the height of
+/// the ground.
+bool isHighAlongZ(const ScalpMesh& mesh) {
+    constexpr float kHigh = 2, kGround = 0.5f;
+    const Vec3f size = mesh.bounds().sizes(), middle = mesh.bounds().center();
+    return middle.z() > kHigh * size.z() && std::abs(middle.y()) < kGround * size.y() &&
+           std::abs(middle.x()) < kGround * size.x() + 0.1f * size.z();
+}
+
 }  // namespace
 
 HeadGuess guessHead(const ImportedScene& scene) {
@@ -84,7 +93,8 @@ HeadGuess guessHead(const ImportedScene& scene) {
     const double largest = static_cast<double>(size.maxCoeff());
     if (const LengthUnit* fits = fittingUnit(largest); implausibleSize(largest, 1) && fits)
         guess.unit = fits->name;
-    guess.zUp = size.z() > kLies * size.y() && size.y() > kFlat * size.z();
+    const bool isDeep = size.z() > kLies * size.y() && size.y() > kFlat * size.z();
+    guess.zUp = isDeep || isHighAlongZ(skin ? *skin : scene.mesh);
     return guess;
 }
 
@@ -145,7 +155,8 @@ Status guessInto(const std::string& path, ImportedHead& head) {
     const HeadGuess guess = guessHead(head.scene);
     HeadImportOptions& options = head.taken;
     if (guess.zUp && options.guessUp && head.scene.statesUnit)
-        head.words.emplace_back("is deeper than high, though its format has Y up; --up z turns it");
+        head.words.emplace_back(
+            "looks as if its Z axis were up, though its format has Y up. --up z turns it");
     if (head.scene.statesUnit) return {};
     if (options.guessUnit && options.metresPerUnit == 0 && !guess.unit.empty()) {
         options.metresPerUnit = metresPerUnit(guess.unit);
@@ -160,7 +171,8 @@ Status guessInto(const std::string& path, ImportedHead& head) {
     }
     if (options.guessUp && guess.zUp) {
         options.zUp = true;
-        head.words.emplace_back("is deeper than high: its Z axis was taken as up; --up y leaves it as it is");
+        head.words.emplace_back(
+            "has its Z axis taken as up, along which it is high; --up y leaves it as it is");
     }
     return {};
 }

@@ -37,6 +37,31 @@ Result<Transfer> putOn(Groom& groom, const ScalpMesh& head) {
     return transferTo(groom, std::make_shared<const ScalpMesh>(head));
 }
 
+/// Whether the new head lies plainly nearer to the old one with its Z axis up. Says so in `done`.
+Result<bool> layingFits(const Groom& groom, const std::string& path, FileTransfer& done,
+                        const ScalpMesh& head) {
+    constexpr float kPlainly = 0.6f;
+    const HeadTurn asItIs = nearestTurn(groom, head);
+    if (asItIs.distance < kAlikeHeads_m) return false;
+    HeadImportOptions options = done.taken;
+    options.zUp = true;
+    options.guessUnit = options.guessUp = false;
+    const auto other = importHead(path, options);
+    if (!other) return tl::unexpected(other.error());
+    Groom moved = groom;
+    const auto laid = putOn(moved, other->scene.mesh);
+    if (!laid || isBeyondScale(laid->fit)) return false;
+    const HeadTurn turned = nearestTurn(groom, other->scene.mesh);
+    if (turned.distance >= kPlainly * asItIs.distance) return false;
+    done.taken = options;
+    done.words.push_back(
+        fmt::format("fits the old head better with its Z axis up, to {:.3g} instead of {:.3g} mm (mean). "
+                    "--up y leaves it as it is",
+                    1e3f * turned.distance, 1e3f * asItIs.distance));
+    log::warning("{}: {}", path, done.words.back());
+    return true;
+}
+
 }  // namespace
 
 Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options) {
@@ -46,17 +71,19 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
     Groom moved = groom;
     auto transfer = putOn(moved, head->scene.mesh);
     if (!transfer) return tl::unexpected(transfer.error());
-    if (isBeyondScale(transfer->fit)) {
-        const float old = groom.scalp->bounds().sizes().maxCoeff(),
-                    now = head->scene.mesh.bounds().sizes().maxCoeff();
-        return failIn(
-            path, {},
-            fmt::format("is {:.3g} m large, where the head that the hair grows on has {:.3g} m", now, old),
-            "expected heads that differ by no more than five times: say its unit (--unit m, dm, cm, mm or "
-            "inch)");
+    if (options.guessUp && !done.taken.zUp && !head->scene.statesUnit) {
+        auto laid = layingFits(groom, path, done, head->scene.mesh);
+        if (!laid) return tl::unexpected(laid.error());
+        if (*laid) {
+            head = importHead(path, done.taken);
+            if (!head) return tl::unexpected(head.error());
+            moved = groom;
+            transfer = putOn(moved, head->scene.mesh);
+            if (!transfer) return tl::unexpected(transfer.error());
+        }
     }
     if (options.guessTurn && options.turnDegrees == 0) {
-        const HeadTurn turn = nearestTurn(groom, head->scene.mesh, transfer->fit);
+        const HeadTurn turn = nearestTurn(groom, head->scene.mesh);
         if (turn.degrees != 0) {
             done.taken.turnDegrees = static_cast<float>(turn.degrees);
             done.taken.guessUnit = done.taken.guessUp = false;
@@ -72,6 +99,15 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
             transfer = putOn(moved, head->scene.mesh);
             if (!transfer) return tl::unexpected(transfer.error());
         }
+    }
+    if (isBeyondScale(transfer->fit)) {
+        const float old = groom.scalp->bounds().sizes().maxCoeff(),
+                    now = head->scene.mesh.bounds().sizes().maxCoeff();
+        return failIn(
+            path, {},
+            fmt::format("is {:.3g} m large, where the head that the hair grows on has {:.3g} m", now, old),
+            "expected heads that differ by no more than five times: say its unit (--unit m, dm, cm, mm or "
+            "inch)");
     }
     done.transfer = std::move(*transfer);
     // Skeleton and clips fit no head that was turned.

@@ -23,20 +23,6 @@ Vec3f apply(const HeadFit& fit, const Vec3f& point) {
     return fit.scale * point + fit.shift;
 }
 
-/// The middle of what lies in the top twentieth of a mesh.
-Vec3f crownOf(const ScalpMesh& mesh) {
-    const Box3f bounds = mesh.bounds();
-    const float floor = bounds.max().y() - 0.05f * bounds.sizes().y();
-    Vec3f sum = Vec3f::Zero();
-    float count = 0;
-    for (const Vec3f& position : mesh.positions()) {
-        if (position.y() < floor) continue;
-        sum += position;
-        count += 1;
-    }
-    return {sum.x() / count, bounds.max().y(), sum.z() / count};
-}
-
 /// The scale and shift that bring `from` nearest to `to`, in the sense of least squares.
 HeadFit leastSquares(std::span<const Vec3f> from, std::span<const Vec3f> to) {
     Vec3d meanFrom = Vec3d::Zero(), meanTo = Vec3d::Zero();
@@ -58,14 +44,9 @@ HeadFit leastSquares(std::span<const Vec3f> from, std::span<const Vec3f> to) {
     return fit;
 }
 
-struct Fitted {
-    HeadFit fit;
-    double off = std::numeric_limits<double>::infinity();  ///< mean distance by the scale
-};
-
-Fitted fitFrom(float scale, std::span<const Vec3f> places, const Vec3f& crown, const SurfaceTree& tree,
-               const Vec3f& crownThere) {
-    Fitted fitted{{scale, crownThere - scale * crown}, 0};
+PlacesFit fitFrom(float scale, std::span<const Vec3f> places, const Vec3f& crown, const SurfaceTree& tree,
+                  const Vec3f& crownThere) {
+    PlacesFit fitted{{scale, crownThere - scale * crown}, 0};
     std::vector<Vec3f> nearest(places.size());
     for (int round = 0; round < kRounds; ++round) {
         parallelFor(places.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -84,13 +65,7 @@ HeadFit fitHeads(const Groom& groom, const SurfaceTree& tree, const ScalpMesh& h
     std::vector<Vec3f> places;
     const std::size_t step = std::max<std::size_t>(1, groom.strandCount() / kFitted);
     for (std::size_t s = 0; s < groom.strandCount(); s += step) places.push_back(groom.strand(s)[0]);
-    const Vec3f crown = crownOf(*groom.scalp), crownThere = crownOf(head);
-    Fitted best;
-    for (const float scale : {1.0f, 0.6f, 1.6f}) {
-        const Fitted fitted = fitFrom(scale, places, crown, tree, crownThere);
-        if (fitted.off < 0.999 * best.off) best = fitted;
-    }
-    return best.fit;
+    return fitPlaces(places, crownOf(*groom.scalp), tree, crownOf(head)).fit;
 }
 
 /// Faces of the new head that lie where faces of the old selection do.
@@ -136,6 +111,30 @@ std::vector<Vec3f> movedPoints(const Groom& groom, const HeadFit& fit, const Sca
 }
 
 }  // namespace
+
+Vec3f crownOf(const ScalpMesh& mesh) {
+    const Box3f bounds = mesh.bounds();
+    const float floor = bounds.max().y() - 0.05f * bounds.sizes().y();
+    Vec3f sum = Vec3f::Zero();
+    float count = 0;
+    for (const Vec3f& position : mesh.positions()) {
+        if (position.y() < floor) continue;
+        sum += position;
+        count += 1;
+    }
+    return {sum.x() / count, bounds.max().y(), sum.z() / count};
+}
+
+PlacesFit fitPlaces(std::span<const Vec3f> places, const Vec3f& crown, const SurfaceTree& tree,
+                    const Vec3f& crownThere) {
+    PlacesFit best;
+    best.off = std::numeric_limits<double>::infinity();
+    for (const float scale : {1.0f, 0.6f, 1.6f}) {
+        const PlacesFit fitted = fitFrom(scale, places, crown, tree, crownThere);
+        if (fitted.off < 0.999 * best.off) best = fitted;
+    }
+    return best;
+}
 
 Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head) {
     const std::vector<SurfacePoint> from = groom.rootBindings();

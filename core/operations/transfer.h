@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "core/groom/groom.h"
 
 namespace hairloom {
+
+class SurfaceTree;
 
 /// What a fit scales at most.
 inline constexpr float kMinHeadScale = 0.2f, kMaxHeadScale = 5;
@@ -20,6 +23,16 @@ struct HeadFit {
     float scale = 1;
     Vec3f shift = Vec3f::Zero();  ///< metres
 };
+
+struct PlacesFit {
+    HeadFit fit;
+    double off = 0;  ///< metres on the old head: mean distance of its places to the new one
+};
+/// The fit of some places of a head, with its crown, to another. Any number of threads may ask `tree`.
+PlacesFit fitPlaces(std::span<const Vec3f> places, const Vec3f& crown, const SurfaceTree& tree,
+                    const Vec3f& crownThere);
+/// The middle of what lies in the top twentieth of a mesh, at its top.
+Vec3f crownOf(const ScalpMesh& mesh);
 
 struct Transfer {
     HeadFit fit;

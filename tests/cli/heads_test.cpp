@@ -69,7 +69,7 @@ TEST_F(HeadsTest, UnitAndAxisAreFoundForEveryJobThatTakesAHead) {
         const auto moved = runJson(std::string("transfer h.hairloom --to ") + file + " -o b.hairloom");
         EXPECT_NEAR(moved["scale"].get<double>(), 1, 0.02) << file;
         EXPECT_LT(farthest(moved), 1) << file;
-        runJson("export h.hairloom --format obj -o strands.obj");
+        runJson("export h.hairloom --format obj-lines -o strands.obj");
         const auto bound = runJson(std::string("import strands.obj --mesh ") + file + " -o c.hairloom");
         EXPECT_LT(bound["root_distance"]["max_mm"].get<double>(), 1) << file;
     }
@@ -100,7 +100,7 @@ TEST_F(HeadsTest, AHeadThatLooksAwayIsTurnedAndOneOfNoSizeRefused) {
 }
 
 TEST_F(HeadsTest, HairOfAnotherAxisIsToldItsOwn) {
-    runJson("export h.hairloom --format obj --up z --unit inch -o strands.obj");
+    runJson("export h.hairloom --format obj-lines --up z --unit inch -o strands.obj");
     const Outcome far = run("import strands.obj --mesh head.obj -o a.hairloom");
     EXPECT_EQ(far.exitCode, 1);
     EXPECT_THAT(far.errors, HasSubstr("the unit inch and Z up (--unit inch --up z)"));
@@ -137,8 +137,8 @@ TEST_F(HeadsTest, AScalpMayLieInAFileOfItsOwn) {
 TEST_F(HeadsTest, GuidesMayLieInAFileOfTheirOwn) {
     runJson(
         "create --mesh head.obj --scalp above:0.6 --count 12 --length 0.1 --points 6 --seed 9 -o g.hairloom");
-    runJson("export h.hairloom --format obj -o hairs.obj");
-    runJson("export g.hairloom --format obj -o guides.obj");
+    runJson("export h.hairloom --format obj-lines -o hairs.obj");
+    runJson("export g.hairloom --format obj-lines -o guides.obj");
     const auto both = runJson("import hairs.obj --guides guides.obj --mesh head.obj -o both.hairloom");
     EXPECT_EQ(both["strands"].get<int>(), 162);
     EXPECT_EQ(both["guides"].get<int>(), 12);

@@ -126,7 +126,7 @@ TEST(StrandsRepair, RemovesCoincidentPointsAndSaysSo) {
     EXPECT_EQ(imported->groom.strand(1).size(), 4u);
     bool said = false;
     for (const Finding& warning : imported->warnings)
-        said = said || warning.what.starts_with("1 points coincided");
+        said = said || warning.what.starts_with("1 points that coincided");
     EXPECT_TRUE(said);
 }
 
