@@ -173,7 +173,7 @@ void ImportDialog::read() {
         });
 }
 
-void ImportDialog::show(Preview preview) {
+void ImportDialog::showPreview(Preview preview) {
     preview_ = std::move(preview.groom);
     summary_->setText(preview.text);
     // Choices that the file does not have are no choices.

@@ -36,7 +36,7 @@ class ImportDialog : public QDialog {
         bool hasRibbons = false, hasRuns = false;
     };
     void read();
-    void show(Preview preview);
+    void showPreview(Preview preview);
 
     QtDocument& document_;
     Tasks& tasks_;

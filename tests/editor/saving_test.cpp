@@ -13,6 +13,7 @@
 #include <fstream>
 #include <thread>
 
+#include "core/base/file.h"
 #include "core/base/write_rules.h"
 #include "core/documents/recovery.h"
 #include "core/groom/file/project_file.h"
