@@ -169,7 +169,7 @@ void ImportDialog::read() {
             return preview;
         },
         [self = QPointer(this)](Preview preview) {
-            if (self) self->show(std::move(preview));
+            if (self) self->showPreview(std::move(preview));
         });
 }
 
