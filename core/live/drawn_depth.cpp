@@ -62,20 +62,26 @@ class Walk {
     /// come back; where it is surely not above `enough`, 0 may.
     float depth(const Vec3f& p, float enough, float most) {
         const SolidGrid::Bound bound = body_.grid.at(p);
+        if (std::isinf(bound.distance))
+            return remember(p, body_.solid.bounds().exteriorDistance(p), false, 0);
         const float least = std::abs(bound.distance) - bound.away;
-        if (least > kTouching && bound.distance > 0) return forget(0);
+        if (least > kTouching && bound.distance > 0) return remember(p, least, false, 0);
         if (least > kTouching) {
-            if (bound.away - bound.distance <= enough) return forget(0);
-            if (least > enough && bound.away - bound.distance <= most) return forget(least);
+            if (bound.away - bound.distance <= enough) return remember(p, least, true, 0);
+            if (least > enough && bound.away - bound.distance <= most) return remember(p, least, true, least);
+        }
+        if (known_) {
+            // No surface is nearer to the last place than its distance.
+            const float gap = (p - last_).norm() + kTouching;
+            if (gap < distance_ && !inside_) return 0;
+            if (gap < distance_ && distance_ - gap > enough && distance_ + gap <= most)
+                return distance_ - gap;
         }
         const float distance = body_.solid.distance(p);
         // No surface lies between two places whose distances reach each other.
         const bool same = known_ && (p - last_).norm() < 0.999f * (distance + distance_);
         inside_ = same ? inside_ : body_.solid.contains(p);
-        known_ = true;
-        last_ = p;
-        distance_ = distance;
-        return inside_ ? distance : 0;
+        return remember(p, distance, inside_, inside_ ? distance : 0);
     }
 
     /// Whether there is surely nothing of the body within `reach` of a place outside of it.
@@ -84,13 +90,17 @@ class Walk {
         const float around = std::isinf(bound.distance) ? body_.solid.bounds().exteriorDistance(p)
                                                         : bound.distance - bound.away;
         if (!(around > reach + kTouching)) return false;
-        known_ = false;
+        remember(p, around, false, 0);
         return true;
     }
 
   private:
-    float forget(float depth) {
-        known_ = false;
+    /// That no surface is nearer to a place than `distance`; gives back `depth`.
+    float remember(const Vec3f& p, float distance, bool inside, float depth) {
+        known_ = true;
+        last_ = p;
+        distance_ = distance;
+        inside_ = inside;
         return depth;
     }
 
@@ -123,9 +133,10 @@ class Curves {
     std::uint64_t placeCount() const { return placeCount_; }
     float authored() const { return authored_; }
 
-    /// Of points that lie in the body's space after `toBody`.
-    StrandDepth measure(std::span<const Vec3f> points, const Eigen::Isometry3f& toBody,
-                        const PosedBody& body) {
+    /// Of points that lie in the body's space after `toBody`. Depths up to `known` are not told apart.
+    StrandDepth measure(std::span<const Vec3f> points, const Eigen::Isometry3f& toBody, const PosedBody& body,
+                        double known) {
+        known_ = static_cast<float>(known);
         parallelFor(count(), kGrain, [&](std::size_t begin, std::size_t end) {
             std::vector<Vec3f> moved;
             for (std::size_t s = begin; s < end; ++s)
@@ -209,7 +220,7 @@ class Curves {
         Walk walk(body);
         forEachPlace(s, curve, walk, [&](std::size_t segment, float t, std::size_t number) {
             const float own = (allowed.empty() ? 0 : allowed[number]) + kTouching;
-            const float depth = walk.depth(curve.at(segment, t), own, own + result.deepest);
+            const float depth = walk.depth(curve.at(segment, t), own, own + std::max(result.deepest, known_));
             if (!(depth > own)) return;
             ++result.inside;
             result.deepest = std::max(result.deepest, depth - own);
@@ -232,7 +243,7 @@ class Curves {
     std::uint64_t placeCount_ = 0, inside_ = 0;
     std::vector<std::size_t> allowedFrom_;  ///< of each strand; one past the end last
     std::vector<float> allowed_;            ///< authored depth of each place, of strands that have any
-    float authored_ = 0;
+    float authored_ = 0, known_ = 0;
     std::vector<StrandDepth> depths_;
 };
 
@@ -320,12 +331,12 @@ struct DrawnDepthMeter::Impl {
             toBody.setIdentity();
         }
         const PosedBody& body = moved ? *moved : rest;
-        const float guide = guides->measure(positions_ws, toBody, body).deepest;
+        const float guide = guides->measure(positions_ws, toBody, body, result.deepestGuide).deepest;
         result.deepestGuide = std::max(result.deepestGuide, static_cast<double>(guide));
         float drawn = guide;
         if (follow) {
             const auto points = follow->at(positions_ws, velocities_ws, rotationsAt(pose));
-            drawn = hairs->measure(points, toBody, body).deepest;
+            drawn = hairs->measure(points, toBody, body, result.deepest).deepest;
         }
         ++frames;
         if (static_cast<double>(drawn) <= result.deepest) return;
