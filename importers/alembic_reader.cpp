@@ -296,6 +296,7 @@ class Reader {
 
     /// A plain property, or the pair of values and indices into them.
     Status addAttribute(const AlembicProperty& property, CurveSet& set) {
+        if (isOfUnrealFile(property.name)) return {};
         if (property.kind != AlembicProperty::Kind::Compound)
             return addValues(property, nullptr, property, set);
         const auto inside = archive_.properties(property);

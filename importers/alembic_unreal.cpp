@@ -37,6 +37,11 @@ bool hasUnrealSchema(const AlembicArchive& archive) {
     return false;
 }
 
+bool isOfUnrealFile(std::string_view name) {
+    return name == kVersion || name == "groom_version_minor" || name == "groom_tool" ||
+           name == "groom_properties";
+}
+
 void assumeUnrealUnit(const StrandImportOptions& options, RawStrands& strands) {
     constexpr float kCentimetre = 0.01f;
     strands.assumedMetresPerUnit = kCentimetre;

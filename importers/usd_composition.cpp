@@ -304,7 +304,8 @@ class Composer {
                 continue;
             }
             const auto active = std::pair(from, target);
-            if (depth >= kMaxArcs || !following_.insert(active).second) {
+            const bool isAbove = from == &stack && (path + "/").starts_with(target + "/");
+            if (isAbove || depth >= kMaxArcs || !following_.insert(active).second) {
                 leave("it leads to itself");
                 continue;
             }

@@ -70,7 +70,7 @@ Result<UsdLayer> UsdFiles::first(std::vector<std::byte>&& bytes, std::string& ke
         if (!code) key = own.string();
     }
     bytes_ = bytes.size();
-    auto layer = layerIn(key, std::move(bytes), key);
+    auto layer = layerIn(std::string(key), std::move(bytes), key);
     if (layer) return layer;
     Error error = layer.error();
     if (error.file == key) error.file = file_;

@@ -195,7 +195,8 @@ Status UsdcFile::readPaths() {
     for (const auto* numbers : {&indices, &tokens, &jumps}) {
         if (!*numbers) return tl::unexpected(numbers->error());
     }
-    if (*total > *count)
+    // The empty path, which a reference to a default prim has, is in the table and not in the list.
+    if (*total > *count && *total - *count > 1)
         return error(sections_[Paths].begin, fmt::format("{} paths of {} that are listed", *total, *count));
     paths_.resize(static_cast<std::size_t>(*total));
     // Depth first: a jump says where the next sibling stands behind the children, 0 that it follows at once,
