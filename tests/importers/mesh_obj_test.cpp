@@ -100,7 +100,7 @@ TEST_F(ObjFile, WhatIsNoMeshIsRefusedByName) {
 TEST_F(ObjFile, MissingMaterialFileIsAWarning) {
     const auto missing = import("a.obj", "mtllib gone.mtl\n" + kSquare + "usemtl skin\nf 1 2 3 4\n");
     ASSERT_TRUE(missing);
-    EXPECT_THAT(missing->warnings, ElementsAre(HasSubstr("'gone.mtl' is missing")));
+    EXPECT_THAT(missing->warnings, ElementsAre(HasSubstr("'gone.mtl' was not found")));
     EXPECT_THAT(missing->mesh.materialNames(), ElementsAre("skin"));
     write("here.mtl", "newmtl skin\n");
     EXPECT_TRUE(import("b.obj", "mtllib here.mtl\n" + kSquare + "f 1 2 3 4\n")->warnings.empty());
