@@ -176,7 +176,7 @@ TEST_F(StrandWriters, UnusableStrandsAreLeftOutAndReported) {
     const auto report = writeHair(groom, folder / "a.hair");
     ASSERT_TRUE(report) << report.error().message();
     EXPECT_EQ(report->strands, 2u);
-    EXPECT_TRUE(says(*report, "2 strands of no length"));
+    EXPECT_TRUE(says(*report, "2 strands without length"));
     EXPECT_TRUE(says(*report, "segments without length"));
     EXPECT_TRUE(says(*report, "no widths"));
     EXPECT_LT(report->maxErrorMm.value(), 1e-4);
