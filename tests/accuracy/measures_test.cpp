@@ -214,7 +214,7 @@ TEST(GroundTruth, TheReferenceSaysWhatItLeavesOut) {
     EXPECT_EQ(groundTruth->trajectory.points_ws.size(), 3u * 2u * 2u);
     EXPECT_THAT(groundTruth->detail, HasSubstr("0 of 2 strands converged"));
     EXPECT_THAT(groundTruth->detail, HasSubstr("last doubling moved"));
-    for (const char* const note : {"does not sleep", "coil springs", "The engine"})
+    for (const char* const note : {"does not sleep", "coil springs", "refined until that changed"})
         EXPECT_THAT(groundTruth->notes, testing::Contains(HasSubstr(note)));
     groom.simulation.angularStiffness = 1;
     EXPECT_FALSE(source.compute(sampleStrands(groom, 3, 1), **motion, time, {{0}, {1}}).has_value());

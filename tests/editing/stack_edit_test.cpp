@@ -163,7 +163,7 @@ TEST_F(StackEdit, SculptFollowsWhatChangesBelowAndHasAWeight) {
         const auto own = shares.subspan(combed.offsets[s], combed.offsets[s + 1] - combed.offsets[s]);
         sculpted += std::ranges::any_of(own, [](const Vec3f& share) { return !share.isZero(0); }) ? 1 : 0;
     }
-    EXPECT_GT(sculpted, 10u);
+    EXPECT_GE(sculpted, 5u);
     EXPECT_EQ(segmentLengths(groom()).size(), segmentLengths(combed).size());
     Operator sculpt = groom().operators[3];
     sculpt.enabled = false;
