@@ -117,7 +117,7 @@ TEST_F(Hairstyle, MovingHairIsExportedAndComesBack) {
     }
     const std::string one = " hair.hairloom --record run.frames --format hair -o h.hair --frames ";
     EXPECT_EQ(runJson("export" + one + "3,3")["strands"], 300) << "one frame is a shape";
-    EXPECT_THAT(run("export" + one + "1,3").errors, HasSubstr("hair holds one shape"));
+    EXPECT_THAT(run("export" + one + "1,3").errors, HasSubstr("hair holds a single pose"));
     EXPECT_THAT(run("export" + one + "1,99").errors, HasSubstr("frames"));
     EXPECT_EQ(run("export hair.hairloom --record run.frames --format abc -o m.abc").exitCode, 2)
         << "which frames";

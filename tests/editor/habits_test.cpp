@@ -16,6 +16,7 @@
 #include <QSpinBox>
 #include <QTreeWidget>
 #include <QWheelEvent>
+#include <QtTest/qtestspontaneevent.h>
 #include <set>
 
 #include "core/editing/stack_commands.h"
@@ -48,7 +49,9 @@ class HabitsTest : public WindowTest {
         const QPointF at(over.rect().center());
         QWheelEvent event(at, over.mapToGlobal(at), {}, {0, -120 * notches}, Qt::NoButton, Qt::NoModifier,
                           Qt::NoScrollPhase, false);
-        QApplication::sendEvent(&over, &event);
+        // As from a mouse: what a program sends goes no further than where it is sent.
+        QSpontaneKeyEvent::setSpontaneous(&event);
+        qApp->notify(&over, &event);
     }
     void add(std::string_view name) {
         auto command =

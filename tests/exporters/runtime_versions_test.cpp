@@ -177,7 +177,7 @@ TEST_F(RuntimeVersions, ALogHearsOfHairThatWasPutBack) {
     ASSERT_EQ(hl_instance_save(made, saved.data(), size, &size, &error_), HL_OK);
     constexpr std::size_t kHead = 32, kOrigin = 24, kCount = 8, kLanes = 16;
     const std::size_t planes = kHead + kOrigin + kCount + 16 * std::size_t{info_.guides} + 4 + kCount;
-    const float far = 1e30f;
+    const float far = 3e38f;
     std::memcpy(&saved[planes + kLanes * sizeof far], &far, sizeof far);
     const std::uint32_t checksum = runtime::asset::checksum(std::span(saved).subspan(kHead));
     std::memcpy(&saved[kHead - sizeof checksum], &checksum, sizeof checksum);
