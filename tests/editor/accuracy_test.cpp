@@ -122,7 +122,7 @@ TEST_F(AccuracyTest, WhatAnErrorIsMadeOfIsFourBars) {
 }
 
 TEST_F(AccuracyTest, ASettingIsPricedWhereItIsSet) {
-    auto* tag = find<PriceTag>("substepsPrice");
+    auto* tag = find<PriceTag>("substepsCost");
     EXPECT_TRUE(tag->words().isEmpty());
     EXPECT_FALSE(tag->isVisibleTo(tag->parentWidget()));
     measure();

@@ -261,14 +261,14 @@ TEST_F(LookPictureTest, ThumbnailsAreOfTheTheme) {
 TEST_F(LookTest, SettingsOfThePictureSayWhatTheyCost) {
     openFirstStrands(50);
     viewport().resize(64, 48);
-    auto* tag = find<PriceTag>("samplesPrice");
+    auto* tag = find<PriceTag>("samplesCost");
     EXPECT_TRUE(tag->words().isEmpty());
     const auto before = hash();
     find<QPushButton>("pictureMeasure")->click();
     finishWork();
     EXPECT_EQ(hash(), before);
     for (const char* setting : {"samples", "shadows", "shadowResolution", "subdivisions", "transparency"}) {
-        const auto* priced = find<PriceTag>((QString(setting) + "Price").toUtf8().constData());
+        const auto* priced = find<PriceTag>((QString(setting) + "Cost").toUtf8().constData());
         EXPECT_TRUE(priced->words().contains("FLIP")) << setting;
     }
     EXPECT_TRUE(tag->toolTip().contains("Measured at"));

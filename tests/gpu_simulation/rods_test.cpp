@@ -54,7 +54,7 @@ const Case kCases[] = {
          s.sectionRatio = 0.7f;
          blow(s, WindKind::turbulent);
      },
-     true, 1e-4},
+     true, 1.2e-4},
     {"withoutWeightAtRest", [](SimulationSettings& s) { s.restGravity = 0.0f; }},
     {"windUniform", [](SimulationSettings& s) { blow(s, WindKind::uniform); }},
     {"windGusting", [](SimulationSettings& s) { blow(s, WindKind::gusting); }},
