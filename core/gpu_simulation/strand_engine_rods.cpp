@@ -158,11 +158,7 @@ shaders::RodConstants StrandEngine::Impl::rodConstants(const runtime::SubstepCon
     const Float3 g = context.gravity;
     shaders::RodConstants c;
     c.gravity = {g.x, g.y, g.z, context.air == runtime::Air::none ? 0.0f : context.airDrag};
-    const auto numbers = context.numbers.as<runtime::RodNumbers>();
-    c.rootDamping = numbers.rootDamping;
-    c.bendDampingTime = numbers.bendDampingTime;
-    c.twist = numbers.twist;
-    c.flat = numbers.flat;
+    c.numbers = context.numbers.as<runtime::RodNumbers>();
     c.stepRatio = substep > 0.0f ? context.h / substep : runtime::kFirstStepRatio;
     c.sweeps = context.sweeps ? 1 : 0;
     c.conservative = context.air == runtime::Air::moving ? 0 : context.spheresRest ? 2 : 1;

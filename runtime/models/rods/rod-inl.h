@@ -124,7 +124,7 @@ class RodStrip {
         velocityAhead_ = blend_ * all(1.0f / context_.stepRatio + 2.0f);
         step_ = h * (all(1.0f) - blend_ / ratio);
         inverseStep_ = all(1.0f) / step_;
-        damped_ = all(1.0f) + all(numbers_.bendDampingTime) * inverseStep_;
+        damped_ = rodDamped(numbers_, inverseStep_);
         dampingShare_ = (damped_ - all(1.0f)) / damped_;
         rootDisplacement_ = load3(lanes_.rootDisplacement, lane_);
         takeRoot();

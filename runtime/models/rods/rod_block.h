@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "engine/kernels.h"
+#include "shaders/rod_types.h"
 
 namespace hairloom::runtime {
 
@@ -38,13 +39,7 @@ struct RodBlock : BlockView {
     RodView rod;
 };
 
-/// Of a substep, for rods alone.
-struct RodNumbers {
-    float rootDamping = 0.0f;      ///< 1/s
-    float bendDampingTime = 0.0f;  ///< seconds
-    float twist = 0.0f;            ///< of the section, as RodSectionRatios has them
-    float flat = 0.0f;
-};
+using shaders::RodNumbers;
 
 /// The rods' stage, and the floats of LaneFrame::solver that it needs for a point.
 struct RodKernel {

@@ -178,7 +178,7 @@ class RodStrands final : public ModelStrands {
 }  // namespace
 
 RodNumbers rodNumbersOf(const SimulationSettings& settings, const EffectPlan& plan) {
-    RodNumbers numbers;
+    RodNumbers numbers{};
     numbers.rootDamping = plan.on(Effect::damping) ? 1.0f / settings.dampingTime : 0.0f;
     numbers.bendDampingTime = settings.bendDampingTime;
     if (plan.on(Effect::torsion)) {
