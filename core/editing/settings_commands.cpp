@@ -7,6 +7,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/layers_json.h"
@@ -245,6 +246,63 @@ std::unique_ptr<Command> triangulate(const Model& model) {
         "Triangulate roots", Part::Triangulation,
         [](Model& m) -> RootTriangulation& { return m.groom.triangulation; }, std::move(*made),
         recordOf("triangulate", nlohmann::ordered_json::object()), bytes);
+}
+
+// --- As operations of a script ---
+
+namespace {
+
+/// Settings under "settings"; those that are not named have their defaults.
+template <class S, std::unique_ptr<Command> (*Make)(const Model&, const S&, std::string)>
+MakeCommand readSettingsStep(JsonReader& reader) {
+    S checked;
+    readSettings(reader.object("settings"), checked);
+    return [checked](const Document& document) -> CommandResult {
+        return Make(document.model(), checked, "Settings");
+    };
+}
+
+MakeCommand readSpheres(JsonReader& reader) {
+    std::vector<CollisionSphere> spheres;
+    for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
+    return [spheres](const Document& document) -> CommandResult {
+        return setSpheres(document.model(), spheres, "Spheres");
+    };
+}
+
+MakeCommand readCards(JsonReader& reader) {
+    return [edits = readCardEdits(reader)](const Document& document) {
+        return setCardEdits(document.model(), edits, "Cards");
+    };
+}
+
+MakeCommand readLayerList(JsonReader& reader) {
+    return [layers = readLayers(reader)](const Document& document) -> CommandResult {
+        if (layers.size() < document.groom().layers.size())
+            return fail(fmt::format("{} layers", layers.size()), "as many as there are, or more");
+        return setLayers(document.model(), layers);
+    };
+}
+
+MakeCommand readTriangulate(JsonReader&) {
+    return [](const Document& document) -> CommandResult { return triangulate(document.model()); };
+}
+
+constexpr RecordedOperation kSettingsCommandsRecords[] = {
+    {"material", readSettingsStep<HairMaterial, setMaterial>},
+    {"simulation", readSettingsStep<runtime::SimulationSettings, setPhysics>},
+    {"interpolation", readSettingsStep<InterpolationSettings, setInterpolation>},
+    {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
+    {"spheres", readSpheres},
+    {"layers", readLayerList},
+    {"card_edits", readCards},
+    {"triangulate", readTriangulate},
+};
+
+}  // namespace
+
+RecordList settingsCommandsRecords() {
+    return kSettingsCommandsRecords;
 }
 
 }  // namespace hairloom::editing
