@@ -191,7 +191,8 @@ StackCommand addOperator(const Model& model, std::size_t index, Operator added) 
     Groom next = model.groom;
     if (added.op == kSculpt) added.number = freeNumber(next.operators);
     const std::string name = "Add " + labelOf(added);
-    const std::string record = recordOf("add_operator", {{"at", index}, {"operator", toJson(added)}});
+    const std::string record =
+        recordOf("add_operator", {{"at", index}, {"operator", hairloom::toJson(added)}});
     next.operators.insert(next.operators.begin() + static_cast<std::ptrdiff_t>(index), std::move(added));
     return restack(model, std::move(next), name, record);
 }
@@ -226,7 +227,7 @@ StackCommand setOperator(const Model& model, std::size_t index, Operator changed
         const Operator& now = next.operators[index];
         changed.number = now.op == kSculpt ? now.number : freeNumber(next.operators);
     }
-    std::string record = recordOf("set_operator", {{"at", index}, {"operator", toJson(changed)}});
+    std::string record = recordOf("set_operator", {{"at", index}, {"operator", hairloom::toJson(changed)}});
     next.operators[index] = std::move(changed);
     return restack(model, std::move(next), std::move(name), std::move(record));
 }
@@ -280,7 +281,7 @@ StackCommand setOperators(const Model& model, std::vector<Operator> operators, s
         }
     }
     next.operators = std::move(operators);
-    std::string record = recordOf("operators", {{"operators", toJson(next.operators)}});
+    std::string record = recordOf("operators", {{"operators", hairloom::toJson(next.operators)}});
     return restack(model, std::move(next), std::move(name), std::move(record));
 }
 

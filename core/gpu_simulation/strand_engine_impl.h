@@ -92,7 +92,6 @@ struct StrandEngine::Impl {
     Status takeRods(const runtime::SimulationSettings& settings);
     Status makeRodBuffers(StrandBatch& batch) const;
     void allocateRods(runtime::State& state) const;
-    void placeRods(runtime::State& state) const;
     void sendRods(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;
     void takeRodsOf(const StrandBatch& batch, std::span<const float> rods, runtime::State& state) const;
     shaders::RodConstants rodConstants(const runtime::SubstepContext& context,

@@ -41,10 +41,8 @@ Status StrandEngine::Impl::takeRods(const runtime::SimulationSettings& settings)
             batch.rodRest = batch.rodMasses = batch.curvedBlocks = batch.rodState = nullptr;
         return {};
     }
-    // Strands that were none before, or a chain that now bends back, go on from where they are.
-    const runtime::RodParts parts = runtime::rodPartsOf(*shape, settings);
-    rodsFresh = rodsFresh || rodRest.planes.empty() ||
-                (rodRest.parts == runtime::RodParts::chain && parts != runtime::RodParts::chain);
+    // Strands that were none before go on from where they are.
+    rodsFresh = rodsFresh || rodRest.planes.empty();
     rodEnergyKnown =
         rodEnergyKnown && (rodRest.planes.empty() || runtime::haveEqualRodEnergy(settings, rodSettings));
     rodSettings = settings;
@@ -105,17 +103,6 @@ Status StrandEngine::Impl::makeRodBuffers(StrandBatch& batch) const {
 void StrandEngine::Impl::allocateRods(runtime::State& state) const {
     state.model = run.settings.strandModel;
     if (!rodRest.planes.empty()) runtime::allocateRods(*shape, rodRest.parts, true, state);
-}
-
-/// Makes a state of points one of rods through them.
-void StrandEngine::Impl::placeRods(runtime::State& state) const {
-    state.own = {};
-    state.model = runtime::StrandModel::rods;
-    runtime::allocateRods(*shape, rodRest.parts, true, state);
-    for (std::size_t b = 0; b < shape->blocks.size(); ++b) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
-            runtime::placeRodOnPoints(*shape, rodRest, state, b, lane);
-    }
 }
 
 /// The planes of the device are those of motion, strains and loads; 0 where the state has none.

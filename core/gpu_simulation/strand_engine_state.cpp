@@ -148,12 +148,12 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
 
 Status StrandEngine::Impl::writeState(const runtime::State& given) {
     known.reset();
-    // A state of springs becomes one of rods.
+    // A state of springs, or of chains, becomes one of these rods.
     std::optional<runtime::State> made;
     const bool bends = rodRest.parts >= runtime::RodParts::bending;
     if (!rodRest.planes.empty() &&
         (given.model != runtime::StrandModel::rods || (bends && given.own[runtime::kOwnStrains].empty())))
-        placeRods(made.emplace(given));
+        runtime::completeRods(*shape, rodRest, true, made.emplace(given));
     const runtime::State& state = made ? *made : given;
     rodsFresh = false;
     auto list = device.createCommandList();

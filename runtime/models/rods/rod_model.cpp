@@ -76,18 +76,7 @@ class RodStrands final : public ModelStrands {
     }
 
     void takeState(const RestShape& shape, const SimulationSettings&, State& state) override {
-        const std::size_t strains = rest_.parts == RodParts::chain ? 0 : shape.planeFloats * kRodStrainPlanes;
-        const bool known = state.model == StrandModel::rods &&
-                           state.own[kOwnMotion].size() == shape.planeFloats * kRodMotionPlanes &&
-                           (strains == 0 || state.own[kOwnStrains].size() == strains);
-        if (state.model != StrandModel::rods) state.own = {};
-        state.model = StrandModel::rods;
-        allocateRods(shape, rest_.parts, !state.own[kOwnLoads].empty(), state);
-        if (known) return;
-        for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
-            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
-                runtime::placeRodOnPoints(shape, rest_, state, b, lane);
-        }
+        completeRods(shape, rest_, !state.own[kOwnLoads].empty(), state);
     }
 
     void allocate(const RestShape& shape, const SimulationSettings&, const EffectPlan& plan,

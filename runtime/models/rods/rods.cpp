@@ -115,6 +115,41 @@ void placeRodOnPoints(const RestShape& shape, const RodRest& rest, State& state,
     }
 }
 
+namespace {
+
+/// The strains of lane `lane` of block `index` where it is.
+void strainRod(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
+               std::uint32_t lane) {
+    const Block& block = shape.blocks[index];
+    const RodView rod = rodViewOf(shape, rest, state, index);
+    const std::size_t size = planeSize(block);
+    const float* const roots = state.roots.data() + index * kRootRows * kBlockLanes;
+    const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
+    Quat inner{row(3), row(4), row(5), row(6)};
+    for (std::uint32_t p = 0; p + 1 < block.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        const Quat q{rod.rotation[i], rod.rotation[size + i], rod.rotation[2 * size + i],
+                     rod.rotation[3 * size + i]};
+        setStrain(rod, i, conjugate(inner) * q);
+        inner = q;
+    }
+}
+
+}  // namespace
+
+void completeRods(const RestShape& shape, const RodRest& rest, bool loads, State& state) {
+    if (state.model != StrandModel::rods) state.own = {};
+    state.model = StrandModel::rods;
+    const bool wereRods = state.own[kOwnMotion].size() == shape.planeFloats * kRodMotionPlanes;
+    const bool hadStrains = !state.own[kOwnStrains].empty();
+    allocateRods(shape, rest.parts, loads, state);
+    if (wereRods && (hadStrains || rest.parts == RodParts::chain)) return;
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
+            wereRods ? strainRod(shape, rest, state, b, lane) : placeRodOnPoints(shape, rest, state, b, lane);
+    }
+}
+
 void forgetRodEnergy(const RestShape& shape, State& state) {
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         float* const energy = state.own[kOwnLanes].data() + (b * kRodLaneRows + 1) * kBlockLanes;

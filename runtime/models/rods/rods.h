@@ -65,6 +65,10 @@ RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings);
 /// their values.
 void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state);
 
+/// Makes any state one of these rods: strands that were none go on as rods through their points, and chains
+/// that now bend back keep all that they have.
+void completeRods(const RestShape& shape, const RodRest& rest, bool loads, State& state);
+
 /// Puts lane `lane` of block `index` at rest on its row of state.roots, without a step before; its points
 /// are there.
 void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
