@@ -15,7 +15,7 @@ namespace {
 using scenes::ActiveForces;
 
 constexpr std::uint32_t kPoints = 16;
-constexpr std::uint32_t kMoreStrands = 2'000;
+constexpr std::uint32_t kMoreStrands = 10'000;
 constexpr std::uint32_t kGuides = 300;
 constexpr std::uint32_t kFollowNeighbours = 60;
 constexpr const char* kPerParticle = "ns/particle/substep";
