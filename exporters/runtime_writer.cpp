@@ -281,7 +281,7 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
 
 }  // namespace
 
-StrandWriter runtimeWriter() {
+HairWriter runtimeWriter() {
     return {
         "runtime",
         "Hairloom runtime asset .hairrt",
