@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "exporters/card_character.h"
 #include "core/levels/card_hair.h"
 #include "core/levels/held_cards.h"
 #include "core/levels/spring_fit.h"
+#include "exporters/card_character.h"
 
 namespace hairloom {
 namespace {

@@ -22,7 +22,7 @@
 
 /* Of these headers. docs/versions.md of the project says what may change from one to the next. */
 #define HL_VERSION_MAJOR 0
-#define HL_VERSION_MINOR 2
+#define HL_VERSION_MINOR 3
 #define HL_VERSION_PATCH 0
 #define HL_VERSION (HL_VERSION_MAJOR * 1000000 + HL_VERSION_MINOR * 1000 + HL_VERSION_PATCH)
 
@@ -359,7 +359,7 @@ typedef struct hl_level {
     float error_still, error_head, error_wind;
     float milliseconds; /* of stepping and reading a frame of 1/60 s, with all hairs where the instance has
                            hairs; by counts and the rates of a machine of docs/integrate.md */
-    /* Since 0.2; of older assets they are the strict ones: */
+    /* Since 0.3; of older assets they are the strict ones: */
     float seen_still, seen_head, seen_wind;
 } hl_level;
 /* Bytes that HL_LEVELS adds to an instance, at most. */
@@ -383,7 +383,7 @@ typedef struct hl_crowd_limits {
     float hair_pixels;  /* hairs are left out while those that stay are narrower; 0 leaves out none; 0.7 */
     float milliseconds; /* of all characters together, predicted; infinite: no budget */
     float speed;        /* of this machine, where 1 is that of hl_level.milliseconds; 1 */
-    /* Since 0.2: */
+    /* Since 0.3: */
     uint32_t strict; /* 1: error_pixels is of hl_level.error_…; 0: of hl_level.seen_… */
     uint32_t unused; /* 0 */
 } hl_crowd_limits;
