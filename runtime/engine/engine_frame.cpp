@@ -43,6 +43,7 @@ Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& setting
     strands_->takeState(*shape_, settings_, state_);
     wind_.wind = makeWind(settings);
     reset(shape_->restRoots);
+    allocateForPlan();
 }
 
 void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
@@ -68,7 +69,9 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     FrameInput here;
     here.roots_ws = roots_ws;
     takeRoots(here);
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+    // What effects have stays for the next frame, which knows its spheres: it takes no memory where they are
+    // on.
+    plan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
 }
 
 void Engine::Impl::placeLaneAtRest(std::size_t block, std::uint32_t lane) {
@@ -132,12 +135,19 @@ bool Engine::Impl::setState(const State& state) {
     state_ = state;
     strands_->takeState(*shape_, settings_, state_);
     wind_.given = false;
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+    // The state keeps what its last frame had: all of it is what runs on.
+    plan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
     return true;
 }
 
 void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
                           Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
+    plan(spheres, sphereMotion, rootsMin_ws, rootsMax_ws, frameTime);
+    allocateForPlan();
+}
+
+void Engine::Impl::plan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
+                        Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
     FramePlanInput planInput{strandCount(),         shape_->longestPointCount,
                              shape_->longestStrand, shape_->straight,
                              rootsMin_ws,           rootsMax_ws,
@@ -148,7 +158,6 @@ void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float
         planInput.restTime = std::min(planInput.restTime, state_.rests[b].time);
     }
     plan_ = planFrame(settings_, planInput, wind_, spheres, sphereMotion, frameTime);
-    allocateForPlan();
 }
 
 void Engine::Impl::allocateForPlan() {

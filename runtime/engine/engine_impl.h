@@ -41,6 +41,9 @@ struct Engine::Impl {
 
     void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                 Float3 rootsMax_ws, float frameTime);
+    /// The same without memory.
+    void plan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
+              Float3 rootsMax_ws, float frameTime);
     void allocateForPlan();
     const Model& model() const { return modelOf(settings_.strandModel); }
     void placeLaneAtRest(std::size_t block, std::uint32_t lane);
