@@ -44,7 +44,8 @@ done
 # Few guides with many hairs each, as games have them.
 "$HAIRLOOM_CLI" create --mesh samples/bust/bust.glb --scalp material:scalp --count 300 --placement dart --length 0.5 \
     --points 24 --seed 1 -o "$out/few.hairloom" --force > /dev/null
-"$HAIRLOOM_CLI" groom "$out/few.hairloom" --script samples/hairstyles/long.json -o "$out/few.hairloom" --force > /dev/null
+sed 's/"settings": {"count": 3000,/"settings": {"count": 300,/' samples/hairstyles/long.json > "$out/few.json.script"
+"$HAIRLOOM_CLI" groom "$out/few.hairloom" --script "$out/few.json.script" -o "$out/few.hairloom" --force > /dev/null
 "$HAIRLOOM_CLI" set "$out/few.hairloom" interpolation.followPerGuide=100 -o "$out/few.hairloom" --force > /dev/null
 row few "long sample's script on 300 guides" >> "$table"
 cat "$table"
