@@ -4,6 +4,7 @@
 
 #include "core/base/output_file.h"
 #include "core/cards/glb.h"
+#include "exporters/card_character.h"
 #include "exporters/card_files.h"
 
 namespace hairloom {
@@ -12,11 +13,20 @@ inline constexpr const char* kGlbCarries =
     "textures, a skin, levels (MSFT_lod) and springs (VRMC_springBone)";
 
 inline Result<WrittenCards> writeGlb(const CardsToWrite& cards, const std::filesystem::path& path,
-                                     cards::GlbNumbers numbers) {
-    const auto bytes = cards::glbOf(cards.chain, cards.colliders, numbers);
+                                     cards::GlbNumbers numbers, const cards::Character& character,
+                                     std::vector<Finding> findings) {
+    const auto bytes = cards::glbOf(cards.chain, cards.colliders, numbers, character);
     if (!bytes) return tl::unexpected(bytes.error());
     if (auto status = writeFileAtomically(path, *bytes); !status) return tl::unexpected(status.error());
-    return WrittenCards{.holdsSprings = true};
+    return WrittenCards{.holdsSprings = true, .findings = std::move(findings)};
+}
+
+/// With the character's bones.
+inline Result<WrittenCards> writeGlb(const CardsToWrite& cards, const std::filesystem::path& path,
+                                     cards::GlbNumbers numbers) {
+    std::vector<Finding> findings;
+    const cards::Character character = cardCharacter(cards.groom, findings);
+    return writeGlb(cards, path, numbers, character, std::move(findings));
 }
 
 }  // namespace hairloom

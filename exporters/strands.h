@@ -65,11 +65,13 @@ struct ExportTarget {
 struct CardsToWrite {
     const cards::Chain& chain;
     std::span<const cards::Collider> colliders;  ///< spheres of the groom, for springs
+    const Groom& groom;                          ///< that they are of
 };
 struct WrittenCards {
     std::vector<std::string> companions = {};  ///< names of files that were written beside it
     std::vector<LeftBehind> leftBehind = {};
     bool holdsSprings = false;
+    std::vector<Finding> findings = {};
 };
 
 /// Replaces `path` atomically, reads the file back and compares. Strands that no consumer could use (fewer

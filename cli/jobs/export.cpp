@@ -117,6 +117,7 @@ Result<Report> exportAsPage(const ExportOptions& options) {
     if (options.certify) wanted.storms = CertificateOptions{}.storms;
     const auto written = exportWebPage(*groom, wanted, options.output);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
+    tellFindings(*written);
     return toJson(*written);
 }
 

@@ -108,7 +108,7 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
     const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
     if (!chain) return tl::unexpected(chain.error());
     const std::vector<cards::Collider> colliders = collidersOf(groom);
-    auto written = std::get<WriteCards>(writer.writer)({*chain, colliders}, path);
+    auto written = std::get<WriteCards>(writer.writer)({*chain, colliders, groom}, path);
     if (!written) return tl::unexpected(written.error());
     ExportReport report = levelReport(*chain, groom);
     report.format = writer.name;
@@ -117,6 +117,7 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
     if (!written->holdsSprings)
         std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
     std::ranges::move(written->leftBehind, std::back_inserter(report.leftBehind));
+    std::ranges::move(written->findings, std::back_inserter(report.findings));
     return report;
 }
 
