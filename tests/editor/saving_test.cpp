@@ -181,10 +181,10 @@ TEST_F(SavingTest, TheSystemsWordToEndLeavesACopy) {
         setDrag(signal == SIGTERM ? 5 : 6);
         const auto unsaved = hash();
         {
-            EndSignals signals;
+            const EndSignals signals;
             int ended = 0;
             QObject::connect(&signals, &EndSignals::received, window.get(), [&] {
-                window->autosave().keep();
+                window->keepUnsaved();
                 ++ended;
             });
             raise(signal);
