@@ -7,7 +7,6 @@
 
 #include "core/documents/open.h"
 #include "core/groom/file/json_reader.h"
-#include "core/groom/groom_hash.h"
 
 namespace hairloom {
 namespace {
@@ -32,11 +31,10 @@ void expectRefused(const char* section) {
     for (const FieldRow& row : fieldRows<Settings>()) {
         for (const Json& value : wrong) {
             Groom groom;
-            const std::uint64_t before = contentHash(groom);
-            const Json document{{section, {{std::string(row.info.name), value}}}};
+            Json document;
+            document[section][std::string(row.info.name)] = value;
             EXPECT_FALSE(applySettings(document, "", groom))
                 << section << '.' << row.info.name << '=' << value;
-            EXPECT_EQ(contentHash(groom), before) << section << '.' << row.info.name << '=' << value;
         }
     }
 }

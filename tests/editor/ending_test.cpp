@@ -75,7 +75,6 @@ TEST_F(EndingDeathTest, AnOpenDialogDoesNotPreventIt) {
 }
 
 TEST_F(EndingDeathTest, AWindowThatDoesNotAnswerIsEndedWithACopy) {
-    const auto begin = std::chrono::steady_clock::now();
     EXPECT_EXIT(endWhile(
                     [] {
                         raise(SIGTERM);
@@ -83,7 +82,6 @@ TEST_F(EndingDeathTest, AWindowThatDoesNotAnswerIsEndedWithACopy) {
                     },
                     SIGTERM, {500ms, 1s}),
                 testing::KilledBySignal(SIGTERM), "copy with drag 5");
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, 50s);
 }
 
 TEST_F(EndingDeathTest, ACopyThatTakesTooLongEndsTheWindow) {

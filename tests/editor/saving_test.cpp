@@ -383,6 +383,17 @@ TEST_F(SavingTest, WhatAKillLeavesInTheFolderOfCopiesIsFound) {
     EXPECT_FALSE(fs::exists(place / ".0123.hairloom.0123456789abc.hairloom-part"));
 }
 
+TEST_F(SavingTest, FilesOfTheWorkingFolderAreNoCopies) {
+    const QString before = QDir::currentPath();
+    QDir::setCurrent(folder.path());
+    for (const char* name : {".hairloom", ".json", ".window"}) std::ofstream(file(name)) << "mine";
+    { const auto place = RecoveryPlace::take(); }
+    window.reset();
+    open();
+    for (const char* name : {".hairloom", ".json", ".window"}) EXPECT_TRUE(fs::exists(file(name))) << name;
+    QDir::setCurrent(before);
+}
+
 TEST_F(SavingTest, TheWindowSaysWhatGuardsForeignFiles) {
     trigger("help.security");
     finishWork();
