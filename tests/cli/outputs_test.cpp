@@ -133,6 +133,26 @@ TEST_F(Outputs, AreTriedBeforeTheWork) {
     EXPECT_EQ(readText(folder / "text"), "my notes\n");
 }
 
+TEST_F(Outputs, GoThroughAPipeWhereOneFileIsWrittenAndNotReadBack) {
+    const auto before = names();
+    for (const Writes& writes : kWrites) {
+        const std::string arguments = command(writes, "-") + " --json";
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.errors;
+        EXPECT_THAT(outcome.errors, testing::AnyOf(HasSubstr("pipe"), HasSubstr("standard output")))
+            << arguments;
+    }
+    EXPECT_EQ(names(), before);
+    for (const char* job : {"guides g.hairloom --count 4 -o", "reference -o", "stack g.hairloom --keep",
+                            "simulate g.hairloom --frames 2 --record"}) {
+        const Outcome piped = run(job + std::string(" -"));
+        EXPECT_EQ(piped.exitCode, 0) << job << piped.errors;
+        runJson(job + std::string(" file"));
+        EXPECT_EQ(piped.output, readText(folder / "file")) << job;
+        fs::remove(folder / "file");
+    }
+}
+
 TEST_F(Outputs, WhatIsKnownOfAFolderIsTriedBeforeTheWork) {
     for (const auto& [arguments, name] :
          {std::pair("accuracy g.hairloom -o f", "data.csv"),
@@ -223,6 +243,7 @@ TEST_F(Outputs, NumbersInListsAreWrongUsageWhereTheyAreNone) {
     for (const std::string list : {"nan", "1,nan", "1,,2", "inf", "1e999", "1;2", "x"}) {
         for (const std::string arguments :
              {"accuracy g.hairloom -o f --substeps ", "accuracy g.hairloom -o f --points ",
+              "bench place --strands ", "export g.hairloom --format abc -o f.abc --record r --frames ",
               "accuracy g.hairloom -o f --vary airDrag=", "lod g.hairloom -o f --levels cards:",
               "export g.hairloom --format obj-cards -o f.obj --levels ",
               "set g.hairloom -o h.hairloom simulation.gravity=0,",
