@@ -143,8 +143,9 @@ TEST_F(Outputs, GoThroughAPipeWhereOneFileIsWrittenAndNotReadBack) {
             << arguments;
     }
     EXPECT_EQ(names(), before);
-    for (const char* job : {"guides g.hairloom --count 4 -o", "reference -o", "stack g.hairloom --keep",
-                            "simulate g.hairloom --frames 2 --record"}) {
+    for (const char* job :
+         {"guides g.hairloom --count 4 -o", "reference -o", "set g.hairloom simulation.windSpeed=1 -o",
+          "simulate g.hairloom --frames 2 --record"}) {
         const Outcome piped = run(job + std::string(" -"));
         EXPECT_EQ(piped.exitCode, 0) << job << piped.errors;
         runJson(job + std::string(" file"));
