@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -46,8 +47,12 @@ void refuseEmptyItems(const CLI::Option& option, const std::vector<std::string>&
 
 void refuseEmptyItems(const CLI::App& app, const std::vector<std::string>& words) {
     for (const CLI::App* job : app.get_subcommands()) {
-        for (const CLI::Option* option : job->get_options())
+        for (const CLI::Option* option : job->get_options()) {
             if (option->get_delimiter() != '\0') refuseEmptyItems(*option, words);
+            if (!option->get_lnames().empty() &&
+                std::ranges::find(option->results(), "") != option->results().end())
+                throw WrongUsage(fmt::format("{} has no value", option->get_name()), "expected one");
+        }
     }
 }
 

@@ -11,7 +11,8 @@ namespace hairloom::cli {
 /// Adds the check to every option of `job` that takes numbers.
 void refuseNumbersThatAreNone(CLI::App& job);
 
-/// Throws WrongUsage where a list of the job that was parsed has an empty item: CLI11 leaves those out.
+/// Throws WrongUsage where an option of the job that was parsed is empty, or a list has an empty item: CLI11
+/// leaves those out.
 void refuseEmptyItems(const CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace hairloom::cli

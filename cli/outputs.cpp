@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -98,6 +99,26 @@ Result<OutputFile> tried(const fs::path& path, std::string_view kind) {
     return file;
 }
 
+/// What was printed would go to the file that was replaced.
+void refuseOwnOutput(const std::string& path) {
+    const FileVersion file = fileVersion(path), printed = fileVersion("/dev/stdout");
+    std::error_code code;
+    if (file.exists && printed.exists && file.identity == printed.identity && fs::is_regular_file(path, code))
+        throw WrongUsage(fmt::format("standard output goes to {}", path),
+                         "expected another name, or - for standard output");
+}
+
+void refuseOneNameForTwo(const std::vector<Output>& outputs) {
+    std::set<fs::path> names;
+    for (const Output& output : outputs) {
+        if (output.path.empty()) continue;
+        std::error_code code;
+        if (!names.insert(fs::weakly_canonical(fs::absolute(output.path, code), code)).second)
+            throw WrongUsage(fmt::format("{} is named for two outputs", output.path),
+                             "expected a name for each");
+    }
+}
+
 /// Of a sequence: none of its names is kept, as there may be thousands.
 Status trySequence(const Output& output) {
     if (isPipe(output.path))
@@ -138,9 +159,11 @@ Result<Report> withOutputs(const std::vector<Output>& outputs, const std::functi
                            ReadBack readBack) {
     const auto count = static_cast<std::size_t>(
         std::ranges::count_if(outputs, [](const Output& output) { return !output.path.empty(); }));
+    refuseOneNameForTwo(outputs);
     std::vector<OutputFile> kept;
     for (const Output& output : outputs) {
         if (output.path.empty()) continue;
+        refuseOwnOutput(output.path);
         if (output.files > 0) {
             if (auto status = trySequence(output); !status) return tl::unexpected(status.error());
             continue;

@@ -15,6 +15,7 @@
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/write_rules.h"
 #include "core/documents/hair_export.h"
 #include "core/documents/web_page.h"
 #include "core/stability/certificate.h"
@@ -217,6 +218,8 @@ JobRun declare(CLI::App& job) {
         const auto asked = findAsked(*options);
         if (!asked) return Result<Report>(tl::unexpected(asked.error()));
         const std::string companion = companionOf(options->output);
+        // Known before it is read: it is no target, of whatever kind.
+        noteInput(options->input);
         return withOutputs(
             {{options->output, contentOf(*asked->writer)}, {companion, content::kJson}},
             [&] { return exportAsset(*options); }, ReadBack::Yes);

@@ -154,6 +154,23 @@ TEST_F(Outputs, GoThroughAPipeWhereOneFileIsWrittenAndNotReadBack) {
     }
 }
 
+TEST_F(Outputs, NamesThatCannotBeMeantAreWrongUsage) {
+    for (const Writes& writes : kWrites)
+        EXPECT_EQ(run(command(writes, "''")).exitCode, 2) << writes.arguments;
+    for (const char* arguments :
+         {"render g.hairloom --size 32x32 -o p.png --exr p.png",
+          "render g.hairloom --size 32x32 -o p.png --strip ./p.png",
+          "simulate g.hairloom --frames 2 -o s.hairloom --record s.hairloom",
+          "set g.hairloom simulation.windSpeed=1 -o stdout.txt", "reference -o /dev/stdout"}) {
+        const auto before = names();
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.errors;
+        EXPECT_THAT(outcome.errors,
+                    testing::AnyOf(HasSubstr("two outputs"), HasSubstr("standard output goes to")));
+        EXPECT_EQ(names(), before) << arguments;
+    }
+}
+
 TEST_F(Outputs, WhatIsKnownOfAFolderIsTriedBeforeTheWork) {
     for (const auto& [arguments, name] :
          {std::pair("accuracy g.hairloom -o f", "data.csv"),
