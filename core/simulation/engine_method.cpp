@@ -52,6 +52,12 @@ class EngineMethod : public StrandMethod {
         return engine_.setSettings(settings);
     }
 
+    std::string setBody(std::shared_ptr<const runtime::BodyField> field) {
+        if (engine_.settings().strandModel != runtime::StrandModel::rods)
+            return "only rods meet the skin; springs pass through it";
+        return engine_.setBody(std::move(field));
+    }
+
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         engine_.readPositions(positions_ws);
     }
@@ -108,6 +114,15 @@ Status setEngineSettings(StrandMethod& method, const runtime::SimulationSettings
     auto* engine = dynamic_cast<EngineMethod*>(&method);
     if (!engine) return fail("this method cannot change settings while it runs");
     if (const std::string problem = engine->setSettings(settings); !problem.empty()) return fail(problem);
+    return {};
+}
+
+Status setEngineBody(StrandMethod& method, std::shared_ptr<const runtime::BodyField> field) {
+    auto* engine = dynamic_cast<EngineMethod*>(&method);
+    if (!engine)
+        return fail("only the strand engine on the CPU meets the skin",
+                    "expected --engine cpu --method strands");
+    if (const std::string problem = engine->setBody(std::move(field)); !problem.empty()) return fail(problem);
     return {};
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/simulation/bake_body.h"
 #include "core/simulation/motion.h"
 #include "hairloom/alternatives/hair_volume.h"
 
@@ -64,6 +65,8 @@ struct SimulationOptions {
     SimulationMethod method = SimulationMethod::strands;
     /// Hair against hair between frames; for methods that take velocities.
     std::optional<runtime::HairVolumeSettings> hairHair = {};
+    /// What rods collide with beside the groom's spheres; none without a field.
+    BodyCollider body = {};
     /// What runs the strand engine, in place of the CPU; empty: the CPU.
     MethodMaker backend = {};
 };

@@ -49,6 +49,14 @@ const SimulationSettings& Engine::settings() const {
     return impl_->settings_;
 }
 
+std::string Engine::setBody(std::shared_ptr<const BodyField> body) {
+    if (body) {
+        if (std::string problem = body->problem(); !problem.empty()) return problem;
+    }
+    impl_->setBody(std::move(body));
+    return {};
+}
+
 void Engine::setClock(std::function<std::uint64_t()> nanoseconds) {
     impl_->host_.nanoseconds = std::move(nanoseconds);
 }

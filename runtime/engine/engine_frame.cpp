@@ -59,6 +59,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
         }
     }
     state_.spheres.clear();
+    state_.body.clear();
     state_.substep = 0.0f;
     state_.fastest = 0.0f;
     state_.origin_ws.reset();
@@ -195,6 +196,7 @@ void Engine::Impl::moveOrigin(std::array<double, 3> origin_ws) {
         for (std::size_t i = 0; i < 3 * kBlockLanes; ++i) rows[i] += parts[i / kBlockLanes];
     }
     for (Sphere& sphere : state_.spheres) sphere.center_ws = sphere.center_ws + shift;
+    for (BonePose& bone : state_.body) bone.origin = bone.origin + shift;
     state_.rootsMin_ws = state_.rootsMin_ws + shift;
     state_.rootsMax_ws = state_.rootsMax_ws + shift;
 }
@@ -247,6 +249,37 @@ void Engine::Impl::repairRoots(std::size_t block) {
     }
 }
 
+void Engine::Impl::setBody(std::shared_ptr<const BodyField> body) {
+    body_ = std::move(body);
+    clearances_ = body_ ? bodyClearances(*shape_, *body_) : Floats();
+    state_.body.clear();
+    state_.rests.assign(shape_->blocks.size(), {});
+}
+
+/// Poses the body for the substeps of the frame.
+void Engine::Impl::takeBody(const FrameInput& input) {
+    movingBody_.clear();
+    bodyMoves_ = false;
+    if (!body_ || rods_.planes.empty()) return;
+    const auto isFinitePose = [](const BonePose& bone) {
+        return isFinite(bone.x) && isFinite(bone.y) && isFinite(bone.z) && isFinite(bone.origin);
+    };
+    std::span<const BonePose> to = input.body_ws;
+    const bool fits = !to.empty() && (to.size() == 1 || to.size() == body_->bones.size()) &&
+                      std::all_of(to.begin(), to.end(), isFinitePose);
+    if (!fits) to = state_.body;
+    if (to.empty()) return;
+    std::span<const BonePose> from =
+        state_.body.size() == to.size() ? std::span<const BonePose>(state_.body) : to;
+    for (std::size_t b = 0; b < to.size(); ++b) {
+        // A cut carries it along.
+        if (length(to[b].origin - from[b].origin) > settings_.teleportDistance) from = to;
+        bodyMoves_ = bodyMoves_ || !(to[b] == from[b]);
+    }
+    movingBody_.take(*body_, from, to, substepsIn(settings_, input.dt));
+    if (to.data() != state_.body.data()) state_.body.assign(to.begin(), to.end());
+}
+
 /// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
 bool Engine::Impl::sphereNear(std::size_t block) const {
     const float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
@@ -263,7 +296,7 @@ void Engine::Impl::wakeBlocks() {
     const bool windy = length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         Rest& rest = state_.rests[b];
-        if (rest.asleep && (windy || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
+        if (rest.asleep && (windy || bodyMoves_ || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
     }
 }
 
@@ -271,6 +304,12 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     Frame frame{};
     frame.input = &input;
     frame.context = substepContext(settings_, plan_, input.dt, movingSpheres_);
+    if (!movingBody_.empty()) {
+        frame.context.body = &movingBody_;
+        frame.context.spheresRest = frame.context.spheresRest && !bodyMoves_;
+        frame.context.collisionRadiusAtRoot = settings_.collisionRadiusRoot;
+        frame.context.collisionRadiusAtTip = settings_.collisionRadiusTip;
+    }
     const float h = frame.context.h;
     frame.windy = plan_.on(Effect::wind);
     if (frame.windy) {
@@ -309,6 +348,7 @@ void Engine::Impl::step(const FrameInput& input) {
     takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
     report_.rejectedSpheres = spheres_.rejected;
     report_.rejectedWinds = takeWind(settings_, input, wind_);
+    takeBody(input);
     wakeBlocks();
     replan(spheres_.usable, spheres_.motion,
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
@@ -366,6 +406,7 @@ BlockView Engine::Impl::view(std::size_t block) {
     BlockView view =
         viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
     view.rod = rodViewOf(*shape_, rods_, state_, block);
+    if (!clearances_.empty()) view.rod.clearance = clearances_.data() + shape_->blocks[block].firstPlane;
     return view;
 }
 

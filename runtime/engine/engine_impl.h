@@ -5,6 +5,7 @@
 #include <array>
 
 #include "engine/frame_setup.h"
+#include "engine/moving_body.h"
 #include "engine/scratch.h"
 #include "engine/state.h"
 #include "engine/state_read.h"
@@ -31,6 +32,7 @@ struct Engine::Impl {
     void placeLane(std::size_t block, std::uint32_t lane, const Float3* positions_ws,
                    const Float3* velocities_ws);
     std::string setSettings(const SimulationSettings& settings);
+    void setBody(std::shared_ptr<const BodyField> body);
     bool setState(const State& state);
     void step(const FrameInput& input);
     void addVelocities(std::span<const Float3> changes_ws);
@@ -45,6 +47,7 @@ struct Engine::Impl {
     void makeRods();
     void takeRoots(const FrameInput& input);
     void repairRoots(std::size_t block);
+    void takeBody(const FrameInput& input);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);
@@ -68,6 +71,8 @@ struct Engine::Impl {
     Host host_;
     std::shared_ptr<const RestShape> shape_;
     RodRest rods_;  // empty for springs
+    std::shared_ptr<const BodyField> body_;
+    Floats clearances_;  // of the body; empty without one
     EffectPlan plan_;
     FrameWind wind_;
     State state_;
@@ -81,6 +86,8 @@ struct Engine::Impl {
     Floats nextRoots_;  // as State::roots, at the frame's end
     FrameSpheres spheres_;
     std::vector<MovingSphere> movingSpheres_;
+    MovingBody movingBody_;
+    bool bodyMoves_ = false;
     float rootMotion_ = 0.0f;  // metres, the longest way of a root
 };
 

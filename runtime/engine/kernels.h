@@ -64,7 +64,8 @@ struct RodView {
     float* turn =
         nullptr;  ///< of each lane: most that a segment turned in the last substep, radians, or kRodNoStep
     float* energy = nullptr;  ///< of each lane, of motion, shape and weight, m³/s², or kRodNoEnergy
-    bool curved = false;      ///< twist matters
+    const float* clearance = nullptr;  ///< of each point, metres from the body at rest; null without one
+    bool curved = false;               ///< twist matters
 };
 /// There is no substep before that a second order scheme could build on.
 inline constexpr float kRodNoStep = 1e9f;
@@ -154,6 +155,8 @@ struct MovingSphere {
     float stepLength = length(step);  ///< metres in one substep
 };
 
+class MovingBody;  // engine/moving_body.h
+
 /// What the strands move through.
 enum class Air : std::uint32_t { none, still, moving };
 inline constexpr std::size_t kAirCount = 3;
@@ -204,7 +207,8 @@ struct SubstepContext : shaders::SubstepNumbers {
     float stepRatio = 1.0f;     ///< h over that of the substep before
     bool sweeps = false;        ///< spheres are met where fast points come in
     bool conservative = false;  ///< nothing but motion of roots and spheres adds energy
-    bool spheresRest = false;   ///< nor do spheres
+    bool spheresRest = false;   ///< nor do spheres and body
+    const MovingBody* body = nullptr;
     const Wind* wind = nullptr;
     const float* windPhases = nullptr;  ///< of the substep's end
 };

@@ -9,6 +9,7 @@
 
 #include "engine/kernels.h"
 #include "engine/lanes-inl.h"
+#include "engine/moving_body.h"
 #include "engine/spheres-inl.h"
 #include "hwy/highway.h"
 #include "models/rods/rod_math-inl.h"
@@ -54,6 +55,39 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
                              context.sweeps),
               near);
     }
+}
+
+/// The same for a body. A node keeps its radius from it, but no more than `clearance`.
+template <class Visit>
+HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, V clearance,
+                          std::uint32_t substep, Visit&& visit) {
+    const V3 position_ws = node.position + root;
+    const V reach = hn::Min(node.radius, clearance);
+    const V near = reach + hn::Sqrt(dot(node.displacement, node.displacement)) +
+                   all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
+    alignas(64) float at[3][kWidth], farthest[kWidth], normal[3][kWidth], way[3][kWidth], distance[kWidth];
+    hn::Store(position_ws.x, D(), at[0]);
+    hn::Store(position_ws.y, D(), at[1]);
+    hn::Store(position_ws.z, D(), at[2]);
+    hn::Store(near, D(), farthest);
+    std::uint32_t touched = 0;
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+        BodyTouch touch{{0.0f, 1.0f, 0.0f}, 1e3f, {}};
+        if (body.touch(substep, {at[0][lane], at[1][lane], at[2][lane]}, farthest[lane], touch))
+            touched |= 1u << lane;
+        distance[lane] = touch.distance;
+        normal[0][lane] = touch.normal.x;
+        normal[1][lane] = touch.normal.y;
+        normal[2][lane] = touch.normal.z;
+        way[0][lane] = touch.way.x;
+        way[1][lane] = touch.way.y;
+        way[2][lane] = touch.way.z;
+    }
+    if (HWY_LIKELY(touched == 0)) return;
+    const V3 n{hn::Load(D(), normal[0]), hn::Load(D(), normal[1]), hn::Load(D(), normal[2])};
+    const V3 moved{hn::Load(D(), way[0]), hn::Load(D(), way[1]), hn::Load(D(), way[2])};
+    const V depth = reach - hn::Load(D(), distance);
+    visit(RodTouch{n, depth, depth + dot(n, node.displacement - moved), moved}, maskOf(touched));
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
