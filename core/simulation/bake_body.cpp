@@ -368,17 +368,18 @@ Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
     baked.cell = table.cell / kBlockCells;
     measureCorners(table, body, field);
     measureBlocks(table, fitting->near, body, field);
+    std::vector<std::uint32_t> bones;
     if (isSkinned) {
         const SkinTable skins(mesh, skin, body);
         bool filled = false;
         for (const float steps : {255.0f, 51.0f, 15.0f, 5.0f}) {
-            filled = fillSkins(table, skins, steps, baked.collider.bones, field);
+            filled = fillSkins(table, skins, steps, bones, field);
             if (filled) break;
         }
-        if (!filled || baked.collider.bones.size() > 255)
-            return fail(fmt::format("{} bones move the body in too many ways", baked.collider.bones.size()),
+        if (!filled || bones.size() > 255)
+            return fail(fmt::format("{} bones move the body in too many ways", bones.size()),
                         "255 bones at most");
-        for (const std::uint32_t bone : baked.collider.bones)
+        for (const std::uint32_t bone : bones)
             field.bones.push_back(bone < boneNames.size() ? boneNames[bone] : fmt::format("bone {}", bone));
         boxBones(table, field.bones.size(), field);
     } else {
@@ -386,7 +387,7 @@ Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
         field.skins.assign(table.corners(), 0);
     }
     baked.fit = fitOf(mesh, body, field);
-    baked.collider.field = made;
+    baked.field = made;
     if (!fitting->isFinest)
         baked.notes.push_back(fmt::format("distances are {:.1f} mm apart, not {:.1f}, to fit into {:.0f} kB",
                                           1e3 * static_cast<double>(baked.cell),
@@ -395,19 +396,17 @@ Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
     return baked;
 }
 
-std::vector<runtime::BonePose> bonePoses(const BodyCollider& collider, const HeadPose& pose) {
-    const auto toPose = [](const Eigen::Affine3f& m) {
-        const Mat3f linear = m.linear();
-        return runtime::BonePose{toEngine(linear.col(0)), toEngine(linear.col(1)), toEngine(linear.col(2)),
-                                 toEngine(m.translation())};
-    };
-    const runtime::BonePose whole = toPose(Eigen::Affine3f(pose.head_ws.matrix()));
-    // A head that moves as a whole takes all of its bones along.
-    if (collider.bones.empty() || pose.bones_ws.empty()) return {whole};
-    std::vector<runtime::BonePose> poses;
-    for (const std::uint32_t bone : collider.bones)
-        poses.push_back(bone < pose.bones_ws.size() ? toPose(pose.bones_ws[bone]) : whole);
-    return poses;
+Result<BakedBody> bakeBodyOf(const Groom& groom, const Actor* actor, const BakeBodyOptions& given) {
+    if (!groom.scalp) return fail("there is no head to keep hair out of");
+    BakeBodyOptions options = given;
+    if (options.where.isEmpty()) options.where = reachOfHair(groom);
+    if (!actor || actor->skin().vertexCount() == 0) return bakeBody(*groom.scalp, {}, {}, options);
+    if (actor->mesh().vertexCount() != groom.scalp->vertexCount())
+        return fail(fmt::format("the character's mesh has {} vertices", actor->mesh().vertexCount()),
+                    fmt::format("the {} of the groom's head", groom.scalp->vertexCount()));
+    std::vector<std::string> names;
+    for (const Bone& bone : actor->skeleton().bones()) names.push_back(bone.name);
+    return bakeBody(*groom.scalp, actor->skin(), names, options);
 }
 
 }  // namespace hairloom

@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "core/animation/skinning.h"
+#include "core/animation/actor.h"
 #include "core/base/result.h"
 #include "core/geometry/scalp_mesh.h"
-#include "core/simulation/motion.h"
+#include "core/groom/groom.h"
 #include "hairloom/body_field.h"
 
 namespace hairloom {
@@ -33,14 +33,8 @@ struct BodyFit {
     Vec3f worstGapAt_ss = Vec3f::Zero();
 };
 
-/// What hair collides with, and whose poses move it.
-struct BodyCollider {
-    std::shared_ptr<const runtime::BodyField> field;
-    std::vector<std::uint32_t> bones;  ///< of HeadPose::bones_ws, for each bone of the field
-};
-
 struct BakedBody {
-    BodyCollider collider;
+    std::shared_ptr<const runtime::BodyField> field;
     BodyFit fit;
     float cell = 0;                  ///< metres between distances near the skin
     std::vector<std::string> notes;  ///< what people should know: coarser than asked for, bones left out …
@@ -54,8 +48,8 @@ struct BakedBody {
 Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
                            std::span<const std::string> boneNames = {}, const BakeBodyOptions& options = {});
 
-/// In a pose, as FrameInput::body_ws takes them. Bones that the pose lacks, and all where it has none, go
-/// with the head.
-std::vector<runtime::BonePose> bonePoses(const BodyCollider& collider, const HeadPose& pose);
+/// Of the groom's scalp where its hair reaches, moved by the skin of `actor` where there is one. Errors: no
+/// scalp, a character of another mesh, those above.
+Result<BakedBody> bakeBodyOf(const Groom& groom, const Actor* actor, const BakeBodyOptions& options = {});
 
 }  // namespace hairloom

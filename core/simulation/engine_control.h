@@ -10,8 +10,4 @@ namespace hairloom {
 /// not makeEngineMethod()'s.
 Status setEngineSettings(StrandMethod& method, const runtime::SimulationSettings& settings);
 
-/// A body that rods meet from the next step on. Errors: a field that is none, strands that are no rods, or a
-/// method that is not makeEngineMethod()'s.
-Status setEngineBody(StrandMethod& method, std::shared_ptr<const runtime::BodyField> field);
-
 }  // namespace hairloom

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/base/parallel.h"
+#include "core/simulation/effect_switch.h"
 #include "core/simulation/engine_control.h"
 #include "core/simulation/strand_method.h"
 
@@ -52,12 +53,6 @@ class EngineMethod : public StrandMethod {
         return engine_.setSettings(settings);
     }
 
-    std::string setBody(std::shared_ptr<const runtime::BodyField> field) {
-        if (engine_.settings().strandModel != runtime::StrandModel::rods)
-            return "only rods meet the skin; springs pass through it";
-        return engine_.setBody(std::move(field));
-    }
-
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         engine_.readPositions(positions_ws);
     }
@@ -87,6 +82,8 @@ class EngineMethod : public StrandMethod {
         effects.push_back({"solve", true,
                            "on, the shared strand solve, without the effects listed separately",
                            solveMilliseconds_ / frames, 0});
+        if (const std::size_t bytes = engine_.bodyBytes(); bytes > 0)
+            effects.push_back({std::string(kBodyEffect), true, "on, the skin of the head", {}, bytes});
         if (volume_) {
             effects.push_back(
                 {"hair-hair", true, "on, asked for", volumeMilliseconds_ / frames, volume_->bytes()});
@@ -117,15 +114,6 @@ Status setEngineSettings(StrandMethod& method, const runtime::SimulationSettings
     return {};
 }
 
-Status setEngineBody(StrandMethod& method, std::shared_ptr<const runtime::BodyField> field) {
-    auto* engine = dynamic_cast<EngineMethod*>(&method);
-    if (!engine)
-        return fail("only the strand engine on the CPU meets the skin",
-                    "expected --engine cpu --method strands");
-    if (const std::string problem = engine->setBody(std::move(field)); !problem.empty()) return fail(problem);
-    return {};
-}
-
 runtime::Host applicationHost() {
     runtime::Host host;
     host.parallelFor = parallelFor;
@@ -150,6 +138,10 @@ Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
         auto grid = runtime::HairVolume::make(*hairHair, applicationHost());
         if (!grid.volume) return fail(grid.error);
         volume.emplace(std::move(*grid.volume));
+    }
+    const auto& body = scene.groom().body;
+    if (body) {
+        if (const std::string problem = made.engine->setBody(body); !problem.empty()) return fail(problem);
     }
     return std::make_unique<EngineMethod>(std::move(*made.engine), std::move(volume));
 }

@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "core/base/profiler.h"
-#include "core/simulation/engine_control.h"
 #include "core/simulation/strand_method.h"
 
 namespace hairloom {
@@ -31,7 +30,6 @@ Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const 
 struct Simulation::Impl {
     SceneInput scene;
     std::unique_ptr<StrandMethod> method;
-    BodyCollider body;
     double time = 0;
     std::vector<Vec3f> positions_ws;
     SimulationStats stats;
@@ -70,12 +68,7 @@ Result<Simulation> Simulation::make(const Groom& groom, const HeadPose& start,
     if (!scene) return tl::unexpected(scene.error());
     auto method = makeMethod(*scene, options);
     if (!method) return tl::unexpected(method.error());
-    if (options.body.field) {
-        if (auto status = setEngineBody(**method, options.body.field); !status)
-            return tl::unexpected(status.error());
-    }
-    auto impl = std::unique_ptr<Impl>(
-        new Impl{std::move(*scene), std::move(*method), options.body, 0, {}, {}, {}, 0, 0});
+    auto impl = std::unique_ptr<Impl>(new Impl{std::move(*scene), std::move(*method), 0, {}, {}, {}, 0, 0});
     impl->positions_ws.resize(groom.pointCount());
     const HeadPose pose = impl->method->measuresFromOrigin() ? start : inWorld(start);
     impl->origin_ws = pose.origin_ws.cast<float>();
@@ -104,9 +97,8 @@ void Simulation::step(float dt, const HeadPose& given) {
     input.origin_ws = {pose.origin_ws.x(), pose.origin_ws.y(), pose.origin_ws.z()};
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
-    std::vector<runtime::BonePose> bones;
-    if (impl_->body.field) bones = bonePoses(impl_->body, pose);
-    input.body_ws = bones;
+    const auto body = bodyAt(impl_->scene.groom(), pose);
+    input.body_ws = body;
     impl_->method->step(impl_->scene, pose, input);
     impl_->readPositions();
     impl_->substeps += substepsIn(impl_->scene.groom().simulation, dt);
@@ -155,6 +147,7 @@ Groom posedGroom(const Groom& groom, std::span<const Vec3f> positions_ws, const 
     Groom posed = groom;
     posed.pointAttributes.set(attribute::kPosition,
                               std::vector<Vec3f>(positions_ws.begin(), positions_ws.end()));
+    posed.body.reset();  // is baked at rest
     if (groom.scalp) {
         std::vector<Vec3f> vertices = pose.scalpPositions_ws;
         if (vertices.empty()) {

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "core/simulation/bake_body.h"
 #include "core/simulation/motion.h"
 #include "hairloom/alternatives/hair_volume.h"
 
@@ -65,8 +64,6 @@ struct SimulationOptions {
     SimulationMethod method = SimulationMethod::strands;
     /// Hair against hair between frames; for methods that take velocities.
     std::optional<runtime::HairVolumeSettings> hairHair = {};
-    /// What rods collide with beside the groom's spheres; none without a field.
-    BodyCollider body = {};
     /// What runs the strand engine, in place of the CPU; empty: the CPU.
     MethodMaker backend = {};
 };

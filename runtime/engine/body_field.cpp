@@ -11,6 +11,8 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr std::size_t kCellCorners = 8;
+/// Of a distance, per metre: below it there is no way out that is the nearest.
+constexpr float kFlatSlope = 1e-3f;
 
 /// Places within a cell, each in [0, 1], and what each of its corners counts there: 000, 100, 010, 110, 001 …
 struct Trilinear {
@@ -87,14 +89,6 @@ float volumeOf(const BonePose& pose) {
     return dot(pose.x, cross(pose.y, pose.z));
 }
 
-/// Whether it flattens what is round to less than a thousandth.
-bool isFlat(const BonePose& pose) {
-    const float size = length(pose.x) * length(pose.y) * length(pose.z);
-    const float volume = volumeOf(pose);
-    return !(std::abs(volume) > 1e-3f * size) || !(size > 1e-9f) || !std::isfinite(size) ||
-           !isFinite(pose.origin);
-}
-
 /// Of the linear part: rows, so that (dot(x, v), dot(y, v), dot(z, v)) undoes it.
 struct Undone {
     Float3 x, y, z;
@@ -110,19 +104,26 @@ struct Undone {
     Float3 transposed(Float3 g) const { return x * g.x + y * g.y + z * g.z; }
 };
 
-BonePose inverseOf(const BonePose& pose) {
-    const Undone u(pose);
-    BonePose inverse{{u.x.x, u.y.x, u.z.x}, {u.x.y, u.y.y, u.z.y}, {u.x.z, u.y.z, u.z.z}, {}};
-    inverse.origin = u.apply(pose.origin) * -1.0f;
-    return inverse;
-}
-
 bool isIn(const BodyField::Box& box, Float3 p) {
     return p.x >= box.low.x && p.y >= box.low.y && p.z >= box.low.z && p.x <= box.high.x &&
            p.y <= box.high.y && p.z <= box.high.z;
 }
 
 }  // namespace
+
+bool isFlatPose(const BonePose& pose) {
+    const float size = length(pose.x) * length(pose.y) * length(pose.z);
+    const float volume = volumeOf(pose);
+    return !(std::abs(volume) > 1e-3f * size) || !(size > 1e-9f) || !std::isfinite(size) ||
+           !isFinite(pose.origin);
+}
+
+BonePose inverseOf(const BonePose& pose) {
+    const Undone u(pose);
+    BonePose inverse{{u.x.x, u.y.x, u.z.x}, {u.x.y, u.y.y, u.z.y}, {u.x.z, u.y.z, u.z.z}, {}};
+    inverse.origin = u.apply(pose.origin) * -1.0f;
+    return inverse;
+}
 
 std::size_t BodyField::bytes() const {
     return distances.size() * sizeof(distances[0]) + skins.size() * sizeof(skins[0]) +
@@ -191,6 +192,17 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
             fine.gradient + (coarse.gradient - fine.gradient) * share};
 }
 
+float BodyField::freeAround(Float3 point_ss) const {
+    const Float3 cells = (point_ss - low_ss) * (1 / cell);
+    // Beyond the table there is no skin that hair could meet.
+    if (!isInside(*this, cells)) return kInfinite;
+    const auto nearest = [](float at) { return static_cast<std::size_t>(at + 0.5f); };
+    const std::size_t x = nearest(cells.x), y = nearest(cells.y), z = nearest(cells.z);
+    const std::int16_t there = distances[(z * (size[1] + 1) + y) * (size[0] + 1) + x];
+    constexpr float kFarthest = 0.8661f;  // cells from the nearest corner
+    return std::max(unit * static_cast<float>(there) - kFarthest * cell, 0.0f);
+}
+
 struct PosedBody::Map {
     BonePose pose;
     bool flat;
@@ -199,17 +211,20 @@ struct PosedBody::Map {
 void PosedBody::take(const BodyField& field, std::span<const BonePose> pose) {
     field_ = &field;
     flattened_ = 0;
+    least_ = kInfinite;
     usable_.clear();
     inverse_.clear();
     palette_.clear();
     const std::size_t bones = std::max<std::size_t>(field.bones.size(), 1);
     for (std::size_t b = 0; b < bones; ++b) {
         const BonePose& own = pose[std::min(b, pose.size() - 1)];
-        const bool flat = isFlat(own);
+        const bool flat = isFlatPose(own);
         usable_.push_back(flat ? 0 : 1);
         flattened_ += flat ? 1u : 0u;
         inverse_.push_back(flat ? BonePose{} : inverseOf(own));
+        if (!flat) least_ = std::min({least_, length(own.x), length(own.y), length(own.z)});
     }
+    if (!std::isfinite(least_)) least_ = 1;
     for (const BodyField::Skin& skin : field.palette) {
         float sum = 0;
         BonePose blended = kNothing;
@@ -239,11 +254,40 @@ PosedBody::Map PosedBody::mapAt(Float3 point_ss) const {
     Map map{kNothing, false};
     for (std::size_t i = 0; i < kCellCorners; ++i)
         map.pose = blendOf(map.pose, palette_[skins[i]], weights[i]);
-    map.flat = isFlat(map.pose);
+    map.flat = isFlatPose(map.pose);
     return map;
 }
 
+PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
+    const Contact nothing{kInfinite, {0, 1, 0}, {}};
+    if (usable_[0] == 0) return nothing;
+    const Float3 rest = inverse_[0].apply(point_ws);
+    const BodyField::Sample sample = field_->at(rest);
+    if (!std::isfinite(sample.distance)) return nothing;
+    const BonePose& inverse = inverse_[0];
+    const Float3 g = sample.gradient;
+    // The transposed inverse.
+    const Float3 gradient{dot(inverse.x, g), dot(inverse.y, g), dot(inverse.z, g)};
+    const float slope = length(gradient);
+    if (!(slope > kFlatSlope)) return nothing;
+    return {sample.distance * (length(g) / slope), gradient * (1 / slope), rest};
+}
+
+float PosedBody::freeAround(Float3 point_ws) const {
+    float least = kInfinite;
+    for (std::size_t b = 0; b < usable_.size(); ++b) {
+        if (usable_[b] == 0) continue;
+        const Float3 rest = inverse_[b].apply(point_ws);
+        if (isWhole()) return least_ * field_->freeAround(rest);
+        if (!field_->boxes.empty() && !isIn(field_->boxes[b], rest)) continue;
+        // Skin between two bones may be closer than it was at rest, but hardly by half.
+        least = std::min(least, 0.5f * least_ * field_->freeAround(rest));
+    }
+    return least;
+}
+
 PosedBody::Contact PosedBody::at(Float3 point_ws) const {
+    if (isWhole()) return ofWhole(point_ws);
     constexpr int kRounds = 12;
     constexpr float kSettled = 1e-5f, kLost = 2e-3f;  // metres
     const BodyField& field = *field_;
@@ -268,7 +312,7 @@ PosedBody::Contact PosedBody::at(Float3 point_ws) const {
         const Float3 gradient = Undone(map.pose).transposed(sample.gradient);
         const float slope = length(gradient);
         // On the ridge between two sides the slope vanishes: there is no way out that is the nearest.
-        if (!(slope > 1e-3f)) continue;
+        if (!(slope > kFlatSlope)) continue;
         // Bones that stretch the skin stretch what is before it.
         const float distance = sample.distance * (length(sample.gradient) / slope);
         if (distance < nearest.distance) nearest = {distance, gradient * (1 / slope), rest};

@@ -57,6 +57,11 @@ std::string Engine::setBody(std::shared_ptr<const BodyField> body) {
     return {};
 }
 
+std::size_t Engine::bodyBytes() const {
+    if (!impl_->body_ || impl_->rods_.planes.empty()) return 0;
+    return impl_->body_->bytes() + (impl_->clearances_.size() + impl_->bodySeen_.size()) * sizeof(float);
+}
+
 void Engine::setClock(std::function<std::uint64_t()> nanoseconds) {
     impl_->host_.nanoseconds = std::move(nanoseconds);
 }

@@ -13,6 +13,8 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
+/// Metres that a point may go before the body has to be looked at again.
+constexpr float kNeverSeen = -1e30f;
 
 RootBounds noRoots() {
     RootBounds bounds;
@@ -60,6 +62,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     }
     state_.spheres.clear();
     state_.body.clear();
+    bodyLost_ = true;
     state_.substep = 0.0f;
     state_.fastest = 0.0f;
     state_.origin_ws.reset();
@@ -123,6 +126,7 @@ bool Engine::Impl::setState(const State& state) {
         state.rests.size() != state_.rests.size())
         return false;
     state_ = state;
+    bodyLost_ = true;
     makeRods();
     wind_.given = false;
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
@@ -197,6 +201,7 @@ void Engine::Impl::moveOrigin(std::array<double, 3> origin_ws) {
     }
     for (Sphere& sphere : state_.spheres) sphere.center_ws = sphere.center_ws + shift;
     for (BonePose& bone : state_.body) bone.origin = bone.origin + shift;
+    bodyLost_ = true;
     state_.rootsMin_ws = state_.rootsMin_ws + shift;
     state_.rootsMax_ws = state_.rootsMax_ws + shift;
 }
@@ -252,6 +257,8 @@ void Engine::Impl::repairRoots(std::size_t block) {
 void Engine::Impl::setBody(std::shared_ptr<const BodyField> body) {
     body_ = std::move(body);
     clearances_ = body_ ? bodyClearances(*shape_, *body_) : Floats();
+    bodySeen_ = Floats(body_ ? kBodyPlanes * shape_->planeFloats : 0, kNeverSeen);
+    bodyLost_ = true;
     state_.body.clear();
     state_.rests.assign(shape_->blocks.size(), {});
 }
@@ -273,10 +280,18 @@ void Engine::Impl::takeBody(const FrameInput& input) {
         state_.body.size() == to.size() ? std::span<const BonePose>(state_.body) : to;
     for (std::size_t b = 0; b < to.size(); ++b) {
         // A cut carries it along.
-        if (length(to[b].origin - from[b].origin) > settings_.teleportDistance) from = to;
+        if (length(to[b].origin - from[b].origin) > settings_.teleportDistance) {
+            from = to;
+            bodyLost_ = true;
+        }
         bodyMoves_ = bodyMoves_ || !(to[b] == from[b]);
     }
-    movingBody_.take(*body_, from, to, substepsIn(settings_, input.dt));
+    const Float3 middle = (state_.rootsMin_ws + state_.rootsMax_ws) * 0.5f;
+    const float reach =
+        length(state_.rootsMax_ws - middle) + rootMotion_ + hairReach(settings_, shape_->longestStrand);
+    movingBody_.take(*body_, from, to, substepsIn(settings_, input.dt), middle, reach);
+    if (bodyLost_ || movingBody_.lostTrack()) std::fill(bodySeen_.begin(), bodySeen_.end(), kNeverSeen);
+    bodyLost_ = false;
     if (to.data() != state_.body.data()) state_.body.assign(to.begin(), to.end());
 }
 
@@ -406,7 +421,10 @@ BlockView Engine::Impl::view(std::size_t block) {
     BlockView view =
         viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
     view.rod = rodViewOf(*shape_, rods_, state_, block);
-    if (!clearances_.empty()) view.rod.clearance = clearances_.data() + shape_->blocks[block].firstPlane;
+    if (!clearances_.empty()) {
+        view.rod.clearance = clearances_.data() + shape_->blocks[block].firstPlane;
+        view.rod.seen = bodySeen_.data() + kBodyPlanes * shape_->blocks[block].firstPlane;
+    }
     return view;
 }
 

@@ -72,7 +72,9 @@ struct Engine::Impl {
     std::shared_ptr<const RestShape> shape_;
     RodRest rods_;  // empty for springs
     std::shared_ptr<const BodyField> body_;
-    Floats clearances_;  // of the body; empty without one
+    Floats clearances_;     // of the body; empty without one
+    Floats bodySeen_;       // kBodyPlanes, per block
+    bool bodyLost_ = true;  // what they say is void
     EffectPlan plan_;
     FrameWind wind_;
     State state_;

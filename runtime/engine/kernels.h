@@ -65,7 +65,9 @@ struct RodView {
         nullptr;  ///< of each lane: most that a segment turned in the last substep, radians, or kRodNoStep
     float* energy = nullptr;  ///< of each lane, of motion, shape and weight, m³/s², or kRodNoEnergy
     const float* clearance = nullptr;  ///< of each point, metres from the body at rest; null without one
-    bool curved = false;               ///< twist matters
+    /// kBodyPlanes of what is known of the body; null without one.
+    float* seen = nullptr;
+    bool curved = false;  ///< twist matters
 };
 /// There is no substep before that a second order scheme could build on.
 inline constexpr float kRodNoStep = 1e9f;

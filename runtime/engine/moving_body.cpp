@@ -3,13 +3,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hairloom::runtime {
 
+namespace {
+
+/// Metres that the linear part makes of one, at most (Gershgorin's bound on its square).
+float stretchOf(const BonePose& pose) {
+    const float xy = std::abs(dot(pose.x, pose.y)), yz = std::abs(dot(pose.y, pose.z)),
+                zx = std::abs(dot(pose.z, pose.x));
+    return std::sqrt(std::max(
+        {dot(pose.x, pose.x) + xy + zx, dot(pose.y, pose.y) + xy + yz, dot(pose.z, pose.z) + yz + zx}));
+}
+
+/// How a bone goes from pose to pose: what takes a place before to the place after.
+BonePose wayOf(const BonePose& before, const BonePose& after) {
+    const BonePose back = inverseOf(before);
+    const auto turned = [&](Float3 v) { return after.x * v.x + after.y * v.y + after.z * v.z; };
+    return {turned(back.x), turned(back.y), turned(back.z), turned(back.origin) + after.origin};
+}
+
+/// Metres that two bones take what is within `reach` of a place apart.
+float apart(const BonePose& a, const BonePose& b, Float3 around_ws, float reach) {
+    const BonePose turn{a.x - b.x, a.y - b.y, a.z - b.z, {}};
+    return length(a.apply(around_ws) - b.apply(around_ws)) + stretchOf(turn) * reach;
+}
+
+}  // namespace
+
 void MovingBody::take(const BodyField& field, std::span<const BonePose> from, std::span<const BonePose> to,
-                      std::uint32_t substeps) {
+                      std::uint32_t substeps, Float3 around_ws, float reach) {
     at_.resize(std::size_t{substeps} + 1);
+    carriers_.resize(substeps);
     between_.resize(to.size());
+    before_.assign(from.begin(), from.end());
+    // Sums of lengths lose their digits, and a carrier that is flat tells no place.
+    constexpr float kFarStrayed = 0.5f;
+    lostTrack_ = strayed_ > kFarStrayed || !std::isfinite(strayed_);
+    if (lostTrack_) strayed_ = 0.0f;
     const auto mix = [](Float3 a, Float3 b, float t) { return a + (b - a) * t; };
     for (std::uint32_t i = 0; i <= substeps; ++i) {
         const float t = static_cast<float>(i) / static_cast<float>(substeps);
@@ -20,13 +52,37 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
                                          mix(from[b].z, to[b].z, t), mix(from[b].origin, to[b].origin, t)};
         }
         at_[i].take(field, between_);
+        if (i == 0) continue;
+        const bool flat = isFlatPose(between_[0]) || isFlatPose(before_[0]);
+        if (!flat) {
+            const BonePose own = wayOf(before_[0], between_[0]);
+            float farthest = 0.0f;
+            for (std::size_t b = 1; b < to.size(); ++b) {
+                if (isFlatPose(before_[b]) || isFlatPose(between_[b])) continue;
+                farthest = std::max(farthest, apart(wayOf(before_[b], between_[b]), own, around_ws, reach));
+            }
+            strayed_ += farthest;
+        } else {
+            strayed_ = std::numeric_limits<float>::infinity();
+        }
+        carriers_[i - 1] = {flat ? BonePose{} : inverseOf(between_[0]), stretchOf(between_[0]), strayed_};
+        before_.swap(between_);
+        between_.resize(to.size());
     }
 }
 
-bool MovingBody::touch(std::uint32_t substep, Float3 point_ws, float reach, BodyTouch& touch) const {
+bool MovingBody::touch(std::uint32_t substep, Float3 point_ws, float reach, BodyTouch& touch,
+                       float& away) const {
     const PosedBody& now = at_[substep + 1];
+    away = now.freeAround(point_ws);
+    if (away > reach) return false;
     const PosedBody::Contact contact = now.at(point_ws);
-    if (!(contact.distance <= reach)) return false;
+    if (!(contact.distance <= reach)) {
+        // What is interpolated, and posed, may be closer than it seems.
+        constexpr float kSure = 0.7f, kMost = 0.02f;
+        away = std::max(away, kSure * std::min(contact.distance, kMost));
+        return false;
+    }
     touch = {contact.normal_ws, contact.distance,
              now.place(contact.point_ss) - at_[substep].place(contact.point_ss)};
     return true;

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/mesh_solid.h"
 #include "core/simulation/bake_body.h"
+#include "core/simulation/scene_input.h"
 #include "tests/geometry/test_meshes.h"
 
 namespace hairloom {
@@ -58,14 +59,23 @@ struct Rig {
 BakedBody baked(const ScalpMesh& mesh, const SkinWeights& skin = {}) {
     auto body = bakeBody(mesh, skin);
     if (!body) throw std::runtime_error(body.error().message());
-    EXPECT_EQ(body->collider.field->problem(), "");
+    EXPECT_EQ(body->field->problem(), "");
     return std::move(*body);
+}
+
+/// The rig names no bones, so that the field calls them by their number.
+std::vector<BonePose> posesOf(const BakedBody& body, HeadPose pose) {
+    for (const std::string& bone : body.field->bones)
+        pose.body_ws.push_back(pose.bones_ws[bone == "bone 0" ? 0 : 1]);
+    Groom groom;
+    groom.body = body.field;
+    return bodyAt(groom, pose);
 }
 
 TEST(BodyField, IsTheDistanceToTheSkin) {
     const ScalpMesh mesh = headOnNeck();
     const BakedBody body = baked(mesh);
-    EXPECT_LE((*body.collider.field).bytes(), 300'000u);
+    EXPECT_LE((*body.field).bytes(), 300'000u);
     EXPECT_LT(body.fit.worstGap, 1e-3f);
     EXPECT_LT(body.fit.worstBulge, 1e-3f);
     EXPECT_LT(body.fit.meanGap, 1e-4f);
@@ -74,12 +84,12 @@ TEST(BodyField, IsTheDistanceToTheSkin) {
     for (int i = 0; i < 2000; ++i) {
         const Vec3f point = test::randomPoint(random, 0.1f);
         const float exact = solid.signedDistance(point);
-        const auto sample = (*body.collider.field).at(toEngine(point));
+        const auto sample = (*body.field).at(toEngine(point));
         ASSERT_TRUE(std::isfinite(sample.distance));
         // Near the skin by small cells, elsewhere by large ones.
         EXPECT_NEAR(sample.distance, exact, std::abs(exact) < 0.004f ? 8e-4f : 1e-2f) << point.transpose();
     }
-    EXPECT_TRUE(std::isinf((*body.collider.field).at({5, 5, 5}).distance));
+    EXPECT_TRUE(std::isinf((*body.field).at({5, 5, 5}).distance));
 }
 
 TEST(BodyField, IsPosedByBones) {
@@ -88,8 +98,8 @@ TEST(BodyField, IsPosedByBones) {
     const BakedBody body = baked(mesh, rig.skin);
     for (const float degrees : {0.0f, 20.0f, -35.0f}) {
         const HeadPose pose = rig.pose(mesh, degrees);
-        const auto bones = bonePoses(body.collider, pose);
-        const PosedBody posed((*body.collider.field), bones);
+        const auto bones = posesOf(body, pose);
+        const PosedBody posed((*body.field), bones);
         const MeshSolid truth(pose.scalpPositions_ws, mesh.triangles());
         Random random(4);
         int near = 0;
@@ -115,7 +125,7 @@ TEST(BodyField, ABoneWithoutSizeCarriesNoSkin) {
     const BakedBody body = baked(mesh, rig.skin);
     HeadPose pose = rig.pose(mesh, 10);
     pose.bones_ws[0].linear().setZero();
-    const PosedBody posed((*body.collider.field), bonePoses(body.collider, pose));
+    const PosedBody posed((*body.field), posesOf(body, pose));
     EXPECT_EQ(posed.flattened(), 1u);
     const Vec3f top = pose.bones_ws[1] * Vec3f(0, 0.085f, 0);
     EXPECT_NEAR(posed.at(toEngine(top)).distance, -0.005f, 5e-4f) << "the head is there all the same";
@@ -130,7 +140,7 @@ TEST(BodyField, MovesAsAWholeWithoutSkin) {
     const BakedBody body = baked(mesh);
     HeadPose pose;
     pose.head_ws = Eigen::Translation3f(1, 2, 3) * Eigen::AngleAxisf(1, Vec3f(1, 2, 2).normalized());
-    const PosedBody posed((*body.collider.field), bonePoses(body.collider, pose));
+    const PosedBody posed((*body.field), posesOf(body, pose));
     const auto contact = posed.at(toEngine(pose.head_ws * Vec3f(0, 0.092f, 0)));
     EXPECT_NEAR(contact.distance, 0.002f, 2e-4f);
     EXPECT_GT(fromEngine(contact.normal_ws).dot(pose.head_ws.linear() * Vec3f::UnitY()), 0.99f);
@@ -144,10 +154,10 @@ TEST(BodyField, IsTheSameForAnyNumberOfThreads) {
     setThreadCount(4);
     const BakedBody four = baked(mesh, rig.skin);
     setThreadCount(0);
-    EXPECT_EQ(one.collider.field->distances, four.collider.field->distances);
-    EXPECT_EQ(one.collider.field->values, four.collider.field->values);
-    EXPECT_EQ(one.collider.field->skins, four.collider.field->skins);
-    EXPECT_EQ(one.collider.field->palette, four.collider.field->palette);
+    EXPECT_EQ(one.field->distances, four.field->distances);
+    EXPECT_EQ(one.field->values, four.field->values);
+    EXPECT_EQ(one.field->skins, four.field->skins);
+    EXPECT_EQ(one.field->palette, four.field->palette);
 }
 
 TEST(BodyField, LeavesOutWhatHairDoesNotReach) {
@@ -157,15 +167,15 @@ TEST(BodyField, LeavesOutWhatHairDoesNotReach) {
     const auto body = bakeBody(mesh, {}, {}, options);
     ASSERT_TRUE(body);
     EXPECT_LT(body->cell, baked(mesh).cell) << "finer in as many bytes";
-    EXPECT_NEAR(body->collider.field->at({0, 0.088f, 0}).distance, -0.002f, 2e-4f);
-    EXPECT_TRUE(std::isinf(body->collider.field->at({0, -0.15f, 0}).distance));
+    EXPECT_NEAR(body->field->at({0, 0.088f, 0}).distance, -0.002f, 2e-4f);
+    EXPECT_TRUE(std::isinf(body->field->at({0, -0.15f, 0}).distance));
 }
 
 TEST(BodyField, PartsInsideAreNoSkin) {
     PolygonSoup soup = test::icosphereSoup(4, 0.09f);
     test::append(soup, test::icosphereSoup(3, 0.015f), Vec3f(0.05f, 0, 0));  // an eye
     const BakedBody body = baked(test::meshOf(soup));
-    const auto behind = (*body.collider.field).at({0.03f, 0, 0});
+    const auto behind = (*body.field).at({0.03f, 0, 0});
     EXPECT_NEAR(behind.distance, -0.06f, 5e-3f) << "the eye is 5 mm away";
     EXPECT_GT(behind.gradient.x, 0.5f);
 }
@@ -185,7 +195,7 @@ TEST(BodyField, SaysWhatCannotBeBaked) {
 }
 
 TEST(BodyField, HostileTablesAreNone) {
-    const runtime::BodyField good = *baked(headOnNeck()).collider.field;
+    const runtime::BodyField good = *baked(headOnNeck()).field;
     const auto refused = [&](auto&& change) {
         runtime::BodyField bad = good;
         change(bad);

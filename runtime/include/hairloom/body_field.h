@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,11 @@ struct BonePose {
     friend constexpr bool operator==(const BonePose&, const BonePose&) = default;
     Float3 apply(Float3 p) const { return x * p.x + y * p.y + z * p.z + origin; }
 };
+
+/// Whether it flattens what is round to less than a thousandth, or is not finite.
+bool isFlatPose(const BonePose& pose);
+/// Of one that is not flat.
+BonePose inverseOf(const BonePose& pose);
 
 /// Distances at the corners of cells, interpolated trilinearly. Cells near the skin have a block of
 /// kBlockCells³ smaller ones. Negative inside.
@@ -64,7 +70,19 @@ struct BodyField {
         Float3 gradient;  ///< of it; about of unit length
     };
     Sample at(Float3 point_ss) const;
+    /// Metres that the skin is away from there at least; 0 where it may be anywhere near.
+    float freeAround(Float3 point_ss) const;
+
+    /// All of it, little-endian, as files keep it (docs/formats/body.md).
+    std::vector<std::uint8_t> toBytes() const;
 };
+
+struct BodyFieldRead {
+    std::optional<BodyField> field;
+    std::string error;  ///< where there is none: what is wrong, and at which byte
+};
+/// Any bytes at all: counts are checked against what is there before anything is allocated.
+BodyFieldRead bodyFieldFromBytes(std::span<const std::uint8_t> bytes);
 
 /// A field in one pose. Owns nothing of the field, which outlives it.
 class PosedBody {
@@ -82,6 +100,8 @@ class PosedBody {
         Float3 point_ss;   ///< where on the body at rest that is
     };
     Contact at(Float3 point_ws) const;
+    /// Metres that the body is away from there at least; 0 where it may be anywhere near.
+    float freeAround(Float3 point_ws) const;
     /// Where a place of the body at rest is in the world.
     Float3 place(Float3 point_ss) const;
     std::uint32_t flattened() const { return flattened_; }
@@ -89,12 +109,15 @@ class PosedBody {
   private:
     struct Map;
     Map mapAt(Float3 point_ss) const;
+    Contact ofWhole(Float3 point_ws) const;
+    bool isWhole() const { return palette_.size() == 1 && inverse_.size() == 1; }
 
     const BodyField* field_ = nullptr;
     std::vector<BonePose> palette_;     ///< blended
     std::vector<BonePose> inverse_;     ///< of bones, to the body at rest
     std::vector<std::uint8_t> usable_;  ///< of bones
     std::uint32_t flattened_ = 0;
+    float least_ = 1;  ///< least that a bone stretches what it carries
 };
 
 }  // namespace hairloom::runtime

@@ -91,6 +91,9 @@ class Engine {
     /// out of it than they were authored. Springs pass through it. Empty, or BodyField::problem().
     std::string setBody(std::shared_ptr<const BodyField> body);
 
+    /// Memory that the body and what is known of it take; 0 where there is none, or springs pass through it.
+    std::size_t bodyBytes() const;
+
     /// Host::nanoseconds from the next step on.
     void setClock(std::function<std::uint64_t()> nanoseconds);
 

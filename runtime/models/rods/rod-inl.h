@@ -307,7 +307,7 @@ class RodStrip {
     void forEachShape(V3 root, const RodNode& node, std::size_t i, Visit&& visit) const {
         forEachTouch(lanes_, root, node, context_, visit);
         if (context_.body)
-            touchBody(*context_.body, root, node, hn::Load(D(), rod_.clearance + i), context_.index, visit);
+            touchBody(*context_.body, root, node, rod_, block_.pitch, i, context_.index, visit);
     }
 
     /// Calls visit(point, node, i, near) for the outer node of each segment where the step has led.

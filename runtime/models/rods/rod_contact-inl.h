@@ -57,24 +57,47 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
     }
 }
 
-/// The same for a body. A node keeps its radius from it, but no more than `clearance`.
+/// The same for a body. A node keeps its radius from it, but no more than its clearance. Nodes that were far
+/// off when they were last looked at, and have not come far since, are not looked at.
 template <class Visit>
-HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, V clearance,
-                          std::uint32_t substep, Visit&& visit) {
+HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, const RodView& rod,
+                          std::size_t pitch, std::size_t i, std::uint32_t substep, Visit&& visit) {
     const V3 position_ws = node.position + root;
-    const V reach = hn::Min(node.radius, clearance);
+    const V reach = hn::Min(node.radius, hn::Load(D(), rod.clearance + i));
     const V near = reach + hn::Sqrt(dot(node.displacement, node.displacement)) +
                    all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
-    alignas(64) float at[3][kWidth], farthest[kWidth], normal[3][kWidth], way[3][kWidth], distance[kWidth];
+    float* const seen = rod.seen + i;
+    const MovingBody::Carrier& carrier = body.carrier(substep);
+    const V3 carried = mad3(all3(carrier.inverse.x), position_ws.x,
+                            mad3(all3(carrier.inverse.y), position_ws.y,
+                                 mad3(all3(carrier.inverse.z), position_ws.z, all3(carrier.inverse.origin))));
+    const V3 gone =
+        carried - V3{hn::Load(D(), seen), hn::Load(D(), seen + pitch), hn::Load(D(), seen + 2 * pitch)};
+    const V used = hn::MulAdd(hn::Sqrt(dot(gone, gone)), all(carrier.largest), all(carrier.strayed));
+    const auto far = used + near < hn::Load(D(), seen + 3 * pitch);
+    if (HWY_LIKELY(hn::AllTrue(D(), far))) return;
+    alignas(64) float at[3][kWidth], farthest[kWidth], normal[3][kWidth], way[3][kWidth], distance[kWidth],
+        known[kWidth], place[3][kWidth];
     hn::Store(position_ws.x, D(), at[0]);
     hn::Store(position_ws.y, D(), at[1]);
     hn::Store(position_ws.z, D(), at[2]);
+    hn::Store(carried.x, D(), place[0]);
+    hn::Store(carried.y, D(), place[1]);
+    hn::Store(carried.z, D(), place[2]);
     hn::Store(near, D(), farthest);
+    hn::Store(hn::IfThenElseZero(far, all(1.0f)), D(), known);
     std::uint32_t touched = 0;
     for (std::size_t lane = 0; lane < kWidth; ++lane) {
         BodyTouch touch{{0.0f, 1.0f, 0.0f}, 1e3f, {}};
-        if (body.touch(substep, {at[0][lane], at[1][lane], at[2][lane]}, farthest[lane], touch))
-            touched |= 1u << lane;
+        if (known[lane] == 0.0f) {
+            float away = 0.0f;
+            if (body.touch(substep, {at[0][lane], at[1][lane], at[2][lane]}, farthest[lane], touch, away)) {
+                touched |= 1u << lane;
+                away = 0.0f;
+            }
+            for (std::size_t axis = 0; axis < 3; ++axis) seen[axis * pitch + lane] = place[axis][lane];
+            seen[3 * pitch + lane] = away + carrier.strayed;
+        }
         distance[lane] = touch.distance;
         normal[0][lane] = touch.normal.x;
         normal[1][lane] = touch.normal.y;
