@@ -305,7 +305,7 @@ struct DrawnDepthMeter::Impl {
     std::optional<Curves> guides;
     std::optional<DrawnFollowHairs> follow;
     std::optional<Curves> hairs;  ///< of `follow`, or of guides that a body pushes out
-    std::shared_ptr<const Groom> groom;
+    std::shared_ptr<const Groom> whole;
     std::optional<runtime::BodyPush> push;
     std::vector<Vec3f> drawnPoints;
     std::uint64_t frames = 0;
@@ -342,7 +342,7 @@ struct DrawnDepthMeter::Impl {
             std::span<const Vec3f> points = positions_ws;
             if (follow) points = follow->at(positions_ws, velocities_ws, rotationsAt(pose));
             drawnPoints.assign(points.begin(), points.end());
-            if (push) pushOutOfBody(*push, *groom, pose, drawnPoints);
+            if (push) pushOutOfBody(*push, *whole, pose, drawnPoints);
             drawn = hairs->measure(drawnPoints, toBody, body, result.deepest).deepest;
         }
         ++frames;
@@ -373,7 +373,7 @@ Result<DrawnDepthMeter> DrawnDepthMeter::make(const Groom& groom) {
                             impl->rest);
         impl->push = makeBodyPush(groom, offsets, groom.positions());
     }
-    if (impl->push) impl->groom = std::make_shared<const Groom>(groom);
+    if (impl->push) impl->whole = std::make_shared<const Groom>(groom);
     return DrawnDepthMeter(std::move(impl));
 }
 

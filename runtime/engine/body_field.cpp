@@ -104,6 +104,12 @@ struct Undone {
     Float3 transposed(Float3 g) const { return x * g.x + y * g.y + z * g.z; }
 };
 
+float distanceTo(const BodyField::Box& box, Float3 p) {
+    const auto beside = [](float at, float low, float high) { return std::max({low - at, at - high, 0.0f}); };
+    return length(Float3{beside(p.x, box.low.x, box.high.x), beside(p.y, box.low.y, box.high.y),
+                         beside(p.z, box.low.z, box.high.z)});
+}
+
 bool isIn(const BodyField::Box& box, Float3 p) {
     return p.x >= box.low.x && p.y >= box.low.y && p.z >= box.low.z && p.x <= box.high.x &&
            p.y <= box.high.y && p.z <= box.high.z;
@@ -171,12 +177,15 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
     const Float3 cells = (point_ss - low_ss) * perCell;
     if (!isInside(*this, cells)) return {kInfinite, {0, 1, 0}};
     const Place place = placeAt(cells, size[0], size[1], size[2]);
-    const std::size_t row = size[0] + 1, layer = row * (size[1] + 1);
-    Sample coarse =
-        place.in.sample(scaled(cornersOf(distances.data() + cornerIndex(*this, place), row, layer), unit));
-    coarse.gradient = coarse.gradient * perCell;
+    const auto coarseSample = [&] {
+        const std::size_t row = size[0] + 1, layer = row * (size[1] + 1);
+        const std::int16_t* const first = distances.data() + cornerIndex(*this, place);
+        Sample coarse = place.in.sample(scaled(cornersOf(first, row, layer), unit));
+        coarse.gradient = coarse.gradient * perCell;
+        return coarse;
+    };
     const std::uint16_t block = blocks[(std::size_t{place.z} * size[1] + place.y) * size[0] + place.x];
-    if (block == kNoBlock) return coarse;
+    if (block == kNoBlock) return coarseSample();
     constexpr auto kFine = static_cast<float>(kBlockCells);
     const Place in = placeAt({place.in.x * kFine, place.in.y * kFine, place.in.z * kFine}, kBlockCells,
                              kBlockCells, kBlockCells);
@@ -187,6 +196,7 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
     fine.gradient = fine.gradient * (perCell * kFine);
     const float away = std::abs(fine.distance);
     if (away <= kFineReach) return fine;
+    const Sample coarse = coarseSample();
     const float share = std::min((away - kFineReach) / (kFineEnd - kFineReach), 1.0f);
     return {fine.distance + share * (coarse.distance - fine.distance),
             fine.gradient + (coarse.gradient - fine.gradient) * share};
@@ -195,7 +205,12 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
 float BodyField::freeAround(Float3 point_ss) const {
     const Float3 cells = (point_ss - low_ss) * (1 / cell);
     // Beyond the table there is no skin that hair could meet.
-    if (!isInside(*this, cells)) return kInfinite;
+    if (!isInside(*this, cells)) {
+        const Float3 high = low_ss + Float3{static_cast<float>(size[0]), static_cast<float>(size[1]),
+                                            static_cast<float>(size[2])} *
+                                         cell;
+        return distanceTo({low_ss, high}, point_ss);
+    }
     const auto nearest = [](float at) { return static_cast<std::size_t>(at + 0.5f); };
     const std::size_t x = nearest(cells.x), y = nearest(cells.y), z = nearest(cells.z);
     const std::int16_t there = distances[(z * (size[1] + 1) + y) * (size[0] + 1) + x];
@@ -279,9 +294,9 @@ float PosedBody::freeAround(Float3 point_ws) const {
         if (usable_[b] == 0) continue;
         const Float3 rest = inverse_[b].apply(point_ws);
         if (isWhole()) return least_ * field_->freeAround(rest);
-        if (!field_->boxes.empty() && !isIn(field_->boxes[b], rest)) continue;
+        const float beside = field_->boxes.empty() ? 0.0f : distanceTo(field_->boxes[b], rest);
         // Skin between two bones may be closer than it was at rest, but hardly by half.
-        least = std::min(least, 0.5f * least_ * field_->freeAround(rest));
+        least = std::min(least, least_ * std::max(beside, 0.5f * field_->freeAround(rest)));
     }
     return least;
 }

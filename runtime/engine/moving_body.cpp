@@ -79,8 +79,9 @@ bool MovingBody::touch(std::uint32_t substep, Float3 point_ws, float reach, Body
     const PosedBody::Contact contact = now.at(point_ws);
     if (!(contact.distance <= reach)) {
         // What is interpolated, and posed, may be closer than it seems.
-        constexpr float kSure = 0.7f, kMost = 0.02f;
-        away = std::max(away, kSure * std::min(contact.distance, kMost));
+        constexpr float kSure = 0.9f, kUnsure = 0.2f;
+        if (std::isfinite(contact.distance))
+            away = std::max(away, kSure * contact.distance - kUnsure * now.cell());
         return false;
     }
     touch = {contact.normal_ws, contact.distance,

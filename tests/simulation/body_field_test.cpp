@@ -211,5 +211,56 @@ TEST(BodyField, HostileTablesAreNone) {
     EXPECT_TRUE(refused([](auto& f) { f.palette[0] = {{1, 0, 0, 0}, {255, 0, 0, 0}}; }));
 }
 
+TEST(BodyField, BytesComeBackAndDamagedOnesAreRefused) {
+    const ScalpMesh mesh = headOnNeck();
+    const Rig rig(mesh);
+    const runtime::BodyField field = *baked(mesh, rig.skin).field;
+    const std::vector<std::uint8_t> bytes = field.toBytes();
+    const auto back = runtime::bodyFieldFromBytes(bytes);
+    ASSERT_TRUE(back.field) << back.error;
+    EXPECT_EQ(back.field->toBytes(), bytes);
+    EXPECT_EQ(back.field->bones, field.bones);
+    EXPECT_EQ(back.field->at({0.02f, 0.05f, 0}).distance, field.at({0.02f, 0.05f, 0}).distance);
+    // Cut anywhere, and with more behind.
+    for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 7)
+        EXPECT_FALSE(runtime::bodyFieldFromBytes(std::span(bytes).first(length)).field) << length;
+    std::vector<std::uint8_t> longer = bytes;
+    longer.push_back(0);
+    EXPECT_FALSE(runtime::bodyFieldFromBytes(longer).field);
+    // Every bit of the head, and some of the rest: refused, or another field that can be asked anywhere.
+    Random random(5);
+    for (std::size_t i = 0; i < 52 * 8 + 400; ++i) {
+        std::vector<std::uint8_t> damaged = bytes;
+        const std::size_t bit =
+            i < 52 * 8 ? i : random.below(static_cast<std::uint32_t>(bytes.size())) * 8 + i % 8;
+        damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+        const auto read = runtime::bodyFieldFromBytes(damaged);
+        if (!read.field) continue;
+        const std::vector<BonePose> poses(std::max<std::size_t>(read.field->bones.size(), 1));
+        const PosedBody posed(*read.field, poses);
+        for (const Float3 p : {Float3{0, 0, 0}, Float3{0.09f, 0, 0}, Float3{0, -0.12f, 0.01f}})
+            static_cast<void>(posed.at(p));
+    }
+}
+
+TEST(BodyField, FreeSpaceIsFree) {
+    const ScalpMesh mesh = headOnNeck();
+    const Rig rig(mesh);
+    const BakedBody body = baked(mesh, rig.skin);
+    const HeadPose pose = rig.pose(mesh, 25);
+    const PosedBody posed(*body.field, posesOf(body, pose));
+    const MeshSolid truth(pose.scalpPositions_ws, mesh.triangles());
+    Random random(6);
+    int free = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3f point = test::randomPoint(random, 0.2f);
+        const float away = posed.freeAround(toEngine(point));
+        if (!(away > 0)) continue;
+        ++free;
+        EXPECT_GT(truth.signedDistance(point), std::min(away, 0.01f)) << point.transpose();
+    }
+    EXPECT_GT(free, 500);
+}
+
 }  // namespace
 }  // namespace hairloom

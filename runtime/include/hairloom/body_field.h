@@ -105,6 +105,7 @@ class PosedBody {
     /// Where a place of the body at rest is in the world.
     Float3 place(Float3 point_ss) const;
     std::uint32_t flattened() const { return flattened_; }
+    float cell() const { return field_->cell; }
 
   private:
     struct Map;

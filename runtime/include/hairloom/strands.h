@@ -48,10 +48,6 @@ struct FrameInput {
     /// At the end of the frame; sphere i is the sphere i of the frame before, and its speed follows from
     /// that.
     std::span<const Sphere> spheres = {};
-    /// Of the engine's body at the end of the frame, one per bone of its field or one alone for all; its
-    /// speed follows from the frame before. Empty, of another size or not finite: the body stays where it
-    /// was, and is nowhere before the first.
-    std::span<const BonePose> body_ws = {};
     std::optional<Float3> wind_ws = {};  ///< m/s, a script's mean wind of this frame, in place of the
                                          ///< authored one; ignored unless finite and within 1000 m/s
     /// m/s, of an actor that the caller does not move in world space; WindKind::vehicle blows against it.
@@ -62,6 +58,10 @@ struct FrameInput {
     /// moves nothing; one that is not finite is that of the frame before. Roots of reset() are measured from
     /// the origin of the frame that follows.
     std::array<double, 3> origin_ws{};
+    /// Of the engine's body at the end of the frame, one per bone of its field or one alone for all; its
+    /// speed follows from the frame before. Empty, of another size or not finite: the body stays where it
+    /// was, and is nowhere before the first.
+    std::span<const BonePose> body_ws = {};
 };
 
 }  // namespace hairloom::runtime
