@@ -60,7 +60,6 @@ step "head, scalp, roots, strands" create --mesh samples/bust/bust.glb --scalp "
     --placement dart --length "$length" --points 24 --seed 1 -o "$out/$style.hairloom"
 step "grooming" groom "$out/$style.hairloom" --script "samples/hairstyles/$style.json" -o "$out/$style.hairloom"
 step "collision spheres" spheres "$out/$style.hairloom" --from samples/bust/spheres.json --replace -o "$out/$style.hairloom"
-step "skin of head and shoulders" colliders "$out/$style.hairloom" --fit field -o "$out/$style.hairloom"
 step "simulation and material settings" set "$out/$style.hairloom" --from "samples/hairstyles/$style.settings.json" \
     -o "$out/$style.hairloom"
 if [ "$project_only" = no ]; then

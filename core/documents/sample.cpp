@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "core/base/file.h"
-#include "core/documents/body_fit.h"
 #include "core/documents/hair_import.h"
 #include "core/documents/open.h"
 #include "core/geometry/placement.h"
@@ -128,11 +127,6 @@ Result<Groom> makeSample(const fs::path& samples, const std::string& name) {
     auto spheres = readSpheres((samples / "bust/spheres.json").string());
     if (!spheres) return tl::unexpected(spheres.error());
     groom->spheres = std::move(*spheres);
-    const auto actor = actorForColliders({}, *groom);
-    if (!actor) return tl::unexpected(actor.error());
-    auto body = fitBody(*groom, actor->get());
-    if (!body) return tl::unexpected(body.error());
-    groom->body = std::move(body->field);
     if (auto status = readStyleSettings(style.string() + ".settings.json", *groom); !status) {
         return tl::unexpected(status.error());
     }

@@ -34,6 +34,7 @@ Groom hairyBall() {
     }
     Groom groom = makeGroom(std::move(offsets), std::move(positions));
     groom.scalp = ball;
+    groom.simulation.angularStiffness = 0.05f;  // falls on the ball
     return groom;
 }
 
@@ -93,8 +94,7 @@ TEST(BodyContact, RodsStayOutOfTheSkin) {
 }
 
 TEST(BodyContact, HairComesToRestOnIt) {
-    Groom groom = withBody(hairyBall());
-    groom.simulation.angularStiffness = 0.05f;  // falls on the ball
+    const Groom groom = withBody(hairyBall());
     const Ran ran = run(groom, 900, [](float) { return HeadPose{}; });
     EXPECT_LT(ran.deepest, 1e-3f);
     EXPECT_LT(ran.stats.fastestMmPerSecond, 1);
