@@ -58,8 +58,12 @@ std::string Engine::setBody(std::shared_ptr<const BodyField> body) {
 }
 
 std::size_t Engine::bodyBytes() const {
-    if (!impl_->body_ || impl_->rods_.planes.empty()) return 0;
-    return impl_->body_->bytes() + (impl_->clearances_.size() + impl_->bodySeen_.size()) * sizeof(float);
+    if (!impl_->meetsBody()) return 0;
+    const std::size_t loads = impl_->plan_.on(Effect::collision)
+                                  ? 0
+                                  : impl_->strands_->effectBytes(Effect::collision, impl_->state_);
+    return impl_->body_->bytes() + loads +
+           (impl_->clearances_.size() + impl_->bodySeen_.size()) * sizeof(float);
 }
 
 void Engine::setClock(std::function<std::uint64_t()> nanoseconds) {

@@ -60,13 +60,14 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
 /// The same for a body. A node keeps its radius from it, but no more than its clearance. Nodes that were far
 /// off when they were last looked at, and have not come far since, are not looked at.
 template <class Visit>
-HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, const RodView& rod,
-                          std::size_t pitch, std::size_t i, std::uint32_t substep, Visit&& visit) {
+HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, const BlockView& block,
+                          std::size_t i, std::uint32_t substep, Visit&& visit) {
     const V3 position_ws = node.position + root;
-    const V reach = hn::Min(node.radius, hn::Load(D(), rod.clearance + i));
+    const V reach = hn::Min(node.radius, hn::Load(D(), block.clearance + i));
     const V near = reach + hn::Sqrt(dot(node.displacement, node.displacement)) +
                    all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
-    float* const seen = rod.seen + i;
+    const std::size_t pitch = block.pitch;
+    float* const seen = block.bodySeen + i;
     const MovingBody::Carrier& carrier = body.carrier(substep);
     const V3 carried = mad3(all3(carrier.inverse.x), position_ws.x,
                             mad3(all3(carrier.inverse.y), position_ws.y,
