@@ -236,7 +236,8 @@ std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std:
     steps.push_back(setInterpolation(model, from.interpolation, name));
     steps.push_back(setPlacementSettings(model, from.placement, name));
     steps.push_back(setSpheres(model, from.spheres, name));
-    steps.push_back(setBody(model, from.body, name));
+    // Of another head it would be other skin.
+    if (from.scalp == model.groom.scalp) steps.push_back(setBody(model, from.body, name));
     return together(std::move(name), std::move(steps));
 }
 

@@ -37,12 +37,12 @@ std::vector<runtime::BonePose> bodyAt(const Groom& groom, const HeadPose& pose) 
         return runtime::BonePose{toFloat3(linear.col(0)), toFloat3(linear.col(1)), toFloat3(linear.col(2)),
                                  toFloat3(m.translation())};
     };
-    if (!pose.body_ws.empty() && pose.body_ws.size() == groom.body->bones.size()) {
+    if (!pose.body_ws.empty() && pose.body_ws.size() == std::max<std::size_t>(groom.body->bones.size(), 1)) {
         std::vector<runtime::BonePose> poses;
         for (const Eigen::Affine3f& bone : pose.body_ws) poses.push_back(toPose(bone));
         return poses;
     }
-    if (!pose.scalpPositions_ws.empty() && !groom.body->bones.empty()) return {};
+    if (!pose.scalpPositions_ws.empty()) return {};
     return {toPose(Eigen::Affine3f(pose.head_ws.matrix()))};
 }
 

@@ -35,6 +35,7 @@ Groom hairyBall() {
     Groom groom = makeGroom(std::move(offsets), std::move(positions));
     groom.scalp = ball;
     groom.simulation.angularStiffness = 0.05f;  // falls on the ball
+    groom.simulation.restGravity = 0;
     return groom;
 }
 
