@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/kernels.h"
+#include "hairloom/body_field.h"
 #include "hairloom/settings.h"
 
 namespace hairloom::runtime {

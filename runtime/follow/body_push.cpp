@@ -2,6 +2,7 @@
 #include "hairloom/body_push.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -13,13 +14,21 @@ constexpr std::size_t kPushedPerJob = 256;
 constexpr float kKept = 0.0005f;
 /// Metres of what a field that is interpolated is wrong at most: hair that rests is not moved.
 constexpr float kPushSlack = 1e-5f;
-constexpr float kMiddleOfInner = 9.0f / 16.0f, kMiddleOfOuter = -1.0f / 16.0f;
 
-/// Of a uniform Catmull-Rom curve, halfway between p and p + 1; missing neighbours repeat the end points.
-Float3 middleOf(std::span<const Float3> hair, std::size_t p) {
+/// Places of a uniform Catmull-Rom curve between p and p + 1: shares of the points p − 1 to p + 2, at ¼, ½
+/// and ¾.
+struct Place {
+    float before, a, b, after;
+};
+constexpr std::array<Place, 3> kPlaces{{{-9.0f / 128, 111.0f / 128, 29.0f / 128, -3.0f / 128},
+                                        {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16},
+                                        {-3.0f / 128, 29.0f / 128, 111.0f / 128, -9.0f / 128}}};
+
+/// Missing neighbours repeat the end points.
+Float3 placeOf(std::span<const Float3> hair, std::size_t p, const Place& place) {
     const Float3 a = hair[p], b = hair[p + 1];
     const Float3 before = p > 0 ? hair[p - 1] : a, after = p + 2 < hair.size() ? hair[p + 2] : b;
-    return (a + b) * kMiddleOfInner + (before + after) * kMiddleOfOuter;
+    return before * place.before + a * place.a + b * place.b + after * place.after;
 }
 
 }  // namespace
@@ -36,7 +45,7 @@ BodyPush::BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint3
     : body_(std::move(body)),
       offsets_(std::move(offsets)),
       least_(rest_ss.size(), kKept),
-      leastBetween_(rest_ss.size(), kKept) {
+      leastBetween_(kPlaces.size() * rest_ss.size(), kKept) {
     const auto depthAt = [&](Float3 at) {
         return body_->freeAround(at) > kKept ? kKept : std::min(body_->at(at).distance, kKept);
     };
@@ -44,7 +53,8 @@ BodyPush::BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint3
         const auto hair = rest_ss.subspan(offsets_[h], offsets_[h + 1] - offsets_[h]);
         for (std::size_t p = 0; p < hair.size(); ++p) {
             least_[offsets_[h] + p] = depthAt(hair[p]);
-            if (p + 1 < hair.size()) leastBetween_[offsets_[h] + p] = depthAt(middleOf(hair, p));
+            for (std::size_t i = 0; i < kPlaces.size() && p + 1 < hair.size(); ++i)
+                leastBetween_[kPlaces.size() * (offsets_[h] + p) + i] = depthAt(placeOf(hair, p, kPlaces[i]));
         }
     }
 }
@@ -73,24 +83,34 @@ bool BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
     return isNear;
 }
 
-void BodyPush::liftCurve(const PosedBody& body, Hair& hair) const {
+/// False where nothing was to be moved.
+bool BodyPush::liftCurve(const PosedBody& body, Hair& hair) const {
+    bool lifted = false;
     for (std::size_t p = 0; p + 1 < hair.points.size(); ++p) {
         Float3 &a = hair.points[p], &b = hair.points[p + 1];
         const float length = runtime::length(b - a);
-        // No middle is farther from its ends than the ends from each other.
+        // No place is farther from its ends than the ends from each other.
         if (!(std::min(p == 0 ? 0.0f : hair.away[p], hair.away[p + 1]) < length)) continue;
-        const Float3 middle = middleOf(hair.points, p);
-        if (!isFinite(middle) || body.freeAround(middle) > kKept) continue;
-        const PosedBody::Contact contact = body.at(middle);
-        if (!(contact.distance < hair.leastBetween[p] - kPushSlack)) continue;
-        const float share = p == 0 ? kMiddleOfInner : 2 * kMiddleOfInner;
-        const Float3 lift = contact.normal_ws * ((hair.leastBetween[p] - contact.distance) / share);
-        // Never farther than the points are from each other.
-        const float size = runtime::length(lift);
-        const Float3 moved = size > length ? lift * (length / size) : lift;
-        if (p > 0) a = a + moved;
-        b = b + moved;
+        for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+            const Place& place = kPlaces[i];
+            // Roots stay, and what is next to them.
+            if (p == 0 && place.b < place.a) continue;
+            const Float3 at = placeOf(hair.points, p, place);
+            if (!isFinite(at) || body.freeAround(at) > kKept) continue;
+            const PosedBody::Contact contact = body.at(at);
+            const float least = hair.leastBetween[kPlaces.size() * p + i];
+            if (!(contact.distance < least - kPushSlack)) continue;
+            const float share = p == 0 ? place.b : place.a + place.b;
+            const Float3 lift = contact.normal_ws * ((least - contact.distance) / share);
+            // Never farther than the points are from each other.
+            const float size = runtime::length(lift);
+            const Float3 moved = size > length ? lift * (length / size) : lift;
+            if (p > 0) a = a + moved;
+            b = b + moved;
+            lifted = true;
+        }
     }
+    return lifted;
 }
 
 void BodyPush::apply(std::span<const BonePose> pose, std::span<Float3> points_ws, const Host& host) const {
@@ -102,9 +122,12 @@ void BodyPush::apply(std::span<const BonePose> pose, std::span<Float3> points_ws
         for (std::size_t h = begin; h < end; ++h) {
             const std::size_t first = offsets_[h], count = offsets_[h + 1] - first;
             Hair hair{points_ws.subspan(first, count), std::span(least_).subspan(first, count),
-                      std::span(leastBetween_).subspan(first, count), away};
+                      std::span(leastBetween_).subspan(kPlaces.size() * first, kPlaces.size() * count), away};
             if (!liftPoints(body, hair)) continue;
-            liftCurve(body, hair);
+            // What was led out may have drawn what is beside it in.
+            constexpr int kRounds = 3;
+            for (int round = 0; round < kRounds && liftCurve(body, hair); ++round) {
+            }
         }
     };
     const std::size_t hairs = offsets_.empty() ? 0 : offsets_.size() - 1;

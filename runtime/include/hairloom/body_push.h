@@ -21,9 +21,9 @@ class BodyPush {
              std::span<const Float3> rest_ss);
 
     /// Moves points of hairs that are deeper out of the body, straight up, so that neither they nor the
-    /// middles of the curves (uniform Catmull-Rom) between them are. Roots stay. As many points as at rest;
-    /// those that are not finite stay as they are, as do all where the body has no pose. The same bits for
-    /// any number of threads.
+    /// curves (uniform Catmull-Rom) between them, at quarters of their way, are. Roots stay. As many points
+    /// as at rest; those that are not finite stay as they are, as do all where the body has no pose. The same
+    /// bits for any number of threads.
     void apply(std::span<const BonePose> pose, std::span<Float3> points_ws, const Host& host = {}) const;
 
     std::size_t bytes() const {
@@ -34,12 +34,12 @@ class BodyPush {
   private:
     struct Hair;
     bool liftPoints(const PosedBody& body, Hair& hair) const;
-    void liftCurve(const PosedBody& body, Hair& hair) const;
+    bool liftCurve(const PosedBody& body, Hair& hair) const;
 
     std::shared_ptr<const BodyField> body_;
     std::vector<std::uint32_t> offsets_;
     std::vector<float> least_;         ///< of each point, metres that it keeps from the body; negative inside
-    std::vector<float> leastBetween_;  ///< likewise halfway to the next point of its hair
+    std::vector<float> leastBetween_;  ///< likewise at three places on the way to the next point of its hair
 };
 
 }  // namespace hairloom::runtime
