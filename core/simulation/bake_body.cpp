@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <unordered_map>
 
 #include "core/base/parallel.h"
 #include "core/geometry/mesh_solid.h"
@@ -292,16 +293,95 @@ void boxBones(const Table& table, std::size_t bones, BodyField& field) {
     }
 }
 
-BodyFit fitOf(const ScalpMesh& mesh, const Body& body, const BodyField& field) {
+/// Vertices and middles of the skin's triangles, and with `between` three more places of each.
+std::vector<Vec3f> placesOfSkin(const ScalpMesh& mesh, const Body& body, bool between) {
     std::vector<std::uint8_t> isSkin(mesh.vertexCount(), 0);
     std::vector<Vec3f> places;
     for (const std::uint32_t face : body.faces()) {
         places.push_back(mesh.pointAt(face, Vec3f::Constant(1.0f / 3)));
+        for (Eigen::Index corner = 0; between && corner < 3; ++corner) {
+            Vec3f shares = Vec3f::Constant(1.0f / 6);
+            shares[corner] = 2.0f / 3;
+            places.push_back(mesh.pointAt(face, shares));
+        }
         for (const std::uint32_t v : mesh.triangles()[face]) {
             if (!isSkin[v]) places.push_back(mesh.positions()[v]);
             isSkin[v] = 1;
         }
     }
+    return places;
+}
+
+/// Distances that are right at corners are not between them. Changes those beside the skin by as little as
+/// makes the table 0 there (Kaczmarz's rows in turn, one place each).
+void fitBlocks(const Table& table, std::span<const std::size_t> near, std::span<const Vec3f> places,
+               BodyField& field) {
+    constexpr int kPasses = 12;
+    constexpr float kMost = 0.002f, kShare = 0.7f, kSteps = std::numeric_limits<std::int8_t>::max();
+    constexpr std::uint32_t kCorners = BodyField::kBlockCorners, kCells = BodyField::kBlockCells;
+    const Eigen::Array3i size = static_cast<int>(kCells) * table.size + 1;
+    const auto indexOf = [&](const Eigen::Array3i& at) {
+        return (static_cast<std::size_t>(at.z()) * static_cast<std::size_t>(size.y()) +
+                static_cast<std::size_t>(at.y())) *
+                   static_cast<std::size_t>(size.x()) +
+               static_cast<std::size_t>(at.x());
+    };
+    // Blocks share the corners between them.
+    struct Corner {
+        float measured, change = 0;
+    };
+    std::unordered_map<std::size_t, Corner> corners;
+    const auto forEachValue = [&](auto&& visit) {
+        for (std::size_t b = 0; b < near.size(); ++b) {
+            const Eigen::Array3i low = static_cast<int>(kCells) * Table::at(near[b], table.size);
+            std::int8_t* value = field.values.data() + b * BodyField::kBlockValues;
+            for (int z = 0; z < static_cast<int>(kCorners); ++z)
+                for (int y = 0; y < static_cast<int>(kCorners); ++y)
+                    for (int x = 0; x < static_cast<int>(kCorners); ++x)
+                        visit(indexOf(low + Eigen::Array3i(x, y, z)), *value++);
+        }
+    };
+    forEachValue([&](std::size_t corner, std::int8_t value) {
+        corners.try_emplace(corner, Corner{BodyField::kFineUnit * static_cast<float>(value)});
+    });
+    const float perFine = static_cast<float>(kCells) / table.cell;
+    for (int pass = 0; pass < kPasses; ++pass) {
+        for (const Vec3f& place : places) {
+            const Vec3f at = (place - table.low) * perFine;
+            const Eigen::Array3i low = at.array().floor().cast<int>();
+            if ((low < 0).any() || (low + 1 >= size).any()) continue;
+            const Vec3f in = at - low.cast<float>().matrix();
+            std::array<Corner*, 8> around{};
+            std::array<float, 8> weights{};
+            float distance = 0, squares = 0;
+            bool known = true;
+            for (std::size_t i = 0; i < 8 && known; ++i) {
+                const Eigen::Array3i step(static_cast<int>(i & 1), static_cast<int>(i >> 1 & 1),
+                                          static_cast<int>(i >> 2));
+                const auto found = corners.find(indexOf(low + step));
+                known = found != corners.end();
+                if (!known) break;
+                around[i] = &found->second;
+                weights[i] = (step.x() ? in.x() : 1 - in.x()) * (step.y() ? in.y() : 1 - in.y()) *
+                             (step.z() ? in.z() : 1 - in.z());
+                distance += weights[i] * (around[i]->measured + around[i]->change);
+                squares += weights[i] * weights[i];
+            }
+            if (!known) continue;
+            for (std::size_t i = 0; i < 8; ++i)
+                around[i]->change =
+                    std::clamp(around[i]->change - kShare * distance * weights[i] / squares, -kMost, kMost);
+        }
+    }
+    forEachValue([&](std::size_t corner, std::int8_t& value) {
+        const Corner& c = corners.at(corner);
+        const float steps = std::clamp((c.measured + c.change) / BodyField::kFineUnit, -kSteps, kSteps);
+        value = static_cast<std::int8_t>(std::lround(steps));
+    });
+}
+
+BodyFit fitOf(const ScalpMesh& mesh, const Body& body, const BodyField& field) {
+    const std::vector<Vec3f> places = placesOfSkin(mesh, body, true);
     std::vector<float> distances(places.size());
     parallelFor(places.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         // Beyond the table the field knows nothing: infinite, and left out.
@@ -368,6 +448,7 @@ Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
     baked.cell = table.cell / kBlockCells;
     measureCorners(table, body, field);
     measureBlocks(table, fitting->near, body, field);
+    fitBlocks(table, fitting->near, placesOfSkin(mesh, body, false), field);
     std::vector<std::uint32_t> bones;
     if (isSkinned) {
         const SkinTable skins(mesh, skin, body);

@@ -39,7 +39,8 @@ class SpheresPanel : public QWidget {
           count_(new QSpinBox),
           fit_(new QLabel),
           skin_(new QCheckBox(tr("Collide with the skin"))),
-          skinFit_(new QLabel) {
+          skinFit_(new QLabel),
+          skinNote_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -113,7 +114,7 @@ class SpheresPanel : public QWidget {
         skin_->setToolTip(
             tr("Keeps hair out of the head's own skin, wherever it bends. The CPU simulates it"));
         auto* again = pushButton("bodyFit", tr("Fit"),
-                                 tr("Measures the skin anew, where the hair reaches. Do this after hair has "
+                                 tr("Measures the skin again, where the hair reaches. Do this after hair has "
                                     "become longer or the head has changed"),
                                  [this] { fitSkin(); });
         auto* row = new QHBoxLayout;
@@ -124,6 +125,13 @@ class SpheresPanel : public QWidget {
         skinFit_->setProperty("role", "dim");
         skinFit_->setWordWrap(true);
         layout.addWidget(skinFit_);
+        skinNote_->setObjectName("bodyNote");
+        skinNote_->setWordWrap(true);
+        layout.addWidget(skinNote_);
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::Part::Physics)) sayWhatPasses();
+        });
+        connect(&player_, &Player::planPreviewChanged, this, &SpheresPanel::sayWhatPasses);
         connect(skin_, &QCheckBox::clicked, this, [this](bool checked) {
             if (checked) return fitSkin();
             document_.perform(editing::setBody(document_.editing().model(), nullptr, "Remove skin collider"));
@@ -135,9 +143,24 @@ class SpheresPanel : public QWidget {
         const QSignalBlocker quiet(skin_);
         skin_->setChecked(body != nullptr);
         skin_->setEnabled(document_.groom().scalp != nullptr);
+        sayWhatPasses();
         if (body && body == fitted_) return;  // says how well it fits
         skinFit_->setText(body ? tr("%1 kB").arg(static_cast<double>(body->bytes()) / 1000, 0, 'f', 0)
                                : QString());
+    }
+
+    /// What moves the hair in the preview may know of spheres alone.
+    void sayWhatPasses() {
+        const Groom& groom = document_.groom();
+        const bool springs = groom.simulation.strandModel != runtime::StrandModel::rods;
+        const bool passes = groom.body && (springs || player_.method().method != SimulationMethod::strands);
+        skinNote_->setVisible(passes);
+        skinNote_->setText(!passes ? QString()
+                           : springs
+                               ? tr("Springs pass through the skin. Select rods as the strand model, or "
+                                    "fit spheres")
+                               : tr("The method of playback passes through the skin. Select the strand "
+                                    "engine, or fit spheres"));
     }
 
     void fitSkin() {
@@ -281,6 +304,7 @@ class SpheresPanel : public QWidget {
     QLabel* fit_;
     QCheckBox* skin_;
     QLabel* skinFit_;
+    QLabel* skinNote_;
     std::shared_ptr<const runtime::BodyField> fitted_;  ///< that the words are of
 };
 

@@ -282,6 +282,7 @@ void Player::setMethod(const PlayedMethod& method) {
         requests.regroomed = true;
     });
     outdatePlanPreview();
+    Q_EMIT planPreviewChanged();
 }
 
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {

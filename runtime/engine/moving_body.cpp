@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shaders/rod_constants.h"
+
 namespace hairloom::runtime {
 
 namespace {
@@ -71,22 +73,55 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
     }
 }
 
-bool MovingBody::touch(std::uint32_t substep, Float3 point_ws, float reach, BodyTouch& touch,
-                       float& away) const {
+bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch, float& away) const {
     const PosedBody& now = at_[substep + 1];
-    away = now.freeAround(point_ws);
-    if (away > reach) return false;
-    const PosedBody::Contact contact = now.at(point_ws);
-    if (!(contact.distance <= reach)) {
+    away = now.freeAround(visit.point_ws);
+    if (away > visit.reach) return false;
+    const PosedBody::Contact contact = now.at(visit.point_ws);
+    if (!(contact.distance <= visit.reach)) {
         // What is interpolated, and posed, may be closer than it seems.
         constexpr float kSure = 0.9f, kUnsure = 0.2f;
         if (std::isfinite(contact.distance))
             away = std::max(away, kSure * contact.distance - kUnsure * now.cell());
         return false;
     }
-    touch = {contact.normal_ws, contact.distance,
-             now.place(contact.point_ss) - at_[substep].place(contact.point_ss)};
+    touch.normal = contact.normal_ws;
+    touch.distance = contact.distance;
+    touch.way = now.place(contact.point_ss) - at_[substep].place(contact.point_ss);
+    // By the plane that is there at the end; skin curves away from it.
+    touch.before = contact.distance - dot(touch.normal, visit.displacement - touch.way);
+    if (touch.before < visit.radius - static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP))
+        sweep(substep, visit, touch);
     return true;
+}
+
+/// Where the plane at the end has it inside at the start: whether it was, and if not, where it came in.
+void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch) const {
+    const Float3 moved = visit.displacement - touch.way;
+    const PosedBody::Contact start = at_[substep].at(visit.point_ws - visit.displacement);
+    touch.before = std::min(start.distance, visit.reach);
+    const float whole = length(moved);
+    if (touch.before < visit.radius || !(touch.distance < visit.radius) || !(whole > 0.0f)) return;
+    // From place to place, as far as nothing is, along its way by the body as it is at the end.
+    constexpr int kSteps = 16;
+    constexpr float kThere = 1e-4f;  // metres
+    float gone = 0.0f;
+    for (int step = 0; step < kSteps; ++step) {
+        const PosedBody::Contact contact =
+            at_[substep + 1].at(visit.point_ws - moved * (1.0f - gone / whole));
+        if (!std::isfinite(contact.distance)) return;
+        const float room = contact.distance - visit.radius;
+        if (room < kThere) {
+            const float rest = dot(contact.normal_ws, moved) * (1.0f - gone / whole);
+            // What leads out again is none that it came in by.
+            if (rest >= 0.0f) return;
+            touch.normal = contact.normal_ws;
+            touch.distance = contact.distance + rest;
+            return;
+        }
+        gone += room;
+        if (gone >= whole) return;
+    }
 }
 
 Floats bodyClearances(const RestShape& shape, const BodyField& body) {

@@ -16,7 +16,15 @@ namespace hairloom::runtime {
 struct BodyTouch {
     Float3 normal;   ///< out of the body, unit length, world
     float distance;  ///< metres, of the node's middle at the end of the substep; negative inside
+    float before;    ///< the same at the start
     Float3 way;      ///< of the body there in the substep
+};
+
+/// Where a node stands at the end of a substep, and how it has come there.
+struct BodyVisit {
+    Float3 point_ws, displacement;
+    float radius;  ///< metres that it keeps from the body
+    float reach;   ///< metres: what is farther away is none of its business
 };
 
 /// Poses of a body at the ends of a frame's substeps. Its bones go straight on from pose to pose, as roots
@@ -29,9 +37,10 @@ class MovingBody {
     void clear() { at_.clear(); }
     bool empty() const { return at_.empty(); }
 
-    /// Nothing and false where the body is farther away than `reach` at the end of the substep. `away` is
-    /// set then, to metres that the body is away at least.
-    bool touch(std::uint32_t substep, Float3 point_ws, float reach, BodyTouch& touch, float& away) const;
+    /// Nothing and false where the body is farther away than the reach at the end of the substep. `away` is
+    /// set then, to metres that the body is away at least. What came in in the substep meets the plane where
+    /// it did, however fast it is and however thin what it came into.
+    bool touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch, float& away) const;
 
     /// How far nodes are from where they were looked at is measured in the space of one of its bones.
     struct Carrier {
@@ -44,6 +53,8 @@ class MovingBody {
     bool lostTrack() const { return lostTrack_; }
 
   private:
+    void sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch) const;
+
     std::vector<PosedBody> at_;  ///< at the start of the frame, and at the end of each substep
     std::vector<BonePose> between_, before_;
     std::vector<Carrier> carriers_;  ///< at the end of each substep

@@ -72,9 +72,20 @@ std::vector<BonePose> posesOf(const BakedBody& body, HeadPose pose) {
     return bodyAt(groom, pose);
 }
 
+/// A head, with two bones and as a whole, measured once.
+struct Neck {
+    ScalpMesh mesh = headOnNeck();
+    Rig rig{mesh};
+    BakedBody skinned = baked(mesh, rig.skin), whole = baked(mesh);
+};
+const Neck& neck() {
+    static const Neck kNeck;
+    return kNeck;
+}
+
 TEST(BodyField, IsTheDistanceToTheSkin) {
-    const ScalpMesh mesh = headOnNeck();
-    const BakedBody body = baked(mesh);
+    const ScalpMesh& mesh = neck().mesh;
+    const BakedBody& body = neck().whole;
     EXPECT_LE((*body.field).bytes(), 300'000u);
     EXPECT_LT(body.fit.worstGap, 1e-3f);
     EXPECT_LT(body.fit.worstBulge, 1e-3f);
@@ -93,9 +104,7 @@ TEST(BodyField, IsTheDistanceToTheSkin) {
 }
 
 TEST(BodyField, IsPosedByBones) {
-    const ScalpMesh mesh = headOnNeck();
-    const Rig rig(mesh);
-    const BakedBody body = baked(mesh, rig.skin);
+    const auto& [mesh, rig, body, whole] = neck();
     for (const float degrees : {0.0f, 20.0f, -35.0f}) {
         const HeadPose pose = rig.pose(mesh, degrees);
         const auto bones = posesOf(body, pose);
@@ -120,9 +129,7 @@ TEST(BodyField, IsPosedByBones) {
 }
 
 TEST(BodyField, ABoneWithoutSizeCarriesNoSkin) {
-    const ScalpMesh mesh = headOnNeck();
-    const Rig rig(mesh);
-    const BakedBody body = baked(mesh, rig.skin);
+    const auto& [mesh, rig, body, whole] = neck();
     HeadPose pose = rig.pose(mesh, 10);
     pose.bones_ws[0].linear().setZero();
     const PosedBody posed((*body.field), posesOf(body, pose));
@@ -136,8 +143,7 @@ TEST(BodyField, ABoneWithoutSizeCarriesNoSkin) {
 }
 
 TEST(BodyField, MovesAsAWholeWithoutSkin) {
-    const ScalpMesh mesh = headOnNeck();
-    const BakedBody body = baked(mesh);
+    const BakedBody& body = neck().whole;
     HeadPose pose;
     pose.head_ws = Eigen::Translation3f(1, 2, 3) * Eigen::AngleAxisf(1, Vec3f(1, 2, 2).normalized());
     const PosedBody posed((*body.field), posesOf(body, pose));
@@ -147,12 +153,9 @@ TEST(BodyField, MovesAsAWholeWithoutSkin) {
 }
 
 TEST(BodyField, IsTheSameForAnyNumberOfThreads) {
-    const ScalpMesh mesh = headOnNeck();
-    const Rig rig(mesh);
+    const auto& [mesh, rig, four, whole] = neck();
     setThreadCount(1);
     const BakedBody one = baked(mesh, rig.skin);
-    setThreadCount(4);
-    const BakedBody four = baked(mesh, rig.skin);
     setThreadCount(0);
     EXPECT_EQ(one.field->distances, four.field->distances);
     EXPECT_EQ(one.field->values, four.field->values);
@@ -161,12 +164,12 @@ TEST(BodyField, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(BodyField, LeavesOutWhatHairDoesNotReach) {
-    const ScalpMesh mesh = headOnNeck();
+    const ScalpMesh& mesh = neck().mesh;
     BakeBodyOptions options;
     options.where = Box3f(Vec3f(-0.2f, 0, -0.2f), Vec3f(0.2f, 0.2f, 0.2f));
     const auto body = bakeBody(mesh, {}, {}, options);
     ASSERT_TRUE(body);
-    EXPECT_LT(body->cell, baked(mesh).cell) << "finer in as many bytes";
+    EXPECT_LT(body->cell, neck().whole.cell) << "finer in as many bytes";
     EXPECT_NEAR(body->field->at({0, 0.088f, 0}).distance, -0.002f, 2e-4f);
     EXPECT_TRUE(std::isinf(body->field->at({0, -0.15f, 0}).distance));
 }
@@ -195,7 +198,7 @@ TEST(BodyField, SaysWhatCannotBeBaked) {
 }
 
 TEST(BodyField, HostileTablesAreNone) {
-    const runtime::BodyField good = *baked(headOnNeck()).field;
+    const runtime::BodyField& good = *neck().whole.field;
     const auto refused = [&](auto&& change) {
         runtime::BodyField bad = good;
         change(bad);
@@ -212,9 +215,7 @@ TEST(BodyField, HostileTablesAreNone) {
 }
 
 TEST(BodyField, BytesComeBackAndDamagedOnesAreRefused) {
-    const ScalpMesh mesh = headOnNeck();
-    const Rig rig(mesh);
-    const runtime::BodyField field = *baked(mesh, rig.skin).field;
+    const runtime::BodyField& field = *neck().skinned.field;
     const std::vector<std::uint8_t> bytes = field.toBytes();
     const auto back = runtime::bodyFieldFromBytes(bytes);
     ASSERT_TRUE(back.field) << back.error;
@@ -244,9 +245,7 @@ TEST(BodyField, BytesComeBackAndDamagedOnesAreRefused) {
 }
 
 TEST(BodyField, FreeSpaceIsFree) {
-    const ScalpMesh mesh = headOnNeck();
-    const Rig rig(mesh);
-    const BakedBody body = baked(mesh, rig.skin);
+    const auto& [mesh, rig, body, whole] = neck();
     const HeadPose pose = rig.pose(mesh, 25);
     const PosedBody posed(*body.field, posesOf(body, pose));
     const MeshSolid truth(pose.scalpPositions_ws, mesh.triangles());

@@ -68,12 +68,16 @@ class RodStrip {
         }
         descend();
         if constexpr (kContacts) {
-            if (lookAgain()) descend();
+            // Skin has more curves than spheres have.
+            const int looks = context_.body ? kBodyLooks : 1;
+            for (int look = 0; look < looks && lookAgain(); ++look) descend();
         }
         finish();
     }
 
   private:
+    static constexpr int kBodyLooks = 3;
+
     /// One step of Gauss-Newton from the guess.
     void descend() {
         eliminate();

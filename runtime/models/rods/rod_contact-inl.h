@@ -72,27 +72,35 @@ HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, 
     const V3 carried = mad3(all3(carrier.inverse.x), position_ws.x,
                             mad3(all3(carrier.inverse.y), position_ws.y,
                                  mad3(all3(carrier.inverse.z), position_ws.z, all3(carrier.inverse.origin))));
-    const V3 gone =
+    const V3 since =
         carried - V3{hn::Load(D(), seen), hn::Load(D(), seen + pitch), hn::Load(D(), seen + 2 * pitch)};
-    const V used = hn::MulAdd(hn::Sqrt(dot(gone, gone)), all(carrier.largest), all(carrier.strayed));
+    const V used = hn::MulAdd(hn::Sqrt(dot(since, since)), all(carrier.largest), all(carrier.strayed));
     const auto far = used + near < hn::Load(D(), seen + 3 * pitch);
     if (HWY_LIKELY(hn::AllTrue(D(), far))) return;
-    alignas(64) float at[3][kWidth], farthest[kWidth], normal[3][kWidth], way[3][kWidth], distance[kWidth],
-        known[kWidth], place[3][kWidth];
+    alignas(64) float at[3][kWidth], gone[3][kWidth], keeps[kWidth], farthest[kWidth], normal[3][kWidth],
+        way[3][kWidth], distance[kWidth], before[kWidth], known[kWidth], place[3][kWidth];
     hn::Store(position_ws.x, D(), at[0]);
     hn::Store(position_ws.y, D(), at[1]);
     hn::Store(position_ws.z, D(), at[2]);
     hn::Store(carried.x, D(), place[0]);
     hn::Store(carried.y, D(), place[1]);
     hn::Store(carried.z, D(), place[2]);
+    hn::Store(node.displacement.x, D(), gone[0]);
+    hn::Store(node.displacement.y, D(), gone[1]);
+    hn::Store(node.displacement.z, D(), gone[2]);
+    hn::Store(reach, D(), keeps);
     hn::Store(near, D(), farthest);
     hn::Store(hn::IfThenElseZero(far, all(1.0f)), D(), known);
     std::uint32_t touched = 0;
     for (std::size_t lane = 0; lane < kWidth; ++lane) {
-        BodyTouch touch{{0.0f, 1.0f, 0.0f}, 1e3f, {}};
+        BodyTouch touch{{0.0f, 1.0f, 0.0f}, 1e3f, 1e3f, {}};
         if (known[lane] == 0.0f) {
             float away = 0.0f;
-            if (body.touch(substep, {at[0][lane], at[1][lane], at[2][lane]}, farthest[lane], touch, away)) {
+            const BodyVisit how{{at[0][lane], at[1][lane], at[2][lane]},
+                                {gone[0][lane], gone[1][lane], gone[2][lane]},
+                                keeps[lane],
+                                farthest[lane]};
+            if (body.touch(substep, how, touch, away)) {
                 touched |= 1u << lane;
                 away = 0.0f;
             }
@@ -100,6 +108,7 @@ HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, 
             seen[3 * pitch + lane] = away + carrier.strayed;
         }
         distance[lane] = touch.distance;
+        before[lane] = touch.before;
         normal[0][lane] = touch.normal.x;
         normal[1][lane] = touch.normal.y;
         normal[2][lane] = touch.normal.z;
@@ -110,8 +119,8 @@ HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, 
     if (HWY_LIKELY(touched == 0)) return;
     const V3 n{hn::Load(D(), normal[0]), hn::Load(D(), normal[1]), hn::Load(D(), normal[2])};
     const V3 moved{hn::Load(D(), way[0]), hn::Load(D(), way[1]), hn::Load(D(), way[2])};
-    const V depth = reach - hn::Load(D(), distance);
-    visit(RodTouch{n, depth, depth + dot(n, node.displacement - moved), moved}, maskOf(touched));
+    visit(RodTouch{n, reach - hn::Load(D(), distance), reach - hn::Load(D(), before), moved},
+          maskOf(touched));
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
