@@ -17,14 +17,11 @@ export HAIRLOOM_CLI=${HAIRLOOM_CLI:-$top/build/release/bin/hairloom-cli}
 cd "$top"
 for style in "${styles[@]}"; do
     [ -f "$out/$style.hairloom" ] || samples/make_hairstyle.sh --project-only "$style" "$out" > "$out/$style.txt"
-    "$HAIRLOOM_CLI" colliders "$out/$style.hairloom" --fit none -o "$out/$style-off.hairloom" --force > /dev/null
-    "$HAIRLOOM_CLI" colliders "$out/$style.hairloom" --fit field -o "$out/$style-on.hairloom" --force --json \
+    "$HAIRLOOM_CLI" colliders "$out/$style.hairloom" --fit field -o "$out/$style-skin.hairloom" --force --json \
         > "$out/$style-fit.json" 2> "$out/$style-fit.txt"
     for motion in clip:nod_and_turn nod spin; do
-        for with in off on; do
-            "$HAIRLOOM_CLI" simulate "$out/$style-$with.hairloom" --frames 60 --fps 60 --wind 3,0,0 --motion "$motion" \
-                --json > "$out/$style-${motion#clip:}-$with.json"
-        done
+        "$HAIRLOOM_CLI" simulate "$out/$style-skin.hairloom" --frames 60 --fps 60 --wind 3,0,0 --motion "$motion" --json \
+            > "$out/$style-${motion#clip:}.json"
     done
 done
 table=$out/table.md
@@ -33,12 +30,10 @@ import json, sys
 out, *styles = sys.argv[1:]
 print("| sample | clip | nod | spin | authored | worst gap | kB |\n|---|---|---|---|---|---|---|")
 for style in styles:
-    cells = []
-    for motion in ("nod_and_turn", "nod", "spin"):
-        off, on = (json.load(open(f"{out}/{style}-{motion}-{w}.json")) for w in ("off", "on"))
-        cells.append(f"{off['max_mesh_penetration_mm']:.1f} → {on['max_mesh_penetration_mm']:.1f}")
+    reports = [json.load(open(f"{out}/{style}-{motion}.json")) for motion in ("nod_and_turn", "nod", "spin")]
+    cells = [f"{r['max_mesh_penetration_mm']:.1f} ({r['max_guide_penetration_mm']:.1f})" for r in reports]
     fit = json.load(open(f"{out}/{style}-fit.json"))
-    print(f"| {style} | {' | '.join(cells)} | {on['authored_depth_mm']:.1f} | {fit['worst_gap_mm']:.1f} | "
+    print(f"| {style} | {' | '.join(cells)} | {reports[0]['authored_depth_mm']:.1f} | {fit['worst_gap_mm']:.1f} | "
           f"{fit['bytes'] / 1000:.0f} |")
 PY
 cat "$table"

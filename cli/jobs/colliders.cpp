@@ -21,13 +21,14 @@ struct CollidersOptions {
     std::string input;
     std::string fit;
     double error = 1;  // mm
+    std::size_t kilobytes = kMostBodyBytes / 1000;
     double near = 0.08;
     std::string character;
     std::string output;
 };
 
 Status fitField(Groom& groom, const Actor* actor, const CollidersOptions& options, Report& report) {
-    auto baked = fitBody(groom, actor, static_cast<float>(1e-3 * options.error));
+    auto baked = fitBody(groom, actor, static_cast<float>(1e-3 * options.error), 1000 * options.kilobytes);
     if (!baked) return tl::unexpected(inFile(baked.error(), options.input));
     for (const std::string& note : baked->notes) log::warning("{}", note);
     constexpr double kMm = 1000;
@@ -96,6 +97,9 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::IsMember({"field", "spheres", "none"}));
     job.add_option("--error", options->error, "Skin may lie this far outside the colliders, in millimetres")
         ->check(CLI::Range(0.1, 100.0));
+    job.add_option("--kilobytes", options->kilobytes,
+                   "With --fit field: the most that it may take. More is finer at ears and other thin parts")
+        ->check(CLI::Range(50, 10'000));
     job.add_option(
            "--near", options->near,
            "With --fit spheres: skin within this distance of hair counts, in metres. 0 uses all of it")

@@ -29,9 +29,10 @@ void attachSpheres(const Actor& actor, std::span<CollisionSphere> spheres) {
     for (CollisionSphere& sphere : spheres) sphere.bone = boneUnder(actor, sphere.centre, sphere.radius);
 }
 
-Result<BakedBody> fitBody(const Groom& groom, const Actor* actor, float error) {
+Result<BakedBody> fitBody(const Groom& groom, const Actor* actor, float error, std::size_t mostBytes) {
     constexpr float kCoarsest = 0.004f, kFinest = 0.0005f;  // metres
     BakeBodyOptions options;
+    options.mostBytes = mostBytes;
     options.finest = std::clamp(2 * error, kFinest, kCoarsest);
     auto baked = bakeBodyOf(groom, actor, options);
     while (baked && baked->fit.worstGap > error && baked->cell <= 1.01f * options.finest &&

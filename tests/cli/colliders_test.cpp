@@ -29,7 +29,11 @@ TEST_F(Colliders, TheSkinKeepsHairOutOfTheHead) {
     EXPECT_EQ(fitted["fit"], "field");
     EXPECT_EQ(fitted["body"], true);
     EXPECT_LE(fitted["worst_gap_mm"], 1) << fitted["notes"];
-    EXPECT_LE(fitted["bytes"], 300'000);
+    EXPECT_LE(fitted["bytes"], 1'000'000);
+    const Outcome small = run("colliders soft.hairloom --fit field --kilobytes 100 -o small.hairloom --json");
+    EXPECT_THAT(small.errors, HasSubstr("to fit into 100 kB"));
+    EXPECT_LE(small.json()["bytes"], 100'000);
+    EXPECT_EQ(run("colliders soft.hairloom --fit field --kilobytes 1 -o x.hairloom").exitCode, 2);
     EXPECT_THAT(fitted["bones"], testing::Contains("head"));
     const std::string motion = " --frames 30 --motion clip:nod_and_turn";
     const auto bare = runJson("simulate soft.hairloom" + motion);
