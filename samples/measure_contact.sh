@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # measure_contact.sh OUT [PAGE [STYLE...]]: fits the skin collider to the sample hairstyles and moves them in wind of 3 m/s for a
-# second, each by a clip, a nod and a spin. Prints how deep drawn hair comes into the mesh as a table, which replaces the one
+# second, each by a clip, a nod and a spin, with two follow hairs per guide. Prints how deep drawn hair comes into the mesh as a table, which replaces the one
 # between the marks of PAGE (docs/contact.md) where that is named.
 set -euo pipefail
 
@@ -17,7 +17,8 @@ export HAIRLOOM_CLI=${HAIRLOOM_CLI:-$top/build/release/bin/hairloom-cli}
 cd "$top"
 for style in "${styles[@]}"; do
     [ -f "$out/$style.hairloom" ] || samples/make_hairstyle.sh --project-only "$style" "$out" > "$out/$style.txt"
-    "$HAIRLOOM_CLI" colliders "$out/$style.hairloom" --fit field -o "$out/$style-skin.hairloom" --force --json \
+    "$HAIRLOOM_CLI" set "$out/$style.hairloom" interpolation.followPerGuide=2 -o "$out/$style-few.hairloom" --force > /dev/null
+    "$HAIRLOOM_CLI" colliders "$out/$style-few.hairloom" --fit field -o "$out/$style-skin.hairloom" --force --json \
         > "$out/$style-fit.json" 2> "$out/$style-fit.txt"
     for motion in clip:nod_and_turn nod spin; do
         "$HAIRLOOM_CLI" simulate "$out/$style-skin.hairloom" --frames 60 --fps 60 --wind 3,0,0 --motion "$motion" --json \

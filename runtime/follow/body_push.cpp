@@ -123,10 +123,9 @@ void BodyPush::apply(std::span<const BonePose> pose, std::span<Float3> points_ws
             const std::size_t first = offsets_[h], count = offsets_[h + 1] - first;
             Hair hair{points_ws.subspan(first, count), std::span(least_).subspan(first, count),
                       std::span(leastBetween_).subspan(kPlaces.size() * first, kPlaces.size() * count), away};
-            if (!liftPoints(body, hair)) continue;
             // What was led out may have drawn what is beside it in.
-            constexpr int kRounds = 3;
-            for (int round = 0; round < kRounds && liftCurve(body, hair); ++round) {
+            constexpr int kRounds = 6;
+            for (int round = 0; round < kRounds && liftPoints(body, hair) && liftCurve(body, hair); ++round) {
             }
         }
     };
