@@ -17,6 +17,7 @@
 #include "core/groom/point_dye.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
+#include "hairloom/body_field.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
