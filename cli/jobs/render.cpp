@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/backend.h"
+#include "cli/body_notes.h"
 #include "cli/documents.h"
 #include "cli/error_report.h"
 #include "cli/job.h"
@@ -326,6 +327,13 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     const auto playing = play(options, **device, *groom, view);
     if (!playing) return tl::unexpected(playing.error());
     Photographer photographer(options, (*device)->device(), *groom, view, *how, playing->shots.get());
+    std::vector<std::string> notes;
+    if (playing->shots) notes = bodyNotes(*groom, playing->motion->poseAt(0), true);
+    if (!options.record.empty()) {
+        const auto first = readFrame(options.record, *groom, 0);
+        if (!first) return tl::unexpected(first.error());
+        notes = recordNotes(*groom, first->pose);
+    }
     std::vector<render::Image> images;
     Report report;
     std::optional<Progress> progress;
@@ -344,6 +352,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (progress) progress->done(i + 1);
     }
     progress.reset();
+    reportNotes(notes, report);
     if (options.sequence()) report["pictures"] = shots->size();
     if (!options.animation.empty()) {
         const bool isWebp = std::filesystem::path(options.animation).extension() == ".webp";

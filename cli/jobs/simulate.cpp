@@ -8,6 +8,7 @@
 
 #include "cli/advice_report.h"
 #include "cli/backend.h"
+#include "cli/body_notes.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
@@ -237,6 +238,7 @@ Result<Report> simulate(const SimulateOptions& options) {
         recorder.emplace(std::move(*opened));
     }
 
+    std::vector<std::string> notes = bodyNotes(*groom, pose, options.method == "strands");
     std::optional<RecordComparison> comparison;
     if (!options.against.empty()) comparison.emplace(options.against);
 
@@ -278,7 +280,13 @@ Result<Report> simulate(const SimulateOptions& options) {
         if (!kept) return tl::unexpected(kept.error());
         if (auto saved = saveProject(*kept, options.output); !saved) return tl::unexpected(saved.error());
         report["output"] = options.output;
+        if (groom->body && !kept->body)
+            notes.push_back(
+                fmt::format("{}: has no skin collider, which is measured on the head at rest. Fit it to the "
+                            "head as it stands there (colliders --fit field)",
+                            options.output));
     }
+    reportNotes(notes, report);
     return report;
 }
 

@@ -6,10 +6,8 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/sphere_report.h"
-#include "core/animation/bone_near.h"
 #include "core/base/content_kind.h"
-#include "core/base/log.h"
-#include "core/documents/motions.h"
+#include "core/documents/body_fit.h"
 #include "core/editing/sphere_parts.h"
 #include "core/groom/file/project_file.h"
 
@@ -27,22 +25,6 @@ struct SpheresOptions {
     std::string output;
 };
 
-/// Puts spheres on the bones of the groom's character. One that is named has to be there; without the one
-/// that the groom came from, they stay with the head as a whole.
-Status attach(std::vector<CollisionSphere>& spheres, const Groom& groom, const SpheresOptions& options) {
-    if (options.character.empty() && groom.characterFile.empty()) return {};
-    const auto actor = loadActor(options.character, groom);
-    if (!actor && !options.character.empty()) return tl::unexpected(actor.error());
-    if (!actor) {
-        log::warning("{}. The spheres have no bone and do not move with clips: set the file with --character",
-                     actor.error().message());
-        return {};
-    }
-    if ((*actor)->skeleton().empty()) return {};
-    for (CollisionSphere& sphere : spheres) sphere.bone = boneUnder(**actor, sphere.centre, sphere.radius);
-    return {};
-}
-
 Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOptions& options,
                                             Report& report) {
     if (!groom.scalp) return failIn(options.input, {}, "there is no head to fit spheres to");
@@ -52,7 +34,9 @@ Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOpt
     if (options.near > 0) wanted.region = editing::facesNearHair(groom, static_cast<float>(options.near));
     auto fit = editing::fitSpheres(*groom.scalp, wanted);
     if (!fit) return tl::unexpected(inFile(fit.error(), options.input));
-    if (auto status = attach(fit->spheres, groom, options); !status) return tl::unexpected(status.error());
+    const auto actor = actorForColliders(options.character, groom);
+    if (!actor) return tl::unexpected(actor.error());
+    if (*actor) attachSpheres(**actor, fit->spheres);
     report["on_bones"] =
         std::ranges::count_if(fit->spheres, [](const auto& one) { return !one.bone.empty(); });
     addFit(report, *fit);

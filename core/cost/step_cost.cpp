@@ -129,7 +129,7 @@ BareSolve::BareSolve(std::uint32_t strands, std::uint32_t points, runtime::Stran
     plan_ = runtime::plan(scene);
     hair_->takeSettings(*shape_, settings_, nullptr, state_);
     hair_->takeState(*shape_, settings_, state_);
-    hair_->allocate(*shape_, settings_, plan_, state_);
+    hair_->allocate(*shape_, settings_, plan_, plan_.on(runtime::Effect::collision), state_);
     const runtime::Model& kernels = runtime::modelOf(model);
     work_.resize(kernels.laneFloats + kernels.solverFloats(plan_.stages()) * points +
                  runtime::kSolverPadding);

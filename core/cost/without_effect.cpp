@@ -10,6 +10,9 @@ std::optional<WithoutEffect> withoutEffect(const SceneHair& hair, std::string_vi
     if (effect == kCollisionEffect) {
         result.hair.groom.spheres.clear();
         result.how = "no spheres";
+    } else if (effect == kBodyEffect) {
+        if (hair.groom.body) result.how = "no body";
+        result.hair.groom.body.reset();
     } else {
         result.how = turnEffectOff(result.hair.groom.simulation, effect);
     }

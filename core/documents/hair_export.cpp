@@ -15,6 +15,7 @@
 #include "core/interpolation/follow_hairs.h"
 #include "core/levels/spring_fit.h"
 #include "core/live/root_rotations.h"
+#include "core/simulation/body_push.h"
 #include "core/simulation/simulation.h"
 #include "core/stability/certificate.h"
 
@@ -24,7 +25,14 @@ namespace {
 /// Follow hairs in a frame, wisps as wide as their speed makes them.
 class MovingHairs {
   public:
-    MovingHairs(const Groom& rest, const FollowBindings& bindings) : rest_(rest), bindings_(bindings) {}
+    static Result<MovingHairs> make(const Groom& rest, const FollowBindings& bindings) {
+        MovingHairs hairs(rest, bindings);
+        if (!rest.body) return hairs;
+        const auto baked = bakeFollowHairs(rest, bindings);
+        if (!baked) return tl::unexpected(baked.error());
+        hairs.push_ = makeBodyPush(rest, baked->offsets.view(), baked->positions());
+        return hairs;
+    }
 
     Result<std::vector<Vec3f>> at(const Groom& posed, const RecordedFrame& frame) {
         std::vector<Vec3f> guides = guidePositions(posed, bindings_);
@@ -38,13 +46,17 @@ class MovingHairs {
         auto made = evaluateFollowHairs(bindings_, {guides, velocities, rotations}, {}, hairs);
         before_ = std::move(guides);
         if (!made) return tl::unexpected(made.error());
+        if (push_) pushOutOfBody(*push_, rest_, frame.pose, hairs);
         return hairs;
     }
 
   private:
+    MovingHairs(const Groom& rest, const FollowBindings& bindings) : rest_(rest), bindings_(bindings) {}
+
     const Groom& rest_;
     const FollowBindings& bindings_;
     std::vector<Vec3f> before_;  ///< guides, a frame ago
+    std::optional<runtime::BodyPush> push_;
 };
 
 std::vector<Vec3f> pointsOf(const Groom& whole, std::span<const std::uint32_t> strands,
@@ -67,7 +79,13 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
                           const HairToExport& wanted, const FollowBindings* bindings) {
     Moving moving;
     std::optional<MovingHairs> hairs;
-    if (bindings) hairs.emplace(guides, *bindings);
+    if (bindings) {
+        auto made = MovingHairs::make(guides, *bindings);
+        if (!made) return tl::unexpected(made.error());
+        hairs.emplace(std::move(*made));
+    }
+    const auto push =
+        bindings ? std::nullopt : makeBodyPush(guides, guides.offsets.view(), guides.positions());
     for (const RecordedFrame& frame : wanted.frames) {
         const Groom posed = posedGroom(guides, pointsOf(whole, strands, frame.positions_ws), frame.pose);
         std::vector<Vec3f> shape(posed.positions().begin(), posed.positions().end());
@@ -77,8 +95,10 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
             if (!made) return tl::unexpected(made.error());
             shape = std::move(*made);
         }
+        if (push) pushOutOfBody(*push, guides, frame.pose, shape);
         if (moving.shapes.empty()) {
             moving.first = posed;
+            if (push) moving.first.pointAttributes.set(attribute::kPosition, shape);
             if (bindings) {
                 auto baked = bakeFollowHairs(guides, *bindings);
                 if (!baked) return tl::unexpected(baked.error());
@@ -150,6 +170,8 @@ Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand
                       static_cast<std::uint32_t>(made->failed.size())};
 }
 
+constexpr std::string_view kRuntimeFormat = "runtime";
+
 }  // namespace
 
 Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
@@ -170,7 +192,10 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         if (!found) return tl::unexpected(found.error());
         strands = std::move(*found);
     }
-    const Groom guides = wanted.layers.empty() ? groom : strandsOf(groom, strands);
+    Groom guides = wanted.layers.empty() ? groom : strandsOf(groom, strands);
+    // What simulates the file meets its spheres alone, and so does what measures it.
+    const bool losesBody = groom.body && (writer.holdsCards() || writer.name == kRuntimeFormat);
+    if (losesBody) guides.body.reset();
     const std::uint32_t perGuide = guides.interpolation.followPerGuide;
     const bool isBaked = wanted.hair == ExportedHair::hairs && perGuide > 0 && !writer.holdsCards();
     FollowBindings bindings;
@@ -207,6 +232,11 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
     auto report = writer.holdsCards() ? writeCards(shown, wanted, writer, path, exporting)
                                       : writer.write(shown, path, exporting);
     if (report) report->safeLimits = exporting.safeLimits;
+    if (report && losesBody)
+        report->findings.push_back(
+            {Severity::Warning,
+             fmt::format("the skin collider is left out: hair meets {} spheres there", groom.spheres.size()),
+             "body", "fit spheres to the skin (spheres --fit)"});
     if (report && marksGuides)
         report->findings.push_back(
             {Severity::Info,

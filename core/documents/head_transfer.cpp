@@ -110,6 +110,12 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
             "inch)");
     }
     done.transfer = std::move(*transfer);
+    if (groom.body) {
+        done.words.push_back(
+            "The skin collider was of the old head and is gone. Fit it to the new one (colliders --fit "
+            "field)");
+        log::warning("{}: {}", path, done.words.back());
+    }
     // Skeleton and clips fit no head that was turned.
     if (!done.taken.isTurned()) moved.characterFile = path;
     moved.characterMetresPerUnit = done.taken.metresPerUnit;

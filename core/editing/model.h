@@ -26,7 +26,7 @@ enum class Part : std::uint32_t {
     ScalpFaces = 1u << 4u,      ///< the selection that carries hair
     Density = 1u << 5u,         ///< of roots, per vertex of the mesh
     Placement = 1u << 6u,       ///< settings of it
-    Spheres = 1u << 7u,         ///< collision spheres
+    Spheres = 1u << 7u,         ///< collision spheres and body
     Physics = 1u << 8u,         ///< settings of the simulation
     Material = 1u << 9u,        ///< of the hair
     Interpolation = 1u << 10u,  ///< settings of follow hairs

@@ -13,6 +13,7 @@
 #include "core/groom/file/layers_json.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/groom_hash.h"
+#include "hairloom/body_field.h"
 
 namespace hairloom::editing {
 namespace {
@@ -79,7 +80,7 @@ Part differenceOf(const Groom& a, const Groom& b) {
         {Part::ScalpFaces, a.scalpSelection != b.scalpSelection || a.scalpExpression != b.scalpExpression},
         {Part::Density, a.scalpDensity != b.scalpDensity},
         {Part::Placement, differs(a.placement, b.placement)},
-        {Part::Spheres, differs(a.spheres, b.spheres)},
+        {Part::Spheres, differs(a.spheres, b.spheres) || a.body != b.body},
         {Part::Physics, differs(a.simulation, b.simulation)},
         {Part::Material, differs(a.material, b.material)},
         {Part::Interpolation, differs(a.interpolation, b.interpolation)},
@@ -180,6 +181,17 @@ std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSph
         std::move(record), bytes);
 }
 
+std::unique_ptr<Command> setBody(const Model& model, std::shared_ptr<const runtime::BodyField> body,
+                                 std::string name) {
+    using Body = std::shared_ptr<const runtime::BodyField>;
+    if (model.groom.body == body) return nullptr;
+    const std::size_t bytes =
+        std::max(body ? body->bytes() : 0, model.groom.body ? model.groom.body->bytes() : 0);
+    return valueCommand<Body>(
+        std::move(name), Part::Spheres, [](Model& m) -> Body& { return m.groom.body; }, std::move(body), {},
+        bytes);
+}
+
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers) {
     const std::vector<Layer>& now = model.groom.layers;
     assert(layers.size() >= now.size());
@@ -224,6 +236,8 @@ std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std:
     steps.push_back(setInterpolation(model, from.interpolation, name));
     steps.push_back(setPlacementSettings(model, from.placement, name));
     steps.push_back(setSpheres(model, from.spheres, name));
+    // Of another head it would be other skin.
+    if (from.scalp == model.groom.scalp) steps.push_back(setBody(model, from.body, name));
     return together(std::move(name), std::move(steps));
 }
 

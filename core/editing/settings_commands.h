@@ -23,6 +23,9 @@ std::unique_ptr<Command> setPlacementSettings(const Model& model, const Placemen
                                               std::string name = "Placement settings");
 std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSphere> spheres,
                                     std::string name);
+/// The skin that hair collides with, baked from the groom's own head; null: none.
+std::unique_ptr<Command> setBody(const Model& model, std::shared_ptr<const runtime::BodyField> body,
+                                 std::string name);
 /// As many layers as there are or more, for strands name them by index.
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers);
 

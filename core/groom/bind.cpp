@@ -30,7 +30,10 @@ std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> sc
     groom.setRootBindings(roots);
     groom.strandAttributes.set(attribute::kRootUv, std::move(uvs));
     groom.triangulation = {};
-    if (groom.scalp != scalp) groom.scalpDensity.clear();
+    if (groom.scalp != scalp) {
+        groom.scalpDensity.clear();
+        groom.body.reset();
+    }
     groom.scalp = std::move(scalp);
     groom.scalpSelection = std::move(selection);
     return distances;

@@ -20,6 +20,10 @@
 
 namespace hairloom {
 
+namespace runtime {
+struct BodyField;
+}
+
 /// A sphere that strands collide with, fixed to a bone.
 struct CollisionSphere {
     std::string name;
@@ -74,6 +78,9 @@ struct Groom {
     std::vector<Layer> layers{Layer{}};
     std::vector<std::string> groupNames;
     std::vector<CollisionSphere> spheres;
+    /// What rods collide with beside spheres: the skin of `scalp`, baked (hairloom/body_field.h), with the
+    /// names of the bones that move it; null: none. Shared and immutable. Goes with its scalp.
+    std::shared_ptr<const runtime::BodyField> body;
     HairMaterial material;
     runtime::SimulationSettings simulation;
     InterpolationSettings interpolation;

@@ -8,6 +8,7 @@
 #include "core/base/hash.h"
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/fields.h"
+#include "hairloom/body_field.h"
 
 namespace hairloom {
 namespace {
@@ -82,6 +83,7 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
         hasher.text(sphere.bone);
     }
     hasher.number(groom.cardEdits.size());
+    if (groom.body) hasher.array(std::span<const std::uint8_t>(groom.body->toBytes()));
     for (const CardEdit& edit : groom.cardEdits) hasher.text(toJson(edit).dump());
     hashFields(hasher, groom.material);
     hashFields(hasher, groom.interpolation);

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/mesh_solid.h"
 #include "core/interpolation/strand_follow.h"
+#include "core/simulation/body_push.h"
 
 namespace hairloom {
 namespace {
@@ -303,7 +304,10 @@ struct DrawnDepthMeter::Impl {
     PosedBody rest;
     std::optional<Curves> guides;
     std::optional<DrawnFollowHairs> follow;
-    std::optional<Curves> hairs;  ///< of `follow`
+    std::optional<Curves> hairs;  ///< of `follow`, or of guides that a body pushes out
+    std::shared_ptr<const Groom> whole;
+    std::optional<runtime::BodyPush> push;
+    std::vector<Vec3f> drawnPoints;
     std::uint64_t frames = 0;
     DrawnDepth result;
 
@@ -334,9 +338,12 @@ struct DrawnDepthMeter::Impl {
         const float guide = guides->measure(positions_ws, toBody, body, result.deepestGuide).deepest;
         result.deepestGuide = std::max(result.deepestGuide, static_cast<double>(guide));
         float drawn = guide;
-        if (follow) {
-            const auto points = follow->at(positions_ws, velocities_ws, rotationsAt(pose));
-            drawn = hairs->measure(points, toBody, body, result.deepest).deepest;
+        if (hairs) {
+            std::span<const Vec3f> points = positions_ws;
+            if (follow) points = follow->at(positions_ws, velocities_ws, rotationsAt(pose));
+            drawnPoints.assign(points.begin(), points.end());
+            if (push) pushOutOfBody(*push, *whole, pose, drawnPoints);
+            drawn = hairs->measure(drawnPoints, toBody, body, result.deepest).deepest;
         }
         ++frames;
         if (static_cast<double>(drawn) <= result.deepest) return;
@@ -358,8 +365,15 @@ Result<DrawnDepthMeter> DrawnDepthMeter::make(const Groom& groom) {
         auto follow = DrawnFollowHairs::make(groom);
         if (!follow) return tl::unexpected(follow.error());
         impl->follow.emplace(std::move(*follow));
-        impl->hairs.emplace(impl->follow->offsets(), impl->follow->at(groom.positions(), {}, {}), impl->rest);
+        const auto points = impl->follow->at(groom.positions(), {}, {});
+        impl->hairs.emplace(impl->follow->offsets(), points, impl->rest);
+        impl->push = makeBodyPush(groom, impl->follow->offsets(), points);
+    } else if (groom.body) {
+        impl->hairs.emplace(std::vector<std::uint32_t>(offsets.begin(), offsets.end()), groom.positions(),
+                            impl->rest);
+        impl->push = makeBodyPush(groom, offsets, groom.positions());
     }
+    if (impl->push) impl->whole = std::make_shared<const Groom>(groom);
     return DrawnDepthMeter(std::move(impl));
 }
 

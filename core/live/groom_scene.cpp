@@ -17,6 +17,7 @@
 #include "core/live/root_rotations.h"
 #include "core/render/exr.h"
 #include "core/render/png.h"
+#include "core/simulation/body_push.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom {
@@ -246,6 +247,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         }
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) {
+        scene.push_ = makeBodyPush(groom, groom.offsets.view(), groom.positions());
         scene.materials_.ofStrands = materialsOfStrands(groom);
         if (scene.materials_.hasLook()) scene.weights_ = weightsOfStrands(groom);
         scene.clumping_ = render::measureClumping(scene.scene().strands);
@@ -269,6 +271,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         scene.weights_ = std::move(*weights);
     }
     scene.makeFollowHairs({}, {});
+    scene.push_ = makeBodyPush(groom, scene.hairOffsets_, scene.hairPositions_ws_);
     scene.clumping_ = render::measureClumping(scene.scene().strands);
     return scene;
 }
@@ -276,7 +279,11 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
 void GroomScene::pose(std::span<const Vec3f> positions_ws, std::span<const Vec3f> velocities_ws,
                       const HeadPose& pose) {
     posed_ = posedGroom(rest_, positions_ws, pose);
-    if (bindings_) makeFollowHairs(velocities_ws, pose);
+    if (bindings_) return makeFollowHairs(velocities_ws, pose);
+    if (!push_) return;
+    std::vector<Vec3f> drawn(positions_ws.begin(), positions_ws.end());
+    pushOutOfBody(*push_, rest_, pose, drawn);
+    posed_.pointAttributes.set(attribute::kPosition, std::move(drawn));
 }
 
 void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
@@ -326,6 +333,7 @@ void GroomScene::makeFollowHairs(std::span<const Vec3f> velocities_ws, const Hea
     followHairs_->evaluate(
         guides, {reinterpret_cast<runtime::Float3*>(hairPositions_ws_.data()), hairPositions_ws_.size()},
         host);
+    if (push_) pushOutOfBody(*push_, rest_, pose, hairPositions_ws_);
 }
 
 render::RenderScene GroomScene::scene() const {

@@ -13,6 +13,7 @@
 #include "core/render/picture.h"
 #include "core/shading/melanin.h"
 #include "core/simulation/motion.h"
+#include "hairloom/body_push.h"
 
 namespace hairloom {
 
@@ -111,8 +112,9 @@ class GroomScene {
     std::optional<FollowBindings> bindings_;
     std::optional<StrandFollow> follow_;
     std::optional<runtime::FollowHairs> followHairs_;
-    std::vector<std::uint32_t> indices_;  ///< of the head's triangles that are drawn
-    std::vector<Vec3f> triangleAlbedo_;   ///< of these: skin, tinted by hair where the scalp is
+    std::optional<runtime::BodyPush> push_;  ///< of what is drawn, where the groom has a body
+    std::vector<std::uint32_t> indices_;     ///< of the head's triangles that are drawn
+    std::vector<Vec3f> triangleAlbedo_;      ///< of these: skin, tinted by hair where the scalp is
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;

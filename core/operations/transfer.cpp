@@ -179,6 +179,7 @@ Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head)
     groom.characterFile.clear();
     groom.characterMetresPerUnit = 0;
     groom.scalp = std::move(head);
+    groom.body.reset();
     if (auto pushed = collide(groom, {kClearance}); !pushed) return tl::unexpected(pushed.error());
     return transfer;
 }

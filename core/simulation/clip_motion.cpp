@@ -5,13 +5,19 @@
 
 #include <algorithm>
 
+#include "hairloom/body_field.h"
+
 namespace hairloom {
 namespace {
 
 class ClipMotion : public HeadMotion {
   public:
-    ClipMotion(std::shared_ptr<const Actor> actor, std::uint32_t clip, std::vector<CollisionSphere> spheres)
-        : actor_(std::move(actor)), clip_(clip), spheres_(std::move(spheres)) {}
+    ClipMotion(std::shared_ptr<const Actor> actor, std::uint32_t clip, const Groom& groom)
+        : actor_(std::move(actor)), clip_(clip), spheres_(groom.spheres) {
+        if (!groom.body) return;
+        for (const std::string& bone : groom.body->bones)
+            bodyBones_.push_back({bone, Vec3f::Zero(), 0, bone});
+    }
 
     HeadPose poseAt(float time) const override {
         ActorPose posed = actor_->poseAt(clip_, time, Wrap::Loop);
@@ -20,6 +26,7 @@ class ClipMotion : public HeadMotion {
         for (std::size_t s = 0; s < spheres_.size(); ++s) {
             pose.sphereCentres_ws.push_back(transforms[s] * spheres_[s].centre);
         }
+        pose.body_ws = actor_->sphereTransforms(bodyBones_, posed);
         pose.scalpPositions_ws = std::move(posed.positions_ws);
         pose.bones_ws = std::move(posed.boneMatrices_ws);
         return pose;
@@ -30,6 +37,7 @@ class ClipMotion : public HeadMotion {
     std::shared_ptr<const Actor> actor_;
     std::uint32_t clip_;
     std::vector<CollisionSphere> spheres_;
+    std::vector<CollisionSphere> bodyBones_;  ///< stand for the bones of the groom's body
 };
 
 bool sameMesh(const ScalpMesh& a, const ScalpMesh& b) {
@@ -48,7 +56,7 @@ Result<std::unique_ptr<HeadMotion>> makeClipMotion(std::shared_ptr<const Actor> 
                         actor->mesh().vertexCount(), actor->mesh().triangleCount()),
             "expected the file that the groom was created with");
     }
-    return std::make_unique<ClipMotion>(std::move(actor), *index, groom.spheres);
+    return std::make_unique<ClipMotion>(std::move(actor), *index, groom);
 }
 
 }  // namespace hairloom

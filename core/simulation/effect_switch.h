@@ -11,12 +11,14 @@ namespace hairloom {
 
 /// What turns `effect`, named as in EffectReport, off: "simulation.windSpeed=0". Empty, and nothing changed,
 /// where no setting does, as for torsion and continuous collision, which follow from the hair's
-/// shape and its speed, and for collision, which goes with the spheres.
+/// shape and its speed, and for collision and body, which go with the spheres and the body.
 std::string turnEffectOff(runtime::SimulationSettings& settings, std::string_view effect);
 
-/// Whether there is a way to turn it off: by a setting, or by taking the spheres away.
+/// Whether there is a way to turn it off: by a setting, or by taking spheres or body away.
 bool canTurnOff(runtime::SimulationSettings settings, std::string_view effect);
 
 inline constexpr std::string_view kCollisionEffect = "collision";
+/// Contact with the skin of the groom's body.
+inline constexpr std::string_view kBodyEffect = "body";
 
 }  // namespace hairloom

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/base/parallel.h"
+#include "core/simulation/effect_switch.h"
 #include "core/simulation/engine_control.h"
 #include "core/simulation/strand_method.h"
 
@@ -81,6 +82,8 @@ class EngineMethod : public StrandMethod {
         effects.push_back({"solve", true,
                            "on, the shared strand solve, without the effects listed separately",
                            solveMilliseconds_ / frames, 0});
+        if (const std::size_t bytes = engine_.bodyBytes(); bytes > 0)
+            effects.push_back({std::string(kBodyEffect), true, "on, the skin of the head", {}, bytes});
         if (volume_) {
             effects.push_back(
                 {"hair-hair", true, "on, asked for", volumeMilliseconds_ / frames, volume_->bytes()});
@@ -135,6 +138,10 @@ Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
         auto grid = runtime::HairVolume::make(*hairHair, applicationHost());
         if (!grid.volume) return fail(grid.error);
         volume.emplace(std::move(*grid.volume));
+    }
+    const auto& body = scene.groom().body;
+    if (body) {
+        if (const std::string problem = made.engine->setBody(body); !problem.empty()) return fail(problem);
     }
     return std::make_unique<EngineMethod>(std::move(*made.engine), std::move(volume));
 }

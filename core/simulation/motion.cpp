@@ -74,6 +74,9 @@ HeadPose inWorld(HeadPose pose) {
     pose.head_ws.pretranslate(origin);
     for (Vec3f& position : pose.scalpPositions_ws) position += origin;
     for (Vec3f& centre : pose.sphereCentres_ws) centre += origin;
+    for (auto* bones : {&pose.bones_ws, &pose.body_ws}) {
+        for (Eigen::Affine3f& bone : *bones) bone.pretranslate(origin);
+    }
     pose.origin_ws.setZero();
     return pose;
 }

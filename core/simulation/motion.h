@@ -25,6 +25,8 @@ struct HeadPose {
     std::vector<Vec3f> sphereCentres_ws;  ///< per collision sphere; empty: spheres move with head_ws
     /// Of the scalp's skin, from the head at rest to the world; empty where no skeleton moves it.
     std::vector<Eigen::Affine3f> bones_ws;
+    /// Per bone of the groom's body, likewise; empty: the body moves with head_ws.
+    std::vector<Eigen::Affine3f> body_ws;
     std::optional<Vec3f> wind_ws;  ///< m/s, in place of the groom's mean wind
 };
 

@@ -12,6 +12,10 @@ namespace hairloom {
 /// Of collision spheres in a pose; metres, world.
 std::vector<runtime::Sphere> spheresAt(std::span<const CollisionSphere> spheres, const HeadPose& pose);
 
+/// Of the groom's body in a pose, as FrameInput::body_ws takes them. Empty: there is none, or the pose moves
+/// the head by bones that it does not tell.
+std::vector<runtime::BonePose> bodyAt(const Groom& groom, const HeadPose& pose);
+
 class SceneInput {
   public:
     /// Errors: no strands, a groom that validate() finds errors in.

@@ -97,6 +97,8 @@ void Simulation::step(float dt, const HeadPose& given) {
     input.origin_ws = {pose.origin_ws.x(), pose.origin_ws.y(), pose.origin_ws.z()};
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
+    const auto body = bodyAt(impl_->scene.groom(), pose);
+    input.body_ws = body;
     impl_->method->step(impl_->scene, pose, input);
     impl_->readPositions();
     impl_->substeps += substepsIn(impl_->scene.groom().simulation, dt);
@@ -145,6 +147,7 @@ Groom posedGroom(const Groom& groom, std::span<const Vec3f> positions_ws, const 
     Groom posed = groom;
     posed.pointAttributes.set(attribute::kPosition,
                               std::vector<Vec3f>(positions_ws.begin(), positions_ws.end()));
+    posed.body.reset();  // is baked at rest
     if (groom.scalp) {
         std::vector<Vec3f> vertices = pose.scalpPositions_ws;
         if (vertices.empty()) {

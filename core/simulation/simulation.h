@@ -101,7 +101,8 @@ class Simulation {
     std::unique_ptr<Impl> impl_;
 };
 
-/// The groom as it stands in a pose: strands at `positions_ws`, scalp and spheres moved with them.
+/// The groom as it stands in a pose: strands at `positions_ws`, scalp and spheres moved with them. It has no
+/// body, which is baked at rest.
 Groom posedGroom(const Groom& groom, std::span<const Vec3f> positions_ws, const HeadPose& pose);
 
 }  // namespace hairloom

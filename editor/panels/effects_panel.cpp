@@ -233,6 +233,7 @@ class EffectsPanel : public QWidget {
         for (const QString& effect : player_.leftOut()) {
             turnEffectOff(groom.simulation, effect.toStdString());
             if (effect.toStdString() == kCollisionEffect) groom.spheres.clear();
+            if (effect.toStdString() == kBodyEffect) groom.body.reset();
         }
         player_.setLeftOut({});
         document_.perform(

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The collision spheres: a list, their numbers, fitting them to the head, and how well they do.
+// What hair collides with: the skin of the head, and spheres in a list with their numbers; fitting them, and
+// how well they do.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLabel>
@@ -8,7 +10,7 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
-#include "core/animation/bone_near.h"
+#include "core/documents/body_fit.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
@@ -35,10 +37,14 @@ class SpheresPanel : public QWidget {
           list_(new QTreeWidget),
           bone_(new QComboBox),
           count_(new QSpinBox),
-          fit_(new QLabel) {
+          fit_(new QLabel),
+          skin_(new QCheckBox(tr("Collide with the skin"))),
+          skinFit_(new QLabel),
+          skinNote_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
+        makeSkin(*layout);
         list_->setObjectName("spheres");
         list_->setHeaderLabels({tr("Sphere"), tr("Radius"), tr("Bone")});
         list_->setRootIsDecorated(false);
@@ -102,6 +108,87 @@ class SpheresPanel : public QWidget {
   private:
     const std::vector<CollisionSphere>& spheres() const { return document_.groom().spheres; }
 
+    void makeSkin(QVBoxLayout& layout) {
+        layout.addWidget(heading(tr("Skin of the head")));
+        skin_->setObjectName("bodyCheck");
+        skin_->setToolTip(
+            tr("Keeps hair out of the head's own skin, wherever it bends. The CPU simulates it"));
+        auto* again = pushButton("bodyFit", tr("Fit"),
+                                 tr("Measures the skin again, where the hair reaches. Do this after hair has "
+                                    "become longer or the head has changed"),
+                                 [this] { fitSkin(); });
+        auto* row = new QHBoxLayout;
+        row->addWidget(skin_, 1);
+        row->addWidget(again);
+        layout.addLayout(row);
+        skinFit_->setObjectName("bodyWords");
+        skinFit_->setProperty("role", "dim");
+        skinFit_->setWordWrap(true);
+        layout.addWidget(skinFit_);
+        skinNote_->setObjectName("bodyNote");
+        skinNote_->setWordWrap(true);
+        layout.addWidget(skinNote_);
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::Part::Physics)) sayWhatPasses();
+        });
+        connect(&player_, &Player::planPreviewChanged, this, &SpheresPanel::sayWhatPasses);
+        connect(skin_, &QCheckBox::clicked, this, [this](bool checked) {
+            if (checked) return fitSkin();
+            document_.perform(editing::setBody(document_.editing().model(), nullptr, "Remove skin collider"));
+        });
+    }
+
+    void showSkin() {
+        const auto& body = document_.groom().body;
+        const QSignalBlocker quiet(skin_);
+        skin_->setChecked(body != nullptr);
+        skin_->setEnabled(document_.groom().scalp != nullptr);
+        sayWhatPasses();
+        if (body && body == fitted_) return;  // says how well it fits
+        skinFit_->setText(body ? tr("%1 kB").arg(static_cast<double>(body->bytes()) / 1000, 0, 'f', 0)
+                               : QString());
+    }
+
+    /// What moves the hair in the preview may know of spheres alone.
+    void sayWhatPasses() {
+        const Groom& groom = document_.groom();
+        const bool springs = groom.simulation.strandModel != runtime::StrandModel::rods;
+        const bool passes = groom.body && (springs || player_.method().method != SimulationMethod::strands);
+        skinNote_->setVisible(passes);
+        skinNote_->setText(!passes ? QString()
+                           : springs
+                               ? tr("Springs pass through the skin. Select rods as the strand model, or "
+                                    "fit spheres")
+                               : tr("The method of playback passes through the skin. Select the strand "
+                                    "engine, or fit spheres"));
+    }
+
+    void fitSkin() {
+        showSkin();  // is checked when it is there
+        const Groom& groom = document_.groom();
+        if (!groom.scalp) return;
+        tasks_.run<BakedBody>(
+            tr("Fitting the skin"),
+            [groom, actor = player_.actor()](TaskControl&) { return fitBody(groom, actor.get()); },
+            [this, scalp = groom.scalp](BakedBody baked) {
+                // Another head has other skin.
+                if (document_.groom().scalp != scalp) return;
+                const auto length = [this](float metres) {
+                    return lengthText(static_cast<double>(metres), preferences_);
+                };
+                QString words = tr("Worst gap %1, mean %2; largest bulge %3; %4 kB")
+                                    .arg(length(baked.fit.worstGap), length(baked.fit.meanGap),
+                                         length(baked.fit.worstBulge))
+                                    .arg(static_cast<double>(baked.field->bytes()) / 1000, 0, 'f', 0);
+                for (const std::string& note : baked.notes)
+                    words += QStringLiteral("\n") + QString::fromStdString(note);
+                fitted_ = baked.field;
+                skinFit_->setText(words);
+                document_.perform(editing::setBody(document_.editing().model(), std::move(baked.field),
+                                                   "Fit skin collider"));
+            });
+    }
+
     void makeNumbers(QVBoxLayout& layout) {
         numbers_ = new OptionForm(preferences_);
         numbers_->addNumber(
@@ -141,6 +228,7 @@ class SpheresPanel : public QWidget {
     }
 
     void refresh() {
+        showSkin();
         // One that is new is what people go on with.
         const bool grew = list_->topLevelItemCount() > 0 &&
                           static_cast<int>(spheres().size()) == list_->topLevelItemCount() + 1;
@@ -187,8 +275,7 @@ class SpheresPanel : public QWidget {
                 if (groom.strandCount() > 0) options.region = editing::facesNearHair(groom, kNearHair);
                 auto fit = editing::fitSpheres(*groom.scalp, options);
                 if (!fit || !actor) return fit;
-                for (CollisionSphere& sphere : fit->spheres)
-                    sphere.bone = boneUnder(*actor, sphere.centre, sphere.radius);
+                attachSpheres(*actor, fit->spheres);
                 return fit;
             },
             [this](editing::SphereFit fit) {
@@ -215,6 +302,10 @@ class SpheresPanel : public QWidget {
     QComboBox* bone_;
     QSpinBox* count_;
     QLabel* fit_;
+    QCheckBox* skin_;
+    QLabel* skinFit_;
+    QLabel* skinNote_;
+    std::shared_ptr<const runtime::BodyField> fitted_;  ///< that the words are of
 };
 
 }  // namespace

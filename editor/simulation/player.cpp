@@ -37,11 +37,25 @@ std::vector<CollisionSphere> without(std::vector<CollisionSphere> spheres, const
     return spheres;
 }
 
+bool leavesBodyOut(const QStringList& leftOut) {
+    return leftOut.contains(QLatin1String(kBodyEffect.data(), kBodyEffect.size()));
+}
+
+/// The groom without the effects that are left out.
+Groom without(Groom groom, const QStringList& leftOut) {
+    groom.simulation = without(groom.simulation, leftOut);
+    groom.spheres = without(std::move(groom.spheres), leftOut);
+    if (leavesBodyOut(leftOut)) groom.body.reset();
+    return groom;
+}
+
 void apply(const Eigen::Isometry3f& offset, HeadPose& pose) {
     pose.head_ws = offset * pose.head_ws;
     for (Vec3f& position : pose.scalpPositions_ws) position = offset * position;
     for (Vec3f& centre : pose.sphereCentres_ws) centre = offset * centre;
-    for (Eigen::Affine3f& bone : pose.bones_ws) bone = offset * bone;
+    for (auto* bones : {&pose.bones_ws, &pose.body_ws}) {
+        for (Eigen::Affine3f& bone : *bones) bone = offset * bone;
+    }
 }
 
 }  // namespace
@@ -190,10 +204,12 @@ void Player::setActor(std::shared_ptr<const Actor> actor) {
 }
 
 void Player::setLeftOut(const QStringList& effects) {
+    const bool sameBody = leavesBodyOut(leftOut_) == leavesBodyOut(effects);
     leftOut_ = effects;
     const Groom& groom = document_.groom();
     request([&](WorkerRequests& requests) {
         requests.leftOut = effects;
+        requests.regroomed = requests.regroomed || !sameBody;
         requests.settings = groom.simulation;
         requests.spheres = groom.spheres;
     });
@@ -235,9 +251,7 @@ void Player::requestPlanPreview() {
 }
 
 void Player::computePlanPreview(const Groom& groom, const QStringList& leftOut) {
-    Groom tried = groom;
-    tried.simulation = without(tried.simulation, leftOut);
-    tried.spheres = without(std::move(tried.spheres), leftOut);
+    const Groom tried = without(groom, leftOut);
     const auto motion = makeRigidMotion("none", tried);
     if (!motion) return;
     const auto made = Simulation::make(tried, (*motion)->poseAt(0), {});
@@ -268,6 +282,7 @@ void Player::setMethod(const PlayedMethod& method) {
         requests.regroomed = true;
     });
     outdatePlanPreview();
+    Q_EMIT planPreviewChanged();
 }
 
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
@@ -309,8 +324,9 @@ void Player::documentChanged(editing::Part parts) {
         if (auto made = makeMotion(motion_)) motion = std::move(*made);
     }
     request([&](WorkerRequests& requests) {
-        // The other methods are made with what they need.
-        if (method_.method != SimulationMethod::strands) {
+        // The other methods are made with what they need, and engines with the body.
+        const bool sameBody = !requests.groom || requests.groom->body == groom.body;
+        if (method_.method != SimulationMethod::strands || !sameBody) {
             requests.groom = std::make_shared<const Groom>(groom);
             requests.regroomed = true;
         }
@@ -360,9 +376,7 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
         start.state = playing.engine->state();
     }
     if (!playing.groom || !playing.motion) return false;
-    auto tried = std::make_shared<Groom>(*playing.groom);
-    tried->simulation = without(tried->simulation, taken.leftOut);
-    tried->spheres = without(std::move(tried->spheres), taken.leftOut);
+    const auto tried = std::make_shared<const Groom>(without(*playing.groom, taken.leftOut));
     start.groom = tried;
     start.motion = playing.motion;
     start.pose = playing.motion->poseAt(static_cast<float>(playing.time));

@@ -49,6 +49,23 @@ const SimulationSettings& Engine::settings() const {
     return impl_->settings_;
 }
 
+std::string Engine::setBody(std::shared_ptr<const BodyField> body) {
+    if (body) {
+        if (std::string problem = body->problem(); !problem.empty()) return problem;
+    }
+    impl_->setBody(std::move(body));
+    return {};
+}
+
+std::size_t Engine::bodyBytes() const {
+    if (!impl_->meetsBody()) return 0;
+    const std::size_t loads = impl_->plan_.on(Effect::collision)
+                                  ? 0
+                                  : impl_->strands_->effectBytes(Effect::collision, impl_->state_);
+    return impl_->body_->bytes() + loads +
+           (impl_->clearances_.size() + impl_->bodySeen_.size()) * sizeof(float);
+}
+
 void Engine::setClock(std::function<std::uint64_t()> nanoseconds) {
     impl_->host_.nanoseconds = std::move(nanoseconds);
 }

@@ -14,6 +14,8 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
+/// Metres that a point may go before the body has to be looked at again.
+constexpr float kNeverSeen = -1e30f;
 
 RootBounds noRoots() {
     RootBounds bounds;
@@ -63,6 +65,8 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
         }
     }
     state_.spheres.clear();
+    state_.body.clear();
+    bodyLost_ = true;
     state_.substep = 0.0f;
     state_.fastest = 0.0f;
     state_.origin_ws.reset();
@@ -118,7 +122,10 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (std::string error = validationError(settings); !error.empty()) return error;
     const SimulationSettings before = std::exchange(settings_, settings);
     const bool other = before.strandModel != settings.strandModel;
-    if (other) strands_ = OwnedStrands(model().make());
+    if (other) {
+        strands_ = OwnedStrands(model().make());
+        allocateForBody();
+    }
     strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_);
     strands_->takeState(*shape_, settings_, state_);
     scratch_ = {};
@@ -133,6 +140,7 @@ bool Engine::Impl::setState(const State& state) {
         state.rests.size() != state_.rests.size())
         return false;
     state_ = state;
+    bodyLost_ = true;
     strands_->takeState(*shape_, settings_, state_);
     wind_.given = false;
     // The state keeps what its last frame had: all of it is what runs on.
@@ -161,7 +169,7 @@ void Engine::Impl::plan(std::span<const Sphere> spheres, std::span<const Float3>
 }
 
 void Engine::Impl::allocateForPlan() {
-    strands_->allocate(*shape_, settings_, plan_, state_);
+    strands_->allocate(*shape_, settings_, plan_, plan_.on(Effect::collision) || meetsBody(), state_);
     // Sleeping strands keep theirs, so that they wake up without asking for memory.
     const std::size_t jobs = (shape_->blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
     const std::size_t perPoint = model().solverFloats(plan_.stages());
@@ -181,6 +189,8 @@ void Engine::Impl::moveOrigin(std::array<double, 3> origin_ws) {
         for (std::size_t i = 0; i < 3 * kBlockLanes; ++i) rows[i] += parts[i / kBlockLanes];
     }
     for (Sphere& sphere : state_.spheres) sphere.center_ws = sphere.center_ws + shift;
+    for (BonePose& bone : state_.body) bone.origin = bone.origin + shift;
+    bodyLost_ = true;
     state_.rootsMin_ws = state_.rootsMin_ws + shift;
     state_.rootsMax_ws = state_.rootsMax_ws + shift;
 }
@@ -233,6 +243,53 @@ void Engine::Impl::repairRoots(std::size_t block) {
     }
 }
 
+void Engine::Impl::setBody(std::shared_ptr<const BodyField> body) {
+    if (!body && !body_) return;
+    body_ = std::move(body);
+    state_.body.clear();
+    state_.rests.assign(shape_->blocks.size(), {});
+    allocateForBody();
+    allocateForPlan();
+}
+
+void Engine::Impl::allocateForBody() {
+    clearances_ = meetsBody() ? bodyClearances(*shape_, *body_) : Floats();
+    bodySeen_ = Floats(meetsBody() ? kBodyPlanes * shape_->planeFloats : 0, kNeverSeen);
+    bodyLost_ = true;
+}
+
+/// Poses the body for the substeps of the frame.
+void Engine::Impl::takeBody(const FrameInput& input) {
+    movingBody_.clear();
+    bodyMoves_ = false;
+    if (!meetsBody()) return;
+    const auto isFinitePose = [](const BonePose& bone) {
+        return isFinite(bone.x) && isFinite(bone.y) && isFinite(bone.z) && isFinite(bone.origin);
+    };
+    std::span<const BonePose> to = input.body_ws;
+    const bool fits = !to.empty() && (to.size() == 1 || to.size() == body_->bones.size()) &&
+                      std::all_of(to.begin(), to.end(), isFinitePose);
+    if (!fits) to = state_.body;
+    if (to.empty()) return;
+    std::span<const BonePose> from =
+        state_.body.size() == to.size() ? std::span<const BonePose>(state_.body) : to;
+    for (std::size_t b = 0; b < to.size(); ++b) {
+        // A cut carries it along.
+        if (length(to[b].origin - from[b].origin) > settings_.teleportDistance) {
+            from = to;
+            bodyLost_ = true;
+        }
+        bodyMoves_ = bodyMoves_ || !(to[b] == from[b]);
+    }
+    const Float3 middle = (state_.rootsMin_ws + state_.rootsMax_ws) * 0.5f;
+    const float reach =
+        length(state_.rootsMax_ws - middle) + rootMotion_ + hairReach(settings_, shape_->longestStrand);
+    movingBody_.take(*body_, from, to, substepsIn(settings_, input.dt), middle, reach);
+    if (bodyLost_ || movingBody_.lostTrack()) std::fill(bodySeen_.begin(), bodySeen_.end(), kNeverSeen);
+    bodyLost_ = false;
+    if (to.data() != state_.body.data()) state_.body.assign(to.begin(), to.end());
+}
+
 /// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
 bool Engine::Impl::sphereNear(std::size_t block) const {
     const float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
@@ -249,7 +306,7 @@ void Engine::Impl::wakeBlocks() {
     const bool windy = length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         Rest& rest = state_.rests[b];
-        if (rest.asleep && (windy || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
+        if (rest.asleep && (windy || bodyMoves_ || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
     }
 }
 
@@ -257,6 +314,12 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     Frame frame{};
     frame.input = &input;
     frame.context = substepContext(settings_, plan_, input.dt, movingSpheres_);
+    if (!movingBody_.empty()) {
+        frame.context.body = &movingBody_;
+        frame.context.spheresRest = frame.context.spheresRest && !bodyMoves_;
+        frame.context.collisionRadiusAtRoot = settings_.collisionRadiusRoot;
+        frame.context.collisionRadiusAtTip = settings_.collisionRadiusTip;
+    }
     const float h = frame.context.h;
     frame.windy = plan_.on(Effect::wind);
     if (frame.windy) {
@@ -293,6 +356,7 @@ void Engine::Impl::step(const FrameInput& input) {
     takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
     report_.rejectedSpheres = spheres_.rejected;
     report_.rejectedWinds = takeWind(settings_, input, wind_);
+    takeBody(input);
     wakeBlocks();
     replan(spheres_.usable, spheres_.motion,
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
@@ -347,7 +411,12 @@ void Engine::Impl::sumReports() {
 }
 
 BlockView& Engine::Impl::view(std::size_t block, BlockRoom& room) {
-    return strands_->view(*shape_, state_, block, settings_.clampedPoints, room);
+    BlockView& view = strands_->view(*shape_, state_, block, settings_.clampedPoints, room);
+    if (meetsBody()) {
+        view.clearance = clearances_.data() + shape_->blocks[block].firstPlane;
+        view.bodySeen = bodySeen_.data() + kBodyPlanes * shape_->blocks[block].firstPlane;
+    }
+    return view;
 }
 
 void Engine::Impl::addVelocities(std::span<const Float3> changes_ws) {

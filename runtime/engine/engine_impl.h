@@ -5,6 +5,7 @@
 #include <array>
 
 #include "engine/frame_setup.h"
+#include "engine/moving_body.h"
 #include "engine/scratch.h"
 #include "engine/state.h"
 #include "engine/state_read.h"
@@ -31,6 +32,7 @@ struct Engine::Impl {
     void placeLane(std::size_t block, std::uint32_t lane, const Float3* positions_ws,
                    const Float3* velocities_ws);
     std::string setSettings(const SimulationSettings& settings);
+    void setBody(std::shared_ptr<const BodyField> body);
     bool setState(const State& state);
     void step(const FrameInput& input);
     void addVelocities(std::span<const Float3> changes_ws);
@@ -45,10 +47,13 @@ struct Engine::Impl {
     void plan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
               Float3 rootsMax_ws, float frameTime);
     void allocateForPlan();
+    void allocateForBody();
+    bool meetsBody() const { return body_ && model().meetsBody; }
     const Model& model() const { return modelOf(settings_.strandModel); }
     void placeLaneAtRest(std::size_t block, std::uint32_t lane);
     void takeRoots(const FrameInput& input);
     void repairRoots(std::size_t block);
+    void takeBody(const FrameInput& input);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);
@@ -70,6 +75,10 @@ struct Engine::Impl {
     SimulationSettings settings_;
     Host host_;
     std::shared_ptr<const RestShape> shape_;
+    std::shared_ptr<const BodyField> body_;
+    Floats clearances_;     // of the body; empty without one
+    Floats bodySeen_;       // kBodyPlanes, per block
+    bool bodyLost_ = true;  // what they say is void
     OwnedStrands strands_;  // as their model has them
     EffectPlan plan_;
     FrameWind wind_;
@@ -81,6 +90,8 @@ struct Engine::Impl {
     Floats nextRoots_;  // as State::roots, at the frame's end
     FrameSpheres spheres_;
     std::vector<MovingSphere> movingSpheres_;
+    MovingBody movingBody_;
+    bool bodyMoves_ = false;
     float rootMotion_ = 0.0f;  // metres, the longest way of a root
 };
 

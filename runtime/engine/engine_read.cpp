@@ -118,6 +118,8 @@ std::uint32_t Engine::asleep() const {
 }
 
 std::size_t Engine::Impl::effectBytes(Effect effect) const {
+    // Forces that contacts leave are of the body where there are no spheres in reach.
+    if (effect == Effect::collision && meetsBody() && !plan_.on(effect)) return 0;
     std::size_t shared = 0;
     if (effect == Effect::wind && plan_.on(effect)) shared = sizeof(Wind);
     if (effect == Effect::collision && plan_.on(effect))

@@ -63,6 +63,9 @@ struct BlockView {
     const float* length;         ///< of each segment, likewise
     const float* inverseLength;  ///< 0 for a segment without length
     const float* inverseMass;    ///< of each point; the masses of a strand have the mean 1
+    /// Of each point, metres from the body at rest; null without one, and where the model meets none.
+    const float* clearance = nullptr;
+    float* bodySeen = nullptr;  ///< kBodyPlanes of what is known of the body, likewise
 };
 
 struct MovingSphere {
@@ -71,6 +74,8 @@ struct MovingSphere {
     float radius;
     float stepLength = length(step);  ///< metres in one substep
 };
+
+class MovingBody;  // engine/moving_body.h
 
 /// What the strands move through.
 enum class Air : std::uint32_t { none, still, moving };
@@ -128,7 +133,8 @@ struct SubstepContext : shaders::SubstepNumbers {
     float stepRatio = 1.0f;     ///< h over that of the substep before, or kFirstStepRatio
     bool sweeps = false;        ///< spheres are met where fast points come in
     bool conservative = false;  ///< nothing but motion of roots and spheres adds energy
-    bool spheresRest = false;   ///< nor do spheres
+    bool spheresRest = false;   ///< nor do spheres and body
+    const MovingBody* body = nullptr;
     const Wind* wind = nullptr;
     const float* windPhases = nullptr;  ///< of the substep's end
     ModelNumbers numbers;

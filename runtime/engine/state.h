@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/kernels.h"
+#include "hairloom/body_field.h"
 #include "hairloom/settings.h"
 
 namespace hairloom::runtime {
@@ -80,6 +81,7 @@ struct State {
     std::array<Floats, kOwnArrays> own;     ///< what the model remembers besides, per block (Model::own)
     std::vector<Rest> rests;                ///< per block
     std::vector<Sphere> spheres;            ///< of the last frame
+    std::vector<BonePose> body;             ///< likewise; empty where none was given
     Float3 rootsMin_ws, rootsMax_ws;        ///< box of the last frame's roots
     float substep = 0.0f;                   ///< seconds of the last substep; 0 before the first
     float fastest = 0.0f;                   ///< m/s, greatest speed of a point at the end of the last frame

@@ -64,9 +64,10 @@ class ModelStrands {
     /// Makes any state one of this model and these settings: strands that were none of them go on from where
     /// their points are.
     virtual void takeState(const RestShape& shape, const SimulationSettings& settings, State& state) = 0;
-    /// Has memory for what the plan runs, and none for what it does not.
+    /// Has memory for what the plan runs, and none for what it does not. `touches`: there are spheres in
+    /// reach or a body.
     virtual void allocate(const RestShape& shape, const SimulationSettings& settings, const EffectPlan& plan,
-                          State& state) = 0;
+                          bool touches, State& state) = 0;
 
     /// Puts lane `lane` of block `index` at rest on its row of state.roots, but for its points, which are
     /// there.
@@ -126,6 +127,7 @@ struct Model {
     std::array<OwnArray, kOwnArrays> own;
     std::size_t laneFloats;  ///< of LaneFrame::own
     bool listsSpheres;       ///< fills LaneFrame::touchable
+    bool meetsBody;          ///< SubstepContext::body
     std::size_t mostPlanes;  ///< floats of each point and lane that it can take, with those of `own`
     std::size_t (*mostSolverFloats)();
     const char* gpuSource;  ///< of runtime/shaders: what becomes its kernel of a GPU

@@ -13,9 +13,11 @@
 #include "core/base/random.h"
 #include "core/editing/document.h"
 #include "core/editing/selection_commands.h"
+#include "core/editing/settings_commands.h"
 #include "core/groom/point_dye.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
+#include "hairloom/body_field.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -449,6 +451,35 @@ TEST_F(ToolsTest, SpheresAreFittedToTheHead) {
     EXPECT_EQ(bone->currentText().toStdString(), groom().spheres[0].bone);
     find<QPushButton>("sphereMirror")->click();
     EXPECT_EQ(groom().spheres.size(), 13u);
+}
+
+TEST_F(ToolsTest, TheSkinIsACollider) {
+    auto* check = find<QCheckBox>("bodyCheck");
+    check->click();
+    finishWork();
+    ASSERT_TRUE(groom().body);
+    EXPECT_TRUE(check->isChecked());
+    EXPECT_EQ(document().stepName(0), "Fit skin collider");
+    EXPECT_TRUE(std::ranges::count(groom().body->bones, "head"));
+    EXPECT_TRUE(find<QLabel>("bodyWords")->text().contains("Worst gap"))
+        << find<QLabel>("bodyWords")->text().toStdString();
+    EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
+    runtime::SimulationSettings springs = groom().simulation;
+    springs.strandModel = runtime::StrandModel::springs;
+    document().perform(editing::setPhysics(document().editing().model(), springs, "springs"));
+    EXPECT_TRUE(find<QLabel>("bodyNote")->text().contains("Springs pass through"));
+    document().goToStep(1);
+    EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
+    parts().player.setMethod({SimulationMethod::lattice, false});
+    EXPECT_TRUE(find<QLabel>("bodyNote")->text().contains("strand engine"));
+    parts().player.setMethod({});
+    EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
+    check->click();
+    EXPECT_FALSE(groom().body);
+    EXPECT_EQ(document().stepName(1), "Remove skin collider");
+    document().goToStep(1);
+    EXPECT_TRUE(groom().body);
+    EXPECT_TRUE(check->isChecked());
 }
 
 TEST_F(ToolsTest, WindFollowsTheArrowAndADragIsOneStep) {

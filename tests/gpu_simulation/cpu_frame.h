@@ -265,7 +265,8 @@ inline runtime::State runOnCpu(const Scene& scene) {
     const runtime::OwnedStrands strands(model.make());
     strands->takeSettings(shape, scene.settings, nullptr, state);
     strands->takeState(shape, scene.settings, state);
-    strands->allocate(shape, scene.settings, frame.plan, state);
+    const bool touches = frame.plan.on(runtime::Effect::collision);
+    strands->allocate(shape, scene.settings, frame.plan, touches, state);
     runtime::ModelFrame modelFrame;
     modelFrame.context = frame.context;
     modelFrame.context.wind = &frame.wind.wind;

@@ -15,6 +15,7 @@
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/validate.h"
+#include "hairloom/body_field.h"
 
 namespace hairloom {
 namespace {
@@ -22,6 +23,7 @@ namespace {
 constexpr std::uint64_t kFirstWithPlacement = 2;  ///< version that has density and placement
 constexpr std::uint64_t kFirstWithOperators = 6;
 constexpr std::uint64_t kFirstWithCardEdits = 9;
+constexpr std::uint64_t kFirstWithBody = 10;
 
 struct Counts {
     std::uint64_t version;
@@ -150,6 +152,14 @@ Status takeArrays(const ArchiveReader& archive, const Counts& counts, Groom& gro
     if (scalp) takeScalp(taker, *scalp);
     if (scalp && counts.version >= kFirstWithPlacement)
         groom.scalpDensity = taker.take<float>(section::kScalpDensity);
+    if (counts.version >= kFirstWithBody && archive.has(section::kBody)) {
+        const auto bytes = taker.take<std::uint8_t>(section::kBody);
+        runtime::BodyFieldRead read = runtime::bodyFieldFromBytes(bytes);
+        if (!read.field)
+            return tl::unexpected(archive.errorAt(section::kBody, "cannot be used: " + read.error,
+                                                  "expected what colliders --fit field bakes"));
+        groom.body = std::make_shared<const runtime::BodyField>(std::move(*read.field));
+    }
     if (auto status = taker.finish(); !status) return status;
     if (groom.strandCount() == counts.strands && groom.pointCount() == counts.points &&
         !groom.offsets.empty())

@@ -13,6 +13,7 @@
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/validate.h"
+#include "hairloom/body_field.h"
 
 namespace hairloom {
 namespace {
@@ -68,7 +69,7 @@ void addScalp(ArchiveWriter& writer, const ScalpMesh& scalp) {
     add(section::kScalpMaterials, scalp.triangleMaterials());
 }
 
-void addArrays(ArchiveWriter& writer, const Groom& groom) {
+void addArrays(ArchiveWriter& writer, const Groom& groom, std::span<const std::uint8_t> body) {
     const auto add = [&](std::string_view name, auto values) { writer.add(std::string(name), values); };
     add(section::kOffsets, groom.offsets.view());
     for (const auto& [name, data] : groom.strandAttributes.all()) {
@@ -86,6 +87,7 @@ void addArrays(ArchiveWriter& writer, const Groom& groom) {
         addScalp(writer, *groom.scalp);
         add(section::kScalpDensity, std::span<const float>(groom.scalpDensity));
     }
+    if (!body.empty()) add(section::kBody, body);
 }
 
 /// What the JSON head cannot hold or loading would refuse. Flaws of values (hair that is not finite) are no
@@ -104,7 +106,8 @@ Status saveProject(const Groom& groom, const std::filesystem::path& path) {
     const auto refuse = [&](const Error& error) { return tl::unexpected(inFile(error, path.string())); };
     if (auto status = checkSavable(groom); !status) return refuse(status.error());
     ArchiveWriter writer{std::string(section::kKind), kProjectVersion};
-    addArrays(writer, groom);
+    const std::vector<std::uint8_t> body = groom.body ? groom.body->toBytes() : std::vector<std::uint8_t>();
+    addArrays(writer, groom, body);
     const auto file = writer.finish(headOf(groom, path));
     if (!file) return refuse(file.error());
     return writeFileAtomically(path, *file);

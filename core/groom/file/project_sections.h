@@ -23,5 +23,6 @@ inline constexpr std::string_view kScalpSourceVertices = "scalp/source_vertices"
 inline constexpr std::string_view kScalpGroups = "scalp/triangle_groups";
 inline constexpr std::string_view kScalpDensity = "scalp/density";  ///< per vertex, or none
 inline constexpr std::string_view kScalpMaterials = "scalp/triangle_materials";
+inline constexpr std::string_view kBody = "body";  ///< bytes of runtime::BodyField
 
 }  // namespace hairloom::section

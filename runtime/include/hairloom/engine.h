@@ -87,6 +87,13 @@ class Engine {
     std::string setSettings(const SimulationSettings& settings);
     const SimulationSettings& settings() const;
 
+    /// A body that rods meet from the next step on, as they meet spheres; null: none. Points come no farther
+    /// out of it than they were authored. Springs pass through it. Empty, or BodyField::problem().
+    std::string setBody(std::shared_ptr<const BodyField> body);
+
+    /// Memory that the body and what is known of it take; 0 where there is none, or springs pass through it.
+    std::size_t bodyBytes() const;
+
     /// Host::nanoseconds from the next step on.
     void setClock(std::function<std::uint64_t()> nanoseconds);
 

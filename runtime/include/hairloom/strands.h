@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "hairloom/body_field.h"
 #include "hairloom/math.h"
 
 namespace hairloom::runtime {
@@ -57,6 +58,10 @@ struct FrameInput {
     /// moves nothing; one that is not finite is that of the frame before. Roots of reset() are measured from
     /// the origin of the frame that follows.
     std::array<double, 3> origin_ws{};
+    /// Of the engine's body at the end of the frame, one per bone of its field or one alone for all; its
+    /// speed follows from the frame before. Empty, of another size or not finite: the body stays where it
+    /// was, and is nowhere before the first.
+    std::span<const BonePose> body_ws = {};
 };
 
 }  // namespace hairloom::runtime

@@ -68,12 +68,16 @@ class RodStrip {
         }
         descend();
         if constexpr (kContacts) {
-            if (lookAgain()) descend();
+            // Skin has more curves than spheres have.
+            const int looks = context_.body ? kBodyLooks : 1;
+            for (int look = 0; look < looks && lookAgain(); ++look) descend();
         }
         finish();
     }
 
   private:
+    static constexpr int kBodyLooks = 3;
+
     /// One step of Gauss-Newton from the guess.
     void descend() {
         eliminate();
@@ -303,7 +307,7 @@ class RodStrip {
         const RodNode node = nodeOf(point, point.displacement, tangent, position, p);
         point.contact = noContact();
         auto near = noLane();
-        forEachTouch(lanes_, rootPosition(), node, context_, [&](const RodTouch& touch, RodMask here) {
+        forEachShape(rootPosition(), node, at(p), [&](const RodTouch& touch, RodMask here) {
             near = either(near, here);
             press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, point.contact);
         });
@@ -312,7 +316,14 @@ class RodStrip {
         point.near = hn::IfThenElseZero(near, all(1.0f));
     }
 
-    /// Calls visit(point, node, near) for the outer node of each segment where the step has led.
+    /// As forEachTouch(), of spheres and the body; `i` is where the node stands in planes.
+    template <class Visit>
+    void forEachShape(V3 root, const RodNode& node, std::size_t i, Visit&& visit) const {
+        forEachTouch(lanes_, root, node, context_, visit);
+        if (context_.body) touchBody(*context_.body, root, node, block_, i, context_.index, visit);
+    }
+
+    /// Calls visit(point, node, i, near) for the outer node of each segment where the step has led.
     template <class Visit>
     void forEachNode(Visit&& visit) const {
         V3 position = zero3();
@@ -323,7 +334,7 @@ class RodStrip {
             position = mad3(tangent, lengthOf(j), position);
             const auto near = point.near > hn::Zero(D());
             if (!hn::AllFalse(D(), near))
-                visit(point, nodeOf(point, point.newDisplacement, tangent, position, j + 1), near);
+                visit(point, nodeOf(point, point.newDisplacement, tangent, position, j + 1), at(j + 1), near);
         }
     }
 
@@ -335,21 +346,21 @@ class RodStrip {
         const V3 root = rootPosition();
         const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
         auto wrong = noLane();
-        forEachNode([&](const RodPoint& point, const RodNode& node, RodMask near) {
+        forEachNode([&](const RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
             const auto held = point.contact.touching > hn::Zero(D());
             const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
             auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
-            forEachTouch(lanes_, root, node, context_, [&](const RodTouch& touch, RodMask) {
+            forEachShape(root, node, i, [&](const RodTouch& touch, RodMask) {
                 inside = either(inside, touch.depth > reach);
                 lifted = hn::AndNot(rodHolds(touch, reach), lifted);
             });
             wrong = either(wrong, both(near, either(lifted, hn::AndNot(held, inside))));
         });
         if (hn::AllFalse(D(), wrong)) return false;
-        forEachNode([&](RodPoint& point, const RodNode& node, RodMask near) {
+        forEachNode([&](RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
             const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
             RodContact found = noContact();
-            forEachTouch(lanes_, root, node, context_, [&](const RodTouch& touch, RodMask) {
+            forEachShape(root, node, i, [&](const RodTouch& touch, RodMask) {
                 press(touch, both(near, rodHolds(touch, slack)), node, found);
             });
             point.contact = rodChosen(wrong, found, point.contact);
@@ -562,7 +573,7 @@ void stepRodsIn(const RodBlock& block, LaneFrame& lanes, const SubstepContext& c
 /// Each block pays for what its strands need.
 void stepRods(const BlockView& view, LaneFrame& lanes, const SubstepContext& context) {
     const auto& block = static_cast<const RodBlock&>(view);
-    const bool contacts = !lanes.touchable.empty();
+    const bool contacts = !lanes.touchable.empty() || context.body;
     contacts ? stepRodsIn<true>(block, lanes, context) : stepRodsIn<false>(block, lanes, context);
 }
 

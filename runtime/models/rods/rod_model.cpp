@@ -79,9 +79,9 @@ class RodStrands final : public ModelStrands {
         completeRods(shape, rest_, !state.own[kOwnLoads].empty(), state);
     }
 
-    void allocate(const RestShape& shape, const SimulationSettings&, const EffectPlan& plan,
+    void allocate(const RestShape& shape, const SimulationSettings&, const EffectPlan&, bool touches,
                   State& state) override {
-        allocateRods(shape, rest_.parts, plan.on(Effect::collision), state);
+        allocateRods(shape, rest_.parts, touches, state);
     }
 
     void placeAtRest(const RestShape& shape, State& state, std::size_t index,
@@ -194,6 +194,7 @@ const Model& rodModel() {
                  {.laneRows = kRodLaneRows}}},
         .laneFloats = 0,
         .listsSpheres = true,
+        .meetsBody = true,
         .mostPlanes = kRodRestPlanes[3] + kRodStatePlanes,
         .mostSolverFloats = [] { return rodKernel().solverFloats; },
         .gpuSource = "rods.hlsli",

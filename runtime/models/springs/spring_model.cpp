@@ -68,7 +68,7 @@ class SpringStrands final : public ModelStrands {
         state.own = {};
     }
 
-    void allocate(const RestShape& shape, const SimulationSettings& settings, const EffectPlan& plan,
+    void allocate(const RestShape& shape, const SimulationSettings& settings, const EffectPlan& plan, bool,
                   State& state) override {
         const bool angular = plan.on(Effect::angular);
         const bool factored = angular && plan.factored();
@@ -187,6 +187,7 @@ const Model& springModel() {
         .own = {{{.planes = 1, .isOptional = true}}},
         .laneFloats = sizeof(SpringLanes) / sizeof(float),
         .listsSpheres = false,
+        .meetsBody = false,
         // Stiffness, factors, targets and tension.
         .mostPlanes = kRungeKuttaPlanes + 8,
         .mostSolverFloats =

@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: MIT
+#include "hairloom/body_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace hairloom::runtime {
+namespace {
+
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+constexpr std::size_t kCellCorners = 8;
+/// Of a distance, per metre: below it there is no way out that is the nearest.
+constexpr float kFlatSlope = 1e-3f;
+
+/// Places within a cell, each in [0, 1], and what each of its corners counts there: 000, 100, 010, 110, 001 …
+struct Trilinear {
+    float x, y, z;
+
+    std::array<float, kCellCorners> weights() const {
+        const float a = 1 - x, b = 1 - y, c = 1 - z;
+        return {a * b * c, x * b * c, a * y * c, x * y * c, a * b * z, x * b * z, a * y * z, x * y * z};
+    }
+    /// The gradient is in steps of the cell.
+    BodyField::Sample sample(const std::array<float, kCellCorners>& v) const {
+        const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
+        const float x00 = mix(v[0], v[1], x), x10 = mix(v[2], v[3], x), x01 = mix(v[4], v[5], x),
+                    x11 = mix(v[6], v[7], x);
+        const float y0 = mix(x00, x10, y), y1 = mix(x01, x11, y);
+        const Float3 gradient{
+            mix(mix(v[1] - v[0], v[3] - v[2], y), mix(v[5] - v[4], v[7] - v[6], y), z),
+            mix(x10 - x00, x11 - x01, z),
+            y1 - y0,
+        };
+        return {mix(y0, y1, z), gradient};
+    }
+};
+
+/// A cell of a table, and where in it a point is.
+struct Place {
+    std::uint32_t x, y, z;
+    Trilinear in;
+};
+
+/// `cells` from the first corner of the table; within its size.
+Place placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
+    const auto along = [](float at, std::uint32_t size) {
+        return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), size - 1);
+    };
+    const std::uint32_t x = along(cells.x, sizeX), y = along(cells.y, sizeY), z = along(cells.z, sizeZ);
+    return {
+        x,
+        y,
+        z,
+        {cells.x - static_cast<float>(x), cells.y - static_cast<float>(y), cells.z - static_cast<float>(z)}};
+}
+
+/// Of the corners of a cell, whose first is `first`, in a table with rows of `row` and layers of `layer`.
+template <class T>
+std::array<T, kCellCorners> cornersOf(const T* first, std::size_t row, std::size_t layer) {
+    return {first[0],     first[1],         first[row],         first[row + 1],
+            first[layer], first[layer + 1], first[layer + row], first[layer + row + 1]};
+}
+
+std::array<float, kCellCorners> scaled(const auto& values, float unit) {
+    std::array<float, kCellCorners> result;
+    for (std::size_t i = 0; i < kCellCorners; ++i) result[i] = unit * static_cast<float>(values[i]);
+    return result;
+}
+
+bool isInside(const BodyField& field, Float3 cells) {
+    const auto within = [](float at, std::uint32_t size) {
+        return at >= 0 && at <= static_cast<float>(size);
+    };
+    return within(cells.x, field.size[0]) && within(cells.y, field.size[1]) && within(cells.z, field.size[2]);
+}
+
+std::size_t cornerIndex(const BodyField& field, const Place& place) {
+    return (std::size_t{place.z} * (field.size[1] + 1) + place.y) * (field.size[0] + 1) + place.x;
+}
+
+BonePose blendOf(const BonePose& a, const BonePose& b, float weight) {
+    return {a.x + b.x * weight, a.y + b.y * weight, a.z + b.z * weight, a.origin + b.origin * weight};
+}
+constexpr BonePose kNothing{{}, {}, {}, {}};
+
+float volumeOf(const BonePose& pose) {
+    return dot(pose.x, cross(pose.y, pose.z));
+}
+
+/// Of the linear part: rows, so that (dot(x, v), dot(y, v), dot(z, v)) undoes it.
+struct Undone {
+    Float3 x, y, z;
+
+    explicit Undone(const BonePose& pose) {
+        const float inverse = 1 / volumeOf(pose);
+        x = cross(pose.y, pose.z) * inverse;
+        y = cross(pose.z, pose.x) * inverse;
+        z = cross(pose.x, pose.y) * inverse;
+    }
+    Float3 apply(Float3 v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
+    /// Of a gradient, to the world.
+    Float3 transposed(Float3 g) const { return x * g.x + y * g.y + z * g.z; }
+};
+
+float distanceTo(const BodyField::Box& box, Float3 p) {
+    const auto beside = [](float at, float low, float high) { return std::max({low - at, at - high, 0.0f}); };
+    return length(Float3{beside(p.x, box.low.x, box.high.x), beside(p.y, box.low.y, box.high.y),
+                         beside(p.z, box.low.z, box.high.z)});
+}
+
+bool isIn(const BodyField::Box& box, Float3 p) {
+    return p.x >= box.low.x && p.y >= box.low.y && p.z >= box.low.z && p.x <= box.high.x &&
+           p.y <= box.high.y && p.z <= box.high.z;
+}
+
+}  // namespace
+
+bool isFlatPose(const BonePose& pose) {
+    const float size = length(pose.x) * length(pose.y) * length(pose.z);
+    const float volume = volumeOf(pose);
+    return !(std::abs(volume) > 1e-3f * size) || !(size > 1e-9f) || !std::isfinite(size) ||
+           !isFinite(pose.origin);
+}
+
+BonePose inverseOf(const BonePose& pose) {
+    const Undone u(pose);
+    BonePose inverse{{u.x.x, u.y.x, u.z.x}, {u.x.y, u.y.y, u.z.y}, {u.x.z, u.y.z, u.z.z}, {}};
+    inverse.origin = u.apply(pose.origin) * -1.0f;
+    return inverse;
+}
+
+std::size_t BodyField::bytes() const {
+    return distances.size() * sizeof(distances[0]) + skins.size() * sizeof(skins[0]) +
+           palette.size() * sizeof(palette[0]) + blocks.size() * sizeof(blocks[0]) +
+           values.size() * sizeof(values[0]) + boxes.size() * sizeof(boxes[0]);
+}
+
+std::string BodyField::problem() const {
+    constexpr std::uint64_t kMost = 1u << 28;
+    if (!(cell > 0) || !std::isfinite(cell) || !(unit > 0) || !std::isfinite(unit) || !isFinite(low_ss))
+        return "a body's cells have no size";
+    std::uint64_t cells = 1, corners = 1;
+    for (const std::uint32_t along : size) {
+        if (along < 1 || along > kMost) return "a body without cells";
+        cells *= along;
+        corners *= std::uint64_t{along} + 1;
+        if (corners > kMost) return "a body of too many cells";
+    }
+    if (distances.size() != corners || skins.size() != corners || blocks.size() != cells)
+        return "a body's tables are not as large as its size says";
+    if (values.size() % kBlockValues != 0 || values.size() / kBlockValues >= kNoBlock)
+        return "a body's blocks are not whole";
+    const std::size_t blockCount = values.size() / kBlockValues;
+    for (const std::uint16_t block : blocks) {
+        if (block != kNoBlock && block >= blockCount) return "a body names a block that it does not have";
+    }
+    for (const std::uint16_t skin : skins) {
+        if (skin >= palette.size()) return "a body names skin that it does not have";
+    }
+    if (bones.size() > 255 || boxes.size() != bones.size()) return "a body's bones do not match";
+    for (const Skin& skin : palette) {
+        for (std::size_t i = 0; i < skin.bones.size(); ++i) {
+            if (skin.weights[i] > 0 && skin.bones[i] >= bones.size())
+                return "a body names a bone that it does not have";
+        }
+    }
+    for (const Box& box : boxes) {
+        if (!isFinite(box.low) || !isFinite(box.high)) return "a body's bone reaches nowhere";
+    }
+    return {};
+}
+
+BodyField::Sample BodyField::at(Float3 point_ss) const {
+    const float perCell = 1 / cell;
+    const Float3 cells = (point_ss - low_ss) * perCell;
+    if (!isInside(*this, cells)) return {kInfinite, {0, 1, 0}};
+    const Place place = placeAt(cells, size[0], size[1], size[2]);
+    const auto coarseSample = [&] {
+        const std::size_t row = size[0] + 1, layer = row * (size[1] + 1);
+        const std::int16_t* const first = distances.data() + cornerIndex(*this, place);
+        Sample coarse = place.in.sample(scaled(cornersOf(first, row, layer), unit));
+        coarse.gradient = coarse.gradient * perCell;
+        return coarse;
+    };
+    const std::uint16_t block = blocks[(std::size_t{place.z} * size[1] + place.y) * size[0] + place.x];
+    if (block == kNoBlock) return coarseSample();
+    constexpr auto kFine = static_cast<float>(kBlockCells);
+    const Place in = placeAt({place.in.x * kFine, place.in.y * kFine, place.in.z * kFine}, kBlockCells,
+                             kBlockCells, kBlockCells);
+    const std::int8_t* const first = values.data() + std::size_t{block} * kBlockValues +
+                                     (std::size_t{in.z} * kBlockCorners + in.y) * kBlockCorners + in.x;
+    Sample fine =
+        in.in.sample(scaled(cornersOf(first, kBlockCorners, kBlockCorners * kBlockCorners), kFineUnit));
+    fine.gradient = fine.gradient * (perCell * kFine);
+    const float away = std::abs(fine.distance);
+    if (away <= kFineReach) return fine;
+    const Sample coarse = coarseSample();
+    const float share = std::min((away - kFineReach) / (kFineEnd - kFineReach), 1.0f);
+    return {fine.distance + share * (coarse.distance - fine.distance),
+            fine.gradient + (coarse.gradient - fine.gradient) * share};
+}
+
+float BodyField::freeAround(Float3 point_ss) const {
+    const Float3 cells = (point_ss - low_ss) * (1 / cell);
+    // Beyond the table there is no skin that hair could meet.
+    if (!isInside(*this, cells)) {
+        const Float3 high = low_ss + Float3{static_cast<float>(size[0]), static_cast<float>(size[1]),
+                                            static_cast<float>(size[2])} *
+                                         cell;
+        return distanceTo({low_ss, high}, point_ss);
+    }
+    const auto nearest = [](float at) { return static_cast<std::size_t>(at + 0.5f); };
+    const std::size_t x = nearest(cells.x), y = nearest(cells.y), z = nearest(cells.z);
+    const std::int16_t there = distances[(z * (size[1] + 1) + y) * (size[0] + 1) + x];
+    constexpr float kFarthest = 0.8661f;  // cells from the nearest corner
+    return std::max(unit * static_cast<float>(there) - kFarthest * cell, 0.0f);
+}
+
+struct PosedBody::Map {
+    BonePose pose;
+    bool flat;
+};
+
+void PosedBody::take(const BodyField& field, std::span<const BonePose> pose) {
+    field_ = &field;
+    flattened_ = 0;
+    least_ = kInfinite;
+    usable_.clear();
+    inverse_.clear();
+    palette_.clear();
+    const std::size_t bones = std::max<std::size_t>(field.bones.size(), 1);
+    for (std::size_t b = 0; b < bones; ++b) {
+        const BonePose& own = pose[std::min(b, pose.size() - 1)];
+        const bool flat = isFlatPose(own);
+        usable_.push_back(flat ? 0 : 1);
+        flattened_ += flat ? 1u : 0u;
+        inverse_.push_back(flat ? BonePose{} : inverseOf(own));
+        if (!flat) least_ = std::min({least_, length(own.x), length(own.y), length(own.z)});
+    }
+    if (!std::isfinite(least_)) least_ = 1;
+    for (const BodyField::Skin& skin : field.palette) {
+        float sum = 0;
+        BonePose blended = kNothing;
+        for (std::size_t i = 0; i < skin.bones.size(); ++i) {
+            const std::size_t bone = std::min<std::size_t>(skin.bones[i], pose.size() - 1);
+            if (skin.weights[i] == 0 || usable_[std::min<std::size_t>(skin.bones[i], bones - 1)] == 0)
+                continue;
+            const auto weight = static_cast<float>(skin.weights[i]);
+            blended = blendOf(blended, pose[bone], weight);
+            sum += weight;
+        }
+        palette_.push_back(sum > 0               ? blendOf(kNothing, blended, 1 / sum)
+                           : field.bones.empty() ? pose[0]
+                                                 : BonePose{});
+    }
+}
+
+PosedBody::Map PosedBody::mapAt(Float3 point_ss) const {
+    const BodyField& field = *field_;
+    const Float3 cells = (point_ss - field.low_ss) * (1 / field.cell);
+    const Place place = placeAt(cells, field.size[0], field.size[1], field.size[2]);
+    const std::size_t row = field.size[0] + 1, layer = row * (field.size[1] + 1);
+    const auto skins = cornersOf(field.skins.data() + cornerIndex(field, place), row, layer);
+    if (std::all_of(skins.begin(), skins.end(), [&](std::uint16_t skin) { return skin == skins[0]; }))
+        return {palette_[skins[0]], false};
+    const auto weights = place.in.weights();
+    Map map{kNothing, false};
+    for (std::size_t i = 0; i < kCellCorners; ++i)
+        map.pose = blendOf(map.pose, palette_[skins[i]], weights[i]);
+    map.flat = isFlatPose(map.pose);
+    return map;
+}
+
+PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
+    const Contact nothing{kInfinite, {0, 1, 0}, {}};
+    if (usable_[0] == 0) return nothing;
+    const Float3 rest = inverse_[0].apply(point_ws);
+    const BodyField::Sample sample = field_->at(rest);
+    if (!std::isfinite(sample.distance)) return nothing;
+    const BonePose& inverse = inverse_[0];
+    const Float3 g = sample.gradient;
+    // The transposed inverse.
+    const Float3 gradient{dot(inverse.x, g), dot(inverse.y, g), dot(inverse.z, g)};
+    const float slope = length(gradient);
+    if (!(slope > kFlatSlope)) return nothing;
+    return {sample.distance * (length(g) / slope), gradient * (1 / slope), rest};
+}
+
+float PosedBody::freeAround(Float3 point_ws) const {
+    float least = kInfinite;
+    for (std::size_t b = 0; b < usable_.size(); ++b) {
+        if (usable_[b] == 0) continue;
+        const Float3 rest = inverse_[b].apply(point_ws);
+        if (isWhole()) return least_ * field_->freeAround(rest);
+        const float beside = field_->boxes.empty() ? 0.0f : distanceTo(field_->boxes[b], rest);
+        // Skin between two bones may be closer than it was at rest, but hardly by half.
+        least = std::min(least, least_ * std::max(beside, 0.5f * field_->freeAround(rest)));
+    }
+    return least;
+}
+
+PosedBody::Contact PosedBody::at(Float3 point_ws) const {
+    if (isWhole()) return ofWhole(point_ws);
+    constexpr int kRounds = 12;
+    constexpr float kSettled = 1e-5f, kLost = 2e-3f;  // metres
+    const BodyField& field = *field_;
+    Contact nearest{kInfinite, {0, 1, 0}, {}};
+    for (std::size_t b = 0; b < usable_.size(); ++b) {
+        if (usable_[b] == 0) continue;
+        Float3 rest = inverse_[b].apply(point_ws);
+        if (!field.boxes.empty() && !isIn(field.boxes[b], rest)) continue;
+        // Where skin of several bones takes a place from (inverse skinning, by repeated substitution).
+        Map map{};
+        float off = kInfinite;
+        for (int round = 0; round < kRounds && off > kSettled; ++round) {
+            map = mapAt(rest);
+            if (map.flat) break;
+            const Float3 next = Undone(map.pose).apply(point_ws - map.pose.origin);
+            off = length(next - rest);
+            rest = next;
+        }
+        if (map.flat || !(off < kLost)) continue;
+        const BodyField::Sample sample = field.at(rest);
+        if (!std::isfinite(sample.distance)) continue;
+        const Float3 gradient = Undone(map.pose).transposed(sample.gradient);
+        const float slope = length(gradient);
+        // On the ridge between two sides the slope vanishes: there is no way out that is the nearest.
+        if (!(slope > kFlatSlope)) continue;
+        // Bones that stretch the skin stretch what is before it.
+        const float distance = sample.distance * (length(sample.gradient) / slope);
+        if (distance < nearest.distance) nearest = {distance, gradient * (1 / slope), rest};
+    }
+    return nearest;
+}
+
+Float3 PosedBody::place(Float3 point_ss) const {
+    return mapAt(point_ss).pose.apply(point_ss);
+}
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Keeps hair that is drawn out of a body: hairs between guides, and curves between points.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "hairloom/body_field.h"
+#include "hairloom/engine.h"
+
+namespace hairloom::runtime {
+
+/// Which hairs may be how deep in a body: as deep as they were authored, and no deeper.
+class BodyPush {
+  public:
+    /// `rest_ss`: points of hairs at rest, in the body's space; hair h owns [offsets[h], offsets[h + 1]), its
+    /// root first.
+    BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint32_t> offsets,
+             std::span<const Float3> rest_ss);
+
+    /// Moves points of hairs that are deeper out of the body, straight up, so that neither they nor the
+    /// curves (uniform Catmull-Rom) between them, at quarters of their way, are. Roots stay. As many points
+    /// as at rest; those that are not finite stay as they are, as do all where the body has no pose. The same
+    /// bits for any number of threads.
+    void apply(std::span<const BonePose> pose, std::span<Float3> points_ws, const Host& host = {}) const;
+
+    std::size_t bytes() const {
+        return offsets_.size() * sizeof(std::uint32_t) +
+               (least_.size() + leastBetween_.size()) * sizeof(float);
+    }
+
+  private:
+    struct Hair;
+    bool liftPoints(const PosedBody& body, Hair& hair) const;
+    bool liftCurve(const PosedBody& body, Hair& hair) const;
+
+    std::shared_ptr<const BodyField> body_;
+    std::vector<std::uint32_t> offsets_;
+    std::vector<float> least_;         ///< of each point, metres that it keeps from the body; negative inside
+    std::vector<float> leastBetween_;  ///< likewise at three places on the way to the next point of its hair
+};
+
+}  // namespace hairloom::runtime

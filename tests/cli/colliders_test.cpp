@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hair that collides with the skin of its head, from the fit to what leaves.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/cli/command.h"
+
+namespace hairloom::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Colliders : public CommandLineTest {
+  protected:
+    /// Hair that falls into the head, as soft.hairloom, and with its skin as a collider, as on.hairloom.
+    nlohmann::json fitSkin() {
+        runJson(createArguments());
+        runJson(
+            "set hair.hairloom simulation.angularStiffness=0.01 simulation.restGravity=0 "
+            "interpolation.followPerGuide=2 -o soft.hairloom");
+        return runJson("colliders soft.hairloom --fit field -o on.hairloom");
+    }
+};
+
+TEST_F(Colliders, TheSkinKeepsHairOutOfTheHead) {
+    const auto fitted = fitSkin();
+    EXPECT_EQ(fitted["fit"], "field");
+    EXPECT_EQ(fitted["body"], true);
+    EXPECT_LE(fitted["worst_gap_mm"], 1) << fitted["notes"];
+    EXPECT_LE(fitted["bytes"], 1'000'000);
+    const Outcome small = run("colliders soft.hairloom --fit field --kilobytes 100 -o small.hairloom --json");
+    EXPECT_THAT(small.errors, HasSubstr("to fit into 100 kB"));
+    EXPECT_LE(small.json()["bytes"], 100'000);
+    EXPECT_EQ(run("colliders soft.hairloom --fit field --kilobytes 1 -o x.hairloom").exitCode, 2);
+    EXPECT_THAT(fitted["bones"], testing::Contains("head"));
+    const std::string motion = " --frames 30 --motion clip:nod_and_turn";
+    const auto bare = runJson("simulate soft.hairloom" + motion);
+    const auto kept = runJson("simulate on.hairloom" + motion);
+    EXPECT_GT(bare["max_mesh_penetration_mm"], 5);
+    EXPECT_LT(kept["max_mesh_penetration_mm"], 0.3 * bare["max_mesh_penetration_mm"].get<double>());
+    EXPECT_FALSE(kept.contains("notes"));
+    // Off again, and it is as if it had never been.
+    EXPECT_EQ(runJson("colliders on.hairloom --fit none -o off.hairloom")["body"], false);
+    EXPECT_EQ(readText(folder / "off.hairloom"), readText(folder / "soft.hairloom"));
+}
+
+TEST_F(Colliders, FewSpheresComeAsCloseAsWasAskedFor) {
+    runJson(createArguments());
+    const auto fitted = runJson("colliders hair.hairloom --fit spheres --error 30 -o on.hairloom");
+    EXPECT_LE(fitted["worst_gap_mm"], 30);
+    EXPECT_GE(fitted["spheres"], 4);
+    EXPECT_EQ(fitted["body"], false);
+    const Outcome fine = run("colliders hair.hairloom --fit spheres --error 0.1 -o fine.hairloom --json");
+    EXPECT_THAT(fine.errors, HasSubstr("--fit field"));
+    EXPECT_EQ(fine.json()["notes"].size(), 1u);
+    EXPECT_EQ(run("colliders hair.hairloom -o x.hairloom").exitCode, 2);
+    EXPECT_EQ(run("colliders hair.hairloom --fit capsules -o x.hairloom").exitCode, 2);
+    const Outcome lost = run("colliders hair.hairloom --fit field --character none.glb -o x.hairloom");
+    EXPECT_EQ(lost.exitCode, 1);
+    EXPECT_THAT(lost.errors, HasSubstr("none.glb"));
+    EXPECT_FALSE(fs::exists(folder / "x.hairloom"));
+}
+
+TEST_F(Colliders, WhatPassesThroughTheSkinOrLosesItIsTold) {
+    fitSkin();
+    const auto noted = [&](const std::string& arguments, const char* words) {
+        const Outcome outcome = run(arguments + " --json");
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.errors;
+        EXPECT_THAT(outcome.errors, HasSubstr(words)) << arguments;
+        const auto report = outcome.json();
+        EXPECT_TRUE(report.contains("notes") && report["notes"].size() == 1 &&
+                    report["notes"][0].get<std::string>().find(words) != std::string::npos)
+            << report.dump();
+    };
+    noted("simulate on.hairloom --frames 2 -o moved.hairloom", "moved.hairloom: has no skin collider");
+    noted("simulate on.hairloom --frames 2 --model springs", "pass through the skin collider");
+    noted("simulate on.hairloom --frames 2 --method lattice", "pass through the skin collider");
+    const auto taken = runJson("simulate on.hairloom --frames 2 -o taken.hairloom --take");
+    EXPECT_FALSE(taken.contains("notes")) << "is of the head at rest";
+    const Outcome asset = run("export on.hairloom --format runtime -o hair.hairrt --json");
+    EXPECT_THAT(asset.errors, HasSubstr("skin collider"));
+    EXPECT_THAT(asset.json()["findings"].dump(), HasSubstr("skin collider"));
+    EXPECT_EQ(runJson("export soft.hairloom --format runtime -o bare.hairrt")["findings"].dump().find(
+                  "skin collider"),
+              std::string::npos);
+}
+
+TEST_F(Colliders, TransferTellsThatTheSkinWasOfTheOldHead) {
+    fitSkin();
+    const std::string to = "transfer on.hairloom --to '" + bustFile() + "' -o b.hairloom";
+    const Outcome moved = run(to + " --json");
+    EXPECT_EQ(moved.exitCode, 0) << moved.errors;
+    EXPECT_THAT(moved.errors, HasSubstr("skin collider"));
+    EXPECT_THAT(moved.json()["head"]["warnings"].dump(), HasSubstr("skin collider"));
+    EXPECT_EQ(runJson("colliders b.hairloom --fit none -o c.hairloom")["body"], false);
+}
+
+TEST_F(Colliders, RecordsKeepWhereTheSkinIs) {
+    fitSkin();
+    runJson("set on.hairloom interpolation.followPerGuide=4 -o many.hairloom");
+    runJson("set soft.hairloom interpolation.followPerGuide=4 -o bare.hairloom");
+    const std::string motion = " --frames 20 --motion clip:nod_and_turn --record ";
+    runJson("simulate many.hairloom" + motion + "on.frames");
+    runJson("simulate bare.hairloom" + motion + "off.frames");
+    const std::string how = " --frame 19 --size 96x96 -o ";
+    EXPECT_FALSE(runJson("render many.hairloom --record on.frames" + how + "on.png").contains("notes"));
+    // The same strands, whose follow hairs nothing leads out.
+    const Outcome old = run("render bare.hairloom --record on.frames" + how + "bare.png --json");
+    EXPECT_EQ(old.exitCode, 0) << old.errors;
+    EXPECT_NE(readText(folder / "on.png"), readText(folder / "bare.png"));
+    // A record from before the skin was fitted does not say where it is.
+    const Outcome before = run("render many.hairloom --record off.frames" + how + "before.png --json");
+    EXPECT_EQ(before.exitCode, 0) << before.errors;
+    EXPECT_THAT(before.errors, HasSubstr("Record the groom again"));
+    EXPECT_EQ(before.json()["notes"].size(), 1u);
+    // Damage in what is new of the header.
+    std::string bytes = readText(folder / "on.frames");
+    bytes[50] = 1;
+    std::ofstream(folder / "bad.frames", std::ios::binary) << bytes;
+    const Outcome bad = run("render many.hairloom --record bad.frames" + how + "bad.png");
+    EXPECT_EQ(bad.exitCode, 1);
+    EXPECT_THAT(bad.errors, HasSubstr("bones"));
+    std::ofstream(folder / "short.frames", std::ios::binary) << bytes.substr(0, 52);
+    EXPECT_THAT(run("render many.hairloom --record short.frames" + how + "bad.png").errors,
+                HasSubstr("cut short"));
+}
+
+}  // namespace
+}  // namespace hairloom::test

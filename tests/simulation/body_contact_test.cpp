@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rods and drawn hair against the baked skin of a body, measured against its mesh.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/geometry/mesh_solid.h"
+#include "core/simulation/bake_body.h"
+#include "core/simulation/body_push.h"
+#include "core/simulation/scene_input.h"
+#include "core/simulation/simulation.h"
+#include "hairloom/engine.h"
+#include "tests/geometry/test_meshes.h"
+
+namespace hairloom {
+namespace {
+
+constexpr float kFrame = 1.0f / 60;
+constexpr std::uint32_t kPoints = 12;
+
+/// Hair of 12 cm that stands out from the upper half of a ball of 10 cm, which no sphere protects.
+Groom hairyBall() {
+    const auto ball = std::make_shared<const ScalpMesh>(test::meshOf(test::icosphereSoup(4, 0.1f)));
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> positions;
+    Random random(2);
+    while (offsets.size() <= 60) {
+        Vec3f out = test::randomPoint(random, 1).normalized();
+        out.y() = std::abs(out.y());
+        for (std::uint32_t p = 0; p < kPoints; ++p)
+            positions.push_back((0.1f + 0.12f * static_cast<float>(p) / (kPoints - 1)) * out);
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    Groom groom = makeGroom(std::move(offsets), std::move(positions));
+    groom.scalp = ball;
+    groom.simulation.angularStiffness = 0.05f;  // falls on the ball
+    groom.simulation.restGravity = 0;
+    return groom;
+}
+
+Groom withBody(Groom groom) {
+    auto baked = bakeBodyOf(groom, nullptr);
+    if (!baked) throw std::runtime_error(baked.error().message());
+    groom.body = baked->field;
+    return groom;
+}
+
+/// hairyBall() with its skin, measured once.
+const Groom& hairyBody() {
+    static const Groom kGroom = withBody(hairyBall());
+    return kGroom;
+}
+
+/// Metres that points lie in the ball, but for the first two of each strand.
+float deepest(std::span<const Vec3f> points, const HeadPose& pose) {
+    static const Groom kGroom = hairyBall();
+    static const MeshSolid ball(kGroom.scalp->positions(), kGroom.scalp->triangles());
+    const Eigen::Isometry3f toBall = pose.head_ws.inverse();
+    float depth = 0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const Vec3f at = toBall * points[p];
+        if (p % kPoints > 1 && at.norm() < 0.1001f) depth = std::max(depth, -ball.signedDistance(at));
+    }
+    return depth;
+}
+
+HeadPose noddingAt(float time) {
+    HeadPose pose;
+    pose.head_ws = Eigen::Translation3f(0.1f * std::sin(3 * time), 0, 0) *
+                   Eigen::AngleAxisf(0.6f * std::sin(6 * time), Vec3f::UnitX());
+    return pose;
+}
+
+struct Ran {
+    float deepest = 0;  ///< of all frames
+    float drawn = 0;    ///< likewise, led out as what is drawn is
+    float last = 0;     ///< of the last frame
+    std::vector<Vec3f> positions_ws;
+    SimulationStats stats;
+};
+
+Ran run(const Groom& groom, int frames, HeadPose (*poseAt)(float)) {
+    auto made = Simulation::make(groom, poseAt(0));
+    if (!made) throw std::runtime_error(made.error().message());
+    const auto push = makeBodyPush(groom, groom.offsets.view(), groom.positions());
+    Ran ran;
+    for (int f = 1; f <= frames; ++f) {
+        const HeadPose pose = poseAt(kFrame * static_cast<float>(f));
+        made->step(kFrame, pose);
+        ran.last = deepest(made->positions_ws(), pose);
+        ran.deepest = std::max(ran.deepest, ran.last);
+        std::vector<Vec3f> points(made->positions_ws().begin(), made->positions_ws().end());
+        if (push) pushOutOfBody(*push, groom, pose, points);
+        ran.drawn = std::max(ran.drawn, deepest(points, pose));
+    }
+    ran.stats = made->stats();
+    ran.positions_ws.assign(made->positions_ws().begin(), made->positions_ws().end());
+    return ran;
+}
+
+TEST(BodyContact, RodsStayOutOfTheSkin) {
+    const Groom bare = hairyBall();
+    const Groom& kept = hairyBody();
+    EXPECT_GT(run(bare, 90, noddingAt).deepest, 0.03f) << "nothing else holds them";
+    const Ran ran = run(kept, 90, noddingAt);
+    // A tip that comes straight down at 2 m/s is stopped within two substeps, by a sphere as by a body.
+    Groom round = bare;
+    round.spheres = {{"ball", Vec3f::Zero(), 0.1f, ""}};
+    EXPECT_LT(ran.deepest, run(round, 90, noddingAt).deepest + 5e-4f) << "as a sphere of its size holds it";
+    EXPECT_LT(ran.last, 1e-3f);
+    EXPECT_LT(ran.drawn, 1e-3f);
+    EXPECT_EQ(ran.stats.restoredStrands, 0u);
+    EXPECT_LT(ran.stats.maxStretch, 1e-3);
+    const auto body = std::ranges::find(ran.stats.effects, "body", &EffectReport::name);
+    ASSERT_NE(body, ran.stats.effects.end());
+    EXPECT_GT(body->bytes, kept.body->bytes());
+}
+
+TEST(BodyContact, HairComesToRestOnIt) {
+    const Groom& groom = hairyBody();
+    const Ran ran = run(groom, 900, [](float) { return HeadPose{}; });
+    EXPECT_LT(ran.last, 2e-4f);
+    EXPECT_LT(ran.drawn, 1e-3f);
+    EXPECT_LT(ran.stats.fastestMmPerSecond, 1);
+    EXPECT_EQ(ran.stats.restingStrands, groom.strandCount());
+}
+
+TEST(BodyContact, GivesTheSameBitsOnAnyNumberOfThreads) {
+    const Groom& groom = hairyBody();
+    setThreadCount(1);
+    const std::uint64_t one = run(groom, 30, noddingAt).stats.stateHash;
+    setThreadCount(3);
+    const std::uint64_t three = run(groom, 30, noddingAt).stats.stateHash;
+    setThreadCount(0);
+    EXPECT_EQ(one, three);
+}
+
+TEST(BodyContact, GoesOnFromAState) {
+    const Groom& groom = hairyBody();
+    auto whole = Simulation::make(groom, noddingAt(0)), again = Simulation::make(groom, noddingAt(0));
+    ASSERT_TRUE(whole && again);
+    for (int f = 1; f <= 40; ++f) {
+        whole->step(kFrame, noddingAt(kFrame * static_cast<float>(f)));
+        if (f == 20) {
+            ASSERT_TRUE(again->setState(*whole->state(), 20.0 / 60));
+        }
+        if (f > 20) again->step(kFrame, noddingAt(kFrame * static_cast<float>(f)));
+    }
+    EXPECT_EQ(whole->stats().stateHash, again->stats().stateHash);
+}
+
+TEST(BodyContact, AFarBodyChangesNothing) {
+    Groom groom = hairyBall();
+    groom.body.reset();
+    const std::vector<Vec3f> without = run(groom, 20, noddingAt).positions_ws;
+    auto far = std::make_shared<runtime::BodyField>(*hairyBody().body);
+    far->low_ss.x += 10;
+    groom.body = far;
+    EXPECT_EQ(run(groom, 20, noddingAt).positions_ws, without) << "to the bit";
+    groom.simulation.strandModel = runtime::StrandModel::springs;
+    groom.simulation.substeps = 8;
+    const std::uint64_t springs = run(groom, 20, noddingAt).stats.stateHash;
+    groom.body.reset();
+    EXPECT_EQ(run(groom, 20, noddingAt).stats.stateHash, springs) << "springs pass through it";
+}
+
+TEST(BodyContact, PosesThatAreNoneLeaveItWhereItWas) {
+    const Groom& groom = hairyBody();
+    const auto scene = SceneInput::make(groom);
+    ASSERT_TRUE(scene);
+    const auto roots = scene->rootsAt({});
+    const auto runWith = [&](std::span<const runtime::BonePose> later) {
+        auto made = runtime::Engine::make(scene->strands(), groom.simulation);
+        EXPECT_EQ(made.engine->setBody(groom.body), "");
+        made.engine->reset(roots);
+        const std::vector<runtime::BonePose> first{{}};
+        for (int f = 1; f <= 30; ++f) {
+            runtime::FrameInput input;
+            input.dt = kFrame;
+            input.time = static_cast<double>(kFrame) * f;
+            input.roots_ws = roots;
+            input.body_ws = f == 1 ? std::span(first) : later;
+            made.engine->step(input);
+        }
+        return made.engine->stateHash();
+    };
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<runtime::BonePose> same{{}}, three(3), wrong{{{kNaN, 0, 0}, {}, {}, {}}};
+    const std::uint64_t expected = runWith(same);
+    EXPECT_EQ(runWith({}), expected);
+    EXPECT_EQ(runWith(three), expected);
+    EXPECT_EQ(runWith(wrong), expected);
+    // A body without size holds nothing; hair falls through and stays finite.
+    const std::vector<runtime::BonePose> flat{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {}}};
+    EXPECT_NE(runWith(flat), expected);
+}
+
+TEST(BodyContact, AFieldThatIsNoneIsRefused) {
+    Groom groom = hairyBody();
+    auto broken = std::make_shared<runtime::BodyField>(*groom.body);
+    broken->distances.pop_back();
+    groom.body = broken;
+    const auto made = Simulation::make(groom, {});
+    ASSERT_FALSE(made);
+    EXPECT_NE(made.error().message().find("body"), std::string::npos) << made.error().message();
+}
+
+TEST(BodyPush, LeavesHairAtRestAloneAndLeadsOthersOut) {
+    const Groom& groom = hairyBody();
+    const auto push = makeBodyPush(groom, groom.offsets.view(), groom.positions());
+    ASSERT_TRUE(push);
+    const HeadPose pose = noddingAt(0.3f);
+    std::vector<Vec3f> points;
+    for (const Vec3f& p : groom.positions()) points.push_back(pose.head_ws * p);
+    const std::vector<Vec3f> rest = points;
+    pushOutOfBody(*push, groom, pose, points);
+    float moved = 0;
+    for (std::size_t p = 0; p < points.size(); ++p) moved = std::max(moved, (points[p] - rest[p]).norm());
+    EXPECT_LT(moved, 1e-5f) << "no stand-off";
+    // Straight through the ball, from one side to the other.
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const float s = static_cast<float>(p % kPoints) / (kPoints - 1);
+        points[p] = rest[p - p % kPoints] +
+                    s * (pose.head_ws.translation() + Vec3f(0, 0.02f, 0) - rest[p - p % kPoints]);
+    }
+    EXPECT_GT(deepest(points, pose), 0.05f);
+    points[kPoints + 5].x() = std::numeric_limits<float>::infinity();
+    pushOutOfBody(*push, groom, pose, points);
+    EXPECT_TRUE(std::isinf(points[kPoints + 5].x())) << "what is no place stays as it is";
+    points[kPoints + 5] = rest[kPoints + 5];
+    EXPECT_LT(deepest(points, pose), 1e-3f);
+}
+
+TEST(BodyPush, CurvesBetweenPointsStayOut) {
+    Groom groom = hairyBody();
+    // A hair of four points over the ball whose points are outside and whose middle is not.
+    const std::vector<Vec3f> rest{{0, 0.1f, 0}, {0, 0.15f, 0}, {0, 0.2f, 0}, {0, 0.25f, 0}};
+    const std::vector<std::uint32_t> offsets{0, 4};
+    const auto push = makeBodyPush(groom, offsets, rest);
+    std::vector<Vec3f> points{{0, 0.1f, 0}, {0.05f, 0.09f, 0}, {0.101f, 0.02f, 0}, {0.102f, -0.05f, 0}};
+    const auto middle = [&] {
+        return Vec3f(9.0f / 16 * (points[1] + points[2]) - 1.0f / 16 * (points[0] + points[3]));
+    };
+    ASSERT_LT(middle().norm(), 0.0985f);
+    pushOutOfBody(*push, groom, {}, points);
+    EXPECT_GT(middle().norm(), 0.0995f);
+    EXPECT_EQ(points[0], rest[0]) << "roots stay";
+}
+
+}  // namespace
+}  // namespace hairloom
