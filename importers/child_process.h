@@ -17,6 +17,8 @@ struct ChildLimits {
     std::chrono::milliseconds time{8'000};                  ///< then the child is killed
     std::uint64_t residentBytes = std::uint64_t{3} << 29u;  ///< 1.5 GiB; then the child is killed
     std::uint64_t outputBytes = std::uint64_t{1} << 29u;    ///< 512 MiB; then the child is killed
+    /// The first eight bytes say how many follow: room is made for them at once, up to the limit.
+    bool startsWithLength = false;
 };
 
 /// Standard output of `program` run with `arguments`, with nothing on its standard input and its standard

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -112,10 +113,10 @@ Status explainEnd(const std::string& name, int status) {
     return {};
 }
 
+constexpr std::size_t kPiece = std::size_t{1} << 18u;
+
 /// Appends what can be read; false at the end of the pipe.
-bool readSome(int descriptor, std::vector<std::byte>& output) {
-    constexpr std::size_t kPiece = std::size_t{1} << 16u;
-    std::array<std::byte, kPiece> piece;
+bool readSome(int descriptor, std::span<std::byte> piece, std::vector<std::byte>& output) {
     const ssize_t got = read(descriptor, piece.data(), piece.size());
     if (got > 0) output.insert(output.end(), piece.begin(), piece.begin() + got);
     return got > 0 || (got < 0 && errno == EINTR);
@@ -130,11 +131,18 @@ Result<std::vector<std::byte>> runChild(const std::string& name, const std::file
     if (!spawned) return tl::unexpected(spawned.error());
     Child child(spawned->process);
     ChildWatch watch(name, limits, [id = spawned->process] { return residentBytes(id); });
-    std::vector<std::byte> output;
+    std::vector<std::byte> output, piece(kPiece);
+#ifdef F_SETPIPE_SZ
+    // Fewer turns between the two; smaller pipes do as well.
+    fcntl(spawned->output.number(), F_SETPIPE_SZ, static_cast<int>(kPiece));
+#endif
     pollfd waiting{spawned->output.number(), POLLIN, 0};
     for (bool open = true; open;) {
         const int ready = poll(&waiting, 1, static_cast<int>(kWatchInterval.count()));
-        if (ready > 0) open = readSome(waiting.fd, output);
+        if (ready > 0) {
+            open = readSome(waiting.fd, piece, output);
+            makeRoom(limits, output);
+        }
         if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
     }
     // A child may close its output and linger.

@@ -64,16 +64,25 @@ Handle openNull(DWORD access) {
                               0, nullptr));
 }
 
-/// A job that ends its processes when it is closed, and denies them memory over the limit.
+/// A job that ends its process when it is closed, denies it memory over the limit, other programs, and what
+/// the windows of others show and hold.
 Handle createJob(const ChildLimits& limits) {
     Handle job(CreateJobObjectW(nullptr, nullptr));
     JOBOBJECT_EXTENDED_LIMIT_INFORMATION info{};
-    info.BasicLimitInformation.LimitFlags = JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE |
-                                            JOB_OBJECT_LIMIT_PROCESS_MEMORY |
-                                            JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
+    info.BasicLimitInformation.LimitFlags =
+        JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE | JOB_OBJECT_LIMIT_PROCESS_MEMORY |
+        JOB_OBJECT_LIMIT_ACTIVE_PROCESS | JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
+    info.BasicLimitInformation.ActiveProcessLimit = 1;
     info.ProcessMemoryLimit = static_cast<SIZE_T>(limits.residentBytes);
-    if (job.get() != nullptr)
+    JOBOBJECT_BASIC_UI_RESTRICTIONS windows{};
+    windows.UIRestrictionsClass = JOB_OBJECT_UILIMIT_DESKTOP | JOB_OBJECT_UILIMIT_DISPLAYSETTINGS |
+                                  JOB_OBJECT_UILIMIT_EXITWINDOWS | JOB_OBJECT_UILIMIT_GLOBALATOMS |
+                                  JOB_OBJECT_UILIMIT_HANDLES | JOB_OBJECT_UILIMIT_READCLIPBOARD |
+                                  JOB_OBJECT_UILIMIT_SYSTEMPARAMETERS | JOB_OBJECT_UILIMIT_WRITECLIPBOARD;
+    if (job.get() != nullptr) {
         SetInformationJobObject(job.get(), JobObjectExtendedLimitInformation, &info, sizeof(info));
+        SetInformationJobObject(job.get(), JobObjectBasicUIRestrictions, &windows, sizeof(windows));
+    }
     return job;
 }
 
@@ -196,6 +205,7 @@ Result<std::vector<std::byte>> runChild(const std::string& name, const std::file
     for (bool ended = false;;) {
         const std::size_t before = output.size();
         const bool open = readSome(child->output.get(), output);
+        makeRoom(limits, output);
         if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
         if (!open) break;
         if (output.size() > before) continue;

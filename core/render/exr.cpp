@@ -51,19 +51,17 @@ int channelNamed(const EXRHeader& header, const char* name) {
 
 }  // namespace
 
-Result<LinearImage> readExr(const std::filesystem::path& path) {
-    const auto file = readFile(path, kMaxFileBytes);
-    if (!file) return tl::unexpected(file.error());
+Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte> content) {
     const auto failed = [&](const std::string& why) {
-        return failIn(path.string(), {}, why, "an OpenEXR of one part in lines of pixels");
+        return failIn(file, {}, why, "expected an OpenEXR of one part in lines of pixels");
     };
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(file->data());
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(content.data());
     Loaded loaded;
-    if (ParseEXRVersionFromMemory(&loaded.version, bytes, file->size()) != TINYEXR_SUCCESS)
+    if (ParseEXRVersionFromMemory(&loaded.version, bytes, content.size()) != TINYEXR_SUCCESS)
         return failed("is not an OpenEXR file");
     if (loaded.version.tiled != 0 || loaded.version.non_image != 0 || loaded.version.multipart != 0)
         return failed("is tiled, deep or of several parts");
-    if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, file->size(), &loaded.error) !=
+    if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, content.size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
         loaded.forgetHeader();
         return failed("cannot be read: " + loaded.why());
@@ -73,7 +71,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     const std::int64_t height = std::int64_t{window.max_y} - window.min_y + 1;
     if (width < 1 || height < 1) return failed("is a picture without pixels");
     const auto channels = static_cast<std::uint64_t>(loaded.header.num_channels);
-    if (auto status = checkPictureSize(path, static_cast<std::uint64_t>(width),
+    if (auto status = checkPictureSize(file, static_cast<std::uint64_t>(width),
                                        static_cast<std::uint64_t>(height), (channels + 4) * sizeof(float));
         !status)
         return tl::unexpected(status.error());
@@ -84,7 +82,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     if (places[0] < 0 || places[1] < 0 || places[2] < 0) return failed("has no channels R, G and B, or Y");
     for (int c = 0; c < loaded.header.num_channels; ++c)
         loaded.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
-    if (LoadEXRImageFromMemory(&loaded.image, &loaded.header, bytes, file->size(), &loaded.error) !=
+    if (LoadEXRImageFromMemory(&loaded.image, &loaded.header, bytes, content.size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
         loaded.forgetImage();
         return failed("cannot be read: " + loaded.why());
@@ -98,6 +96,12 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
         for (std::size_t i = 0; i < image.rgba.size() / 4; ++i) image.rgba[4 * i + c] = plane[i];
     }
     return image;
+}
+
+Result<LinearImage> readExr(const std::filesystem::path& path) {
+    const auto bytes = readFile(path, kMaxFileBytes);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return decodeExr(path.string(), *bytes);
 }
 
 Status writeExr(const std::filesystem::path& path, const LinearImage& image,
