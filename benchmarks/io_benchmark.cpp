@@ -69,7 +69,7 @@ std::string objRibbons(const Groom& groom) {
 
 /// In every format that can be written.
 void measureFormats(Timings& timings, const std::string& name, const Groom& groom) {
-    for (const StrandWriter& writer : strandWriters()) {
+    for (const HairWriter& writer : strandWriters()) {
         // Of its own: a file of another kind is not replaced.
         const TemporaryFile file("hairloom-io-benchmark." + writer.suffix());
         timings.measure("write ." + writer.name + ", " + name, [&](Rounds& rounds) -> Status {
@@ -108,7 +108,7 @@ void measureMemory(Timings& timings, std::uint32_t strands) {
     const std::string program = (programFolder() / "hairloom-cli").string();
     const TemporaryFile project("hairloom-io-benchmark.hairloom");
     std::optional<Groom> groom = head(strands);
-    for (const StrandWriter& writer : strandWriters()) {
+    for (const HairWriter& writer : strandWriters()) {
         if (writer.suffix() == "hairrt") continue;  // quantised, so its size says nothing of the hair's
         const TemporaryFile file("hairloom-io-benchmark." + writer.suffix());
         const bool isFirst = !std::filesystem::exists(project.path);

@@ -10,6 +10,8 @@
 #include "benchmarks/sample_hair.h"
 #include "benchmarks/temporary_file.h"
 #include "core/base/file.h"
+#include "core/base/stopwatch.h"
+#include "exporters/seen_motion.h"
 #include "exporters/strands.h"
 #include "hairloom/hairloom.hpp"
 
@@ -62,6 +64,103 @@ struct Nod {
         frame.wind = windy ? kWind.data() : nullptr;
     }
     static constexpr std::array<float, 3> kWind{3, 0, 0};
+};
+
+/// A crowd in wind, planned within 2 pixels, beside itself at the finest level.
+class CrowdBeside {
+  public:
+    CrowdBeside(const game::Asset& asset, bool strict) : asset_(asset) { crowd_.limits.strict = strict; }
+
+    Status play(game::Error& error) {
+        game::Instance first;
+        if (!first.make(asset_, HL_GUIDES | HL_LEVELS, nullptr, &error)) return refused(error);
+        const hl_instance_info info = first.describe();
+        std::vector<std::uint32_t> offsets(info.guides + 1), layers(info.guides);
+        std::vector<Vec3f> rest(info.guide_points);
+        std::uint32_t layerCount = 0;
+        if (hl_instance_offsets(first.get(), offsets.data(), offsets.size(), &error) != HL_OK ||
+            hl_asset_layers(asset_.get(), &layerCount, layers.data(), layers.size(), &error) != HL_OK ||
+            !read(first, rest))
+            return refused(error);
+        for (std::size_t c = 0; c < kPlannedCrowd; ++c) {
+            if (!finest_[c].copy(first, &error) || !planned_[c].copy(first, &error)) return refused(error);
+            crowd_.characters[crowd_.add(planned_[c])].pixels_per_metre = static_cast<float>(pixels(c));
+            seenFinest_.emplace_back(offsets, rest, layers);
+            seenPlanned_.emplace_back(offsets, rest, layers);
+        }
+        for (int f = 1; f <= kFramesBefore + kFramesJudged; ++f) {
+            if (auto status = step(f, error); !status) return status;
+            for (std::size_t c = 0; f > kFramesBefore && c < kPlannedCrowd; ++c) add(c, rest);
+        }
+        return {};
+    }
+    double share() const { return 100 * plannedSeconds_ / finestSeconds_; }
+
+    struct Judged {
+        double outline = 0, worstOutline = 0, worstShape = 0, decibels = 0, paths = 0;
+    };
+    Judged judge() const {
+        Judged judged;
+        for (std::size_t c = 0; c < kPlannedCrowd; ++c) {
+            const auto apart = SeenMotion::between(seenFinest_[c], seenPlanned_[c], 1 / pixels(c));
+            const double outline = static_cast<double>(apart.outline) * pixels(c);
+            judged.outline += outline * outline / kPlannedCrowd;
+            judged.worstOutline = std::max(judged.worstOutline, outline);
+            judged.worstShape = std::max(judged.worstShape, static_cast<double>(apart.shape) * pixels(c));
+            judged.decibels = std::max(judged.decibels, static_cast<double>(apart.decibels));
+        }
+        judged.outline = std::sqrt(judged.outline);
+        judged.paths = std::sqrt(squares_ / (kPlannedCrowd * kFramesJudged));
+        return judged;
+    }
+
+  private:
+    static constexpr int kFramesBefore = 60, kFramesJudged = 300;
+
+    /// A metre, of 1080 lines of 40 degrees.
+    static double pixels(std::size_t c) {
+        return 1484 / (1 + 15 * static_cast<double>(c) / (kPlannedCrowd - 1));
+    }
+    static bool read(const game::Instance& hair, std::vector<Vec3f>& points) {
+        const hl_out out{points.data(), points.size() * sizeof(Vec3f), sizeof(Vec3f)};
+        return hl_instance_read_guides(hair.get(), out, game::kNothing, game::kNothing, nullptr) == HL_OK;
+    }
+    Status step(int f, game::Error& error) {
+        const auto all = [&](std::vector<game::Instance>& hairs) {
+            return std::ranges::all_of(hairs, [&](game::Instance& hair) {
+                game::Frame frame;
+                frame.time = f / 60.0 + 0.37 * static_cast<double>(&hair - hairs.data());
+                frame.wind = Nod::kWind.data();
+                return hair.step(frame, &error);
+            });
+        };
+        const Stopwatch finest;
+        if (!all(finest_)) return refused(error);
+        const double before = finest.seconds();
+        const Stopwatch planned;
+        if (!crowd_.plan(&error) || !all(planned_)) return refused(error);
+        if (f <= kFramesBefore) return {};
+        finestSeconds_ += before;
+        plannedSeconds_ += planned.seconds();
+        return {};
+    }
+    void add(std::size_t c, std::vector<Vec3f>& points) {
+        std::vector<Vec3f> others(points.size());
+        read(finest_[c], points);
+        read(planned_[c], others);
+        seenFinest_[c].add(points);
+        seenPlanned_[c].add(others);
+        double squares = 0;
+        for (std::size_t p = 0; p < points.size(); ++p)
+            squares += static_cast<double>((points[p] - others[p]).squaredNorm());
+        squares_ += squares / static_cast<double>(points.size()) * pixels(c) * pixels(c);
+    }
+
+    const game::Asset& asset_;
+    game::Crowd crowd_;
+    std::vector<game::Instance> finest_{kPlannedCrowd}, planned_{kPlannedCrowd};
+    std::vector<SeenMotion> seenFinest_, seenPlanned_;
+    double finestSeconds_ = 0, plannedSeconds_ = 0, squares_ = 0;
 };
 
 /// One asset through everything.
@@ -238,6 +337,28 @@ class Played {
                            {static_cast<double>(hairs[0].describe().bytes) / 1e3}});
     }
 
+    /// `kPlannedCrowd` characters at 1 to 16 m in wind, planned within 2 pixels by what is seen and strictly,
+    /// beside all at the finest level: what that saves, and how far off it is.
+    Status judgeLevels() {
+        for (const bool strict : {false, true}) {
+            const std::string which = "crowd of " + std::to_string(kPlannedCrowd) +
+                                      " in wind, within 2 pixels " + (strict ? "strictly, " : "as seen, ");
+            CrowdBeside crowd(asset_, strict);
+            if (auto status = crowd.play(error_); !status) return status;
+            const auto row = [&](const char* what, const char* unit, double value) {
+                memory_.push_back({which + what + ", " + name_, unit, {value}});
+            };
+            row("share of the time of all at the finest level", "%", crowd.share());
+            const CrowdBeside::Judged judged = crowd.judge();
+            row("outlines, root mean square", "pixels", judged.outline);
+            row("outlines, worst character", "pixels", judged.worstOutline);
+            row("mean shapes over 5 s, worst character", "pixels", judged.worstShape);
+            row("strength of motion, worst octave of what moves a pixel", "dB", judged.decibels);
+            row("paths, root mean square", "pixels", judged.paths);
+        }
+        return {};
+    }
+
   private:
     Timings& timings_;
     std::vector<Measurement>& memory_;
@@ -275,6 +396,7 @@ Result<Outcome> run(const Options& options) {
         if (!name.starts_with("300x24")) continue;
         played.measureCrowd();
         played.measureLevels();
+        if (auto status = played.judgeLevels(); !status) return tl::unexpected(status.error());
     }
     auto outcome = timings.outcome("runtime");
     if (!outcome) return outcome;

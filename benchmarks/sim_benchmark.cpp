@@ -15,7 +15,7 @@ namespace {
 using scenes::ActiveForces;
 
 constexpr std::uint32_t kPoints = 16;
-constexpr std::uint32_t kMoreStrands = 2'000;
+constexpr std::uint32_t kMoreStrands = 10'000;
 constexpr std::uint32_t kGuides = 300;
 constexpr std::uint32_t kFollowNeighbours = 60;
 constexpr const char* kPerParticle = "ns/particle/substep";
@@ -230,27 +230,29 @@ class Bench {
     }
 
     void measureOverheads() {
-        for (const std::uint32_t strands : {kGuides, kMoreStrands}) {
-            StepRun engine({.strands = strands,
-                            .points = kPoints,
-                            .activeForces = ActiveForces::nothing,
-                            .model = runtime::StrandModel::springs});
-            BareIntegrator bare(strands, kPoints);
-            const std::uint32_t frames = engine.framesFor(0.5 * seconds_);
-            bare.milliseconds(frames);
-            // In turns, so that what else the machine does falls on both.
-            bench_.others.push_back(
-                {repeated(fmt::format("all effects off against the integrator alone, {}x{}, 1 thread",
-                                      strands, kPoints),
-                          "%",
-                          [&] {
-                              const double alone = bare.milliseconds(frames);
-                              return 100.0 * (engine.milliseconds(frames) / alone - 1.0);
-                          }),
-                 5.0});
+        for (const auto model : {runtime::StrandModel::rods, runtime::StrandModel::springs}) {
+            for (const std::uint32_t strands : {kGuides, kMoreStrands}) measureOverhead(strands, model);
         }
         bench_.others.push_back(
             {repeated("a profiler scope", "ns", [] { return profilerScopeNanoseconds(300); }), 100.0});
+    }
+
+    void measureOverhead(std::uint32_t strands, runtime::StrandModel model) {
+        StepRun engine(
+            {.strands = strands, .points = kPoints, .activeForces = ActiveForces::nothing, .model = model});
+        BareSolve bare(strands, kPoints, model);
+        const std::uint32_t frames = engine.framesFor(0.5 * seconds_);
+        bare.milliseconds(frames);
+        // In turns, so that what else the machine does falls on both.
+        bench_.others.push_back(
+            {repeated(fmt::format("{}, all effects off against the solve alone, {}x{}, 1 thread",
+                                  runtime::modelOf(model).name, strands, kPoints),
+                      "%",
+                      [&] {
+                          const double alone = bare.milliseconds(frames);
+                          return 100.0 * (engine.milliseconds(frames) / alone - 1.0);
+                      }),
+             3.0});
     }
 
     void measureFrames() {

@@ -112,7 +112,9 @@ Result<Report> withOutputs(std::initializer_list<Output> outputs, const std::fun
         kept.push_back(std::move(*file));
         if (output.path != kStandardOutput) sayLeftOvers(output.path);
     }
-    if (readBack == ReadBack::Yes) return run();
+    // Where nothing was asked for, what is written is the job's own and read by it: files of a benchmark,
+    // say.
+    if (count == 0 || readBack == ReadBack::Yes) return run();
     OutputBatch batch;
     auto report = run();
     if (!report) return report;

@@ -35,7 +35,7 @@ Names labels(const std::vector<FileFormat>& formats) {
 /// Labels of what is written, each once: some formats differ by the program that they are for.
 Names writers(bool cards) {
     Names names;
-    for (const StrandWriter& writer : hairWriters()) {
+    for (const HairWriter& writer : hairWriters()) {
         if (writer.holdsCards() == cards && std::ranges::find(names, writer.label) == names.end())
             names.push_back(writer.label);
     }
@@ -45,7 +45,7 @@ Names writers(bool cards) {
 /// Without what a target's name says of the format.
 Names programs() {
     Names names;
-    for (const StrandWriter& writer : hairWriters()) {
+    for (const HairWriter& writer : hairWriters()) {
         for (const ExportTarget& target : writer.targets) {
             std::string name = target.name.substr(0, target.name.find_first_of(",("));
             while (!name.empty() && name.back() == ' ') name.pop_back();

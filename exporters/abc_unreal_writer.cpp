@@ -13,11 +13,11 @@ Result<ExportReport> write(const Groom& groom, const std::filesystem::path& path
 
 }  // namespace
 
-StrandWriter abcUnrealWriter() {
+HairWriter abcUnrealWriter() {
     StrandExportOptions centimetres;
     centimetres.metresPerUnit = 0.01f;
     centimetres.limits = {"Unreal", 0, 255, 2, false};
-    StrandWriter writer{
+    HairWriter writer{
         "abc-unreal",
         "Alembic .abc for Unreal's groom importer",
         "what abc carries, and Unreal's groom schema 1.5: widths, closest guides and their weights, version "

@@ -13,12 +13,12 @@ Result<ExportReport> write(const Groom& groom, const std::filesystem::path& path
 
 }  // namespace
 
-StrandWriter abcWriter() {
+HairWriter abcWriter() {
     StrandExportOptions centimetres;
     centimetres.metresPerUnit = 0.01f;
     StrandExportOptions unity;
     unity.limits = unityLimits();
-    StrandWriter writer{
+    HairWriter writer{
         "abc",
         "Alembic .abc",
         "width and colour of each point; root UV, id, group and guide flag of each strand; all attributes",

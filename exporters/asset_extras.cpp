@@ -3,17 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <type_traits>
-
-#include "core/base/parallel.h"
-#include "hairloom/hairloom.h"
 
 namespace hairloom {
 namespace {
-
-/// Measuring them takes 13 µs a point on one core.
-constexpr std::size_t kMostMeasuredPoints = 500'000;
 
 bool isCarriedOtherwise(std::string_view name) {
     constexpr std::array kOthers{attribute::kRootTriangle, attribute::kRootBarycentric, attribute::kSelected,
@@ -69,11 +62,6 @@ struct Sections {
     }
 };
 
-void runPieces(void*, std::size_t count, std::size_t grain, void (*body)(void*, std::size_t, std::size_t),
-               void* context) {
-    parallelFor(count, grain, [&](std::size_t begin, std::size_t end) { body(context, begin, end); });
-}
-
 }  // namespace
 
 void addAttributes(const Groom& groom, const PreparedStrands& strands, AssetBuilder& builder) {
@@ -96,25 +84,6 @@ void addAttributes(const Groom& groom, const PreparedStrands& strands, AssetBuil
     }
     builder.add<asset::Attribute>(asset::kAttributes, sections.records);
     builder.add<std::byte>(asset::kAttributeValues, sections.values);
-}
-
-std::vector<asset::MeasuredLevel> measureLevels(std::span<const std::byte> file) {
-    hl_asset opened;
-    hl_asset_info info;
-    hl_instance* made = nullptr;
-    const hl_jobs jobs{nullptr, runPieces};
-    if (hl_asset_open(&opened, file.data(), file.size(), nullptr) != HL_OK ||
-        hl_asset_describe(&opened, &info, nullptr) != HL_OK || info.guide_points > kMostMeasuredPoints ||
-        hl_instance_make(&opened, HL_LEVELS, &jobs, &made, nullptr) != HL_OK)
-        return {};
-    const std::unique_ptr<hl_instance, void (*)(hl_instance*)> hair(made, hl_instance_free);
-    std::vector<asset::MeasuredLevel> levels;
-    for (std::uint32_t number = 0; number < HL_LEVEL_COUNT; ++number) {
-        hl_level level;
-        if (hl_instance_level(hair.get(), number, &level, nullptr) != HL_OK) return {};
-        levels.push_back({level.error_still, level.error_head, level.error_wind, 0});
-    }
-    return levels;
 }
 
 }  // namespace hairloom

@@ -16,7 +16,11 @@ namespace hairloom {
 /// of a head with a texture's coordinates, too.
 void addAttributes(const Groom& groom, const PreparedStrands& strands, AssetBuilder& builder);
 
-/// Of all levels, by playing the asset. Empty where it cannot be played, or would take minutes.
-std::vector<asset::MeasuredLevel> measureLevels(std::span<const std::byte> file);
+/// Errors of all levels: of the paths of points, and of what is seen far off (hl_level).
+struct MeasuredLevels {
+    std::vector<asset::MeasuredLevel> paths, seen;
+};
+/// By playing the asset. Empty where it cannot be played, or would take minutes.
+MeasuredLevels measureLevels(std::span<const std::byte> file);
 
 }  // namespace hairloom

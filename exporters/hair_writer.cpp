@@ -82,7 +82,7 @@ Result<ExportReport> writeHair(const Groom& groom, const std::filesystem::path& 
 
 }  // namespace
 
-StrandWriter hairWriter() {
+HairWriter hairWriter() {
     StrandExportOptions jolt, unity;
     jolt.pointsPerStrand = 32;
     jolt.limits = {"Jolt Physics", 0, 32, 2, false};

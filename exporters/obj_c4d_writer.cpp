@@ -49,7 +49,7 @@ Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path
 
 }  // namespace
 
-StrandWriter objC4dWriter() {
+HairWriter objC4dWriter() {
     return {"obj-c4d",
             "Cinema 4D hair OBJ",
             "the width of each point, as the width of its ribbon",

@@ -31,7 +31,7 @@ Result<ExportReport> writeObjLines(const Groom& groom, const std::filesystem::pa
 
 }  // namespace
 
-StrandWriter objLinesWriter() {
+HairWriter objLinesWriter() {
     return {"obj-lines",
             "OBJ lines",
             "only positions",

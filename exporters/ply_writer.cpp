@@ -50,7 +50,7 @@ Result<ExportReport> writePly(const Groom& groom, const std::filesystem::path& p
 
 }  // namespace
 
-StrandWriter plyWriter() {
+HairWriter plyWriter() {
     return {"ply",
             "PLY strands",
             "width and colour of each point; scalar point attributes under their names",

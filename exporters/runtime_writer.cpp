@@ -133,9 +133,18 @@ Result<FollowSections> followSections(const Groom& groom, const PreparedStrands&
     return sections;
 }
 
-/// Metres between the follow hairs that pictures show and those of the asset, at rest; of resampled strands
-/// between the ends of the hairs.
-Result<double> followError(const Groom& groom, const FollowBindings& bindings, const runtime::Asset& asset) {
+/// The follow hair that is farthest from the one that pictures show.
+struct FarthestHair {
+    double metres = 0;
+    std::size_t hair = 0, point = 0, points = 0;
+    bool resampled = false;  ///< then ends alone are compared
+};
+
+/// More is told as a warning.
+constexpr double kFarHair = 5e-4;
+
+Result<FarthestHair> followError(const Groom& groom, const FollowBindings& bindings,
+                                 const runtime::Asset& asset) {
     const auto shown = bakeFollowHairs(groom, bindings);
     if (!shown) return tl::unexpected(shown.error());
     const auto strands = asset.strandsAtRest();
@@ -149,17 +158,39 @@ Result<double> followError(const Groom& groom, const FollowBindings& bindings, c
     motion.positions_ws = strands.positions_ss;
     played.hairs->evaluate(motion, {reinterpret_cast<runtime::Float3*>(positions.data()), positions.size()},
                            host);
-    double largest = 0;
+    FarthestHair farthest{.points = points, .resampled = points != shownPoints};
     for (std::size_t hair = 0; hair < bindings.hairCount(); ++hair) {
         const auto compare = [&](std::size_t p, std::size_t shownPoint) {
             const Vec3f apart = positions[hair * points + p] - shown->strand(hair)[shownPoint];
-            largest = std::max(largest, double{apart.norm()});
+            const double metres{apart.norm()};
+            if (metres > farthest.metres) farthest.metres = metres, farthest.hair = hair, farthest.point = p;
         };
         compare(0, 0);
         compare(points - 1, shownPoints - 1);
         for (std::size_t p = 1; p < points && points == shownPoints; ++p) compare(p, p);
     }
-    return largest;
+    return farthest;
+}
+
+/// What a hair that is far off is off by, and what to do.
+Finding farHairFinding(const FarthestHair& far) {
+    const char *why =
+                   "its guides' points are quantised, and how it is shared among guides that part depends "
+                   "on them",
+               *fix = "lower interpolation.blend, or look at this hair in the game";
+    if (far.resampled) {
+        why = "strands were resampled", fix = "export without --points";
+    } else if (far.point == 0) {
+        why = "its root lies farther from where its guides lead than the asset can say";
+        fix = "place guides closer together there";
+    }
+    const std::string place = far.point == 0                ? "root"
+                              : far.point + 1 == far.points ? "tip"
+                                                            : fmt::format("point {}", far.point);
+    return {Severity::Warning,
+            fmt::format("hair {} is {:.2g} mm from that of rendered images at its {}: {}", far.hair,
+                        far.metres * 1e3, place, why),
+            "follow hairs", fix};
 }
 
 Status checkOptions(const StrandExportOptions& options) {
@@ -193,11 +224,12 @@ Status addFindings(const Groom& groom, const FollowSections& follow, const runti
     if (!follow.bindings) return {};
     const auto error = followError(groom, *follow.bindings, asset);
     if (!error) return tl::unexpected(error.error());
-    report.attributes.push_back({"follow hairs at rest", *error});
+    report.attributes.push_back({"follow hairs at rest", error->metres});
+    if (error->metres > kFarHair) report.findings.push_back(farHairFinding(*error));
     report.findings.push_back({Severity::Info,
                                fmt::format("{} follow hairs are generated when the asset is loaded, at most "
                                            "{:.2g} mm from those of rendered images",
-                                           asset.hairCount(), *error * 1e3),
+                                           asset.hairCount(), error->metres * 1e3),
                                "follow hairs", ""});
     return {};
 }
@@ -221,7 +253,7 @@ void addLayers(const Groom& groom, const PreparedStrands& strands, AssetBuilder&
 Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& strands,
                                           const FollowSections& follow,
                                           const std::optional<SafeLimits>& safeLimits,
-                                          std::span<const asset::MeasuredLevel> levels) {
+                                          const MeasuredLevels& levels) {
     const auto encoded = encodeStrands(strands.offsets, strands.positions);
     if (!encoded) return tl::unexpected(encoded.error());
     AssetBuilder builder;
@@ -245,7 +277,8 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     builder.add<std::uint16_t>(asset::kRadii, ownRadii(groom, strands));
     addLayers(groom, strands, builder);
     addAttributes(groom, strands, builder);
-    builder.add<asset::MeasuredLevel>(asset::kLevelErrors, levels);
+    builder.add<asset::MeasuredLevel>(asset::kLevelErrors, levels.paths);
+    builder.add<asset::MeasuredLevel>(asset::kSeenErrors, levels.seen);
     builder.addSettings("simulation", groom.simulation);
     builder.addSettings("material", groom.material);
     builder.addSettings("interpolation", groom.interpolation);
@@ -281,7 +314,7 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
 
 }  // namespace
 
-StrandWriter runtimeWriter() {
+HairWriter runtimeWriter() {
     return {
         "runtime",
         "Hairloom runtime asset .hairrt",

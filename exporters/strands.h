@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Grooms into strand files. What each format carries and loses stands in docs/formats/strands.md.
+// Grooms into files of strands and of cards. What each format carries and loses stands in
+// docs/formats/strands.md.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/base/result.h"
@@ -16,6 +18,11 @@
 #include "exporters/report.h"
 #include "exporters/safe_limits.h"
 #include "importers/strands.h"
+
+namespace hairloom::cards {
+struct Chain;
+struct Collider;
+}  // namespace hairloom::cards
 
 namespace hairloom {
 
@@ -54,37 +61,62 @@ struct ExportTarget {
     StrandExportOptions options;
 };
 
-/// A format that hair is written in. One file NAME_writer.cpp of this folder: nameWriter() says what it is.
-struct StrandWriter {
+/// Cards of a hairstyle on their way into a file.
+struct CardsToWrite {
+    const cards::Chain& chain;
+    std::span<const cards::Collider> colliders;  ///< spheres of the groom, for springs
+    const Groom& groom;                          ///< that they are of
+};
+struct WrittenCards {
+    std::vector<std::string> companions = {};  ///< names of files that were written beside it
+    std::vector<LeftBehind> leftBehind = {};
+    bool holdsSprings = false;
+    std::vector<Finding> findings = {};
+};
+
+/// Replaces `path` atomically, reads the file back and compares. Strands that no consumer could use (fewer
+/// than two points, not finite, of no length) are left out and reported. Errors: nothing left to write, a
+/// limit of the format that options cannot mend, a file that cannot be written or does not read back.
+using WriteStrands = Result<ExportReport> (*)(const Groom& groom, const std::filesystem::path& path,
+                                              const StrandExportOptions& options);
+/// Replaces `path`, and files beside it, all or none. Errors: no level that the format can hold, files that
+/// cannot be written.
+using WriteCards = Result<WrittenCards> (*)(const CardsToWrite& cards, const std::filesystem::path& path);
+
+/// A format that hair is written in, as strands or as cards. One file NAME_writer.cpp of this folder:
+/// nameWriter() says what it is.
+struct HairWriter {
     std::string name;     ///< as `--format` has it: the suffix of its files and, behind a hyphen, for whom
     std::string label;    ///< "TressFX .tfx"
     std::string carries;  ///< in words: what else than positions
     std::string limits;   ///< in words
     std::vector<ExportTarget> targets;  ///< at least one
-    std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }
-    /// Null: the format holds cards instead of strands (core/documents/hair_export.h). Otherwise it
-    /// replaces `path` atomically, reads the file back and compares. Strands that no consumer could use
-    /// (fewer than two points, not finite, of no length) are left out and reported. Errors: nothing left to
-    /// write, a limit of the format that options cannot mend, a file that cannot be written or does not read
-    /// back.
-    Result<ExportReport> (*write)(const Groom& groom, const std::filesystem::path& path,
-                                  const StrandExportOptions& options);
+    std::variant<WriteStrands, WriteCards> writer;
     std::string ownSuffix{};            ///< of its files, where that is not the name
     bool generatesFollowHairs = false;  ///< the file tells how follow hairs come from guides
     bool marksGuides = false;           ///< hairs go with the guides that they follow, and how much they do
     bool animates = false;              ///< the file can hold StrandExportOptions::frames
-    bool holdsCards() const { return write == nullptr; }
+
+    std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }
+    bool holdsCards() const { return std::holds_alternative<WriteCards>(writer); }
+    /// As WriteStrands; of a format that holds strands.
+    Result<ExportReport> write(const Groom& groom, const std::filesystem::path& path,
+                               const StrandExportOptions& options) const {
+        return std::get<WriteStrands>(writer)(groom, path, options);
+    }
 };
-const std::vector<StrandWriter>& strandWriters();
-// Of these, or of a list that holds more.
-using StrandWriters = std::span<const StrandWriter>;
+/// All formats, in order of name.
+const std::vector<HairWriter>& hairWriters();
+/// Those that hold strands.
+const std::vector<HairWriter>& strandWriters();
+using HairWriters = std::span<const HairWriter>;
 /// Programs of all writers as `--target` has them, each once, in order of name.
-std::vector<std::string> exportPrograms(StrandWriters writers = strandWriters());
+std::vector<std::string> exportPrograms(HairWriters writers = strandWriters());
 /// What the program wants of a format; null where it does not read that.
-const ExportTarget* findTarget(const StrandWriter& writer, std::string_view program);
+const ExportTarget* findTarget(const HairWriter& writer, std::string_view program);
 /// The writer of the format that the program reads best; there must be one.
-const StrandWriter& preferredWriter(std::string_view program, StrandWriters writers = strandWriters());
+const HairWriter& preferredWriter(std::string_view program, HairWriters writers = strandWriters());
 /// The writer of that name; there must be one.
-const StrandWriter& strandWriter(std::string_view name, StrandWriters writers = strandWriters());
+const HairWriter& strandWriter(std::string_view name, HairWriters writers = strandWriters());
 
 }  // namespace hairloom

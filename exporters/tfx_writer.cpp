@@ -174,7 +174,7 @@ Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& p
 
 }  // namespace
 
-StrandWriter tfxWriter() {
+HairWriter tfxWriter() {
     StrandExportOptions unreal;
     unreal.metresPerUnit = 0.01f;
     unreal.up = UpAxis::Z;

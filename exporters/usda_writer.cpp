@@ -113,15 +113,15 @@ Result<ExportReport> writeUsda(const Groom& groom, const std::filesystem::path& 
 
 }  // namespace
 
-StrandWriter usdaWriter() {
-    StrandWriter writer{"usda",
-                        "USD .usda",
-                        "width and colour of each point; root UV, id, group and guide flag of each strand; "
-                        "layers; attributes of "
-                        "any name",
-                        "none",
-                        usdTargets(".usda"),
-                        writeUsda};
+HairWriter usdaWriter() {
+    HairWriter writer{"usda",
+                      "USD .usda",
+                      "width and colour of each point; root UV, id, group and guide flag of each strand; "
+                      "layers; attributes of "
+                      "any name",
+                      "none",
+                      usdTargets(".usda"),
+                      writeUsda};
     writer.animates = true;
     return writer;
 }

@@ -128,9 +128,9 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
 
 }  // namespace
 
-StrandWriter usdcWriter() {
-    StrandWriter writer{"usdc", "USD .usdc",         "like usda, in a tenth of the time",
-                        "none", usdTargets(".usdc"), writeUsdc};
+HairWriter usdcWriter() {
+    HairWriter writer{"usdc", "USD .usdc",         "like usda, in a tenth of the time",
+                      "none", usdTargets(".usdc"), writeUsdc};
     writer.animates = true;
     return writer;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "importers/points_per_strand.h"
 
@@ -142,13 +143,30 @@ StrandGrid best(std::span<const StrandGrid> grids, Width width) {
     });
 }
 
-/// Strands are longer than wide; what is not is some other mesh.
+/// A flat ribbon has a border; a closed surface has none.
+bool hasBorder(const ObjStrandText& obj, const StrandPieces& pieces, std::size_t piece) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (std::uint32_t i = pieces.faceOffsets[piece]; i < pieces.faceOffsets[piece + 1]; ++i) {
+        const auto corners = cornersOf(obj, pieces.faces[i]);
+        for (std::size_t c = 0; c < corners.size(); ++c)
+            edges.push_back(std::minmax({corners[c], corners[(c + 1) % corners.size()]}));
+    }
+    std::ranges::sort(edges);
+    for (auto edge = edges.begin(); edge != edges.end();) {
+        const auto next = std::upper_bound(edge, edges.end(), *edge);
+        if (next - edge == 1) return true;
+        edge = next;
+    }
+    return edges.empty();
+}
+
+/// Strands are longer than wide; what is not is some other mesh. Flat ribbons may be as wide as cards are.
 Status checkSlender(const std::string& file, const ObjStrandText& obj, const StrandPieces& pieces,
                     std::span<const StrandGrid> grids) {
     constexpr double kSlender = 2;
     double length = 0, width = 0;
     for (std::size_t piece = 0; piece < pieces.count(); ++piece) {
-        if (grids[piece].sides == 2) return {};
+        if (grids[piece].sides == 2 && hasBorder(obj, pieces, piece)) return {};
         const Shape shape = shapeOf(obj, pieces, piece, grids[piece]);
         if (!std::isfinite(shape.length)) continue;
         length += shape.length;

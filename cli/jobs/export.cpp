@@ -48,19 +48,19 @@ std::string companionOf(const std::string& output) {
 
 /// Format and target as they were asked for; where one is not said, as the other has it best.
 struct Asked {
-    const StrandWriter* writer;
+    const HairWriter* writer;
     const ExportTarget* target;
 };
 Result<Asked> findAsked(const ExportOptions& options) {
     if (options.format.empty() && options.target.empty())
         throw WrongUsage("neither --format nor --target is given", "expected one of them");
-    const StrandWriter& writer = options.format.empty() ? preferredWriter(options.target, hairWriters())
-                                                        : strandWriter(options.format, hairWriters());
+    const HairWriter& writer = options.format.empty() ? preferredWriter(options.target, hairWriters())
+                                                      : strandWriter(options.format, hairWriters());
     if (options.target.empty()) return Asked{&writer, &writer.targets.front()};
     const ExportTarget* const target = findTarget(writer, options.target);
     if (target != nullptr) return Asked{&writer, target};
     std::string formats;
-    for (const StrandWriter& other : hairWriters()) {
+    for (const HairWriter& other : hairWriters()) {
         if (findTarget(other, options.target) != nullptr)
             formats += (formats.empty() ? "" : ", ") + other.name;
     }
@@ -117,6 +117,7 @@ Result<Report> exportAsPage(const ExportOptions& options) {
     if (options.certify) wanted.storms = CertificateOptions{}.storms;
     const auto written = exportWebPage(*groom, wanted, options.output);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
+    tellFindings(*written);
     return toJson(*written);
 }
 
@@ -143,7 +144,7 @@ Result<Report> exportAsset(const ExportOptions& options) {
 
 std::vector<std::string> formatNames() {
     std::vector<std::string> names;
-    for (const StrandWriter& writer : hairWriters()) names.push_back(writer.name);
+    for (const HairWriter& writer : hairWriters()) names.push_back(writer.name);
     names.emplace_back(kWebFormat);
     return names;
 }
@@ -152,7 +153,7 @@ std::vector<std::string> formatNames() {
 std::string formatsInWords() {
     constexpr int kColumn = 16;
     std::string text = "File format";
-    for (const StrandWriter& writer : hairWriters())
+    for (const HairWriter& writer : hairWriters())
         text += fmt::format("\n{:<{}}{}", writer.name, kColumn, writer.label);
     text += fmt::format("\n{:<{}}A folder with a web page that plays the hair", kWebFormat, kColumn);
     return text;

@@ -7,7 +7,9 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "core/base/log.h"
 #include "core/base/stopwatch.h"
+#include "exporters/card_character.h"
 #include "core/levels/level_report.h"
 #include "core/levels/spring_fit.h"
 
@@ -29,7 +31,11 @@ Result<Report> run(const LodOptions& options, const std::string& commandLine) {
         *groom, options.budget, LevelsMade::all,
         [&](std::string_view, double share) { bar.done(static_cast<std::size_t>(1000 * share)); }, nullptr);
     if (!chain) return tl::unexpected(inFile(chain.error(), options.input));
-    const auto files = writeChain(*chain, commandLine, collidersOf(*groom), options.output);
+    std::vector<Finding> findings;
+    const cards::Character character = cardCharacter(*groom, findings);
+    for (const Finding& finding : findings)
+        log::warning("{}: {}; {}", finding.where, finding.what, finding.fix);
+    const auto files = writeChain(*chain, commandLine, collidersOf(*groom), character, options.output);
     if (!files) return tl::unexpected(files.error());
     Report report{{"hairs", chain->strands}, {"directions", chain->views.size()}};
     report["levels"] = Report::array();

@@ -69,9 +69,7 @@ void noteInput(const std::filesystem::path& path) {
     const FileVersion version = fileVersion(path);
     if (!version.exists) return;
     const std::lock_guard lock(known().mutex);
-    auto [file, isNew] = known().files.try_emplace(keyOf(path), KnownFile{version, false});
-    // What the process wrote is no input, unless somebody has changed it since.
-    if (!isNew && file->second.written && file->second.version != version) file->second = {version, false};
+    known().files.try_emplace(keyOf(path), KnownFile{version, false});
 }
 
 void noteInput(const std::filesystem::path& path, const FileVersion& version) {

@@ -21,6 +21,8 @@ using Json = nlohmann::ordered_json;
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kShort = 5122, kUnsignedByte = 5121,
               kByte = 5120;
 constexpr int kVertices = 34962, kIndices = 34963;
+/// Of keratin.
+constexpr double kHairIor = 1.55;
 
 Json toJson(const Vec3f& v) {
     return Json::array({v.x(), v.y(), v.z()});
@@ -103,10 +105,17 @@ Status addCardMaterial(Writer& w, const Level& level, const Cards& cards, float 
     if (auto status = w.image(normalImage(picture), level.name + " normal"); !status) return status;
     const std::size_t normal = w.lastTexture();
     if (auto status = w.image(occlusionImage(picture), level.name + " occlusion"); !status) return status;
+    // Highlights of hair lie across it: rough that way, which is the tangent, and smoother along a strand.
+    constexpr double kRoughAlong = 0.45, kStrength = 0.7;
     w.json["materials"].push_back(
         Json{{"name", level.name},
              {"pbrMetallicRoughness",
-              {{"baseColorTexture", {{"index", colour}}}, {"metallicFactor", 0}, {"roughnessFactor", 0.55}}},
+              {{"baseColorTexture", {{"index", colour}}},
+               {"metallicFactor", 0},
+               {"roughnessFactor", kRoughAlong}}},
+             {"extensions",
+              {{"KHR_materials_anisotropy", {{"anisotropyStrength", kStrength}, {"anisotropyRotation", 0}}},
+               {"KHR_materials_ior", {{"ior", kHairIor}}}}},
              {"normalTexture", {{"index", normal}}},
              {"occlusionTexture", {{"index", w.lastTexture()}}},
              {"alphaMode", "MASK"},
@@ -212,7 +221,7 @@ void addMesh(Writer& w, const Level& level, const LevelArrays& a, const std::opt
 }
 
 /// Nodes of the joints, the head's first, and the skin.
-void addRig(Writer& w, const Rig& rig, const Cube& cube) {
+void addRig(Writer& w, const Rig& rig, const Cube& cube, const std::string& rootName) {
     std::vector<Eigen::Matrix4f> inverse;
     Json joints = Json::array();
     for (std::size_t j = 0; j < rig.joints.size(); ++j) {
@@ -220,7 +229,7 @@ void addRig(Writer& w, const Rig& rig, const Cube& cube) {
         Vec3f at = joint.position_ws;
         if (joint.parent >= 0) at -= rig.joints[static_cast<std::size_t>(joint.parent)].position_ws;
         const std::string name =
-            j == 0 ? "head" : fmt::format("hair_{}_{}", (j - 1) / rig.perChain, (j - 1) % rig.perChain);
+            j == 0 ? rootName : fmt::format("hair_{}_{}", (j - 1) / rig.perChain, (j - 1) % rig.perChain);
         w.json["nodes"].push_back(Json{{"name", name}, {"translation", toJson(at)}});
         if (joint.parent >= 0)
             w.json["nodes"][static_cast<std::size_t>(joint.parent)]["children"].push_back(j);
@@ -235,17 +244,88 @@ void addRig(Writer& w, const Rig& rig, const Cube& cube) {
         Json::array({Json{{"inverseBindMatrices", matrices}, {"joints", joints}, {"skeleton", 0}}});
 }
 
-/// VRMC_springBone 1.0: a spring for each chain.
+/// Where a node is at rest, from what it hangs on.
+void placeNode(Json& node, const Eigen::Affine3f& local) {
+    Mat3f turn, scale;
+    local.computeRotationScaling(&turn, &scale);
+    const Quatf rotation = Quatf(turn).normalized();
+    node["translation"] = toJson(local.translation());
+    if (rotation.vec().norm() > 1e-6f)
+        node["rotation"] = Json::array({rotation.x(), rotation.y(), rotation.z(), rotation.w()});
+    if (!scale.isIdentity(1e-5f)) node["scale"] = toJson(scale.diagonal());
+}
+
+/// The character's bones behind all other nodes; the rig goes to its head. The nodes that hang on none.
+Json addCharacter(Writer& w, const Rig& rig, const Character& character) {
+    Json roots = Json::array();
+    const std::size_t first = w.json["nodes"].size();
+    const auto nodeOf = [&](std::int32_t bone) { return first + static_cast<std::size_t>(bone); };
+    for (const Character::Bone& bone : character.bones) {
+        Json node{{"name", bone.name}};
+        const std::size_t number = w.json["nodes"].size();
+        if (bone.parent >= 0) {
+            const Eigen::Affine3f& parent_ws = character.bones[static_cast<std::size_t>(bone.parent)].bind_ws;
+            placeNode(node, parent_ws.inverse() * bone.bind_ws);
+            w.json["nodes"][nodeOf(bone.parent)]["children"].push_back(number);
+        } else {
+            placeNode(node, bone.bind_ws);
+            roots.push_back(number);
+        }
+        w.json["nodes"].push_back(std::move(node));
+    }
+    if (character.head < 0) return Json::array({0});
+    const Eigen::Affine3f rig_ws(Eigen::Translation3f(rig.joints[0].position_ws));
+    placeNode(w.json["nodes"][0],
+              character.bones[static_cast<std::size_t>(character.head)].bind_ws.inverse() * rig_ws);
+    w.json["nodes"][nodeOf(character.head)]["children"].push_back(0);
+    return roots;
+}
+
+/// VRMC_vrm 1.0. Whose it is and what others may do with it is the author's to say: the strictest until then.
+void addAvatar(Writer& w, const Character& character) {
+    const std::size_t firstBone = w.json["nodes"].size() - character.bones.size();
+    Json bones = Json::object();
+    for (const auto& [name, bone] : character.humanoid)
+        bones[name] = Json{{"node", firstBone + static_cast<std::size_t>(bone)}};
+    w.json["extensionsUsed"].push_back("VRMC_vrm");
+    w.json["extensions"]["VRMC_vrm"] = Json{{"specVersion", "1.0"},
+                                            {"meta",
+                                             {{"name", character.name},
+                                              {"authors", Json::array({"not named"})},
+                                              {"licenseUrl", "https://vrm.dev/licenses/1.0/"},
+                                              {"avatarPermission", "onlyAuthor"},
+                                              {"commercialUsage", "personalNonProfit"},
+                                              {"modification", "prohibited"}}},
+                                            {"humanoid", {{"humanBones", std::move(bones)}}}};
+}
+
+/// Of a collider: its node, and where that is at rest.
+struct Held {
+    std::size_t node = 0;
+    Eigen::Affine3f bind_ws = Eigen::Affine3f::Identity();
+};
+Held heldBy(const Collider& collider, const Rig& rig, const Character& character, std::size_t firstBone) {
+    const auto bone = std::ranges::find(character.bones, collider.bone, &Character::Bone::name);
+    if (collider.bone.empty() || bone == character.bones.end())
+        return {0, Eigen::Affine3f(Eigen::Translation3f(rig.joints[0].position_ws))};
+    return {firstBone + static_cast<std::size_t>(bone - character.bones.begin()), bone->bind_ws};
+}
+
+/// VRMC_springBone 1.0: a spring for each chain, a group for each collider, so that chains leave out those
+/// that they stand in at rest.
 void addSprings(Writer& w, const Rig& rig, std::span<const Spring> fitted,
-                std::span<const Collider> colliders) {
-    Json spheres = Json::array(), all = Json::array(), springs = Json::array();
+                std::span<const Collider> colliders, const Character& character) {
+    Json spheres = Json::array(), groups = Json::array(), springs = Json::array();
+    const std::size_t firstBone = w.json["nodes"].size() - character.bones.size();
     for (std::size_t c = 0; c < colliders.size(); ++c) {
-        spheres.push_back(Json{{"node", 0},
+        const Held held = heldBy(colliders[c], rig, character, firstBone);
+        const float scale = std::cbrt(std::abs(held.bind_ws.linear().determinant()));
+        spheres.push_back(Json{{"node", held.node},
                                {"shape",
                                 {{"sphere",
-                                  {{"offset", toJson(colliders[c].centre_ws - rig.joints[0].position_ws)},
-                                   {"radius", colliders[c].radius}}}}}});
-        all.push_back(c);
+                                  {{"offset", toJson(held.bind_ws.inverse() * colliders[c].centre_ws)},
+                                   {"radius", colliders[c].radius / scale}}}}}});
+        groups.push_back(Json{{"name", fmt::format("sphere {}", c)}, {"colliders", Json::array({c})}});
     }
     for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
         const Spring& spring = fitted[chain];
@@ -259,13 +339,14 @@ void addSprings(Writer& w, const Rig& rig, std::span<const Spring> fitted,
                                   {"dragForce", spring.drag}});
         }
         Json entry{{"name", fmt::format("hair {}", chain)}, {"joints", std::move(joints)}};
-        if (!colliders.empty()) entry["colliderGroups"] = Json::array({0});
+        if (const auto held = collidersOfChain(rig, chain, colliders); !held.empty())
+            entry["colliderGroups"] = held;
         springs.push_back(std::move(entry));
     }
     Json extension{{"specVersion", "1.0"}};
     if (!colliders.empty()) {
         extension["colliders"] = std::move(spheres);
-        extension["colliderGroups"] = Json::array({Json{{"name", "head"}, {"colliders", std::move(all)}}});
+        extension["colliderGroups"] = std::move(groups);
     }
     extension["springs"] = std::move(springs);
     w.json["extensionsUsed"].push_back("VRMC_springBone");
@@ -275,7 +356,7 @@ void addSprings(Writer& w, const Rig& rig, std::span<const Spring> fitted,
 }  // namespace
 
 Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collider> colliders,
-                                     GlbNumbers numbers) {
+                                     GlbNumbers numbers, const Character& character) {
     std::vector<const Level*> held;
     for (const Level& level : chain.levels)
         if (level.spec.kind != LevelKind::strands) held.push_back(&level);
@@ -292,16 +373,20 @@ Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collide
         w.json["extensionsUsed"].push_back("KHR_mesh_quantization");
         w.json["extensionsRequired"].push_back("KHR_mesh_quantization");
     }
-    addRig(w, rig, cube.value_or(Cube()));
+    // Not the name that the character's own bone has.
+    addRig(w, rig, cube.value_or(Cube()), character.bones.empty() ? "head" : "hair");
+    bool hasCards = false;
     for (std::size_t i = 0; i < held.size(); ++i) {
         const Level* const level = held[i];
         if (const auto* cards = std::get_if<Cards>(&level->content)) {
+            hasCards = true;
             if (auto status = addCardMaterial(w, *level, *cards, arrays[i].albedoScale); !status)
                 return tl::unexpected(status.error());
         } else {
             w.json["materials"].push_back(
                 Json{{"name", level->name},
-                     {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.7}}}});
+                     {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.7}}},
+                     {"extensions", {{"KHR_materials_ior", {{"ior", kHairIor}}}}}});
         }
         addMesh(w, *level, arrays[i], cube);
         w.json["nodes"].push_back(
@@ -311,7 +396,11 @@ Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collide
         w.json["samplers"] =
             Json::array({Json{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}}});
     const std::size_t nearest = rig.joints.size();
-    w.json["scenes"] = Json::array({Json{{"nodes", Json::array({0, nearest})}}});
+    w.json["extensionsUsed"].push_back("KHR_materials_ior");
+    if (hasCards) w.json["extensionsUsed"].push_back("KHR_materials_anisotropy");
+    Json roots = addCharacter(w, rig, character);
+    roots.push_back(nearest);
+    w.json["scenes"] = Json::array({Json{{"nodes", std::move(roots)}}});
     if (held.size() > 1) {
         Json ids = Json::array(), shares = Json::array();
         for (std::size_t i = 1; i < held.size(); ++i) {
@@ -323,7 +412,8 @@ Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collide
         w.json["nodes"][nearest]["extensions"]["MSFT_lod"] = Json{{"ids", std::move(ids)}};
         w.json["nodes"][nearest]["extras"]["MSFT_screencoverage"] = std::move(shares);
     }
-    if (rig.chains() > 0) addSprings(w, rig, chain.springs, colliders);
+    if (!character.humanoid.empty()) addAvatar(w, character);
+    if (rig.chains() > 0) addSprings(w, rig, chain.springs, colliders, character);
     return w.file();
 }
 

@@ -12,6 +12,8 @@ namespace hairloom::cards {
 namespace {
 
 constexpr float kStep = 1.0f / 60;  // seconds
+/// How much joints at rest count, each as if it were off in so many frames.
+constexpr double kRestFrames = 1000;
 
 /// The bones of a chain, from joint to joint, as VRMC_springBone 1.0 moves them.
 class SwingingChain {
@@ -68,6 +70,46 @@ class SwingingChain {
     std::vector<Vec3f> rest_, tails_, before_;
 };
 
+/// The joints of a chain but its first, where they stay under a still head: each bone points where stiffness
+/// and gravity together pull it.
+std::vector<Vec3f> settled(const Rig& rig, std::size_t chain, const Spring& spring) {
+    std::vector<Vec3f> tails;
+    const Joint* const joints = &rig.joints[1 + chain * rig.perChain];
+    Quatf parent = Quatf::Identity();
+    Vec3f at = joints[0].position_ws;
+    for (std::uint32_t j = 0; j + 1 < rig.perChain; ++j) {
+        const Vec3f bone = joints[j + 1].position_ws - joints[j].position_ws;
+        const float length = bone.norm();
+        if (length > 0) {
+            const Vec3f axis = parent * (bone / length);
+            const Vec3f pull = spring.stiffnessAt(j, rig.perChain) * axis - spring.gravity * Vec3f::UnitY();
+            const Vec3f way = pull.norm() > 0 ? pull.normalized() : axis;
+            parent = shortestArc(axis, way) * parent;
+            at += length * way;
+        }
+        tails.push_back(at);
+    }
+    return tails;
+}
+
+/// Of joints that touch none of these at rest.
+float hitRadiusOf(const Rig& rig, std::size_t chain, std::span<const Collider> colliders) {
+    float radius = Spring().hitRadius;
+    for (const Collider& collider : colliders) {
+        for (std::uint32_t j = 1; j < rig.perChain; ++j) {
+            const Vec3f away = rig.joints[1 + chain * rig.perChain + j].position_ws - collider.centre_ws;
+            radius = std::min(radius, away.norm() - collider.radius);
+        }
+    }
+    return std::max(radius, 0.0f);
+}
+
+std::vector<Collider> held(const Rig& rig, std::size_t chain, std::span<const Collider> colliders) {
+    std::vector<Collider> some;
+    for (const std::uint32_t c : collidersOfChain(rig, chain, colliders)) some.push_back(colliders[c]);
+    return some;
+}
+
 /// Sum of squares, m².
 double squaresOff(const Rig& rig, std::size_t chain, const Spring& spring, const ChainMotion& wanted,
                   std::span<const Collider> colliders) {
@@ -80,6 +122,11 @@ double squaresOff(const Rig& rig, std::size_t chain, const Spring& spring, const
             const Vec3f& at = wanted.joints_ws[f][chain * rig.perChain + j + 1];
             sum += static_cast<double>((tails[j] - at).squaredNorm());
         }
+    }
+    const std::vector<Vec3f> resting = settled(rig, chain, spring);
+    for (std::size_t j = 0; j < resting.size(); ++j) {
+        const Vec3f& at = rig.joints[2 + chain * rig.perChain + j].position_ws;
+        sum += kRestFrames * static_cast<double>((resting[j] - at).squaredNorm());
     }
     return sum;
 }
@@ -100,8 +147,14 @@ Spring springOf(const Point& p) {
 /// Jeeves 1961).
 Spring fitted(const Rig& rig, std::size_t chain, const ChainMotion& wanted,
               std::span<const Collider> colliders) {
+    const float hitRadius = hitRadiusOf(rig, chain, colliders);
+    const auto springAt = [&](const Point& p) {
+        Spring spring = springOf(p);
+        spring.hitRadius = hitRadius;
+        return spring;
+    };
     const auto errorOf = [&](const Point& p) {
-        return squaresOff(rig, chain, springOf(p), wanted, colliders);
+        return squaresOff(rig, chain, springAt(p), wanted, colliders);
     };
     constexpr std::array<Point, 3> kStarts{
         {{0.77f, 0.77f, 0.4f, 0.45f}, {0.3f, 0.2f, 0.1f, 0.3f}, {1.5f, 1.2f, 0.7f, 0.1f}}};
@@ -136,10 +189,33 @@ Spring fitted(const Rig& rig, std::size_t chain, const ChainMotion& wanted,
         }
         if (error < least) best = at, least = error;
     }
-    return springOf(best);
+    return springAt(best);
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> collidersOfChain(const Rig& rig, std::size_t chain,
+                                            std::span<const Collider> colliders) {
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t c = 0; c < colliders.size(); ++c) {
+        bool outside = true;
+        for (std::uint32_t j = 1; j < rig.perChain; ++j) {
+            const Vec3f away = rig.joints[1 + chain * rig.perChain + j].position_ws - colliders[c].centre_ws;
+            outside = outside && away.norm() >= colliders[c].radius;
+        }
+        if (outside) some.push_back(c);
+    }
+    return some;
+}
+
+float settling(const Rig& rig, std::size_t chain, const Spring& spring) {
+    float farthest = 0;
+    const std::vector<Vec3f> resting = settled(rig, chain, spring);
+    for (std::size_t j = 0; j < resting.size(); ++j)
+        farthest =
+            std::max(farthest, (resting[j] - rig.joints[2 + chain * rig.perChain + j].position_ws).norm());
+    return farthest;
+}
 
 std::vector<std::vector<Vec3f>> swing(const Rig& rig, std::size_t chain, const Spring& spring,
                                       std::span<const Eigen::Isometry3f> heads_ws,
@@ -158,7 +234,7 @@ SpringError springError(const Rig& rig, std::span<const Spring> springs, const C
     SpringError error;
     std::size_t count = 0;
     for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
-        const auto frames = swing(rig, chain, springs[chain], wanted.heads_ws, colliders);
+        const auto frames = swing(rig, chain, springs[chain], wanted.heads_ws, held(rig, chain, colliders));
         for (std::size_t f = 1; f < frames.size(); ++f) {
             for (std::size_t j = 1; j < frames[f].size(); ++j) {
                 const Vec3f& at = wanted.joints_ws[f][chain * rig.perChain + j];
@@ -177,7 +253,7 @@ Result<std::vector<Spring>> fitSprings(const Rig& rig, const ChainMotion& wanted
     std::vector<Spring> springs(rig.chains());
     parallelFor(springs.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t chain = begin; chain < end && !cancelled(cancel); ++chain)
-            springs[chain] = fitted(rig, chain, wanted, colliders);
+            springs[chain] = fitted(rig, chain, wanted, held(rig, chain, colliders));
     });
     if (cancelled(cancel)) return stopped();
     return springs;

@@ -10,10 +10,11 @@
 
 namespace hairloom::cards {
 
-/// A sphere that swinging joints keep out of; moves with the head. World space, metres.
+/// A sphere that swinging joints keep out of. World space, metres.
 struct Collider {
     Vec3f centre_ws;
     float radius = 0;
+    std::string bone{};  ///< of the character that it moves with; empty: with the head
 };
 
 /// What the joints of a chain have; of the joints between its first and its last the stiffness lies between.
@@ -31,6 +32,15 @@ struct Spring {
     }
 };
 
+/// Numbers of the colliders that a chain is kept out of: none of its joints stands in them at rest, where
+/// they would push it away at once.
+std::vector<std::uint32_t> collidersOfChain(const Rig& rig, std::size_t chain,
+                                            std::span<const Collider> colliders);
+
+/// Where the joints of a chain come to rest under a head that is still: metres from where they are, the
+/// farthest.
+float settling(const Rig& rig, std::size_t chain, const Spring& spring);
+
 /// How chains are wanted to move, frame by frame, 60 a second, the first at rest.
 struct ChainMotion {
     std::vector<Eigen::Isometry3f> heads_ws;    ///< from rest
@@ -44,6 +54,7 @@ std::vector<std::vector<Vec3f>> swing(const Rig& rig, std::size_t chain, const S
                                       std::span<const Collider> colliders);
 
 /// How far joints are from where they are wanted, all chains and frames; the first of a chain is left out.
+/// Each chain is kept out of collidersOfChain().
 struct SpringError {
     double meanMm = 0, largestMm = 0;
 };
@@ -55,10 +66,12 @@ struct SpringFit {
     std::string motion;  ///< of the head
     double seconds = 0;
     SpringError before, after;  ///< as they were set, and fitted
+    double settlingMm = 0;      ///< settling() of the chain with the largest, fitted
 };
 
-/// By chains, the springs that keep the joints nearest to where they are wanted, by the mean of squares. The
-/// same for any number of threads. Errors: stopped.
+/// By chains, the springs that keep the joints nearest to where they are wanted, by the mean of squares, and
+/// under a still head to where they are at rest. At rest no joint touches a collider. The same for any number
+/// of threads. Errors: stopped.
 Result<std::vector<Spring>> fitSprings(const Rig& rig, const ChainMotion& wanted,
                                        std::span<const Collider> colliders, Cancel cancel);
 

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
 #include "core/cost/thread_clock.h"
+#include "runtime/engine/frame_setup.h"
 
 namespace hairloom {
 namespace {
@@ -111,24 +112,43 @@ double StepRun::work() const {
     return static_cast<double>(engine_->pointCount()) * substeps_;
 }
 
-BareIntegrator::BareIntegrator(std::uint32_t strands, std::uint32_t points)
-    : head_(strands, points), shape_(runtime::makeRestShape(head_.view())) {
+BareSolve::BareSolve(std::uint32_t strands, std::uint32_t points, runtime::StrandModel model)
+    : head_(strands, points),
+      settings_(scenes::settingsFor(scenes::ActiveForces::nothing, model)),
+      shape_(runtime::makeRestShape(head_.view())),
+      hair_(runtime::modelOf(model).make()) {
+    state_.model = model;
     state_.planes.assign(shape_->planeFloats * runtime::kStatePlanes, 0.0f);
     state_.roots.assign(shape_->blocks.size() * runtime::kRootRows * runtime::kBlockLanes, 0.0f);
+    runtime::PlanInput scene;
+    scene.settings = settings_;
+    scene.strandCount = strands;
+    scene.longestPointCount = shape_->longestPointCount;
+    scene.longestStrand = shape_->longestStrand;
+    scene.straight = shape_->straight;
+    plan_ = runtime::plan(scene);
+    hair_->takeSettings(*shape_, settings_, nullptr, state_);
+    hair_->takeState(*shape_, settings_, state_);
+    hair_->allocate(*shape_, settings_, plan_, state_);
+    const runtime::Model& kernels = runtime::modelOf(model);
+    work_.resize(kernels.laneFloats + kernels.solverFloats(plan_.stages()) * points +
+                 runtime::kSolverPadding);
     head_.placeRoots(0.0, roots_);
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         runtime::LaneFrame lanes;
         enterFrame(b, lanes);
-        for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane)
+        for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
             runtime::placeAtRest(*shape_, state_, b, lane);
+            hair_->placeAtRest(*shape_, state_, b, lane);
+        }
     }
 }
 
 /// From where the roots were to where they are.
-void BareIntegrator::enterFrame(std::size_t block, runtime::LaneFrame& lanes) {
+void BareSolve::enterFrame(std::size_t block, runtime::LaneFrame& lanes) {
     using runtime::kBlockLanes;
     float* const rows = state_.roots.data() + block * runtime::kRootRows * kBlockLanes;
-    const float share = 1.0f / static_cast<float>(runtime::kSpringSubsteps);
+    const float share = 1.0f / static_cast<float>(settings_.substeps);
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         const runtime::RootFrame& to = roots_[shape_->blocks[block].strandOfLane[lane]];
         const float now[runtime::kRootRows] = {to.position.x, to.position.y, to.position.z, to.rotation.x,
@@ -145,27 +165,29 @@ void BareIntegrator::enterFrame(std::size_t block, runtime::LaneFrame& lanes) {
     }
 }
 
-double BareIntegrator::milliseconds(std::uint32_t frames) {
-    const auto& stages = runtime::kernels().stages;
-    const runtime::Stage moveRoots = stages[static_cast<std::size_t>(runtime::StageId::roots)];
-    const runtime::Stage verlet = stages[static_cast<std::size_t>(runtime::StageId::verlet)];
-    const std::uint32_t clamped = runtime::SimulationSettings{}.clampedPoints;
-    runtime::SubstepContext context;
-    context.count = runtime::kSpringSubsteps;
-    context.h = kFrame / static_cast<float>(runtime::kSpringSubsteps);
+double BareSolve::milliseconds(std::uint32_t frames) {
+    const runtime::Model& model = runtime::modelOf(settings_.strandModel);
+    const runtime::Passes passes = model.passes(plan_.stages(), false);
+    runtime::SubstepContext context = runtime::substepContext(settings_, plan_, kFrame, {});
+    context.conservative = context.spheresRest = true;
     std::vector<double> times;
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);
         head_.placeRoots(time_, roots_);
         const std::uint64_t begin = threadNanoseconds();
+        context.stepRatio = substep_ > 0.0f ? 1.0f : runtime::kFirstStepRatio;
+        substep_ = context.h;
         for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
-            const runtime::BlockView view =
-                runtime::viewOf({*shape_, state_, bend_, evaluation_, 0}, b, clamped);
+            runtime::BlockRoom room;
+            const runtime::BlockView& view = hair_->view(*shape_, state_, b, settings_.clampedPoints, room);
             runtime::LaneFrame lanes;
+            lanes.own = work_.data();
+            lanes.solver = work_.data() + model.laneFloats;
             enterFrame(b, lanes);
-            for (context.index = 0; context.index < runtime::kSpringSubsteps; ++context.index) {
-                moveRoots(view, lanes, context);
-                verlet(view, lanes, context);
+            runtime::SubstepContext substep = context;
+            for (substep.index = 0; substep.index < substep.count; ++substep.index) {
+                for (std::size_t i = 0; i < passes.count; ++i) passes.calls[i](view, lanes, substep);
+                substep.stepRatio = 1.0f;
             }
         }
         times.push_back(hairloom::milliseconds(threadNanoseconds() - begin));

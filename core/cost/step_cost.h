@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/cost/benchmark_scenes.h"
-#include "runtime/engine/state.h"
+#include "runtime/engine/strand_model.h"
 
 namespace hairloom {
 
@@ -70,23 +70,27 @@ class StepRun {
     double time_ = 0.0;
 };
 
-/// The integrator and nothing else: the kernels of roots and position Verlet called block by block, without
-/// an engine around them. What an engine with every effect off does beyond this is its overhead.
-class BareIntegrator {
+/// A model's solve and nothing else: the kernels of roots and of rods, or of position Verlet, called block by
+/// block, without an engine around them. What an engine with every effect off does beyond this is its
+/// overhead.
+class BareSolve {
   public:
-    /// With the usual substeps of springs.
-    BareIntegrator(std::uint32_t strands, std::uint32_t points);
+    /// With the model's usual substeps.
+    BareSolve(std::uint32_t strands, std::uint32_t points, runtime::StrandModel model);
     double milliseconds(std::uint32_t frames);
 
   private:
     void enterFrame(std::size_t block, runtime::LaneFrame& lanes);
 
     scenes::HeadOfHair head_;
+    runtime::SimulationSettings settings_;
     std::shared_ptr<const runtime::RestShape> shape_;
     runtime::State state_;
-    runtime::Bend bend_;          // empty
-    runtime::Floats evaluation_;  // empty
+    runtime::OwnedStrands hair_;
+    runtime::EffectPlan plan_;
+    runtime::Floats work_;
     std::vector<runtime::RootFrame> roots_;
+    float substep_ = 0.0f;  // of the last frame
     double time_ = 0.0;
 };
 

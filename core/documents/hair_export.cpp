@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <numeric>
 
-#include "core/base/output_file.h"
 #include "core/cost/scene_run.h"
 #include "core/documents/guides_beside_hairs.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
-#include "core/levels/card_meshes.h"
-#include "core/levels/card_usd.h"
+#include "core/levels/spring_fit.h"
 #include "core/live/root_rotations.h"
 #include "core/simulation/simulation.h"
 #include "core/stability/certificate.h"
@@ -100,36 +99,7 @@ void putGuidesBeside(const Groom& guides, const FollowBindings& bindings, Moving
     if (!moving.shapes.empty()) shown.pointAttributes.set(attribute::kPosition, moving.shapes.front());
 }
 
-constexpr const char *kQuantised = "gltf-quantised", *kObj = "obj-cards", *kFbx = "fbx", *kUsd = "usda-cards";
-
-Result<ExportReport> writeCardFile(const cards::Chain& chain, const Groom& groom, const std::string& format,
-                                   const std::filesystem::path& path) {
-    if (format == kCardFormat || format == kQuantised) {
-        auto file = levelFile(
-            chain, groom, format == kQuantised ? cards::GlbNumbers::quantised : cards::GlbNumbers::floats);
-        if (!file) return tl::unexpected(file.error());
-        if (auto status = writeFileAtomically(path, file->bytes); !status)
-            return tl::unexpected(status.error());
-        return std::move(file->report);
-    }
-    auto companions =
-        format == kUsd
-            ? writeCardUsd(chain, path)
-            : writeCardMeshes(chain, format == kFbx ? CardMeshFormat::fbx : CardMeshFormat::obj, path);
-    if (!companions) return tl::unexpected(companions.error());
-    ExportReport report = levelReport(chain, groom);
-    report.companions = std::move(*companions);
-    report.bytes = std::filesystem::file_size(path);
-    std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
-    report.leftBehind.push_back({"springs, and the distances of levels", "export them as gltf"});
-    if (format != kFbx) report.leftBehind.push_back({"joints and weights", "export them as fbx"});
-    if (format == kUsd)
-        report.leftBehind.push_back({"differences between cards that share a texture",
-                                     "multiply displayColor in yourself, because UsdPreviewSurface cannot"});
-    return report;
-}
-
-Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
+Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
     if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
         return fail("another unit, axis or number of points was requested, which cards do not have",
@@ -137,19 +107,18 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
     const auto progress = wanted.progress ? wanted.progress : [](std::string_view, double) {};
     const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
     if (!chain) return tl::unexpected(chain.error());
-    auto report = writeCardFile(*chain, groom, writer.name, path);
-    if (report) report->format = writer.name;
+    const std::vector<cards::Collider> colliders = collidersOf(groom);
+    auto written = std::get<WriteCards>(writer.writer)({*chain, colliders, groom}, path);
+    if (!written) return tl::unexpected(written.error());
+    ExportReport report = levelReport(*chain, groom);
+    report.format = writer.name;
+    report.bytes = std::filesystem::file_size(path);
+    report.companions = std::move(written->companions);
+    if (!written->holdsSprings)
+        std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
+    std::ranges::move(written->leftBehind, std::back_inserter(report.leftBehind));
+    std::ranges::move(written->findings, std::back_inserter(report.findings));
     return report;
-}
-
-StrandWriter cardWriter(const char* format, const char* label, const char* carries, ExportTarget target,
-                        const char* suffix) {
-    target.note =
-        "Cards and a shell for far away, each measured against the strands. This takes about a minute. The "
-        "Levels panel shows them before you export." +
-        target.note;
-    return {format,  label, carries, "holds cards and a shell, not strands", {std::move(target)},
-            nullptr, suffix};
 }
 
 /// Of the strands as a game plays them.
@@ -182,42 +151,11 @@ Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand
 
 }  // namespace
 
-const std::vector<StrandWriter>& hairWriters() {
-    static const std::vector<StrandWriter> all = [] {
-        std::vector<StrandWriter> writers = strandWriters();
-        constexpr const char* kCarries = "textures, a skin, levels (MSFT_lod) and springs (VRMC_springBone)";
-        writers.push_back(cardWriter(kCardFormat, "Cards as binary glTF 2.0", kCarries,
-                                     {"cards", "Engines without strands: cards (glTF)", "", {}}, "glb"));
-        writers.push_back(
-            cardWriter(kQuantised, "Cards as binary glTF 2.0, quantised",
-                       "like gltf, with 40 bytes per vertex instead of 88 (KHR_mesh_quantization)",
-                       {"cards-small",
-                        "Engines without strands: cards (glTF, quantised)",
-                        " For readers of KHR_mesh_quantization.",
-                        {}},
-                       "glb"));
-        writers.push_back(cardWriter(kUsd, "Cards as USD .usda",
-                                     "one variant per level, with textures next to the file",
-                                     {"cards-usd", "Engines without strands: cards (USD)", "", {}}, "usda"));
-        if (canWriteCardMeshes()) {
-            writers.push_back(cardWriter(kFbx, "Cards as FBX", "a skin, with textures next to the file",
-                                         {"cards-fbx", "Engines without strands: cards (FBX)", "", {}},
-                                         "fbx"));
-            writers.push_back(cardWriter(kObj, "Cards as OBJ", "textures and materials next to the file",
-                                         {"cards-obj", "Engines without strands: cards (OBJ)", "", {}},
-                                         "obj"));
-        }
-        std::ranges::sort(writers, {}, &StrandWriter::name);
-        return writers;
-    }();
-    return all;
-}
-
-Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
+Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
     if (wanted.frames.size() > 1 && !writer.animates) {
         std::string formats;
-        for (const StrandWriter& other : strandWriters()) {
+        for (const HairWriter& other : strandWriters()) {
             if (other.animates) formats += (formats.empty() ? "" : ", ") + other.name;
         }
         return fail(fmt::format("{} holds a single pose, but {} frames were requested", writer.name,

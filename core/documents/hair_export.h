@@ -11,9 +11,6 @@
 
 namespace hairloom {
 
-/// Formats that hair leaves in, in order of name: those of strandWriters(), and glTF, which holds cards.
-const std::vector<StrandWriter>& hairWriters();
-
 enum class ExportedHair {
     guides,  ///< the strands of the groom, for programs that interpolate themselves
     hairs,   ///< the follow hairs that pictures show; the strands where the groom has none
@@ -39,7 +36,7 @@ struct HairToExport {
 /// follow hairs stay behind where guides alone are written. Errors: those of the writer, of
 /// bindFollowHairs(), certify(), makeLevels() and levelFile(); a layer that is not there; several frames for
 /// a format that holds one shape; units, axes or points of strands for cards.
-Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
+Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options);
 
 }  // namespace hairloom

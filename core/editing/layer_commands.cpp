@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/editing/settings_commands.h"
 #include "core/groom/strand_subset.h"
@@ -13,8 +15,6 @@
 
 namespace hairloom::editing {
 namespace {
-
-using CommandResult = Result<std::unique_ptr<Command>>;
 
 /// The hair as its operators make it where strands are on these layers.
 CommandResult withLayers(const Model& model, Groom next, std::vector<std::uint32_t> layers, std::string name,
@@ -68,6 +68,41 @@ CommandResult removeLayer(const Model& model, std::uint32_t layer) {
     next.layers.erase(next.layers.begin() + static_cast<std::ptrdiff_t>(layer));
     return withLayers(model, std::move(next), std::move(layers), "Remove layer " + groom.layers[layer].name,
                       recordOf("remove_layer", {{"layer", layer}}));
+}
+
+// --- As operations of a script ---
+
+namespace {
+
+std::uint32_t readLayerIndex(JsonReader& reader) {
+    return static_cast<std::uint32_t>(reader.count("layer", 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+MakeCommand readMoveToLayer(JsonReader& reader) {
+    return [strands = readRuns(reader, "strands"),
+            layer = readLayerIndex(reader)](const Document& document) -> CommandResult {
+        const Model& model = document.model();
+        if (auto status = checkBelow(strands, model.groom.strandCount(), "strand"); !status)
+            return tl::unexpected(status.error());
+        return moveToLayer(model, strands, layer);
+    };
+}
+
+MakeCommand readRemoveLayer(JsonReader& reader) {
+    return [layer = readLayerIndex(reader)](const Document& document) {
+        return removeLayer(document.model(), layer);
+    };
+}
+
+constexpr RecordedOperation kLayerCommandsRecords[] = {
+    {"move_to_layer", readMoveToLayer},
+    {"remove_layer", readRemoveLayer},
+};
+
+}  // namespace
+
+RecordList layerCommandsRecords() {
+    return kLayerCommandsRecords;
 }
 
 }  // namespace hairloom::editing

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/editing/delta_command.h"
+#include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/geometry/placement.h"
 
@@ -104,6 +105,31 @@ Result<std::unique_ptr<Command>> place(const Groom& groom, const PlaceRequest& r
                                         {"collide", skin.query != nullptr},
                                         {"clearance", readableDecimal(skin.clearance)}}));
     return whole;
+}
+
+// --- As operations of a script ---
+
+namespace {
+
+MakeCommand readPlace(JsonReader& reader) {
+    PlaceRequest request;
+    request.region = readRuns(reader, "region");
+    request.reach = static_cast<float>(reader.number("reach", 0, 10, "m"));
+    const bool collide = reader.boolean("collide");
+    const auto clearance = static_cast<float>(reader.number("clearance", 0, 0.01, "m"));
+    return [request, collide, clearance](const Document& document) -> CommandResult {
+        return place(document.groom(), request, KeepOut{collide ? document.skinField() : nullptr, clearance});
+    };
+}
+
+constexpr RecordedOperation kPlaceRecords[] = {
+    {"place", readPlace},
+};
+
+}  // namespace
+
+RecordList placeRecords() {
+    return kPlaceRecords;
 }
 
 }  // namespace hairloom::editing

@@ -18,20 +18,30 @@ namespace hairloom::editing {
 
 class Document;
 
+using Indices = std::vector<std::uint32_t>;
+using CommandResult = Result<std::unique_ptr<Command>>;
+
+/// Of values in a record, at most.
+inline constexpr std::size_t kMaxNumbers = 4'000'000;
+
 /// Ascending numbers as first, count, first, count …
 nlohmann::ordered_json runsOf(std::span<const std::uint32_t> ascending);
 /// Complaints: an odd number of values, numbers that do not ascend, too many of them.
-std::vector<std::uint32_t> readRuns(JsonReader& reader, std::string_view name);
+Indices readRuns(JsonReader& reader, std::string_view name);
+/// Error: the last of ascending indices is not below `count`. `what` is one of them, "strand".
+Status checkBelow(const Indices& indices, std::size_t count, std::string_view what);
 
 /// {"op": op, …members}, on one line.
 std::string recordOf(std::string_view op, nlohmann::ordered_json members);
 
 /// What a recorded operation makes of a document: a command, null where it changes nothing.
-using MakeCommand = std::function<Result<std::unique_ptr<Command>>(const Document&)>;
+using MakeCommand = std::function<CommandResult(const Document&)>;
 struct RecordedOperation {
     std::string_view name;
     MakeCommand (*read)(JsonReader&);
 };
-std::span<const RecordedOperation> recordedOperations();
+/// Those of a file: who writes a record reads it, too. NAME.cpp has them as nameRecords().
+using RecordList = std::span<const RecordedOperation>;
+const std::vector<RecordList>& recordLists();
 
 }  // namespace hairloom::editing

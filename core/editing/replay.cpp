@@ -45,12 +45,15 @@ std::vector<ScriptExtension> scriptExtensions() {
         return [held, stroke = readStroke(reader)](Groom& groom) { return replayOn(groom, stroke, *held); };
     };
     std::vector<ScriptExtension> extensions{{"stroke", readStrokeStep}};
-    for (const RecordedOperation& operation : recordedOperations()) {
-        extensions.push_back(
-            {operation.name,
-             [held, read = operation.read](JsonReader& reader) -> std::function<Result<std::size_t>(Groom&)> {
-                 return [held, make = read(reader)](Groom& groom) { return performOn(groom, make, *held); };
-             }});
+    for (const RecordList& list : recordLists()) {
+        for (const auto& [name, readRecord] : list) {
+            extensions.push_back(
+                {name,
+                 [held, read = readRecord](JsonReader& reader) -> std::function<Result<std::size_t>(Groom&)> {
+                     return
+                         [held, make = read(reader)](Groom& groom) { return performOn(groom, make, *held); };
+                 }});
+        }
     }
     return extensions;
 }

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/editing/selection_commands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <numeric>
 
 #include "core/editing/delta_command.h"
+#include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/operations/mask.h"
 
 namespace hairloom::editing {
 namespace {
-
-using Indices = std::vector<std::uint32_t>;
 
 /// Carries deltas out on a copy of the groom (which shares what is not touched) and takes them back, so that
 /// the command is ready to be done.
@@ -151,6 +152,76 @@ std::unique_ptr<Command> setMask(const Model& model, std::uint32_t number, std::
         groom.strandAttributes.set(maskAttribute(number), std::vector<float>(values.begin(), values.end()));
         deltas.mask.finish(groom);
     });
+}
+
+// --- As operations of a script ---
+
+namespace {
+
+MakeCommand readStrands(JsonReader& reader) {
+    constexpr std::string_view kActions[] = {"select", "hide", "show", "freeze", "thaw", "delete"};
+    const std::string_view action = kActions[reader.choice("do", kActions)];
+    const Indices strands = action == "show" ? Indices() : readRuns(reader, "strands");
+    return [action, strands](const Document& document) -> CommandResult {
+        const Model& model = document.model();
+        if (auto status = checkBelow(strands, model.groom.strandCount(), "strand"); !status)
+            return tl::unexpected(status.error());
+        if (action == "select") return selectStrands(model, strands, Choice::Replace);
+        if (action == "hide") return hideStrands(model, strands);
+        if (action == "show") return showStrands(model);
+        if (action == "delete") return deleteStrands(model, strands);
+        return freezeStrands(model, strands, action == "freeze");
+    };
+}
+
+MakeCommand readScalp(JsonReader& reader) {
+    const Indices faces = readRuns(reader, "faces");
+    const std::string expression = reader.string("expression");
+    return [faces, expression](const Document& document) -> CommandResult {
+        const std::size_t count = document.groom().scalp ? document.groom().scalp->triangleCount() : 0;
+        if (auto status = checkBelow(faces, count, "face"); !status) return tl::unexpected(status.error());
+        return selectScalp(document.model(), faces, Choice::Replace, expression);
+    };
+}
+
+MakeCommand readDensity(JsonReader& reader) {
+    std::vector<float> values;
+    for (const double value : reader.numbers("values", 0, 1, kMaxNumbers))
+        values.push_back(static_cast<float>(value));
+    return [values](const Document& document) -> CommandResult {
+        const std::size_t vertices = document.groom().scalp ? document.groom().scalp->vertexCount() : 0;
+        if (values.size() != vertices)
+            return fail(fmt::format("{} densities", values.size()),
+                        fmt::format("one for each of {} vertices", vertices));
+        return setDensity(document.model(), values);
+    };
+}
+
+MakeCommand readMaskValues(JsonReader& reader) {
+    const auto number = static_cast<std::uint32_t>(reader.count("mask", 1, kPaintedMasks));
+    std::vector<float> values;
+    for (const double value : reader.numbers("values", 0, 1, kMaxNumbers))
+        values.push_back(static_cast<float>(value));
+    return [number, values](const Document& document) -> CommandResult {
+        const std::size_t strands = document.groom().strandCount();
+        if (values.size() != strands)
+            return fail(fmt::format("{} values of a mask", values.size()),
+                        fmt::format("one for each of {} strands", strands));
+        return setMask(document.model(), number, values);
+    };
+}
+
+constexpr RecordedOperation kSelectionCommandsRecords[] = {
+    {"strands", readStrands},
+    {"scalp", readScalp},
+    {"density", readDensity},
+    {"mask", readMaskValues},
+};
+
+}  // namespace
+
+RecordList selectionCommandsRecords() {
+    return kSelectionCommandsRecords;
 }
 
 }  // namespace hairloom::editing

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/layers_json.h"
@@ -49,13 +50,13 @@ std::unique_ptr<Command> valueCommand(std::string name, Part part, T& (*access)(
 
 template <class S>
 std::string settingsRecord(std::string_view op, const S& settings) {
-    return recordOf(op, {{"settings", toJson(settings)}});
+    return recordOf(op, {{"settings", hairloom::toJson(settings)}});
 }
 
 /// Settings and spheres differ where their text does; it holds every bit of them.
 template <class S>
 bool differs(const S& a, const S& b) {
-    return toJson(a) != toJson(b);
+    return hairloom::toJson(a) != hairloom::toJson(b);
 }
 
 bool sharesAll(const AttributeSet& a, const AttributeSet& b) {
@@ -136,7 +137,7 @@ class GroomCommand final : public Command {
 }  // namespace
 
 std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material, std::string name) {
-    if (toJson(model.groom.material) == toJson(material)) return nullptr;
+    if (hairloom::toJson(model.groom.material) == hairloom::toJson(material)) return nullptr;
     return valueCommand<HairMaterial>(
         std::move(name), Part::Material, [](Model& m) -> HairMaterial& { return m.groom.material; }, material,
         settingsRecord("material", material));
@@ -144,7 +145,7 @@ std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& mat
 
 std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings,
                                     std::string name) {
-    if (toJson(model.groom.simulation) == toJson(settings)) return nullptr;
+    if (hairloom::toJson(model.groom.simulation) == hairloom::toJson(settings)) return nullptr;
     return valueCommand<runtime::SimulationSettings>(
         std::move(name), Part::Physics,
         [](Model& m) -> runtime::SimulationSettings& { return m.groom.simulation; }, settings,
@@ -153,7 +154,7 @@ std::unique_ptr<Command> setPhysics(const Model& model, const runtime::Simulatio
 
 std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings,
                                           std::string name) {
-    if (toJson(model.groom.interpolation) == toJson(settings)) return nullptr;
+    if (hairloom::toJson(model.groom.interpolation) == hairloom::toJson(settings)) return nullptr;
     return valueCommand<InterpolationSettings>(
         std::move(name), Part::Interpolation,
         [](Model& m) -> InterpolationSettings& { return m.groom.interpolation; }, settings,
@@ -162,7 +163,7 @@ std::unique_ptr<Command> setInterpolation(const Model& model, const Interpolatio
 
 std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings,
                                               std::string name) {
-    if (toJson(model.groom.placement) == toJson(settings)) return nullptr;
+    if (hairloom::toJson(model.groom.placement) == hairloom::toJson(settings)) return nullptr;
     return valueCommand<PlacementSettings>(
         std::move(name), Part::Placement, [](Model& m) -> PlacementSettings& { return m.groom.placement; },
         settings, settingsRecord("placement", settings));
@@ -170,9 +171,9 @@ std::unique_ptr<Command> setPlacementSettings(const Model& model, const Placemen
 
 std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSphere> spheres,
                                     std::string name) {
-    if (toJson(model.groom.spheres) == toJson(spheres)) return nullptr;
+    if (hairloom::toJson(model.groom.spheres) == hairloom::toJson(spheres)) return nullptr;
     const std::size_t bytes = std::max(spheres.size(), model.groom.spheres.size()) * sizeof(CollisionSphere);
-    std::string record = recordOf("spheres", {{"spheres", toJson(spheres)}});
+    std::string record = recordOf("spheres", {{"spheres", hairloom::toJson(spheres)}});
     return valueCommand<std::vector<CollisionSphere>>(
         std::move(name), Part::Spheres,
         [](Model& m) -> std::vector<CollisionSphere>& { return m.groom.spheres; }, std::move(spheres),
@@ -192,7 +193,7 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
     }
     const Part part = looksAlone ? Part::Material : Part::Layers;
     const std::size_t bytes = layers.size() * sizeof(Layer);
-    std::string record = recordOf("layers", {{"layers", toJson(layers)}});
+    std::string record = recordOf("layers", {{"layers", hairloom::toJson(layers)}});
     return valueCommand<std::vector<Layer>>(
         "Layers", part, [](Model& m) -> std::vector<Layer>& { return m.groom.layers; }, std::move(layers),
         std::move(record), bytes);
@@ -210,7 +211,7 @@ Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<Ca
         return fail(fmt::format("{} cards of {} hairs are shaped by hand", edits.size(), roots),
                     fmt::format("at most {} of {}", kMaxCardEdits, kMaxCardRoots));
     if (!differs(model.groom.cardEdits, edits)) return nullptr;
-    std::string record = recordOf("card_edits", {{"card_edits", toJson(edits)}});
+    std::string record = recordOf("card_edits", {{"card_edits", hairloom::toJson(edits)}});
     return valueCommand<std::vector<CardEdit>>(
         std::move(name), Part::Cards, [](Model& m) -> std::vector<CardEdit>& { return m.groom.cardEdits; },
         std::move(edits), std::move(record), bytes);
@@ -245,6 +246,63 @@ std::unique_ptr<Command> triangulate(const Model& model) {
         "Triangulate roots", Part::Triangulation,
         [](Model& m) -> RootTriangulation& { return m.groom.triangulation; }, std::move(*made),
         recordOf("triangulate", nlohmann::ordered_json::object()), bytes);
+}
+
+// --- As operations of a script ---
+
+namespace {
+
+/// Settings under "settings"; those that are not named have their defaults.
+template <class S, std::unique_ptr<Command> (*Make)(const Model&, const S&, std::string)>
+MakeCommand readSettingsStep(JsonReader& reader) {
+    S checked;
+    readSettings(reader.object("settings"), checked);
+    return [checked](const Document& document) -> CommandResult {
+        return Make(document.model(), checked, "Settings");
+    };
+}
+
+MakeCommand readSpheres(JsonReader& reader) {
+    std::vector<CollisionSphere> spheres;
+    for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
+    return [spheres](const Document& document) -> CommandResult {
+        return setSpheres(document.model(), spheres, "Spheres");
+    };
+}
+
+MakeCommand readCards(JsonReader& reader) {
+    return [edits = readCardEdits(reader)](const Document& document) {
+        return setCardEdits(document.model(), edits, "Cards");
+    };
+}
+
+MakeCommand readLayerList(JsonReader& reader) {
+    return [layers = readLayers(reader)](const Document& document) -> CommandResult {
+        if (layers.size() < document.groom().layers.size())
+            return fail(fmt::format("{} layers", layers.size()), "as many as there are, or more");
+        return setLayers(document.model(), layers);
+    };
+}
+
+MakeCommand readTriangulate(JsonReader&) {
+    return [](const Document& document) -> CommandResult { return triangulate(document.model()); };
+}
+
+constexpr RecordedOperation kSettingsCommandsRecords[] = {
+    {"material", readSettingsStep<HairMaterial, setMaterial>},
+    {"simulation", readSettingsStep<runtime::SimulationSettings, setPhysics>},
+    {"interpolation", readSettingsStep<InterpolationSettings, setInterpolation>},
+    {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
+    {"spheres", readSpheres},
+    {"layers", readLayerList},
+    {"card_edits", readCards},
+    {"triangulate", readTriangulate},
+};
+
+}  // namespace
+
+RecordList settingsCommandsRecords() {
+    return kSettingsCommandsRecords;
 }
 
 }  // namespace hairloom::editing

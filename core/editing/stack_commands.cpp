@@ -12,6 +12,7 @@
 
 #include "core/base/log.h"
 #include "core/base/parallel.h"
+#include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/editing/strand_values.h"
 #include "core/groom/file/operators_json.h"
@@ -190,7 +191,8 @@ StackCommand addOperator(const Model& model, std::size_t index, Operator added) 
     Groom next = model.groom;
     if (added.op == kSculpt) added.number = freeNumber(next.operators);
     const std::string name = "Add " + labelOf(added);
-    const std::string record = recordOf("add_operator", {{"at", index}, {"operator", toJson(added)}});
+    const std::string record =
+        recordOf("add_operator", {{"at", index}, {"operator", hairloom::toJson(added)}});
     next.operators.insert(next.operators.begin() + static_cast<std::ptrdiff_t>(index), std::move(added));
     return restack(model, std::move(next), name, record);
 }
@@ -225,7 +227,7 @@ StackCommand setOperator(const Model& model, std::size_t index, Operator changed
         const Operator& now = next.operators[index];
         changed.number = now.op == kSculpt ? now.number : freeNumber(next.operators);
     }
-    std::string record = recordOf("set_operator", {{"at", index}, {"operator", toJson(changed)}});
+    std::string record = recordOf("set_operator", {{"at", index}, {"operator", hairloom::toJson(changed)}});
     next.operators[index] = std::move(changed);
     return restack(model, std::move(next), std::move(name), std::move(record));
 }
@@ -279,7 +281,7 @@ StackCommand setOperators(const Model& model, std::vector<Operator> operators, s
         }
     }
     next.operators = std::move(operators);
-    std::string record = recordOf("operators", {{"operators", toJson(next.operators)}});
+    std::string record = recordOf("operators", {{"operators", hairloom::toJson(next.operators)}});
     return restack(model, std::move(next), std::move(name), std::move(record));
 }
 
@@ -348,6 +350,68 @@ std::unique_ptr<Command> stackAfterStroke(const Model& model, std::span<const st
     oldPoints.exchange(offsets, points);
     return std::make_unique<SculptCommand>(std::move(operators), attribute, isNew, std::move(oldOffsets),
                                            std::move(oldPoints));
+}
+
+// --- As operations of a script ---
+
+namespace {
+
+MakeCommand readWholeStack(JsonReader& reader) {
+    return [operators = readOperators(reader)](const Document& document) {
+        return setOperators(document.model(), operators, "Operators");
+    };
+}
+
+Operator readOneOperator(JsonReader& reader) {
+    JsonReader part = reader.object("operator");
+    return readOperator(part);
+}
+
+std::size_t readIndex(JsonReader& reader, std::string_view name) {
+    return static_cast<std::size_t>(reader.count(name, 0, kMaxOperators));
+}
+
+MakeCommand readAddOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at"), one = readOneOperator(reader)](const Document& document) {
+        return addOperator(document.model(), at, one);
+    };
+}
+
+MakeCommand readSetOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at"), one = readOneOperator(reader)](const Document& document) {
+        return setOperator(document.model(), at, one, "Operator");
+    };
+}
+
+MakeCommand readMoveOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at"), to = readIndex(reader, "to")](const Document& document) {
+        return moveOperator(document.model(), at, to);
+    };
+}
+
+template <StackCommand (*Make)(const Model&, std::size_t)>
+MakeCommand readAtOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at")](const Document& document) { return Make(document.model(), at); };
+}
+
+MakeCommand readBake(JsonReader&) {
+    return [](const Document& document) { return bakeOperators(document.model()); };
+}
+
+constexpr RecordedOperation kStackCommandsRecords[] = {
+    {"operators", readWholeStack},
+    {"add_operator", readAddOperator},
+    {"set_operator", readSetOperator},
+    {"move_operator", readMoveOperator},
+    {"copy_operator", readAtOperator<copyOperator>},
+    {"remove_operator", readAtOperator<removeOperator>},
+    {"bake_operators", readBake},
+};
+
+}  // namespace
+
+RecordList stackCommandsRecords() {
+    return kStackCommandsRecords;
 }
 
 }  // namespace hairloom::editing

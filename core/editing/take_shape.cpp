@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/groom/carried_weight.h"
 #include "core/operations/length_constraint.h"
+#include "core/operations/strand_edit.h"
 
 namespace hairloom::editing {
 namespace {
@@ -56,6 +58,32 @@ Result<std::unique_ptr<Command>> takeShape(const Model& model, std::span<const V
     if (carriesWeight) carryWeight(next.groom.simulation);
     return replaceGroom(model, std::move(next.groom), "Set rest shape",
                         recordOfShape(positions_ss, carriesWeight));
+}
+
+// --- As operations of a script ---
+
+namespace {
+
+MakeCommand readTakeShape(JsonReader& reader) {
+    const std::vector<double> numbers = reader.numbers("points", -kAnywhere, kAnywhere, 3 * kMaxNumbers, "m");
+    const bool carriesWeight = reader.boolean("carriesWeight");
+    std::vector<Vec3f> points(numbers.size() / 3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i] = Vec3d(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]).cast<float>();
+    if (numbers.size() % 3 != 0) reader.complain("points", "has numbers that are not points");
+    return [points, carriesWeight](const Document& document) -> CommandResult {
+        return takeShape(document.model(), points, carriesWeight);
+    };
+}
+
+constexpr RecordedOperation kTakeShapeRecords[] = {
+    {"take_shape", readTakeShape},
+};
+
+}  // namespace
+
+RecordList takeShapeRecords() {
+    return kTakeShapeRecords;
 }
 
 }  // namespace hairloom::editing

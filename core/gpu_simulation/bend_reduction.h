@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/gpu_simulation/strand_batch.h"
+#include "runtime/models/springs/springs.h"
 
 namespace hairloom::gpu_simulation {
 

@@ -352,7 +352,8 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     rootsMoved = moves;
     uploadChanges(list);
     uploadSpheres(list);
-    if (run.plan.on(Effect::angular) && bendSubstep != context.h) {
+    const bool springs = run.settings.strandModel == runtime::StrandModel::springs;
+    if (springs && run.plan.on(Effect::angular) && bendSubstep != context.h) {
         uploadBend(list, context.h);
         bendSubstep = context.h;
     }

@@ -6,6 +6,7 @@
 
 #include "core/gpu_simulation/strand_engine.h"
 #include "runtime/models/rods/rods.h"
+#include "runtime/models/springs/springs.h"
 #include "runtime/shaders/rod_types.h"
 
 namespace hairloom::gpu_simulation {
@@ -90,8 +91,9 @@ struct StrandEngine::Impl {
     // strand_engine_rods.cpp
     Status takeRods(const runtime::SimulationSettings& settings);
     Status makeRodBuffers(StrandBatch& batch) const;
-    void placeRods(runtime::State& state) const;
+    void allocateRods(runtime::State& state) const;
     void sendRods(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;
+    void takeRodsOf(const StrandBatch& batch, std::span<const float> rods, runtime::State& state) const;
     shaders::RodConstants rodConstants(const runtime::SubstepContext& context,
                                        const StrandBatch& batch) const;
     // strand_engine_state.cpp

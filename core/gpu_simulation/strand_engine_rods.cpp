@@ -19,9 +19,16 @@ static_assert(runtime::kRodNoEnergy == static_cast<float>(HAIRLOOM_ROD_NO_ENERGY
 static_assert(runtime::kRodLaneRows == 2);
 
 // Planes of runtime::RodRest, in threes and fours as the kernel reads them.
-constexpr std::array<std::size_t, 4> kTangentAndBend{0, 1, 2, 6}, kRestRotation{8, 9, 10, 11};
-constexpr std::array<std::size_t, 3> kAxis{3, 4, 5}, kNormal{12, 13, 14};
-constexpr std::array<std::size_t, 1> kMass{7};
+constexpr std::array<std::size_t, 3> kTangent{0, 1, 2};
+constexpr std::array<std::size_t, 4> kTangentAndBend{0, 1, 2, runtime::kRodBendPlane};
+constexpr std::array<std::size_t, 4> kRestRotation{runtime::kRodRotationPlane, runtime::kRodRotationPlane + 1,
+                                                   runtime::kRodRotationPlane + 2,
+                                                   runtime::kRodRotationPlane + 3};
+constexpr std::array<std::size_t, 3> kAxis{runtime::kRodAxisPlane, runtime::kRodAxisPlane + 1,
+                                           runtime::kRodAxisPlane + 2};
+constexpr std::array<std::size_t, 3> kNormal{runtime::kRodNormalPlane, runtime::kRodNormalPlane + 1,
+                                             runtime::kRodNormalPlane + 2};
+constexpr std::array<std::size_t, 1> kMass{runtime::kRodMassPlane};
 
 }  // namespace
 
@@ -48,19 +55,24 @@ Status StrandEngine::Impl::takeRods(const runtime::SimulationSettings& settings)
 
 Status StrandEngine::Impl::makeRodBuffers(StrandBatch& batch) const {
     const auto quads = [&](std::span<const std::size_t> which) {
-        return quadsOfBatch(*shape, batch, rodRest.planes, rodRest.planeCount, which);
+        return quadsOfBatch(*shape, batch, rodRest.planes, rodRest.planeCount(), which);
     };
-    std::vector<shaders::float4> rest = quads(kTangentAndBend);
-    std::vector<std::span<const std::size_t>> others{kRestRotation, kAxis};
-    if (rodRest.planeCount > runtime::kRodRestPlanes) others.emplace_back(kNormal);
-    for (const std::span<const std::size_t> which : others) {
-        const std::vector<shaders::float4> more = quads(which);
+    const bool bends = rodRest.parts >= runtime::RodParts::bending;
+    std::vector<shaders::float4> rest =
+        quads(bends ? std::span<const std::size_t>(kTangentAndBend) : kTangent);
+    const auto append = [&](const std::vector<shaders::float4>& more) {
         rest.insert(rest.end(), more.begin(), more.end());
-    }
+    };
+    // A chain has the shape that it was authored in.
+    append(bends ? quads(kRestRotation)
+                 : std::vector<shaders::float4>(rest.size(), shaders::float4{0.0f, 0.0f, 0.0f, 1.0f}));
+    if (rodRest.parts >= runtime::RodParts::twist) append(quads(kAxis));
+    if (rodRest.parts >= runtime::RodParts::section) append(quads(kNormal));
     std::vector<float> masses;
     for (const shaders::float4& quad : quads(kMass)) masses.push_back(quad.x);
     std::vector<std::uint32_t> curved;
-    for (const std::uint32_t block : batch.blocks) curved.push_back(rodRest.curved[block]);
+    for (const std::uint32_t block : batch.blocks)
+        curved.push_back(rodRest.curved.empty() ? 0 : rodRest.curved[block]);
     Status status;
     const auto make = [&]<class T>(gpu::BufferPtr& buffer, const char* name, Usage usage, std::size_t count,
                                    std::span<const T> content) {
@@ -87,22 +99,45 @@ Status StrandEngine::Impl::makeRodBuffers(StrandBatch& batch) const {
     return status;
 }
 
-/// Makes a state of points one of rods through them.
-void StrandEngine::Impl::placeRods(runtime::State& state) const {
-    state.rods.assign(shape->planeFloats * runtime::kRodStatePlanes, 0.0f);
-    state.rodLanes.assign(shape->blocks.size() * runtime::kRodLaneRows * kBlockLanes, 0.0f);
-    for (std::size_t b = 0; b < shape->blocks.size(); ++b) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
-            runtime::placeRodOnPoints(*shape, rodRest, state, b, lane);
-    }
+/// Gives a state the arrays of rods, as far as the settings call for them.
+void StrandEngine::Impl::allocateRods(runtime::State& state) const {
+    state.model = run.settings.strandModel;
+    if (!rodRest.planes.empty()) runtime::allocateRods(*shape, rodRest.parts, true, state);
 }
 
+/// The planes of the device are those of motion, strains and loads; 0 where the state has none.
 void StrandEngine::Impl::sendRods(gpu::CommandList& list, const StrandBatch& batch,
                                   const runtime::State& state) const {
-    std::vector<float> rods = planesOfBatch(*shape, batch, state.rods, runtime::kRodStatePlanes);
-    const std::vector<float> rows = rowsOfBatch(batch, state.rodLanes.data(), runtime::kRodLaneRows);
+    const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+    std::vector<float> rods;
+    const auto append = [&](std::size_t own, std::size_t planes) {
+        const std::vector<float> values = state.own[own].empty()
+                                              ? std::vector<float>(planes * plane)
+                                              : planesOfBatch(*shape, batch, state.own[own], planes);
+        rods.insert(rods.end(), values.begin(), values.end());
+    };
+    append(runtime::kOwnMotion, runtime::kRodMotionPlanes);
+    append(runtime::kOwnStrains, runtime::kRodStrainPlanes);
+    append(runtime::kOwnLoads, 1);
+    const std::vector<float> rows =
+        rowsOfBatch(batch, state.own[runtime::kOwnLanes].data(), runtime::kRodLaneRows);
     rods.insert(rods.end(), rows.begin(), rows.end());
     list.updateBuffer(batch.rodState, 0, std::as_bytes(std::span(rods)));
+}
+
+/// The reverse.
+void StrandEngine::Impl::takeRodsOf(const StrandBatch& batch, std::span<const float> rods,
+                                    runtime::State& state) const {
+    const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+    const auto take = [&](std::size_t own, std::size_t planes) {
+        if (!state.own[own].empty())
+            planesOfBlocks(*shape, batch, rods.first(planes * plane), state.own[own], planes);
+        rods = rods.subspan(planes * plane);
+    };
+    take(runtime::kOwnMotion, runtime::kRodMotionPlanes);
+    take(runtime::kOwnStrains, runtime::kRodStrainPlanes);
+    take(runtime::kOwnLoads, 1);
+    rowsToBlocks(batch, rods, runtime::kRodLaneRows, state.own[runtime::kOwnLanes].data());
 }
 
 shaders::RodConstants StrandEngine::Impl::rodConstants(const runtime::SubstepContext& context,
@@ -110,11 +145,8 @@ shaders::RodConstants StrandEngine::Impl::rodConstants(const runtime::SubstepCon
     const Float3 g = context.gravity;
     shaders::RodConstants c;
     c.gravity = {g.x, g.y, g.z, context.air == runtime::Air::none ? 0.0f : context.airDrag};
-    c.rootDamping = context.rootDamping;
-    c.bendDampingTime = context.bendDampingTime;
-    c.twist = context.twist;
-    c.flat = context.flat;
-    c.stepRatio = substep > 0.0f ? context.h / substep : runtime::kRodFirstRatio;
+    c.numbers = context.numbers.as<runtime::RodNumbers>();
+    c.stepRatio = substep > 0.0f ? context.h / substep : runtime::kFirstStepRatio;
     c.sweeps = context.sweeps ? 1 : 0;
     c.conservative = context.air == runtime::Air::moving ? 0 : context.spheresRest ? 2 : 1;
     c.fresh = rodsFresh ? HAIRLOOM_RODS_FRESH : rodEnergyKnown ? 0 : HAIRLOOM_RODS_OF_OTHER_ENERGY;

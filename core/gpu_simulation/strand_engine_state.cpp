@@ -69,17 +69,14 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
     };
     const std::vector<float> moving = take(batch.state);
     planesOfBlocks(*shape, batch, moving, state.planes, runtime::kStatePlanes);
-    if (!state.tensions.empty()) {
+    if (batch.key.tensions) {
         const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
         planesOfBlocks(*shape, batch, std::span(moving).subspan(runtime::kStatePlanes * plane),
-                       state.tensions, 1);
+                       state.own[runtime::kOwnTensions], 1);
     }
     rowsToBlocks(batch, take(batch.roots), runtime::kRootRows, state.roots.data());
     if (batch.rodState != nullptr) {
-        const std::vector<float> rods = take(batch.rodState);
-        const std::size_t planes = std::size_t{batch.shape.points} * batch.slots * runtime::kRodStatePlanes;
-        planesOfBlocks(*shape, batch, std::span(rods).first(planes), state.rods, runtime::kRodStatePlanes);
-        rowsToBlocks(batch, std::span(rods).subspan(planes), runtime::kRodLaneRows, state.rodLanes.data());
+        takeRodsOf(batch, take(batch.rodState), state);
     }
     if (batch.rests == nullptr) return;
     const std::vector<float> rests = take(batch.rests);
@@ -104,11 +101,8 @@ Result<runtime::State> StrandEngine::Impl::readState() {
     state.planes.assign(shape->planeFloats * runtime::kStatePlanes, 0.0f);
     state.roots.assign(shape->blocks.size() * runtime::kRootRows * kBlockLanes, 0.0f);
     state.rests.resize(shape->blocks.size());
-    if (!rodRest.planes.empty()) {
-        state.rods.assign(shape->planeFloats * runtime::kRodStatePlanes, 0.0f);
-        state.rodLanes.assign(shape->blocks.size() * runtime::kRodLaneRows * kBlockLanes, 0.0f);
-    }
-    if (run.plan.keepsTensions()) state.tensions.assign(shape->planeFloats, 0.0f);
+    allocateRods(state);
+    if (run.plan.keepsTensions()) state.own[runtime::kOwnTensions].assign(shape->planeFloats, 0.0f);
     std::vector<gpu::BufferPtr> buffers;
     for (const StrandBatch& batch : batches) {
         const auto own = changingBuffers(batch);
@@ -133,8 +127,8 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
         list.updateBuffer(buffer, 0, std::as_bytes(std::span(values)));
     };
     std::vector<float> moving = planesOfBatch(*shape, batch, state.planes, runtime::kStatePlanes);
-    if (!state.tensions.empty()) {
-        const std::vector<float> tensions = planesOfBatch(*shape, batch, state.tensions, 1);
+    if (state.model == runtime::StrandModel::springs && !state.own[runtime::kOwnTensions].empty()) {
+        const std::vector<float> tensions = planesOfBatch(*shape, batch, state.own[runtime::kOwnTensions], 1);
         moving.insert(moving.end(), tensions.begin(), tensions.end());
     }
     moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);
@@ -154,9 +148,12 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
 
 Status StrandEngine::Impl::writeState(const runtime::State& given) {
     known.reset();
-    // A state of springs becomes one of rods.
+    // A state of springs, or of chains, becomes one of these rods.
     std::optional<runtime::State> made;
-    if (!rodRest.planes.empty() && given.rods.empty()) placeRods(made.emplace(given));
+    const bool bends = rodRest.parts >= runtime::RodParts::bending;
+    if (!rodRest.planes.empty() &&
+        (given.model != runtime::StrandModel::rods || (bends && given.own[runtime::kOwnStrains].empty())))
+        runtime::completeRods(*shape, rodRest, true, made.emplace(given));
     const runtime::State& state = made ? *made : given;
     rodsFresh = false;
     auto list = device.createCommandList();
@@ -208,10 +205,7 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
     state.planes.assign(shape.planeFloats * runtime::kStatePlanes, 0.0f);
     state.roots.assign(shape.blocks.size() * runtime::kRootRows * kBlockLanes, 0.0f);
     state.rests.resize(shape.blocks.size());
-    if (!impl_->rodRest.planes.empty()) {
-        state.rods.assign(shape.planeFloats * runtime::kRodStatePlanes, 0.0f);
-        state.rodLanes.assign(shape.blocks.size() * runtime::kRodLaneRows * kBlockLanes, 0.0f);
-    }
+    impl_->allocateRods(state);
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::uint32_t strand = shape.blocks[b].strandOfLane[lane];
@@ -223,7 +217,8 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
             for (std::size_t r = 0; r < values.size(); ++r)
                 state.roots[(b * runtime::kRootRows + r) * kBlockLanes + lane] = values[r];
             runtime::placeAtRest(shape, state, b, lane);
-            runtime::placeRodAtRest(shape, impl_->rodRest, state, b, lane);
+            if (!impl_->rodRest.planes.empty())
+                runtime::placeRodAtRest(shape, impl_->rodRest, state, b, lane);
         }
     }
     return impl_->writeState(state);

@@ -8,6 +8,7 @@
 #include "core/levels/card_hair.h"
 #include "core/levels/held_cards.h"
 #include "core/levels/spring_fit.h"
+#include "exporters/card_character.h"
 
 namespace hairloom {
 namespace {
@@ -29,8 +30,10 @@ void addFindings(const cards::Chain& chain, const Groom& groom, ExportReport& re
         report.findings.push_back(
             {Severity::Info,
              fmt::format(
-                 "while the head nods, springs keep joints {:.1f} mm from the strands, {:.1f} mm at most",
-                 chain.springFit->after.meanMm, chain.springFit->after.largestMm),
+                 "while the head nods, springs keep joints {:.1f} mm from the strands, {:.1f} mm at most. "
+                 "Under a still head they settle {:.2g} mm at most",
+                 chain.springFit->after.meanMm, chain.springFit->after.largestMm,
+                 chain.springFit->settlingMm),
              kSpringsPlace, ""});
     } else if (chain.rig.chains() > 0) {
         report.findings.push_back(
@@ -107,9 +110,12 @@ ExportReport levelReport(const cards::Chain& chain, const Groom& groom) {
 }
 
 Result<LevelFile> levelFile(const cards::Chain& chain, const Groom& groom, cards::GlbNumbers numbers) {
-    auto bytes = cards::glbOf(chain, collidersOf(groom), numbers);
+    std::vector<Finding> findings;
+    const cards::Character character = cardCharacter(groom, findings);
+    auto bytes = cards::glbOf(chain, collidersOf(groom), numbers, character);
     if (!bytes) return tl::unexpected(bytes.error());
     LevelFile file{std::move(*bytes), levelReport(chain, groom)};
+    file.report.findings.insert(file.report.findings.end(), findings.begin(), findings.end());
     file.report.bytes = file.bytes.size();
     return file;
 }

@@ -81,9 +81,11 @@ void put(render::Image& page, const render::Image& picture, std::uint32_t left, 
 std::string springWords(const cards::SpringFit& fit) {
     return fmt::format(
         "While the head makes the motion {} for {:g} s, springs keep the joints {:.1f} mm from the strands, "
-        "{:.1f} mm at most. Springs that are not fitted: {:.1f} and {:.1f} mm.",
+        "{:.1f} mm at most. Springs that are not fitted: {:.1f} and {:.1f} mm. Under a still head they "
+        "settle "
+        "{:.2g} mm at most.",
         fit.motion, fit.seconds, fit.after.meanMm, fit.after.largestMm, fit.before.meanMm,
-        fit.before.largestMm);
+        fit.before.largestMm, fit.settlingMm);
 }
 
 std::string html(const Chain& chain, const std::string& commandLine) {
@@ -138,7 +140,8 @@ nlohmann::ordered_json toJson(const cards::SpringFit& fit) {
             {"error_mm", fit.after.meanMm},
             {"largest_mm", fit.after.largestMm},
             {"default_error_mm", fit.before.meanMm},
-            {"default_largest_mm", fit.before.largestMm}};
+            {"default_largest_mm", fit.before.largestMm},
+            {"settling_mm", fit.settlingMm}};
 }
 
 std::string levelTable(const Chain& chain) {
@@ -213,6 +216,7 @@ render::Image chainPicture(const Chain& chain) {
 
 Result<std::vector<std::string>> writeChain(const Chain& chain, const std::string& commandLine,
                                             std::span<const cards::Collider> colliders,
+                                            const cards::Character& character,
                                             const std::filesystem::path& folder) {
     OutputBatch batch;
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -248,7 +252,7 @@ Result<std::vector<std::string>> writeChain(const Chain& chain, const std::strin
     const auto isStrands = [](const Level& level) { return level.spec.kind == cards::LevelKind::strands; };
     if (std::ranges::all_of(chain.levels, isStrands)) return inPlace();
     if (auto status = write("chain.png", chainPicture(chain)); !status) return tl::unexpected(status.error());
-    const auto glb = cards::glbOf(chain, colliders);
+    const auto glb = cards::glbOf(chain, colliders, cards::GlbNumbers::floats, character);
     if (!glb) return tl::unexpected(glb.error());
     if (auto status = writeFileAtomically(folder / "levels.glb", *glb); !status)
         return tl::unexpected(status.error());

@@ -36,6 +36,7 @@ render::Image chainPicture(const cards::Chain& chain);
 /// NAME.json is a script that holds each of its cards as it is; levels.glb holds all of cards and shells.
 Result<std::vector<std::string>> writeChain(const cards::Chain& chain, const std::string& commandLine,
                                             std::span<const cards::Collider> colliders,
+                                            const cards::Character& character,
                                             const std::filesystem::path& folder);
 
 }  // namespace hairloom

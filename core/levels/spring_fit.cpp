@@ -103,7 +103,8 @@ Result<cards::ChainMotion> motionOf(const Groom& groom, const cards::Rig& rig, c
 
 std::vector<cards::Collider> collidersOf(const Groom& groom) {
     std::vector<cards::Collider> colliders;
-    for (const CollisionSphere& sphere : groom.spheres) colliders.push_back({sphere.centre, sphere.radius});
+    for (const CollisionSphere& sphere : groom.spheres)
+        colliders.push_back({sphere.centre, sphere.radius, sphere.bone});
     return colliders;
 }
 
@@ -117,6 +118,9 @@ Status fitSpringsOf(const Groom& groom, cards::Chain& chain, cards::Cancel cance
     chain.springFit = cards::SpringFit{kMotion, kFrames / 60.0,
                                        cards::springError(chain.rig, chain.springs, *wanted, colliders),
                                        cards::springError(chain.rig, *fitted, *wanted, colliders)};
+    for (std::size_t c = 0; c < chain.rig.chains(); ++c)
+        chain.springFit->settlingMm = std::max(
+            chain.springFit->settlingMm, 1000 * static_cast<double>(settling(chain.rig, c, (*fitted)[c])));
     chain.springs = std::move(*fitted);
     return {};
 }

@@ -36,7 +36,7 @@ constexpr int kMostFrames = 10000;
 
 /// A program, and the writer of the format that it reads.
 struct Choice {
-    const StrandWriter* writer;
+    const HairWriter* writer;
     const ExportTarget* target;
     bool isPage = false;  ///< a folder around the writer's file
 };
@@ -72,7 +72,7 @@ const std::vector<Program>& programs() {
             if (found == list.end()) found = list.insert(list.end(), {name, {}});
             found->choices.push_back(choice);
         };
-        for (const StrandWriter& writer : hairWriters()) {
+        for (const HairWriter& writer : hairWriters()) {
             for (const ExportTarget& target : writer.targets) add({&writer, &target});
         }
         add({&strandWriter("runtime"), &pageTarget(), true});
@@ -82,7 +82,7 @@ const std::vector<Program>& programs() {
         for (Program& program : list) {
             if (program.choices.size() == 1) continue;
             const std::string& name = program.choices.front().target->program;
-            const StrandWriter& best = preferredWriter(name, hairWriters());
+            const HairWriter& best = preferredWriter(name, hairWriters());
             std::ranges::stable_partition(program.choices, [&](const Choice& choice) {
                 return choice.writer->name == (best.holdsCards() ? kCardFormat : best.name);
             });
@@ -102,7 +102,7 @@ QString problemOf(const Choice& choice) {
 }
 
 /// Bytes of a point in the formats' files, measured on the samples; text takes what its digits take.
-double bytesOfPoint(const StrandWriter& writer) {
+double bytesOfPoint(const HairWriter& writer) {
     static const std::map<std::string, double> bytes{
         {"abc", 17}, {"abc-unreal", 21}, {"hair", 16}, {"obj-c4d", 98}, {"obj-lines", 42},
         {"ply", 20}, {"runtime", 11},    {"tfx", 16},  {"usda", 55},    {"usdc", 17}};
@@ -375,7 +375,7 @@ void ExportDialog::choosePath() {
 
 void ExportDialog::exportTo(const QString& path) {
     const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
-    const StrandWriter& writer = *choice.writer;
+    const HairWriter& writer = *choice.writer;
     StrandExportOptions options;
     options.limits = choice.target->options.limits;
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());

@@ -111,9 +111,10 @@ class EffectsPanel : public QWidget {
         table_->setWordWrap(true);
         table_->setSelectionMode(QAbstractItemView::NoSelection);
         table_->setMinimumHeight(340);
-        table_->header()->resizeSection(kName, 104);
-        table_->header()->resizeSection(kMs, 86);
-        table_->header()->resizeSection(kMb, 44);
+        table_->header()->resizeSection(kName, 100);
+        table_->header()->resizeSection(kMs, 58);
+        table_->header()->resizeSection(kMb, 36);
+        table_->header()->setStretchLastSection(false);
         table_->header()->setSectionResizeMode(kWhy, QHeaderView::Stretch);
         table_->setItemDelegateForColumn(kMs, bars_);
         table_->setToolTip(

@@ -41,8 +41,7 @@ class MotionPanel : public QWidget {
         };
         auto* play = add("motionPlay", "play", tr("Play"), tr("Play or pause the simulation (Space)"));
         auto* step = add("motionStep", "step", tr("Step"), tr("Advance by one frame of 1/60 s"));
-        auto* reset = add("motionReset", "reset", tr("Reset the hair to its authored shape"),
-                          tr("Hair back to its authored shape"));
+        auto* reset = add("motionReset", "reset", tr("Reset"), tr("Reset the hair to its authored shape"));
         layout->addLayout(row);
         state_->setObjectName("motionState");
         state_->setTextFormat(Qt::RichText);

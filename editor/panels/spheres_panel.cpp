@@ -43,8 +43,9 @@ class SpheresPanel : public QWidget {
         list_->setHeaderLabels({tr("Sphere"), tr("Radius"), tr("Bone")});
         list_->setRootIsDecorated(false);
         list_->setMinimumHeight(200);
-        list_->header()->resizeSection(0, 130);
-        list_->header()->resizeSection(1, 80);
+        list_->header()->setStretchLastSection(false);
+        list_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+        list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
         list_->setToolTip(tr("Spheres that hair collides with"));
         layout->addWidget(list_, 1);
 

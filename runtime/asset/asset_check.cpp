@@ -252,15 +252,16 @@ Problem Asset::checkAttributes() const {
 }
 
 Problem Asset::checkLevels() const {
-    const auto errors = levelErrors();
-    if (errors.empty()) return std::nullopt;
-    if (errors.size() != kLevels)
-        return damaged(placeOf(errors.data()),
-                       number(errors.size()) + " levels of detail; expected " + number(kLevels));
-    for (const MeasuredLevel& error : errors) {
-        for (const float value : {error.still, error.head, error.wind}) {
-            if (!(value >= 0 && value <= kFarthest))
-                return damaged(placeOf(&error), "a level of detail whose error is no length");
+    for (const auto errors : {levelErrors(), seenErrors()}) {
+        if (errors.empty()) continue;
+        if (errors.size() != kLevels)
+            return damaged(placeOf(errors.data()),
+                           number(errors.size()) + " levels of detail; expected " + number(kLevels));
+        for (const MeasuredLevel& error : errors) {
+            for (const float value : {error.still, error.head, error.wind}) {
+                if (!(value >= 0 && value <= kFarthest))
+                    return damaged(placeOf(&error), "a level of detail whose error is no length");
+            }
         }
     }
     return std::nullopt;

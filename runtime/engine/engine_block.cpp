@@ -14,22 +14,17 @@ void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& fr
     if (host_.nanoseconds) report.nanoseconds.fill(0);
     report.restored = report.guarded = 0;
     report.fastest = 0.0f;
-    if (frame.newBend) {
-        fillBend(*shape_, settings_, frame.context.h, block, bend_);
-    }
+    strands_->prepareBlock(*shape_, settings_, frame, block);
     if (state_.rests[block].asleep) {
         state_.rests[block].time += frame.input->dt;
         return;
     }
-    const BlockView blockView = view(block);
-    lanes.near.forget();
+    BlockRoom room;
+    BlockView& blockView = view(block, room);
     lanes.guarded = 0;
+    lanes.touchable.clear();
     enterFrame(block, blockView, lanes, frame);
-    if (frame.rescale != 1.0f && rods_.planes.empty()) frame.kernels->rescale(blockView, frame.rescale);
-    if (frame.windy && rods_.planes.empty()) {
-        frame.kernels->sampleWind(blockView, lanes, frame.context.h, wind_.wind, frame.windFrom.data(),
-                                  frame.windTo.data());
-    }
+    strands_->enterBlock(*shape_, settings_, frame, block, blockView, lanes);
     runStages(block, blockView, lanes, frame);
     const std::uint32_t strands = shape_->blocks[block].strands;
     const std::uint32_t own =
@@ -56,8 +51,7 @@ void Engine::Impl::restoreStrands(std::size_t block, const BlockView& blockView)
                     dot(moved, moved) < kFarthest * kFarthest;
         }
         if (sound) continue;
-        placeAtRest(*shape_, state_, block, lane);
-        placeRodAtRest(*shape_, rods_, state_, block, lane);
+        placeLaneAtRest(block, lane);
         if (lane < shape_->blocks[block].strands) ++report.restored;
     }
     report.fastest = 0.0f;
@@ -82,19 +76,16 @@ void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Fra
 }
 
 /// A cut turns the strand along rigidly: positions and velocities.
-void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
+void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) const {
     for (std::uint32_t p = 0; p < view.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-        const RodView& rod = view.rod;
-        for (const Planes& planes : {view.position, view.previous, rod.increment, rod.displacement,
-                                     rod.velocity, rod.velocityBefore}) {
-            if (!planes.x) continue;
+        for (const Planes& planes : {view.position, view.previous}) {
             const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y()[i], planes.z()[i]});
             planes.x[i] = turned.x;
             planes.y()[i] = turned.y;
             planes.z()[i] = turned.z;
         }
-        if (rod.rotation) turnRodAlong(view, i, turn);
+        strands_->turnAlong(view, i, turn);
     }
 }
 
@@ -117,28 +108,6 @@ void Engine::Impl::teleportLanes(const BlockView& view, float* rows, const float
     }
 }
 
-/// Keeps the spheres that can touch the block's rods in this frame.
-void Engine::Impl::touchSpheres(std::size_t block, const SubstepContext& context, LaneFrame& lanes) const {
-    lanes.touchable.clear();
-    if (rods_.planes.empty() || !plan_.on(Effect::collision)) return;
-    const float hair = hairReach(settings_, shape_->longestStrand);
-    const auto substeps = static_cast<float>(context.count);
-    for (const MovingSphere& sphere : movingSpheres_) {
-        const Float3 middle = sphere.from_ws + sphere.step * (0.5f * substeps);
-        const float reach = hair + sphere.radius + 0.5f * substeps * length(sphere.step);
-        for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
-            const Float3 root{lanes.root[0][lane], lanes.root[1][lane], lanes.root[2][lane]};
-            const Float3 displacement{lanes.rootDisplacement[0][lane], lanes.rootDisplacement[1][lane],
-                                      lanes.rootDisplacement[2][lane]};
-            if (length(root + displacement * (0.5f * substeps) - middle) >
-                reach + 0.5f * substeps * length(displacement))
-                continue;
-            lanes.touchable.push_back(sphere);
-            break;
-        }
-    }
-}
-
 /// Fills the lanes' displacement through the frame and keeps its end for the next.
 void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes,
                               const Frame& frame) {
@@ -158,7 +127,6 @@ void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFram
     std::copy_n(rows + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationFrom[0]);
     std::copy_n(next + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationTo[0]);
     std::copy_n(next, kRootRows * kBlockLanes, rows);
-    touchSpheres(block, frame.context, lanes);
 }
 
 void Engine::Impl::openSubstep(SubstepContext& context, const Frame& frame) {
@@ -169,8 +137,10 @@ void Engine::Impl::openSubstep(SubstepContext& context, const Frame& frame) {
 /// Pass `i` of a substep.
 void Engine::Impl::runPass(std::size_t i, const BlockView& view, LaneFrame& lanes,
                            const SubstepContext& context, const Frame& frame) {
-    frame.passes.calls[i](view, lanes, context);
-    if (frame.starts && context.index == 0 && i + 1 == frame.passes.moved) frame.kernels->startHalfway(view);
+    const Passes& passes = frame.passes;
+    passes.calls[i](view, lanes, context);
+    if (frame.starts && context.index == 0 && passes.afterStart && i + 1 == passes.startCalls)
+        passes.afterStart(view, lanes, context);
 }
 
 void Engine::Impl::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
@@ -191,6 +161,26 @@ void Engine::Impl::runStages(std::size_t block, const BlockView& view, LaneFrame
             const std::uint64_t after = host_.nanoseconds();
             times[static_cast<std::size_t>(plan_.stages()[i])] += after - before;
             before = after;
+        }
+    }
+}
+
+void listTouchable(const RestShape& shape, const SimulationSettings& settings, const SubstepContext& context,
+                   std::size_t block, LaneFrame& lanes) {
+    const float hair = hairReach(settings, shape.longestStrand);
+    const auto substeps = static_cast<float>(context.count);
+    for (const MovingSphere& sphere : context.spheres) {
+        const Float3 middle = sphere.from_ws + sphere.step * (0.5f * substeps);
+        const float reach = hair + sphere.radius + 0.5f * substeps * length(sphere.step);
+        for (std::uint32_t lane = 0; lane < shape.blocks[block].strands; ++lane) {
+            const Float3 root{lanes.root[0][lane], lanes.root[1][lane], lanes.root[2][lane]};
+            const Float3 displacement{lanes.rootDisplacement[0][lane], lanes.rootDisplacement[1][lane],
+                                      lanes.rootDisplacement[2][lane]};
+            if (length(root + displacement * (0.5f * substeps) - middle) >
+                reach + 0.5f * substeps * length(displacement))
+                continue;
+            lanes.touchable.push_back(sphere);
+            break;
         }
     }
 }

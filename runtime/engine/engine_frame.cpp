@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <utility>
 
 #include "engine/checks.h"
 #include "engine/engine_impl.h"
@@ -36,9 +37,13 @@ Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& setting
     state_.roots.assign(shape_->blocks.size() * kRootRows * kBlockLanes, 0.0f);
     blockReports_.resize(shape_->blocks.size());
     nextRoots_.assign(state_.roots.size(), 0.0f);
-    makeRods();
+    state_.model = settings.strandModel;
+    strands_ = OwnedStrands(model().make());
+    strands_->takeSettings(*shape_, settings_, nullptr, state_);
+    strands_->takeState(*shape_, settings_, state_);
     wind_.wind = makeWind(settings);
     reset(shape_->restRoots);
+    allocateForPlan();
 }
 
 void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
@@ -54,8 +59,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
                                              root.rotation.x, root.rotation.y, root.rotation.z,
                                              root.rotation.w};
             for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = values[r];
-            placeAtRest(*shape_, state_, b, lane);
-            placeRodAtRest(*shape_, rods_, state_, b, lane);
+            placeLaneAtRest(b, lane);
         }
     }
     state_.spheres.clear();
@@ -65,7 +69,14 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     FrameInput here;
     here.roots_ws = roots_ws;
     takeRoots(here);
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+    // What effects have stays for the next frame, which knows its spheres: it takes no memory where they are
+    // on.
+    plan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+}
+
+void Engine::Impl::placeLaneAtRest(std::size_t block, std::uint32_t lane) {
+    placeAtRest(*shape_, state_, block, lane);
+    strands_->placeAtRest(*shape_, state_, block, lane);
 }
 
 void Engine::Impl::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
@@ -100,18 +111,18 @@ void Engine::Impl::placeLane(std::size_t index, std::uint32_t lane, const Float3
         const float values[] = {at.x, at.y, at.z, before.x, before.y, before.z};
         for (std::size_t plane = 0; plane < kStatePlanes; ++plane) moving[plane * size + i] = values[plane];
     }
-    if (!rods_.planes.empty()) placeRodOnPoints(*shape_, rods_, state_, index, lane);
+    strands_->placeOnPoints(*shape_, state_, index, lane);
 }
 
 std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (std::string error = validationError(settings); !error.empty()) return error;
-    const bool sameEnergy = haveEqualRodEnergy(settings, settings_);
-    settings_ = settings;
-    makeRods();
-    if (!sameEnergy) forgetRodEnergy(*shape_, state_);
+    const SimulationSettings before = std::exchange(settings_, settings);
+    const bool other = before.strandModel != settings.strandModel;
+    if (other) strands_ = OwnedStrands(model().make());
+    strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_);
+    strands_->takeState(*shape_, settings_, state_);
     scratch_ = {};
     wind_ = {makeWind(settings), false};
-    bend_.substep = 0.0f;
     state_.rests.assign(shape_->blocks.size(), {});
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
     return {};
@@ -122,14 +133,21 @@ bool Engine::Impl::setState(const State& state) {
         state.rests.size() != state_.rests.size())
         return false;
     state_ = state;
-    makeRods();
+    strands_->takeState(*shape_, settings_, state_);
     wind_.given = false;
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+    // The state keeps what its last frame had: all of it is what runs on.
+    plan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
     return true;
 }
 
 void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
                           Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
+    plan(spheres, sphereMotion, rootsMin_ws, rootsMax_ws, frameTime);
+    allocateForPlan();
+}
+
+void Engine::Impl::plan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
+                        Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
     FramePlanInput planInput{strandCount(),         shape_->longestPointCount,
                              shape_->longestStrand, shape_->straight,
                              rootsMin_ws,           rootsMax_ws,
@@ -140,47 +158,15 @@ void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float
         planInput.restTime = std::min(planInput.restTime, state_.rests[b].time);
     }
     plan_ = planFrame(settings_, planInput, wind_, spheres, sphereMotion, frameTime);
-    allocateForPlan();
-}
-
-/// What strands are as rods under these settings; strands that were none before go on from where they are.
-void Engine::Impl::makeRods() {
-    if (settings_.strandModel != StrandModel::rods) {
-        rods_ = {};
-        state_.rods = state_.rodLanes = {};
-        return;
-    }
-    rods_ = makeRodRest(*shape_, settings_);
-    if (!state_.rods.empty()) return;
-    state_.rods = Floats(shape_->planeFloats * kRodStatePlanes, 0.0f);
-    state_.rodLanes = Floats(shape_->blocks.size() * kRodLaneRows * kBlockLanes, 0.0f);
-    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
-            placeRodOnPoints(*shape_, rods_, state_, b, lane);
-    }
 }
 
 void Engine::Impl::allocateForPlan() {
-    const bool angular = plan_.on(Effect::angular);
-    const bool factored = angular && plan_.factored();
-    const bool targets = plan_.on(Effect::torsion);
-    if (angular == bend_.planes.empty() || factored != bend_.factored || targets != bend_.targets) {
-        bend_.factored = factored;
-        bend_.targets = targets;
-        bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
-        bend_.substep = 0.0f;
-    }
-    if (plan_.keepsTensions() == state_.tensions.empty())
-        state_.tensions = Floats(plan_.keepsTensions() ? shape_->planeFloats : 0, 0.0f);
-    evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
-                        : settings_.integrator == Integrator::rk4  ? kRungeKuttaPlanes
-                                                                   : kEvaluationPlanes;
-    if (evaluation_.size() != shape_->planeFloats * evaluationPlanes_)
-        evaluation_ = Floats(shape_->planeFloats * evaluationPlanes_, 0.0f);
+    strands_->allocate(*shape_, settings_, plan_, state_);
     // Sleeping strands keep theirs, so that they wake up without asking for memory.
     const std::size_t jobs = (shape_->blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
-    scratch_.grow(host_.parallelFor ? scratchPieces(jobs) : 1,
-                  solverFloats(plan_.stages(), shape_->longestPointCount, kernels()));
+    const std::size_t perPoint = model().solverFloats(plan_.stages());
+    scratch_.grow(host_.parallelFor ? scratchPieces(jobs) : 1, model().laneFloats,
+                  perPoint > 0 ? perPoint * shape_->longestPointCount + kSolverPadding : 0);
 }
 
 /// Measures what is known of the last frame from the origin of this one.
@@ -278,7 +264,7 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
         frame.windFrom = windPhases(wind_.wind, time - static_cast<double>(input.dt), *state_.origin_ws);
         frame.windTo = windPhases(wind_.wind, time, *state_.origin_ws);
     }
-    frame.context.stepRatio = state_.substep > 0.0f ? h / state_.substep : kRodFirstRatio;
+    frame.context.stepRatio = state_.substep > 0.0f ? h / state_.substep : kFirstStepRatio;
     frame.context.conservative = !frame.windy;
     if (frame.windy) {
         frame.context.wind = &wind_.wind;
@@ -290,10 +276,8 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
     frame.starts = !(state_.substep > 0.0f);
-    frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
     frame.kernels = &kernels();
-    frame.passes = host_.nanoseconds ? singlePassesOf(plan_.stages(), *frame.kernels)
-                                     : passesOf(plan_.stages(), *frame.kernels);
+    frame.passes = model().passes(plan_.stages(), static_cast<bool>(host_.nanoseconds));
     return frame;
 }
 
@@ -316,7 +300,7 @@ void Engine::Impl::step(const FrameInput& input) {
            input.dt);
     if (plan_.on(Effect::collision)) {
         moveSpheres(spheres_, substepsIn(settings_, input.dt), movingSpheres_);
-        if (!rods_.planes.empty()) scratch_.reserveSpheres(movingSpheres_.size());
+        if (model().listsSpheres) scratch_.reserveSpheres(movingSpheres_.size());
     } else {
         movingSpheres_ = {};
     }
@@ -325,7 +309,7 @@ void Engine::Impl::step(const FrameInput& input) {
     runBlocks(frame);
     state_.spheres.assign(spheres_.usable.begin(), spheres_.usable.end());
     state_.substep = frame.context.h;
-    if (frame.newBend) bend_.substep = frame.context.h;
+    strands_->closeFrame(frame);
     sumReports();
     if (host_.nanoseconds) report_.milliseconds = static_cast<double>(host_.nanoseconds() - begin) * 1e-6;
 }
@@ -362,20 +346,17 @@ void Engine::Impl::sumReports() {
     }
 }
 
-BlockView Engine::Impl::view(std::size_t block) {
-    BlockView view =
-        viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
-    view.rod = rodViewOf(*shape_, rods_, state_, block);
-    return view;
+BlockView& Engine::Impl::view(std::size_t block, BlockRoom& room) {
+    return strands_->view(*shape_, state_, block, settings_.clampedPoints, room);
 }
 
 void Engine::Impl::addVelocities(std::span<const Float3> changes_ws) {
     const float h = state_.substep;
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         const Block& block = shape_->blocks[b];
-        const BlockView blockView = view(b);
+        BlockRoom room;
+        const BlockView& blockView = view(b, room);
         const Planes previous = blockView.previous;
-        const RodView& rod = blockView.rod;
         bool changed = false;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             // Lanes past the last strand repeat it.
@@ -387,13 +368,7 @@ void Engine::Impl::addVelocities(std::span<const Float3> changes_ws) {
                 previous.x[i] -= change.x * h;
                 previous.y()[i] -= change.y * h;
                 previous.z()[i] -= change.z * h;
-                for (const Planes& velocity : {rod.velocity, rod.velocityBefore}) {
-                    if (!velocity.x) continue;
-                    velocity.x[i] += change.x;
-                    velocity.y()[i] += change.y;
-                    velocity.z()[i] += change.z;
-                }
-                if (rod.energy) rod.energy[lane] = kRodNoEnergy;
+                strands_->addVelocity(blockView, i, lane, change);
                 changed = true;
             }
         }

@@ -8,8 +8,8 @@
 #include "engine/scratch.h"
 #include "engine/state.h"
 #include "engine/state_read.h"
+#include "engine/strand_model.h"
 #include "hairloom/engine.h"
-#include "models/rods/rods.h"
 
 namespace hairloom::runtime {
 
@@ -41,20 +41,23 @@ struct Engine::Impl {
 
     void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                 Float3 rootsMax_ws, float frameTime);
+    /// The same without memory.
+    void plan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
+              Float3 rootsMax_ws, float frameTime);
     void allocateForPlan();
-    void makeRods();
+    const Model& model() const { return modelOf(settings_.strandModel); }
+    void placeLaneAtRest(std::size_t block, std::uint32_t lane);
     void takeRoots(const FrameInput& input);
     void repairRoots(std::size_t block);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);
-    BlockView view(std::size_t block);
+    BlockView& view(std::size_t block, BlockRoom& room);
     void runBlocks(const Frame& frame);
     void runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame);
-    static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
+    void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) const;
     void teleportLanes(const BlockView& view, float* rows, const float* next) const;
     void moveOrigin(std::array<double, 3> origin_ws);
-    void touchSpheres(std::size_t block, const SubstepContext& context, LaneFrame& lanes) const;
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     static void openSubstep(SubstepContext& context, const Frame& frame);
     static void runPass(std::size_t i, const BlockView& view, LaneFrame& lanes, const SubstepContext& context,
@@ -67,13 +70,10 @@ struct Engine::Impl {
     SimulationSettings settings_;
     Host host_;
     std::shared_ptr<const RestShape> shape_;
-    RodRest rods_;  // empty for springs
+    OwnedStrands strands_;  // as their model has them
     EffectPlan plan_;
     FrameWind wind_;
     State state_;
-    Bend bend_;
-    Floats evaluation_;  // empty for position Verlet
-    std::size_t evaluationPlanes_ = 0;
     Scratch scratch_;
     StepReport report_;
     std::vector<BlockReport> blockReports_;
@@ -85,18 +85,12 @@ struct Engine::Impl {
 };
 
 /// What all blocks share in one step.
-struct Engine::Impl::Frame {
+struct Engine::Impl::Frame : ModelFrame {
     const FrameInput* input;
-    SubstepContext context;
-    std::array<float, kWindModes> windFrom, windTo;
-    bool windy;
-    /// Of rods: of the wind at the end of each substep.
+    /// Of the wind at the end of each substep.
     std::array<std::array<float, kWindModes>, kMaxSubsteps> windPhases;
-    float rescale;  ///< new substep over old, 1 when equal
-    bool starts;    ///< the first since the hair was put at rest
-    bool newBend;
     const Kernels* kernels;
-    Passes passes;  ///< of the plan; single ones where there is a clock between its stages
+    Passes passes;  ///< of the plan; a call for each stage where there is a clock between them
 };
 
 }  // namespace hairloom::runtime

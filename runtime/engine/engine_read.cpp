@@ -118,28 +118,16 @@ std::uint32_t Engine::asleep() const {
 }
 
 std::size_t Engine::Impl::effectBytes(Effect effect) const {
-    const std::size_t plane = shape_->planeFloats * sizeof(float);
-    const std::size_t targets = bend_.targets ? 3 * plane : 0;
-    switch (effect) {
-        case Effect::angular:
-            return (bend_.planes.size() + state_.tensions.size()) * sizeof(float) - targets + rods_.bytes();
-        case Effect::torsion:
-            return targets;
-        case Effect::wind:
-            return plan_.on(effect) ? sizeof(Wind) : 0;
-        case Effect::collision:
-            return plan_.on(effect) ? movingSpheres_.size() * sizeof(MovingSphere) : 0;
-        default:
-            return 0;  // has no memory of its own
-    }
+    std::size_t shared = 0;
+    if (effect == Effect::wind && plan_.on(effect)) shared = sizeof(Wind);
+    if (effect == Effect::collision && plan_.on(effect))
+        shared = movingSpheres_.size() * sizeof(MovingSphere);
+    return shared + strands_->effectBytes(effect, state_);
 }
 
 std::size_t Engine::Impl::baseBytes() const {
-    return shape_->bytes() +
-           (state_.planes.size() + state_.roots.size() + state_.rods.size() + state_.rodLanes.size() +
-            evaluation_.size()) *
-               sizeof(float) +
-           (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
+    return shape_->bytes() + (state_.planes.size() + state_.roots.size()) * sizeof(float) +
+           strands_->baseBytes(state_) + (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
            state_.rests.size() * sizeof(Rest) + nextRoots_.size() * sizeof(float) +
            blockReports_.size() * sizeof(BlockReport) + scratch_.bytes();
 }

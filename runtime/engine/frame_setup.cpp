@@ -3,20 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "engine/state.h"
-#include "models/rods/rods.h"
+#include "engine/strand_model.h"
 
 namespace hairloom::runtime {
 namespace {
-
-/// Seconds in which the tension that bending knows of follows that of the segments.
-constexpr float kTensionTime = 0.2f;
-
-float shareLeft(float h, float timeConstant) {
-    return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
-}
 
 /// Faster air is a mistake, and its squares would leave the range of single precision.
 bool isWind(Float3 velocity) {
@@ -147,24 +138,9 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
                               std::span<const MovingSphere> spheres) {
     const std::uint32_t substeps = substepsIn(settings, dt);
     const float h = dt / static_cast<float>(substeps);
-    const auto oscillation = [&](float hertz) {
-        const float turns = 2.0f * std::numbers::pi_v<float> * hertz * h;
-        return turns * turns;
-    };
     SubstepContext context;
     context.count = substeps;
     context.h = h;
-    context.velocityShare = shareLeft(h, settings.dampingTime);
-    context.gravityStep = settings.gravity * (h * h);
-    const bool decays =
-        settings.integrator == Integrator::verlet || settings.integrator == Integrator::implicitEuler;
-    context.dragShare = decays ? 1.0f - std::exp(-settings.airDrag * h) : settings.airDrag * h;
-    context.springStep = oscillation(settings.springFrequency);
-    context.penaltyStep = oscillation(settings.penaltyFrequency);
-    context.bendRate = bendRate(settings, h, plan.on(Effect::torsion));
-    context.tensionShare = 1.0f - shareLeft(h, kTensionTime);
-    context.lengthIterations = settings.lengthIterations;
-    context.maximalExtension = settings.maximalExtension;
     if (plan.on(Effect::collisionRadius)) {
         context.collisionRadiusAtRoot = settings.collisionRadiusRoot;
         context.collisionRadiusAtTip = settings.collisionRadiusTip;
@@ -172,11 +148,7 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.air = plan.on(Effect::wind) ? Air::moving : plan.on(Effect::drag) ? Air::still : Air::none;
     context.gravity = settings.gravity;
     context.airDrag = settings.airDrag;
-    context.rootDamping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
-    context.bendDampingTime = settings.bendDampingTime;
-    const RodSectionRatios section = rodSectionRatios(settings);
-    context.twist = static_cast<float>(section.twist);
-    context.flat = static_cast<float>(section.flat);
+    context.gravityStep = settings.gravity * (h * h);
     context.spheresRest = std::all_of(spheres.begin(), spheres.end(),
                                       [](const MovingSphere& sphere) { return sphere.stepLength == 0.0f; });
     context.sweeps = plan.on(Effect::continuousCollision);
@@ -184,6 +156,7 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.restitution = settings.restitution;
     context.spheres = spheres;
     context.slowestSwept = slowestSwept(context);
+    modelOf(settings.strandModel).fillNumbers(settings, plan, context);
     return context;
 }
 

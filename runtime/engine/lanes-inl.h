@@ -83,16 +83,6 @@ HWY_INLINE V3 operator-(V3 a, V3 b) {
 HWY_INLINE V3 operator*(V3 a, V s) {
     return {a.x * s, a.y * s, a.z * s};
 }
-/// A copy that stores through vectors cannot change, as compilers take them to; with the one pitch that all
-/// planes have.
-HWY_INLINE BlockView localCopy(const BlockView& given) {
-    BlockView block = given;
-    for (Planes* const planes : {&block.position, &block.previous, &block.start, &block.stepDisplacement})
-        planes->pitch = given.pitch;
-    block.rest.pitch = block.target.pitch = given.pitch;
-    return block;
-}
-
 /// a · s + b.
 HWY_INLINE V3 mulAdd(V3 a, V s, V3 b) {
     return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};

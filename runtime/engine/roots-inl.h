@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Takes in and moves the roots; keeps the speed when the length of the substep changes.
+// Takes in and moves the roots, and measures how fast points are.
 #if defined(HAIRLOOM_RUNTIME_ROOTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_ROOTS_INL_H
 #undef HAIRLOOM_RUNTIME_ROOTS_INL_H
@@ -8,6 +8,7 @@
 #endif
 
 #include <cfloat>
+#include <cmath>
 
 #include "engine/checks.h"
 #include "engine/kernels.h"
@@ -96,16 +97,26 @@ bool takeRoots(const float* before, float* next, bool sound, float teleportDista
     return true;
 }
 
-void rescale(const BlockView& block, float factor) {
-    const V share = all(factor);
-    const std::size_t end = std::size_t{block.points} * kBlockLanes;
-    for (std::size_t i = 0; i < end; i += kWidth) {
-        const V3 position = load3(block.position, i);
-        store3(position - (position - load3(block.previous, i)) * share, block.previous, i);
+float fastestOf(const BlockView& block) {
+    // Bits of numbers that are not negative have the order of the numbers; what is no number comes after.
+    using Bits = hn::RebindToUnsigned<D>;
+    const auto bitsOfSquare = [](V3 v) HWY_ATTR { return hn::BitCast(Bits(), dot(v, v)); };
+    // Squares of positions farther than this from their root leave single precision.
+    const V maximum = all(1e12f);
+    V ofAll = hn::Zero(D());
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
+        auto fastest = hn::Zero(Bits()), farthest = hn::Zero(Bits());
+        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const V3 position = load3(block.position, i);
+            fastest = hn::Max(fastest, bitsOfSquare(position - load3(block.previous, i)));
+            farthest = hn::Max(farthest, bitsOfSquare(position));
+        }
+        const V squared = hn::BitCast(D(), fastest);
+        const auto sound = hn::And(squared < maximum, hn::BitCast(D(), farthest) < maximum);
+        ofAll = hn::Max(ofAll, hn::IfThenElse(sound, squared, all(HUGE_VALF)));
     }
-    if (!block.tension) return;
-    for (std::size_t i = 0; i < end; i += kWidth)
-        hn::Store(hn::Load(D(), block.tension + i) * share * share, D(), block.tension + i);
+    return laneMax(ofAll);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -16,17 +16,19 @@ std::size_t threadNumber() {
 
 }  // namespace
 
-void Scratch::grow(std::size_t count, std::size_t floats) {
-    if (count != count_ || floats > floats_) make(count, std::max(floats, floats_));
+void Scratch::grow(std::size_t count, std::size_t own, std::size_t floats) {
+    if (count != count_ || own != own_ || floats > floats_) make(count, own, std::max(floats, floats_));
 }
 
-void Scratch::make(std::size_t count, std::size_t floats) {
+void Scratch::make(std::size_t count, std::size_t own, std::size_t floats) {
     pieces_ = count > 0 ? std::make_unique<Piece[]>(count) : nullptr;
     for (std::size_t i = 0; i < count; ++i) {
-        pieces_[i].memory = Floats(floats, 0.0f);
-        pieces_[i].lanes.solver = pieces_[i].memory.data();
+        pieces_[i].memory = Floats(own + floats, 0.0f);
+        pieces_[i].lanes.own = pieces_[i].memory.data();
+        pieces_[i].lanes.solver = pieces_[i].memory.data() + own;
     }
     count_ = count;
+    own_ = own;
     floats_ = floats;
 }
 
@@ -46,19 +48,12 @@ Scratch::Piece& Scratch::take() {
 }
 
 std::size_t Scratch::bytes() const {
-    return count_ * (sizeof(Piece) + floats_ * sizeof(float));
+    return count_ * (sizeof(Piece) + (own_ + floats_) * sizeof(float));
 }
 
 std::size_t scratchPieces(std::size_t jobs) {
     const std::size_t threads = std::max(std::thread::hardware_concurrency(), 1u);
     return std::max(std::min(jobs, threads), std::size_t{1});
-}
-
-std::size_t solverFloats(std::span<const StageId> stages, std::uint32_t points, const Kernels& kernels) {
-    std::size_t maximum = 0;
-    for (const StageId stage : stages)
-        maximum = std::max(maximum, kernels.solverFloats[static_cast<std::size_t>(stage)]);
-    return maximum > 0 ? maximum * points + kSolverPadding : 0;
 }
 
 }  // namespace hairloom::runtime

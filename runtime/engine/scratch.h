@@ -16,21 +16,22 @@ namespace hairloom::runtime {
 class Scratch {
   public:
     struct Piece {
-        LaneFrame lanes;  ///< lanes.solver is memory
+        LaneFrame lanes;  ///< lanes.own and lanes.solver are memory
         Floats memory;
         std::atomic<bool> taken = false;
     };
 
     Scratch() = default;
     /// A copy has pieces of its own.
-    Scratch(const Scratch& other) { make(other.count_, other.floats_); }
+    Scratch(const Scratch& other) { make(other.count_, other.own_, other.floats_); }
     Scratch& operator=(const Scratch& other) {
-        make(other.count_, other.floats_);
+        make(other.count_, other.own_, other.floats_);
         return *this;
     }
 
-    /// Has `count` pieces of at least `floats` each. Only while none is taken.
-    void grow(std::size_t count, std::size_t floats);
+    /// Has `count` pieces with `own` floats for LaneFrame::own and at least `floats` for its solver each.
+    /// Only while none is taken.
+    void grow(std::size_t count, std::size_t own, std::size_t floats);
     /// LaneFrame::touchable of each piece can take so many without asking for memory.
     void reserveSpheres(std::size_t count);
     /// A free piece, the calling thread's own where it can be: its memory is then in that core's cache. Waits
@@ -39,15 +40,13 @@ class Scratch {
     std::size_t bytes() const;
 
   private:
-    void make(std::size_t count, std::size_t floats);
+    void make(std::size_t count, std::size_t own, std::size_t floats);
 
     std::unique_ptr<Piece[]> pieces_;
-    std::size_t count_ = 0, floats_ = 0;
+    std::size_t count_ = 0, own_ = 0, floats_ = 0;
 };
 
 /// As many pieces as threads of this machine can take for `jobs` jobs.
 std::size_t scratchPieces(std::size_t jobs);
-/// Floats of LaneFrame::solver that these stages need for strands of up to `points` points.
-std::size_t solverFloats(std::span<const StageId> stages, std::uint32_t points, const Kernels& kernels);
 
 }  // namespace hairloom::runtime

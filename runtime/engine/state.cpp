@@ -196,53 +196,26 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands) {
 std::uint64_t State::hash() const {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     hash = mix(hash, planes.data(), planes.size() * sizeof(float));
-    hash = mix(hash, tensions.data(), tensions.size() * sizeof(float));
-    hash = mix(hash, rods.data(), rods.size() * sizeof(float));
-    hash = mix(hash, rodLanes.data(), rodLanes.size() * sizeof(float));
+    for (const Floats& values : own) hash = mix(hash, values.data(), values.size() * sizeof(float));
     return mix(hash, roots.data(), roots.size() * sizeof(float));
 }
 
-BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedPoints) {
-    const Block& block = arrays.shape.blocks[index];
+void fillView(const RestShape& shape, State& state, std::size_t index, std::uint32_t clampedPoints,
+              BlockView& view) {
+    const Block& block = shape.blocks[index];
     const std::size_t size = planeSize(block);
-    const float* rest = arrays.shape.planes.data() + block.firstPlane * kRestPlanes;
-    const auto three = [&](float* first) { return Planes{first, size}; };
-    float* moving = arrays.state.planes.data() + block.firstPlane * kStatePlanes;
-    BlockView view;
+    const float* rest = shape.planes.data() + block.firstPlane * kRestPlanes;
+    float* moving = state.planes.data() + block.firstPlane * kStatePlanes;
     view.lanes = (block.strands + kWidestVector - 1) / kWidestVector * kWidestVector;
     view.points = block.points;
     view.firstFree = clampedPoints;
     view.pitch = size;
-    view.position = three(moving);
-    view.previous = three(moving + 3 * size);
+    view.position = {moving, size};
+    view.previous = {moving + 3 * size, size};
     view.rest = {rest, size};
     view.length = rest + 3 * size;
     view.inverseLength = rest + 4 * size;
     view.inverseMass = rest + 5 * size;
-    if (!arrays.bend.planes.empty()) {
-        const float* plane = arrays.bend.planes.data() + block.firstPlane * arrays.bend.planeCount();
-        view.stiffness = plane;
-        plane += size;
-        if (arrays.bend.factored) {
-            view.inverseDiagonal = plane;
-            view.lower1 = plane + size;
-            view.lower2 = plane + 2 * size;
-            plane += 3 * size;
-        }
-        if (arrays.bend.targets) view.target = {plane, size};
-    }
-    if (!arrays.state.tensions.empty()) view.tension = arrays.state.tensions.data() + block.firstPlane;
-    if (!arrays.evaluation.empty()) {
-        float* plane = arrays.evaluation.data() + block.firstPlane * arrays.evaluationPlanes;
-        view.start = three(plane);
-        view.stepDisplacement = three(plane + 3 * size);
-        if (arrays.evaluationPlanes == kRungeKuttaPlanes) {
-            view.kick = three(plane + 6 * size);
-            view.sum = three(plane + 9 * size);
-            view.stepDisplacementSum = three(plane + 12 * size);
-        }
-    }
-    return view;
 }
 
 void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::uint32_t lane) {
@@ -253,10 +226,6 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::u
     const float* roots = state.roots.data() + index * kRootRows * kBlockLanes;
     const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
     const Quat rotation{row(3), row(4), row(5), row(6)};
-    if (!state.tensions.empty()) {
-        float* const tensions = state.tensions.data() + block.firstPlane;
-        for (std::uint32_t p = 0; p < block.points; ++p) tensions[std::size_t{p} * kBlockLanes + lane] = 0.0f;
-    }
     Float3 at{};
     for (std::uint32_t p = 0; p < block.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/kernels.h"
+#include "hairloom/settings.h"
 
 namespace hairloom::runtime {
 
@@ -68,59 +69,33 @@ struct Rest {
     friend bool operator==(const Rest&, const Rest&) = default;
 };
 
+/// Of a model's own arrays in a State, at most.
+inline constexpr std::size_t kOwnArrays = 4;
+
 /// What changes from step to step. A copy is a snapshot: running on from it gives the same bits.
 struct State {
     Floats planes;  ///< per block: position x, y, z, previous x, y, z
     Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
-    Floats tensions;                  ///< per block: BlockView::tension; empty unless it is needed
-    Floats rods;                      ///< per block: what RodView says; empty for springs
-    Floats rodLanes;                  ///< per block: RodView::turn and energy
-    std::vector<Rest> rests;          ///< per block
-    std::vector<Sphere> spheres;      ///< of the last frame
-    Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
-    float substep = 0.0f;             ///< seconds of the last substep; 0 before the first
-    float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
+    StrandModel model = StrandModel::rods;  ///< that `own` is of
+    std::array<Floats, kOwnArrays> own;     ///< what the model remembers besides, per block (Model::own)
+    std::vector<Rest> rests;                ///< per block
+    std::vector<Sphere> spheres;            ///< of the last frame
+    Float3 rootsMin_ws, rootsMax_ws;        ///< box of the last frame's roots
+    float substep = 0.0f;                   ///< seconds of the last substep; 0 before the first
+    float fastest = 0.0f;                   ///< m/s, greatest speed of a point at the end of the last frame
     std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
 
     std::uint64_t hash() const;
 };
 
-/// Arrays of angular and flexion springs, derived from rest shape, settings and substep.
-struct Bend {
-    Floats
-        planes;  ///< per block: stiffness, then 3 of the factors, then 3 of the targets where there are any
-    bool factored = false;
-    bool targets = false;
-    float substep = 0.0f;  ///< seconds that `planes` was made for; 0 for not yet
-
-    std::size_t planeCount() const { return 1u + (factored ? 3u : 0u) + (targets ? 3u : 0u); }
-};
-
 inline constexpr std::size_t kRestPlanes = 6;
 inline constexpr std::size_t kStatePlanes = 6;
-/// Planes of integrators that evaluate forces: start, stepDisplacement; RK4 also kick, sum and
-/// stepDisplacementSum.
-inline constexpr std::size_t kEvaluationPlanes = 6;
-inline constexpr std::size_t kRungeKuttaPlanes = 15;
 
-/// Everything a block's kernels need; `bend` and `evaluation` may be empty.
-struct Arrays {
-    const RestShape& shape;
-    State& state;
-    const Bend& bend;
-    Floats& evaluation;
-    std::size_t evaluationPlanes;
-};
-BlockView viewOf(const Arrays& arrays, std::size_t block, std::uint32_t clampedPoints);
+/// The block's points and rest shape, for `view` of any model.
+void fillView(const RestShape& shape, State& state, std::size_t block, std::uint32_t clampedPoints,
+              BlockView& view);
 
-/// Places lane `lane` of block `b` at rest on its row of state.roots, without speed.
+/// Places the points of lane `lane` of block `b` at rest on its row of state.roots, without speed.
 void placeAtRest(const RestShape& shape, State& state, std::size_t block, std::uint32_t lane);
-
-/// Fills the planes of block `b` for substeps of h seconds.
-void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t block,
-              Bend& bend);
-
-/// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
-float bendRate(const SimulationSettings& settings, float h, bool curved);
 
 }  // namespace hairloom::runtime

@@ -303,7 +303,7 @@ hl_code hl_rate(const hl_instance* instance, uint64_t (*nanoseconds)(void* user)
 
 void hl_crowd_limits_init(hl_crowd_limits* limits) {
     if (!limits) return;
-    *limits = {sizeof(hl_crowd_limits), 2, 0.7f, std::numeric_limits<float>::infinity(), 1};
+    *limits = {sizeof(hl_crowd_limits), 2, 0.7f, std::numeric_limits<float>::infinity(), 1, 0, 0};
 }
 
 hl_code hl_crowd_plan_sized(const hl_crowd_limits* given, hl_viewed* characters, size_t viewed_size,

@@ -42,7 +42,8 @@ struct CrowdPlan {
     Characters characters;
 
     float errorOf(const hl_viewed& character, std::uint32_t level) const {
-        return character.hair->instance.predictedError(level) * character.pixels_per_metre;
+        return character.hair->instance.predictedError(level, limits.strict != 0) *
+               character.pixels_per_metre;
     }
     float hairShare(const hl_viewed& character) const {
         if (limits.hair_pixels == 0) return 1;

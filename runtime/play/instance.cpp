@@ -7,8 +7,8 @@
 #include <map>
 
 #include "engine/state.h"
+#include "engine/strand_model.h"
 #include "follow/follow_kernels.h"
-#include "models/rods/rods.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -73,10 +73,16 @@ std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf) {
         planeFloats += more * (std::size_t{points} * kBlockLanes + kPlanePadding);
         strands += count;
     }
-    // Rods take more than springs with any integrator do; of angular springs they have stiffness and targets.
-    const std::size_t planes = kRestPlanes + kStatePlanes + kRodFlatRestPlanes + kRodStatePlanes + 4;
+    std::size_t most = 0, laneRows = 0;
+    for (const Model* const model : allModels()) {
+        most = std::max(most, model->mostPlanes);
+        std::size_t rows = 0;
+        for (const OwnArray& array : model->own) rows += array.laneRows;
+        laneRows = std::max(laneRows, rows);
+    }
+    const std::size_t planes = kRestPlanes + kStatePlanes + most;
     const std::size_t lanes =
-        (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
+        (2 * kRootRows + laneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
     return planeFloats * planes * sizeof(float) + blocks * lanes +
            strands * (sizeof(RootFrame) + sizeof(std::uint32_t));
 }
@@ -111,10 +117,10 @@ std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t th
 InstanceMemory instanceMemory(const Asset& asset) {
     const std::map<std::uint32_t, std::size_t> strandsOf = strandsByPoints(asset);
     const std::uint32_t longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
-    const std::size_t solver =
-        *std::max_element(std::begin(kernels().solverFloats), std::end(kernels().solverFloats)) *
-        std::size_t{longest};
-    const std::size_t thread = sizeof(LaneFrame) + (solver + kSolverPadding) * sizeof(float);
+    std::size_t work = 0;
+    for (const Model* const model : allModels())
+        work = std::max(work, model->laneFloats + model->mostSolverFloats() * std::size_t{longest});
+    const std::size_t thread = sizeof(LaneFrame) + (work + kSolverPadding) * sizeof(float);
     const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
     const std::size_t guides = engineBytes(strandsOf) + thread +
                                asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +

@@ -58,8 +58,8 @@ class Instance {
     std::uint32_t level() const { return levels_ ? levels_->level : 0; }
     Outcome setLevel(std::uint32_t level, float hairShare);
     hl_level describeLevel(std::uint32_t level) const;
-    /// Metres, of a frame as the last ones were.
-    float predictedError(std::uint32_t level) const;
+    /// Metres, of a frame as the last ones were: of the paths of points, or of what is seen far off.
+    float predictedError(std::uint32_t level, bool ofPaths) const;
     /// Of the next step and read-out; 0 where it sleeps and stays at its level.
     float predictedMilliseconds(std::uint32_t level, float hairShare) const;
     float rootRadius() const { return radii_.root; }

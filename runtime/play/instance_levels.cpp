@@ -58,6 +58,11 @@ void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
     for (std::size_t level = 0; level < known.size(); ++level)
         set->errors[level] = {known[level].still, known[level].head, known[level].wind};
     if (known.empty()) measureLevels(*set);
+    // Of an asset that nobody looked at from afar: no less than the strict one is safe.
+    set->seen = set->errors;
+    const auto seen = asset.seenErrors();
+    for (std::size_t level = 0; level < seen.size(); ++level)
+        set->seen[level] = {seen[level].still, seen[level].head, seen[level].wind};
 }
 
 Engine* Instance::engineAt(std::uint32_t number) {
@@ -265,6 +270,10 @@ hl_level Instance::describeLevel(std::uint32_t number) const {
     level.error_still = error.still;
     level.error_head = error.head;
     level.error_wind = error.wind;
+    const LevelError seen = levels_ ? levels_->set->seen[number] : LevelError{};
+    level.seen_still = seen.still;
+    level.seen_head = seen.head;
+    level.seen_wind = seen.wind;
     const auto points = static_cast<float>(positions_.size());
     level.milliseconds =
         kPointSubstep * static_cast<float>(level.points) * static_cast<float>(level.substeps) +
@@ -274,10 +283,10 @@ hl_level Instance::describeLevel(std::uint32_t number) const {
     return level;
 }
 
-float Instance::predictedError(std::uint32_t number) const {
+float Instance::predictedError(std::uint32_t number, bool ofPaths) const {
     if (number == HL_LEVEL_FINEST) return 0;
     if (!levels_->origin) return kUnknown;
-    const LevelError& error = levels_->set->errors[number];
+    const LevelError& error = (ofPaths ? levels_->set->errors : levels_->set->seen)[number];
     return error.still + error.head * levels_->motion + error.wind * levels_->wind;
 }
 

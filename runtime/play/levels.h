@@ -32,7 +32,7 @@ struct Level {
     std::size_t bytes() const;
 };
 
-/// What the error of a level is made of: metres, root mean square over the points of all guides.
+/// What the error of a level is made of: metres, as hl_level has them.
 struct LevelError {
     float still = 0;  ///< of hair at rest
     float head = 0;   ///< for each m/s of the roots, less `still`
@@ -41,10 +41,11 @@ struct LevelError {
 
 /// Of an asset; immutable, shared by copies of an instance.
 struct LevelSet {
-    std::vector<std::uint32_t> offsets;  ///< of all guides' points
-    std::vector<Float3> rest;            ///< of them, from their guide's root
-    std::vector<Level> coarser;          ///< levels 1 …; one less than the rigid one's number
-    std::array<LevelError, HL_LEVEL_COUNT> errors{};
+    std::vector<std::uint32_t> offsets;               ///< of all guides' points
+    std::vector<Float3> rest;                         ///< of them, from their guide's root
+    std::vector<Level> coarser;                       ///< levels 1 …; one less than the rigid one's number
+    std::array<LevelError, HL_LEVEL_COUNT> errors{};  ///< of paths
+    std::array<LevelError, HL_LEVEL_COUNT> seen{};    ///< of what is seen far off
 
     explicit LevelSet(const Asset::Strands& strands);
     std::size_t bytes() const;

@@ -5,14 +5,14 @@
 #include <cstring>
 #include <type_traits>
 
-#include "engine/state.h"
+#include "engine/strand_model.h"
 #include "play/instance.h"
 
 namespace hairloom::runtime {
 namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x53494c48;  // "HLIS"
-constexpr std::uint32_t kSavedVersion = 1;
+constexpr std::uint32_t kSavedVersion = 2;
 constexpr std::size_t kMostSpheres = 4096;
 
 struct Head {
@@ -80,8 +80,10 @@ class Reader {
 };
 
 void writeState(Writer& writer, const State& state) {
-    for (const Floats* floats : {&state.planes, &state.roots, &state.tensions, &state.rods, &state.rodLanes})
-        writer.all<float>(*floats);
+    writer.all<float>(state.planes);
+    writer.all<float>(state.roots);
+    writer.value(static_cast<std::uint32_t>(state.model));
+    for (const Floats& own : state.own) writer.all<float>(own);
     writer.value(std::uint64_t{state.rests.size()});
     for (const Rest& rest : state.rests) {
         writer.value(rest.time);
@@ -101,11 +103,14 @@ State readState(Reader& reader, const State& like) {
     State state;
     reader.all(state.planes, like.planes.size());
     reader.all(state.roots, like.roots.size());
-    // Kept while something needs them.
-    const std::size_t tensions = like.planes.size() / kStatePlanes;
-    reader.all(state.tensions, reader.peekCount() == 0 ? 0 : tensions);
-    reader.all(state.rods, like.rods.size());
-    reader.all(state.rodLanes, like.rodLanes.size());
+    state.model = like.model;
+    if (reader.value<std::uint32_t>() != static_cast<std::uint32_t>(like.model)) reader.good = false;
+    const std::size_t planeFloats = like.planes.size() / kStatePlanes;
+    for (std::size_t i = 0; i < kOwnArrays; ++i) {
+        const OwnArray& own = modelOf(like.model).own[i];
+        const bool none = own.isOptional && reader.peekCount() == 0;
+        reader.all(state.own[i], none ? 0 : own.floats(planeFloats, like.rests.size()));
+    }
     if (reader.value<std::uint64_t>() != like.rests.size()) reader.good = false;
     for (std::size_t b = 0; b < like.rests.size() && reader.good; ++b) {
         const auto time = reader.value<float>();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One segment of an elastic rod in a substep, written once for C++, where a number is a vector of strands,
 // and for HLSL, where it is a number (docs/engine.md, "Rods"). Who includes it defines ROD_FUNCTION, Real,
-// Real3, Real4, ROD_INOUT, ROD_OUT and ROD_NUMBER and has cross, dot, mad (a b + c), mad3 (a s + b), negMad
+// Real3, Real4, ROD_INOUT, ROD_OUT and ROD_NUMBER and has RodNumbers, cross, dot, mad (a b + c), mad3 (a s + b), negMad
 // (c − a b), negMad3 (b − a s), maximum, minimum, absolute, root, xyz, real3, real4 and withSignOf.
 //
 // A segment is a rotation q, from its place in the rest shape, in the root's frame, to the world. A vertex
@@ -91,6 +91,11 @@ struct RodSection {
     Real twist, flat;  ///< (C − B)/l̄ and (B₂ − B)/l̄
     bool twists, isFlat;
 };
+
+/// By how much damping stiffens a vertex in a step of 1/inverseStep seconds (Kelvin-Voigt): 1 + τ/h.
+ROD_FUNCTION Real rodDamped(RodNumbers numbers, Real inverseStep) {
+    return ROD_NUMBER(1.0) + ROD_NUMBER(numbers.bendDampingTime) * inverseStep;
+}
 
 /// Twice the energy of a strain e with `bend` for B/l̄.
 ROD_FUNCTION Real rodTwiceEnergy(Real3 e, Real bend, RodSection section) {

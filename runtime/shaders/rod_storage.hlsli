@@ -18,9 +18,9 @@ RodSection section(uint j, float bend) {
     RodSection found;
     found.axis = found.normal = float3(0, 0, 0);
     found.twists = gCurved;
-    found.isFlat = gRod.flat != 0.0;
-    found.twist = bend * gRod.twist;
-    found.flat = bend * gRod.flat;
+    found.isFlat = gRod.numbers.flat != 0.0;
+    found.twist = bend * gRod.numbers.twist;
+    found.flat = bend * gRod.numbers.flat;
     if (found.twists) found.axis = gRodRest[slotOf(2, j)].xyz;
     if (found.isFlat) found.normal = gRodRest[slotOf(3, j)].xyz;
     return found;

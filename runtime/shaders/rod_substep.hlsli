@@ -41,7 +41,7 @@ void openRodStep() {
     gVelocityAhead = gBlend * (1.0 / gStepRatio + 2.0);
     gTimeStep = gFrame.h * (1.0 - gBlend / gStepRatio);
     gInverseTimeStep = 1.0 / gTimeStep;
-    gDamped = 1.0 + gRod.bendDampingTime * gInverseTimeStep;
+    gDamped = rodDamped(gRod.numbers, gInverseTimeStep);
     gDampingShare = (gDamped - 1.0) / gDamped;
     gInner = gRotation;
     gInDisplacement = gRootDisplacement;
@@ -60,8 +60,8 @@ void openRodStep() {
 float4 aim(uint node, float3 tangent, float3 position) {
     const float3 now = velocity(node), faster = now - velocityBefore(node);
     float3 change = mad3(gRod.gravity.xyz, gTimeStep, mad3(faster, gBlend, now));
-    float rate = gRod.rootDamping;
-    change = mad3(gRootDisplacement, gRod.rootDamping / gFrame.h * gTimeStep, change);
+    float rate = gRod.numbers.rootDamping;
+    change = mad3(gRootDisplacement, gRod.numbers.rootDamping / gFrame.h * gTimeStep, change);
     if (gRod.gravity.w > 0.0) {
         float3 air = float3(0, 0, 0);
 #if HAIR_WIND

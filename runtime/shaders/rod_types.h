@@ -23,24 +23,31 @@ namespace hairloom::shaders {
 /// Settings have changed what energy rods have: what they had tells nothing of what they may have.
 #define HAIRLOOM_RODS_OF_OTHER_ENERGY 2
 
-struct RodConstants {
-    float4 gravity;         ///< m/s²; w: drag of the air, 1/s, 0 without air
+/// What the settings make of a substep of rods, for the CPU's kernel and the GPU's alike
+/// (rodNumbersOf() in models/rods/rod_model.cpp fills it).
+struct RodNumbers {
     float rootDamping;      ///< 1/s
     float bendDampingTime;  ///< seconds
-    float twist;            ///< (GJ − EI)/EI, of the stiffer bend
+    float twist;            ///< (GJ − EI)/EI, of the stiffer bend; 0 where nothing twists
+    float flat;             ///< (EI₂ − EI)/EI, of the softer bend; 0 of a round section
+};
+
+struct RodConstants {
+    float4 gravity;  ///< m/s²; w: drag of the air, 1/s, 0 without air
+    RodNumbers numbers;
     float stepRatio;        ///< the first substep over the one before it
     uint points;            ///< that a strand of the batch may have
     uint sweeps;            ///< not 0: spheres are met where fast points come in
     uint conservative;      ///< not 0: nothing but motion of roots and spheres adds energy; 2: nor do spheres
     uint fresh;             ///< HAIRLOOM_RODS_FRESH, HAIRLOOM_RODS_OF_OTHER_ENERGY or 0
-    float flat;             ///< (EI₂ − EI)/EI, of the softer bend; 0 of a round section
     uint unused0, unused1, unused2;
     float4 windTurns[HAIRLOOM_WIND_MODES];  ///< x: turns of a wave in a substep
 };
 
 #ifdef __cplusplus
-static_assert(offsetof(RodConstants, rootDamping) == 16 && offsetof(RodConstants, windTurns) == 64);
-static_assert(sizeof(RodConstants) == 64 + 16 * HAIRLOOM_WIND_MODES);
+static_assert(sizeof(RodNumbers) % 16 == 0 && offsetof(RodConstants, numbers) == 16);
+static_assert(offsetof(RodConstants, windTurns) == 48 + sizeof(RodNumbers));
+static_assert(sizeof(RodConstants) == 48 + sizeof(RodNumbers) + 16 * HAIRLOOM_WIND_MODES);
 }  // namespace hairloom::shaders
 #endif
 #endif

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -57,6 +59,11 @@ TEST(Glb, HoldsMeshesSkinLevelsAndSprings) {
     ASSERT_EQ(head["meshes"].size(), 3u);
     EXPECT_EQ(head["materials"][0]["alphaMode"], "MASK");
     EXPECT_EQ(head["materials"][0]["doubleSided"], true);
+    EXPECT_EQ(head["materials"][0]["extensions"]["KHR_materials_anisotropy"]["anisotropyRotation"], 0)
+        << "tangents lie across strands";
+    for (const json& material : head["materials"])
+        for (const auto& [extension, values] : material["extensions"].items())
+            EXPECT_THAT(head["extensionsUsed"], testing::Contains(extension));
     EXPECT_EQ(head["images"].size(), 6u) << "colour, normal and occlusion of two levels";
     for (const json& view : head["bufferViews"]) {
         EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0u);
@@ -133,6 +140,77 @@ TEST(Glb, IsSmallerWithIntegersAndStandsWhereItStood) {
         const Vec3f back = bind.topLeftCorner<3, 3>() * stored + bind.topRightCorner<3, 1>() +
                            chain->rig.joints[joint].position_ws;
         ASSERT_LT((back - vertices[v].position_ws).norm(), 2e-5f);
+    }
+}
+
+/// Where a node is, by all that it hangs on.
+Eigen::Affine3f placeOf(const json& head, std::size_t node) {
+    Eigen::Affine3f place = Eigen::Affine3f::Identity();
+    const json& given = head["nodes"][node];
+    const auto& t = given["translation"];
+    place.translate(Vec3f(t[0].get<float>(), t[1].get<float>(), t[2].get<float>()));
+    if (given.contains("rotation")) {
+        const auto& r = given["rotation"];
+        place.rotate(Quatf(r[3].get<float>(), r[0].get<float>(), r[1].get<float>(), r[2].get<float>()));
+    }
+    if (given.contains("scale")) {
+        const auto& s = given["scale"];
+        place.scale(Vec3f(s[0].get<float>(), s[1].get<float>(), s[2].get<float>()));
+    }
+    for (std::size_t parent = 0; parent < head["nodes"].size(); ++parent) {
+        const json& other = head["nodes"][parent];
+        if (!other.contains("children")) continue;
+        for (const json& child : other["children"])
+            if (child == node) return placeOf(head, parent) * place;
+    }
+    return place;
+}
+
+TEST(Glb, HangsHairAndSpheresOnTheCharactersBones) {
+    const auto chain = smallChain("cards:20@64");
+    ASSERT_TRUE(chain) << chain.error().message();
+    Character character;
+    const Eigen::Affine3f spine(Eigen::Translation3f(0, -0.5f, 0.1f) *
+                                Eigen::AngleAxisf(0.7f, Vec3f(1, 2, 3).normalized()));
+    const Eigen::Affine3f neck(spine * Eigen::Translation3f(0.1f, 0.2f, 0) *
+                               Eigen::AngleAxisf(-1.1f, Vec3f::UnitZ()) * Eigen::Scaling(2.0f));
+    character.bones = {
+        {"spine", -1, spine}, {"neck", 0, neck}, {"head", 1, neck * Eigen::Translation3f(0, 0.1f, 0)}};
+    character.head = 2;
+    const std::vector<Collider> colliders{{Vec3f(0, 0.01f, 0), 0.095f, "head"},
+                                          {Vec3f(0.1f, -0.3f, 0.05f), 0.08f, "spine"},
+                                          {Vec3f(0, -0.1f, 0), 0.05f, "neck"},
+                                          {Vec3f(0, -0.2f, 0), 0.04f, ""}};
+    const auto file = glbOf(*chain, colliders, GlbNumbers::floats, character);
+    ASSERT_TRUE(file) << file.error().message();
+    const json head = parsed(*file).head;
+    const json& spheres = head["extensions"]["VRMC_springBone"]["colliders"];
+    const char* const nodes[] = {"head", "spine", "neck", "hair"};
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        const std::size_t node = spheres[c]["node"];
+        EXPECT_EQ(head["nodes"][node]["name"], nodes[c]);
+        const json& sphere = spheres[c]["shape"]["sphere"];
+        const auto& at = sphere["offset"];
+        const Eigen::Affine3f place = placeOf(head, node);
+        const Vec3f centre = place * Vec3f(at[0].get<float>(), at[1].get<float>(), at[2].get<float>());
+        EXPECT_LT((centre - colliders[c].centre_ws).norm(), 1e-5f) << nodes[c];
+        EXPECT_NEAR(sphere["radius"].get<float>() * std::cbrt(place.linear().determinant()),
+                    colliders[c].radius, 1e-5f);
+    }
+    for (std::size_t j = 0; j < chain->rig.joints.size(); ++j)
+        EXPECT_LT((placeOf(head, j).translation() - chain->rig.joints[j].position_ws).norm(), 2e-5f) << j;
+    // Each node hangs on one other at most, and the scene has those that hang on none.
+    std::vector<int> parents(head["nodes"].size());
+    for (const json& node : head["nodes"])
+        if (node.contains("children"))
+            for (const json& child : node["children"]) ++parents[child.get<std::size_t>()];
+    for (const json& root : head["scenes"][0]["nodes"]) EXPECT_EQ(parents[root.get<std::size_t>()]++, 0);
+    EXPECT_TRUE(std::ranges::all_of(parents, [](int count) { return count == 1; }));
+    // Chains are told of the spheres that they do not stand in.
+    const json& springs = head["extensions"]["VRMC_springBone"]["springs"];
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+        const auto held = collidersOfChain(chain->rig, s, colliders);
+        EXPECT_EQ(springs[s].value("colliderGroups", json::array()), json(held));
     }
 }
 

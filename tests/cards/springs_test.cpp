@@ -90,6 +90,46 @@ TEST(Springs, AreFoundByTheMotionThatTheyMade) {
     EXPECT_EQ(springError(rig, made, wanted, {}).largestMm, 0);
 }
 
+/// As hangingRig(), but the chains stand out from the head, so that gravity bends them.
+Rig standingRig() {
+    Rig rig = hangingRig();
+    for (Joint& joint : rig.joints) {
+        if (joint.parent >= 0) joint.position_ws = {1.8f - joint.position_ws.y(), 1.7f, 0};
+    }
+    return rig;
+}
+
+TEST(Springs, SettleWhereTheyStay) {
+    const Rig rig = standingRig();
+    Spring soft;
+    soft.stiffness = 0.6f, soft.tipStiffness = 0.3f, soft.gravity = 0.2f;
+    const std::vector<Eigen::Isometry3f> still(600, Eigen::Isometry3f::Identity());
+    const auto joints = swing(rig, 0, soft, still, {}).back();
+    float farthest = 0;
+    for (std::uint32_t j = 0; j < 5; ++j)
+        farthest = std::max(farthest, (joints[j] - rig.joints[1 + j].position_ws).norm());
+    EXPECT_GT(farthest, 0.02f);
+    EXPECT_NEAR(settling(rig, 0, soft), farthest, 1e-4f) << "what is computed is what they swing to";
+    // Motion that asks for gravity, of hair that hangs where it is.
+    ChainMotion wanted = motionBy(rig, std::vector<Spring>(2, soft), 90);
+    const auto found = fitSprings(rig, wanted, {}, nullptr);
+    ASSERT_TRUE(found) << found.error().message();
+    for (std::size_t c = 0; c < 2; ++c) EXPECT_LT(settling(rig, c, (*found)[c]), 0.001f) << c;
+}
+
+TEST(Springs, TouchNothingAtRest) {
+    const Rig rig = hangingRig();
+    // One that a joint stands in, one 3 mm beside a joint, one far away.
+    const std::vector<Collider> colliders{
+        {Vec3f(-0.1f, 1.5f, 0.02f), 0.05f}, {Vec3f(-0.1f, 1.6f, 0.053f), 0.05f}, {Vec3f(0, 1, 0), 0.05f}};
+    EXPECT_EQ(collidersOfChain(rig, 0, colliders), (std::vector<std::uint32_t>{1, 2}));
+    EXPECT_EQ(collidersOfChain(rig, 1, colliders), (std::vector<std::uint32_t>{0, 1, 2}));
+    const auto found = fitSprings(rig, motionBy(rig, std::vector<Spring>(2), 30), colliders, nullptr);
+    ASSERT_TRUE(found) << found.error().message();
+    EXPECT_NEAR((*found)[0].hitRadius, 0.003f, 1e-5f);
+    EXPECT_EQ((*found)[1].hitRadius, Spring().hitRadius);
+}
+
 TEST(Springs, StopWhenTheyAreCancelled) {
     const std::atomic<bool> cancel = true;
     const Rig rig = hangingRig();

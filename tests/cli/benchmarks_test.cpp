@@ -85,7 +85,7 @@ TEST(Benchmarks, MemoryIsThatOfTheProgramAndImportTakesLittle) {
     const Groom groom = makeGroom(std::move(offsets), std::move(positions));
     const TemporaryFile project("hairloom-memory-test.hairloom");
     for (const char* format : {"abc", "usdc", "usda", "ply", "tfx", "hair", "obj-lines"}) {
-        const StrandWriter& writer = strandWriter(format);
+        const HairWriter& writer = strandWriter(format);
         const TemporaryFile file("hairloom-memory-test." + writer.suffix());
         ASSERT_TRUE(writer.write(groom, file.path, {})) << format;
         const auto taken =

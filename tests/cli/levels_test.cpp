@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -52,6 +53,7 @@ TEST_F(LodJob, MakesAndMeasuresAChainThatIsTheSameForAnyThreads) {
     EXPECT_EQ(report["levels"][1]["lights"].size(), 3u) << "at 64, 48 and 32 pixels of head height";
     EXPECT_EQ(report["springs"]["motion"], "nod");
     EXPECT_LT(report["springs"]["error_mm"], report["springs"]["default_error_mm"]);
+    EXPECT_LT(report["springs"]["settling_mm"], 1) << "joints stay where they are at rest";
     EXPECT_EQ(report["levels"][0]["kind"], "strands");
     EXPECT_EQ(report["levels"][0]["hairs"], 200);
     EXPECT_LE(report["levels"][1]["cards"], 24);
@@ -132,6 +134,69 @@ TEST_F(LodJob, CardsAreExportedAsGltf) {
     EXPECT_LE(few["levels"][0]["triangles"], 8 * 6)
         << "one segment of at most two quads a card, and one over its roots";
     EXPECT_NEAR(few["levels"][0]["distance_m"], 5.8, 0.01);
+}
+
+TEST_F(LodJob, SpheresOfTheFileAreOnTheBonesOfTheCharacter) {
+    makeHair();
+    std::ofstream(folder / "spheres.json")
+        << R"([{"name": "skull", "centre": [0, 1.69, -0.01], "radius": 0.078, "bone": "head"},
+               {"name": "chest", "centre": [0, 1.4, 0], "radius": 0.1, "bone": "root"},
+               {"name": "lost", "centre": [0, 1.3, 0], "radius": 0.05, "bone": "tail"}])";
+    runJson("spheres hair.hairloom --from spheres.json --replace -o hair.hairloom --force");
+    const auto done = run("export hair.hairloom --format gltf --levels cards:12@64 -o hair.glb");
+    EXPECT_EQ(done.exitCode, 0) << done.errors;
+    EXPECT_THAT(done.errors, HasSubstr("the character has no bone 'tail'"));
+    const std::string file = readText(folder / "hair.glb");
+    std::uint32_t bytes = 0;
+    std::memcpy(&bytes, file.data() + 12, 4);
+    const auto json = nlohmann::json::parse(file.substr(20, bytes));
+    const auto& colliders = json["extensions"]["VRMC_springBone"]["colliders"];
+    ASSERT_EQ(colliders.size(), 3u);
+    const char* const bones[] = {"head", "root", "hair"};
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_EQ(json["nodes"][colliders[c]["node"].get<std::size_t>()]["name"], bones[c]);
+}
+
+TEST_F(LodJob, CardsAreExportedAsAnAvatar) {
+    makeHair();
+    const auto report = runJson("export hair.hairloom --target avatar --levels cards:12@64 -o curly.vrm");
+    EXPECT_EQ(report["format"], "vrm");
+    std::string said;
+    for (const auto& finding : report["findings"]) said += finding["what"].get<std::string>() + "\n";
+    EXPECT_THAT(said, HasSubstr("no whole humanoid"));
+    EXPECT_THAT(said, HasSubstr("author and licence"));
+    const std::string file = readText(folder / "curly.vrm");
+    std::uint32_t bytes = 0;
+    std::memcpy(&bytes, file.data() + 12, 4);
+    const auto json = nlohmann::json::parse(file.substr(20, bytes));
+    EXPECT_THAT(json["extensionsUsed"], testing::Contains("VRMC_vrm"));
+    const auto& vrm = json["extensions"]["VRMC_vrm"];
+    EXPECT_EQ(vrm["specVersion"], "1.0");
+    EXPECT_EQ(vrm["meta"]["name"], "curly");
+    EXPECT_FALSE(vrm["meta"]["authors"].empty());
+    const auto& bones = vrm["humanoid"]["humanBones"];
+    ASSERT_EQ(bones.size(), 15u);
+    std::vector<int> parent(json["nodes"].size(), -1);
+    for (std::size_t n = 0; n < parent.size(); ++n)
+        if (json["nodes"][n].contains("children"))
+            for (const auto& child : json["nodes"][n]["children"])
+                parent[child.get<std::size_t>()] = static_cast<int>(n);
+    const auto isBelow = [&](const char* bone, const char* above) {
+        for (int n = parent[bones[bone]["node"].get<std::size_t>()]; n >= 0;
+             n = parent[static_cast<std::size_t>(n)])
+            if (bones[above]["node"] == n) return true;
+        return false;
+    };
+    const std::pair<const char*, const char*> kPairs[] = {{"spine", "hips"},
+                                                          {"head", "spine"},
+                                                          {"leftFoot", "leftLowerLeg"},
+                                                          {"leftLowerLeg", "leftUpperLeg"},
+                                                          {"leftUpperLeg", "hips"},
+                                                          {"rightHand", "rightLowerArm"},
+                                                          {"rightUpperArm", "spine"}};
+    for (const auto& [bone, above] : kPairs) EXPECT_TRUE(isBelow(bone, above)) << bone;
+    EXPECT_EQ(json["nodes"][bones["head"]["node"].get<std::size_t>()]["name"], "head") << "the file's own";
+    EXPECT_FALSE(json["extensions"]["VRMC_springBone"]["springs"].empty());
 }
 
 TEST_F(LodJob, CardsAreExportedForProgramsThatReadNoGltf) {

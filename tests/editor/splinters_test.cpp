@@ -7,6 +7,7 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QStandardPaths>
+#include <QTest>
 #include <QToolButton>
 #include <QTreeWidget>
 #include <QWheelEvent>
@@ -44,6 +45,12 @@ TEST_F(SplintersTest, TheWheelOverASliderChangesItOneStepATick) {
     auto* count = find<NumberBox>("count");
     const auto before = hash();
     const std::uint32_t strands = groom().placement.count;
+    wheel(count->slider(), 1);
+    EXPECT_EQ(document().stepCount(), 0) << "the wheel is the panel's until somebody goes to the field";
+    window->activateWindow();
+    ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
+    count->slider().setFocus();
+    ASSERT_TRUE(count->slider().hasFocus());
     wheel(count->slider(), 1);
     EXPECT_GT(groom().placement.count, strands);
     EXPECT_EQ(document().stepCount(), 1) << "a setting of placement is a step";

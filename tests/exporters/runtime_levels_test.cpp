@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 
+#include "exporters/seen_motion.h"
 #include "tests/exporters/levels_sample.h"
 
 namespace hairloom::test {
@@ -94,6 +97,63 @@ TEST_F(RuntimeLevels, CoarserOnesAreCheaperAndAsFarOffAsPredicted) {
         RecordProperty("level" + std::to_string(l), std::to_string(1e3 * measured[l] / 211) + " mm of " +
                                                         std::to_string(1e3 * predicted[l] / 211));
     }
+}
+
+TEST_F(RuntimeLevels, WhatIsSeenFarOffIsAsFarOffAsPredictedAndLessThanPathsAre) {
+    std::vector<std::uint32_t> offsets(first_.describe().guides + 1);
+    ASSERT_EQ(hl_instance_offsets(first_.get(), offsets.data(), offsets.size(), nullptr), HL_OK);
+    const std::vector<std::uint32_t> layers(offsets.size() - 1);
+    const std::vector<Vec3f> rest = guides(first_);
+    std::vector<SeenMotion> seen(HL_LEVEL_COUNT, SeenMotion(offsets, rest, layers));
+    for (std::uint32_t l = 0; l < HL_LEVEL_COUNT; ++l) {
+        Instance hair = another();
+        ASSERT_EQ(hl_instance_set_level(hair.get(), l, 1, nullptr), HL_OK);
+        for (int f = 1; f <= 330; ++f) {
+            ASSERT_TRUE(hair.step(Walk(f).frame));
+            if (f > 30) seen[l].add(guides(hair));
+        }
+    }
+    float paths = 0, farOff = 0;
+    for (std::uint32_t l = 1; l < HL_LEVEL_COUNT; ++l) {
+        const hl_level now = level(first_, l), before = level(first_, l - 1);
+        EXPECT_GE(now.seen_head, before.seen_head) << l;
+        EXPECT_GE(now.seen_wind, before.seen_wind) << l;
+        const float predicted = now.seen_still + 0.75f * now.seen_head + 2.6f * now.seen_wind;
+        const float measured = SeenMotion::between(seen[0], seen[l]).largest();
+        EXPECT_LE(measured, predicted) << l;
+        EXPECT_GT(measured, 0) << l;
+        RecordProperty("level" + std::to_string(l),
+                       std::to_string(1e3f * measured) + " mm of " + std::to_string(1e3f * predicted));
+        if (l == HL_LEVEL_RIGID) continue;
+        paths += now.error_still + now.error_wind * 3;
+        farOff += now.seen_still + now.seen_wind * 3;
+    }
+    EXPECT_LT(farOff, 0.8f * paths);
+    EXPECT_GT(level(first_, HL_LEVEL_RIGID).seen_wind, 2 * level(first_, HL_LEVEL_RIGID - 1).seen_wind)
+        << "hair that stands still in wind is seen";
+}
+
+TEST_F(RuntimeLevels, ACrowdIsPlannedByWhatIsSeenUnlessPathsAreAskedFor) {
+    Instance hair = another();
+    for (int f = 1; f <= 30; ++f) ASSERT_TRUE(hair.step(Walk(f).frame));
+    hl_crowd_limits limits;
+    hl_crowd_limits_init(&limits);
+    EXPECT_EQ(limits.strict, 0u);
+    std::array<std::uint32_t, 2> sums{};
+    for (const std::uint32_t strict : {0u, 1u}) {
+        limits.strict = strict;
+        for (float pixels = 20; pixels < 2000; pixels *= 1.2f) {
+            ASSERT_EQ(hl_instance_set_level(hair.get(), 0, 1, nullptr), HL_OK);
+            hl_viewed viewed{hair.get(), pixels, 0, 0, 0};
+            ASSERT_EQ(hl_crowd_plan(&limits, &viewed, 1, nullptr, nullptr), HL_OK);
+            sums[strict] += viewed.level;
+        }
+    }
+    EXPECT_GT(sums[0], sums[1] + 4) << "coarser levels nearer by";
+    // A caller of before, whose struct ends before `strict`.
+    limits.size = offsetof(hl_crowd_limits, strict);
+    hl_viewed viewed{hair.get(), 100, 0, 0, 0};
+    EXPECT_EQ(hl_crowd_plan(&limits, &viewed, 1, nullptr, nullptr), HL_OK);
 }
 
 TEST_F(RuntimeLevels, SettingsOfAGameReachEachOne) {

@@ -188,11 +188,13 @@ TEST_F(RuntimeVersions, LevelsComeMeasuredAndSoInLittleTime) {
     std::vector<std::byte> unsaid = bytes_;
     const auto asset = runtime::Asset::open(unsaid);
     const auto sections = asset.asset->sections();
-    const auto found = std::find_if(sections.begin(), sections.end(),
-                                    [](const auto& section) { return section.kind == "LVLE"; });
-    ASSERT_NE(found, sections.end());
-    const std::size_t record = 64 + 32 * static_cast<std::size_t>(found - sections.begin());
-    std::memcpy(&unsaid[record], "XXXX", 4);
+    for (const char* kind : {"LVLE", "LVLS"}) {
+        const auto found = std::find_if(sections.begin(), sections.end(),
+                                        [&](const auto& section) { return section.kind == kind; });
+        ASSERT_NE(found, sections.end());
+        const std::size_t record = 64 + 32 * static_cast<std::size_t>(found - sections.begin());
+        std::memcpy(&unsaid[record], kind[3] == 'E' ? "XXXE" : "XXXS", 4);
+    }
     const auto sum = [&](std::size_t at, std::size_t from, std::size_t size) {
         const std::uint32_t checksum = runtime::asset::checksum(std::span(unsaid).subspan(from, size));
         std::memcpy(&unsaid[at], &checksum, 4);
@@ -207,6 +209,8 @@ TEST_F(RuntimeVersions, LevelsComeMeasuredAndSoInLittleTime) {
     for (std::uint32_t level = 0; level < HL_LEVEL_COUNT; ++level) {
         EXPECT_EQ(slow.describeLevel(level).error_wind, hair_.describeLevel(level).error_wind);
         EXPECT_EQ(slow.describeLevel(level).error_still, hair_.describeLevel(level).error_still);
+        EXPECT_EQ(slow.describeLevel(level).seen_wind, slow.describeLevel(level).error_wind)
+            << "nobody looked at it from afar";
     }
 }
 

@@ -279,7 +279,7 @@ TEST_F(StrandWriters, WhatAFormatCannotCarryIsListedWithWhatToDo) {
 TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {
     const Groom groom = decorated({17, 17});
     ASSERT_GE(strandWriters().size(), 2u);
-    for (const StrandWriter& writer : strandWriters()) {
+    for (const HairWriter& writer : strandWriters()) {
         ASSERT_FALSE(writer.targets.empty()) << writer.name;
         for (const ExportTarget& target : writer.targets) {
             fs::remove(folder / "any.name");
@@ -326,7 +326,7 @@ TEST_F(StrandWriters, StrandsThatMoveAreReadBackAtEveryFrame) {
         frames->points.push_back(std::move(points));
     }
     int animating = 0;
-    for (const StrandWriter& writer : strandWriters()) {
+    for (const HairWriter& writer : strandWriters()) {
         if (!writer.animates) continue;
         ++animating;
         for (const ExportTarget& target : writer.targets) {
@@ -365,7 +365,7 @@ TEST_F(StrandWriters, TargetsSetWhatTheirProgramWantsAndNameWhatItDoesNotTake) {
     EXPECT_EQ(preferredWriter("unreal").name, "abc-unreal");
     EXPECT_EQ(findTarget(strandWriter("tfx"), "blender"), nullptr);
     const Groom groom = decorated({2, 5, 200, 7});
-    const StrandWriter& writer = preferredWriter("unity");
+    const HairWriter& writer = preferredWriter("unity");
     StrandExportOptions options = findTarget(writer, "unity")->options;
     const auto fixes = [&] {
         const auto report = writer.write(groom, folder / ("u." + writer.suffix()), options);

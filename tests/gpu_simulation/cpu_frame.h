@@ -12,6 +12,7 @@
 #include "core/gpu_simulation/strand_engine.h"
 #include "runtime/engine/scratch.h"
 #include "runtime/models/rods/rods.h"
+#include "runtime/models/springs/springs.h"
 #include "tests/support/spring_settings.h"
 
 namespace hairloom::gpu_simulation::test {
@@ -149,11 +150,11 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice, float maximum = 0.002f)
 
 /// Where the settings say so, strands are rods that pass through the state's points.
 inline void makeRods(Scene& scene) {
+    scene.state.model = scene.settings.strandModel;
     if (scene.settings.strandModel != runtime::StrandModel::rods) return;
     const runtime::RestShape& shape = *scene.shape;
     const runtime::RodRest rest = runtime::makeRodRest(shape, scene.settings);
-    scene.state.rods.assign(shape.planeFloats * runtime::kRodStatePlanes, 0.0f);
-    scene.state.rodLanes.assign(shape.blocks.size() * runtime::kRodLaneRows * runtime::kBlockLanes, 0.0f);
+    runtime::allocateRods(shape, rest.parts, true, scene.state);
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane)
             runtime::placeRodOnPoints(shape, rest, scene.state, b, lane);
@@ -259,39 +260,36 @@ inline runtime::State runOnCpu(const Scene& scene) {
     runtime::State state = scene.state;
     const runtime::RestShape& shape = *scene.shape;
     const CpuFrame frame(scene);
-    runtime::Bend bend;
-    bend.factored = frame.plan.factored();
-    bend.targets = frame.plan.on(runtime::Effect::torsion);
-    if (frame.plan.on(runtime::Effect::angular))
-        bend.planes.assign(shape.planeFloats * bend.planeCount(), 0.0f);
-    if (frame.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
+    const runtime::Model& model = runtime::modelOf(scene.settings.strandModel);
     const bool rods = scene.settings.strandModel == runtime::StrandModel::rods;
-    runtime::RodRest rodRest;
-    if (rods) rodRest = runtime::makeRodRest(shape, scene.settings);
-    runtime::Floats evaluation(shape.planeFloats * runtime::kRungeKuttaPlanes, 0.0f);
-    if (scene.settings.integrator == runtime::Integrator::verlet) evaluation.clear();
+    const runtime::OwnedStrands strands(model.make());
+    strands->takeSettings(shape, scene.settings, nullptr, state);
+    strands->takeState(shape, scene.settings, state);
+    strands->allocate(shape, scene.settings, frame.plan, state);
+    runtime::ModelFrame modelFrame;
+    modelFrame.context = frame.context;
+    modelFrame.context.wind = &frame.wind.wind;
+    modelFrame.windy = frame.plan.on(runtime::Effect::wind);
+    modelFrame.windFrom = runtime::windPhases(frame.wind.wind, 0.7 - static_cast<double>(scene.input().dt));
+    modelFrame.windTo = runtime::windPhases(frame.wind.wind, 0.7);
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
-        if (!bend.planes.empty()) runtime::fillBend(shape, scene.settings, kStep, b, bend);
-        runtime::BlockView view = runtime::viewOf(
-            {shape, state, bend, evaluation, runtime::kRungeKuttaPlanes}, b, scene.settings.clampedPoints);
-        view.rod = runtime::rodViewOf(shape, rodRest, state, b);
-        const runtime::Kernels& table = runtime::kernels();
+        strands->prepareBlock(shape, scene.settings, modelFrame, b);
+        runtime::BlockRoom room;
+        runtime::BlockView& view = strands->view(shape, state, b, scene.settings.clampedPoints, room);
         const auto lanesOfBlock = std::make_unique<runtime::LaneFrame>();
         runtime::LaneFrame& lanes = *lanesOfBlock;
-        runtime::Floats solver(runtime::solverFloats(frame.plan.stages(), view.points, table));
-        lanes.solver = solver.data();
+        runtime::Floats work(model.laneFloats + model.solverFloats(frame.plan.stages()) * view.points +
+                             runtime::kSolverPadding);
+        lanes.own = work.data();
+        lanes.solver = work.data() + model.laneFloats;
         fillLanes(scene, b, lanes);
+        strands->enterBlock(shape, scene.settings, modelFrame, b, view, lanes);
+        // All, as kernels of a device look at them.
         if (rods) lanes.touchable = frame.moving;
-        if (!rods && frame.plan.on(runtime::Effect::wind)) {
-            const auto from =
-                runtime::windPhases(frame.wind.wind, 0.7 - static_cast<double>(scene.input().dt));
-            const auto to = runtime::windPhases(frame.wind.wind, 0.7);
-            table.sampleWind(view, lanes, kStep, frame.wind.wind, from.data(), to.data());
-        }
         runtime::SubstepContext context = frame.context;
         context.conservative = !frame.plan.on(runtime::Effect::wind);
         context.wind = &frame.wind.wind;
-        const runtime::Passes passes = runtime::passesOf(frame.plan.stages(), table);
+        const runtime::Passes passes = model.passes(frame.plan.stages(), false);
         for (context.index = 0; context.index < context.count; ++context.index) {
             const auto left = static_cast<double>(context.count - 1 - context.index);
             const auto phases =
@@ -310,7 +308,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
                     lanes.rotationTo[k][lane];
             if (isSound(view, lane)) continue;
             runtime::placeAtRest(shape, state, b, lane);
-            runtime::placeRodAtRest(shape, rodRest, state, b, lane);
+            strands->placeAtRest(shape, state, b, lane);
         }
     }
     return state;

@@ -189,7 +189,8 @@ TEST_F(RodRun, TeleportsAndRestoredStrands) {
     runtime::State state = both.gpu.readState().value();
     // Of the eighth point of lane 3, y of the velocity.
     const std::size_t plane = runtime::planeSize(runtime::makeRestShape(strands.view())->blocks[0]);
-    state.rods[11 * plane + 7 * runtime::kBlockLanes + 3] = std::numeric_limits<float>::quiet_NaN();
+    state.own[runtime::kOwnMotion][11 * plane + 7 * runtime::kBlockLanes + 3] =
+        std::numeric_limits<float>::quiet_NaN();
     ASSERT_TRUE(both.gpu.writeState(state));
     const auto roots = strands.roots({10.0f, 0.0f, 0.0f}, half);
     ASSERT_TRUE(both.gpu.step({kFrame, 0.0, roots, {}}));

@@ -87,17 +87,17 @@ struct Memory {
     double rotation = 0.0, speed = 0.0;
 };
 Memory memoryOf(const Scene& scene, const runtime::State& a, const runtime::State& b) {
-    constexpr std::size_t kRotation = 4, kVelocity = 10, kStrain = 16;  // planes of runtime::RodView
+    constexpr std::size_t kRotation = 4, kVelocity = 10;  // planes of runtime::RodView
     Memory memory;
     for (const runtime::Block& block : scene.shape->blocks) {
-        for (std::size_t plane = 0; plane < kStrain; ++plane) {
+        for (std::size_t plane = 0; plane < runtime::kRodMotionPlanes; ++plane) {
             if (plane >= kRotation && plane < kVelocity) continue;
             double& greatest = plane < kRotation ? memory.rotation : memory.speed;
-            const std::size_t first = block.firstPlane * runtime::kRodStatePlanes + plane * planeSize(block);
+            const std::size_t first = block.firstPlane * runtime::kRodMotionPlanes + plane * planeSize(block);
             for (std::size_t i = 0; i + 1 < std::size_t{block.points} * runtime::kBlockLanes; ++i) {
                 if (i % runtime::kBlockLanes >= block.strands) continue;
-                const double off =
-                    static_cast<double>(a.rods[first + i]) - static_cast<double>(b.rods[first + i]);
+                const double off = static_cast<double>(a.own[runtime::kOwnMotion][first + i]) -
+                                   static_cast<double>(b.own[runtime::kOwnMotion][first + i]);
                 greatest = std::max(greatest, std::abs(off));
             }
         }

@@ -177,6 +177,11 @@ TEST(StrandTubes, BallsAndOtherMeshesAreNoHair) {
         "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
     ASSERT_FALSE(drum);
     EXPECT_THAT(drum.error().message(), HasSubstr("units long and"));
+    // A ribbon of one piece has this order of vertices, but also a border.
+    const auto tetrahedron =
+        read("v 0 0 0\nv 17 0 0\nv 0 17 0\nv 0 0 17\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    ASSERT_FALSE(tetrahedron);
+    EXPECT_THAT(tetrahedron.error().message(), HasSubstr("open a head as a head"));
     std::string disc = "v 0 0 0\n", faces;
     for (int i = 0; i < 12; ++i) disc += fmt::format("v {} {} 0\n", std::cos(i), std::sin(i));
     for (int i = 0; i < 11; ++i) faces += fmt::format("f 1 {} {}\n", i + 2, i + 3);

@@ -147,11 +147,16 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_level, error_head, 16, 4),
         MEMBER(hl_level, error_wind, 20, 4),
         MEMBER(hl_level, milliseconds, 24, 4),
+        MEMBER(hl_level, seen_still, 28, 4),
+        MEMBER(hl_level, seen_head, 32, 4),
+        MEMBER(hl_level, seen_wind, 36, 4),
         MEMBER(hl_crowd_limits, size, 0, 8),
         MEMBER(hl_crowd_limits, error_pixels, 8, 4),
         MEMBER(hl_crowd_limits, hair_pixels, 12, 4),
         MEMBER(hl_crowd_limits, milliseconds, 16, 4),
         MEMBER(hl_crowd_limits, speed, 20, 4),
+        MEMBER(hl_crowd_limits, strict, 24, 4),
+        MEMBER(hl_crowd_limits, unused, 28, 4),
         MEMBER(hl_viewed, hair, 0, 8),
         MEMBER(hl_viewed, pixels_per_metre, 8, 4),
         MEMBER(hl_viewed, level, 12, 4),
@@ -184,8 +189,8 @@ TEST(Abi, StructsLieAsTheyDid) {
     EXPECT_EQ(sizeof(hl_instance_info), 40u);
     EXPECT_EQ(sizeof(hl_out), 24u);
     EXPECT_EQ(sizeof(hl_effect), 136u);
-    EXPECT_EQ(sizeof(hl_level), 28u);
-    EXPECT_EQ(sizeof(hl_crowd_limits), 24u);
+    EXPECT_EQ(sizeof(hl_level), 40u);
+    EXPECT_EQ(sizeof(hl_crowd_limits), 32u);
     EXPECT_EQ(sizeof(hl_viewed), 24u);
     EXPECT_EQ(sizeof(hl_crowd_report), 12u);
 }

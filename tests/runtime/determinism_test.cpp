@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "runtime/engine/kernels.h"
+#include "runtime/models/springs/spring_kernels.h"
 #include "tests/runtime/instruction_sets.h"
 #include "tests/runtime/strand_fixture.h"
 #include "tests/runtime/threads.h"
@@ -101,17 +102,17 @@ TEST(Determinism, SameBitsWhetherStagesAreTimedOrNot) {
 
 /// What is called for stages, by passesOf or singlePassesOf.
 std::vector<Stage> callsFor(std::initializer_list<StageId> stages, decltype(passesOf) makePasses) {
-    const Passes made = makePasses({stages.begin(), stages.size()}, kernels());
+    const Passes made = makePasses({stages.begin(), stages.size()}, springKernels());
     return {made.calls.begin(), made.calls.begin() + made.count};
 }
 
 Stage alone(StageId id) {
-    return kernels().stages[static_cast<std::size_t>(id)];
+    return springKernels().stages[static_cast<std::size_t>(id)];
 }
 
 TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
     using enum StageId;
-    const Kernels& table = kernels();
+    const SpringKernels& table = springKernels();
     const auto passes = [](std::initializer_list<StageId> stages) { return callsFor(stages, passesOf); };
     EXPECT_EQ(passes({roots, damping, wind, gravity, verlet, length}),
               (std::vector<Stage>{alone(roots), table.moves[1][2][1], alone(length)}));
@@ -136,8 +137,8 @@ TEST(Determinism, SeparateStagesPassTheDisplacementOn) {
     const auto singles = [](std::initializer_list<StageId> stages) {
         return callsFor(stages, singlePassesOf);
     };
-    const auto opens = [](StageId id) { return kernels().partsOfMove[0][static_cast<std::size_t>(id)]; };
-    const auto follows = [](StageId id) { return kernels().partsOfMove[1][static_cast<std::size_t>(id)]; };
+    const auto opens = [](StageId id) { return springKernels().partsOfMove[0][static_cast<std::size_t>(id)]; };
+    const auto follows = [](StageId id) { return springKernels().partsOfMove[1][static_cast<std::size_t>(id)]; };
     EXPECT_EQ(singles({roots, damping, wind, gravity, verlet, angular, length}),
               (std::vector<Stage>{alone(roots), opens(damping), follows(wind), follows(gravity),
                                   follows(verlet), alone(angular), alone(length)}));

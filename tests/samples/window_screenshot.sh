@@ -16,7 +16,7 @@ last=
 while read -r line; do
     last=$line
     printf '%s\n' "$line"
-    case "$line" in *' pictures, '*) ;; *) continue ;; esac
+    case "$line" in *' images, '*) ;; *) continue ;; esac
     shown=$((shown + 1))
     # What is presented is on the screen a little later.
     sleep 0.3

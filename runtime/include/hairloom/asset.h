@@ -130,6 +130,10 @@ class Asset {
     std::span<const asset::MeasuredLevel> levelErrors() const {
         return recordsOf<asset::MeasuredLevel>(asset::kLevelErrors);
     }
+    /// The same of what is seen far off.
+    std::span<const asset::MeasuredLevel> seenErrors() const {
+        return recordsOf<asset::MeasuredLevel>(asset::kSeenErrors);
+    }
 
   private:
     const asset::Header& header() const { return *reinterpret_cast<const asset::Header*>(bytes_.data()); }

@@ -54,7 +54,8 @@ inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots
                                   kGuideTriangles = "GTRI", kRootShifts = "SHFT", kFarRootShifts = "SHFX",
                                   kRadii = "RADI", kLayers = "LAYR", kStrandLayers = "SLYR",
                                   kSettings = "SETT", kValues = "VALS", kText = "TEXT", kAttributes = "ATTR",
-                                  kAttributeValues = "ATTV", kLevelErrors = "LVLE";
+                                  kAttributeValues = "ATTV", kLevelErrors = "LVLE",
+                                  kSeenErrors = "LVLS";
 
 /// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
 inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;

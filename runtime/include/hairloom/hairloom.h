@@ -22,7 +22,7 @@
 
 /* Of these headers. docs/versions.md of the project says what may change from one to the next. */
 #define HL_VERSION_MAJOR 0
-#define HL_VERSION_MINOR 2
+#define HL_VERSION_MINOR 3
 #define HL_VERSION_PATCH 0
 #define HL_VERSION (HL_VERSION_MAJOR * 1000000 + HL_VERSION_MINOR * 1000 + HL_VERSION_PATCH)
 
@@ -347,15 +347,20 @@ HL_API hl_code hl_instance_read(hl_instance* instance, hl_read* read, hl_error* 
  * level; those that are not simulated follow their neighbours. */
 enum { HL_LEVEL_FINEST = 0, HL_LEVEL_RIGID = 4, HL_LEVEL_COUNT = 5 };
 
-/* Errors are metres, root mean square over the points of all guides, from where the finest level has them;
- * measured on a nodding head and in wind when the instance was made. That of a frame is error_still +
+/* Errors are metres, measured on a nodding head and in wind. `error_…` is strict: root mean square over the
+ * points of all guides, from where the finest level has them at the same time. `seen_…` is what an eye far
+ * off can tell, the largest of three: how far outlines are apart, where each part of each layer hangs on the
+ * mean, and how strongly hair moves at each rate (a rate at which a level is 3 dB off counts as four times
+ * the motion there). Which strand swings a little earlier is not in it. The error of a frame is error_still +
  * error_head for each m/s of its roots + error_wind for each m/s of its wind, of the fastest in the last half
- * second. */
+ * second, and `seen_…` likewise. */
 typedef struct hl_level {
     uint32_t guides, points, substeps; /* simulated; substeps in 1/60 s */
     float error_still, error_head, error_wind;
     float milliseconds; /* of stepping and reading a frame of 1/60 s, with all hairs where the instance has
                            hairs; by counts and the rates of a machine of docs/integrate.md */
+    /* Since 0.3; of older assets they are the strict ones: */
+    float seen_still, seen_head, seen_wind;
 } hl_level;
 /* Bytes that HL_LEVELS adds to an instance, at most. */
 HL_API hl_code hl_asset_levels_memory(const hl_asset* asset, size_t* bytes, hl_error* error);
@@ -378,6 +383,9 @@ typedef struct hl_crowd_limits {
     float hair_pixels;  /* hairs are left out while those that stay are narrower; 0 leaves out none; 0.7 */
     float milliseconds; /* of all characters together, predicted; infinite: no budget */
     float speed;        /* of this machine, where 1 is that of hl_level.milliseconds; 1 */
+    /* Since 0.3: */
+    uint32_t strict; /* 1: error_pixels is of hl_level.error_…; 0: of hl_level.seen_… */
+    uint32_t unused; /* 0 */
 } hl_crowd_limits;
 HL_API void hl_crowd_limits_init(hl_crowd_limits* limits);
 

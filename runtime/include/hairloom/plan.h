@@ -54,8 +54,7 @@ class EffectPlan {
     bool keepsTensions() const { return keepsTensions_; }
 
   private:
-    friend EffectPlan plan(const PlanInput& scene);
-    friend class Planner;
+    friend class PlanBuilder;
 
     std::array<Decision, kEffectCount> decisions_;
     std::array<StageId, kMaxStages> stages_{};

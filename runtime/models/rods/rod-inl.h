@@ -10,10 +10,10 @@
 
 #include <cmath>
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "engine/wind-inl.h"
 #include "hwy/highway.h"
+#include "models/rods/rod_block.h"
 #include "models/rods/rod_contact-inl.h"
 #include "models/rods/rod_math-inl.h"
 
@@ -38,15 +38,17 @@ struct RodPoint {
     V near;  ///< 1 where a shape is near the outer node, as predicted
 };
 
-/// One vector of strands in one substep.
-template <bool kTwists, bool kContacts>
+/// One vector of strands in one substep. Of a chain, which does not bend back, nothing of strains is read,
+/// written or reckoned.
+template <bool kBends, bool kTwists, bool kContacts>
 class RodStrip {
   public:
-    RodStrip(const BlockView& block, LaneFrame& lanes, const SubstepContext& context, std::uint32_t lane)
+    RodStrip(const RodBlock& block, LaneFrame& lanes, const SubstepContext& context, std::uint32_t lane)
         : block_(block),
           rod_(block.rod),
           lanes_(lanes),
           context_(context),
+          numbers_(context.numbers.as<RodNumbers>()),
           lane_(lane),
           points_(reinterpret_cast<RodPoint*>(lanes.solver)),
           first_(block.firstFree - 1),
@@ -122,7 +124,7 @@ class RodStrip {
         velocityAhead_ = blend_ * all(1.0f / context_.stepRatio + 2.0f);
         step_ = h * (all(1.0f) - blend_ / ratio);
         inverseStep_ = all(1.0f) / step_;
-        damped_ = all(1.0f) + all(context_.bendDampingTime) * inverseStep_;
+        damped_ = rodDamped(numbers_, inverseStep_);
         dampingShare_ = (damped_ - all(1.0f)) / damped_;
         rootDisplacement_ = load3(lanes_.rootDisplacement, lane_);
         takeRoot();
@@ -183,20 +185,21 @@ class RodStrip {
             aim(point, node, tangent, position);
             if constexpr (kContacts) meet(point, tangent, position, j + 1);
 
-            const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i);
-            const V4 last = rodOfStrain(strain);
-            point.wanted = wanted;
-            point.relative = rodRelative(before, point.rotation, last);
-            const V bend = hn::Load(D(), rod_.bend + i) * damped_;
-            const RodSection section = sectionOf(i, bend);
-            stiffnessSum_ = stiffnessSum_ + bend;
-            const V3 off = outer - point.target;
-            objective_ = objective_ + rodTwiceEnergy(twice(point.relative) - wanted, bend, section) +
-                         point.weight * dot(off, off);
-            const V3 offStart = inDisplacement_ - point.target;
-            const V3 strainStart = j == first_ ? twice(rodRelative(inner_, old, last)) : strain;
-            startObjective_ = startObjective_ + rodTwiceEnergy(strainStart - wanted, bend, section) +
-                              point.weight * dot(offStart, offStart);
+            const V3 off = outer - point.target, offStart = inDisplacement_ - point.target;
+            if constexpr (kBends) {
+                const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i);
+                const V4 last = rodOfStrain(strain);
+                point.wanted = wanted;
+                point.relative = rodRelative(before, point.rotation, last);
+                const V bend = dampedBend(i);
+                const RodSection section = sectionOf(i, bend);
+                stiffnessSum_ = stiffnessSum_ + bend;
+                objective_ = objective_ + rodTwiceEnergy(twice(point.relative) - wanted, bend, section);
+                const V3 strainStart = j == first_ ? twice(rodRelative(inner_, old, last)) : strain;
+                startObjective_ = startObjective_ + rodTwiceEnergy(strainStart - wanted, bend, section);
+            }
+            objective_ = objective_ + point.weight * dot(off, off);
+            startObjective_ = startObjective_ + point.weight * dot(offStart, offStart);
             if constexpr (kContacts) {
                 objective_ = objective_ + point.contact.twiceEnergy;
                 startObjective_ =
@@ -211,17 +214,24 @@ class RodStrip {
     static V3 twice(V4 relative) {
         return {relative.x + relative.x, relative.y + relative.y, relative.z + relative.z};
     }
+    /// Twice that of a vertex, with its damping.
+    V strainEnergy(V4 relative, V3 wanted, std::size_t i) const {
+        const V bend = dampedBend(i);
+        return rodTwiceEnergy(twice(relative) - wanted, bend, sectionOf(i, bend));
+    }
+    /// B/l̄ of a vertex, with its damping.
+    V dampedBend(std::size_t i) const { return hn::Load(D(), rod_.bend + i) * damped_; }
     V3 restTangent(std::uint32_t j) const { return load3(rod_.tangent, at(j)); }
     /// Of a vertex, for its B/l̄.
     RodSection sectionOf(std::size_t i, V bend) const {
         RodSection section{zero3(), zero3(), hn::Zero(D()), hn::Zero(D()), kTwists, false};
         if constexpr (kTwists) {
             section.axis = load3(rod_.axis, i);
-            section.twist = bend * all(context_.twist);
-            section.isFlat = context_.flat != 0.0f;
+            section.twist = bend * all(numbers_.twist);
+            section.isFlat = numbers_.flat != 0.0f;
             if (section.isFlat) {
                 section.normal = load3(rod_.normal, i);
-                section.flat = bend * all(context_.flat);
+                section.flat = bend * all(numbers_.flat);
             }
         }
         return section;
@@ -239,8 +249,8 @@ class RodStrip {
         const V3 now = load3(rod_.velocity, node), faster = now - load3(rod_.velocityBefore, node);
         const V3 velocity = mad3(faster, blend_, now);
         V3 change = mad3(all3(context_.gravity), step_, velocity);
-        V rate = all(context_.rootDamping);
-        change = mad3(rootDisplacement_, all(context_.rootDamping / context_.h) * step_, change);
+        V rate = all(numbers_.rootDamping);
+        change = mad3(rootDisplacement_, all(numbers_.rootDamping / context_.h) * step_, change);
         if (context_.air != Air::none) {
             V3 air = zero3();
             if (context_.air == Air::moving)
@@ -350,14 +360,13 @@ class RodStrip {
             RodPoint& point = points_[j];
             const std::size_t i = at(j);
             point.rotation = chosen(wrong, loadRotation(rod_.rotation, i), point.rotation);
-            point.relative = chosen(wrong, point.newRelative, point.relative);
+            if constexpr (kBends) point.relative = chosen(wrong, point.newRelative, point.relative);
             point.displacement = select(wrong, point.newDisplacement, point.displacement);
             point.increment = select(wrong, load3(rod_.increment, i), point.increment);
             touched_ = hn::Max(touched_, point.contact.touching);
-            const V bend = hn::Load(D(), rod_.bend + i) * damped_;
             const V3 off = point.displacement - point.target;
-            objective_ = objective_ + point.contact.twiceEnergy + point.weight * dot(off, off) +
-                         rodTwiceEnergy(twice(point.relative) - point.wanted, bend, sectionOf(i, bend));
+            objective_ = objective_ + point.contact.twiceEnergy + point.weight * dot(off, off);
+            if constexpr (kBends) objective_ = objective_ + strainEnergy(point.relative, point.wanted, i);
         }
         objective_ = objective_ * all(0.5f);
         return true;
@@ -378,10 +387,17 @@ class RodStrip {
                 rodAddContact(form, h[0], h[1], h[2], h[3], h[4], h[5]);
             }
             rodAddNode(form, point.weight, r, onlyWhere(kept_, r));
-            const V bend = hn::Load(D(), rod_.bend + at(j)) * damped_;
-            rodEliminate(form, point.rotation, rodRotate(point.rotation, restTangent(j)), lengthOf(j),
-                         point.relative, twice(point.relative) - point.wanted, bend, sectionOf(at(j), bend),
-                         point.gains);
+            const V3 tangent = rodRotate(point.rotation, restTangent(j));
+            if constexpr (kBends) {
+                const V bend = dampedBend(at(j));
+                rodEliminate(form, point.rotation, tangent, lengthOf(j), point.relative,
+                             twice(point.relative) - point.wanted, bend, sectionOf(at(j), bend), point.gains);
+            } else {
+                const V zero = hn::Zero(D());
+                rodEliminate(form, point.rotation, tangent, lengthOf(j), V4{zero, zero, zero, all(1.0f)},
+                             zero3(), zero, RodSection{zero3(), zero3(), zero, zero, false, false},
+                             point.gains);
+            }
         }
     }
 
@@ -402,14 +418,14 @@ class RodStrip {
             outer = mad3(change, lengthOf(j), outer) + (point.displacement - predicted);
             predicted = point.displacement;
             x = outer - predicted;
-            const V4 relative = rodRelative(before, q, point.relative);
-            const V bend = hn::Load(D(), rod_.bend + i) * damped_;
             const V3 off = outer - point.target;
-            sum = sum + rodTwiceEnergy(twice(relative) - point.wanted, bend, sectionOf(i, bend)) +
-                  point.weight * dot(off, off);
+            if constexpr (kBends) {
+                point.newRelative = rodRelative(before, q, point.relative);
+                sum = sum + strainEnergy(point.newRelative, point.wanted, i);
+            }
+            sum = sum + point.weight * dot(off, off);
             if constexpr (kContacts) sum = sum + rodContactTwiceEnergy(point.contact, x);
             point.newDisplacement = outer;
-            point.newRelative = relative;
             storeRotation(q, rod_.rotation, i);
             store3(point.increment + u, rod_.increment, i);
             before = q;
@@ -441,28 +457,33 @@ class RodStrip {
             store3(moved, rod_.displacement, node);
             store3(position, block_.position, node);
             store3(position - moved, block_.previous, node);
-            // Strains are those of quaternions with w ≥ 0; the one before goes with the new one.
-            const V3 strain = withSignOf(twice(point.newRelative), point.newRelative.w);
-            store3(withSignOf(load3(rod_.strain, i), point.newRelative.w), rod_.strainBefore, i);
-            store3(strain, rod_.strain, i);
             const V3 increment = load3(rod_.increment, i);
             turn = hn::Max(turn, dot(increment, increment));
-            const V mass = hn::Load(D(), rod_.mass + node), bend = hn::Load(D(), rod_.bend + i);
-            stiffness = stiffness + bend;
-            const V elastic = rodTwiceEnergy(strain, bend, sectionOf(i, bend)) * all(0.5f);
+            const V mass = hn::Load(D(), rod_.mass + node);
+            V elastic = hn::Zero(D());
+            if constexpr (kBends) {
+                // Strains are those of quaternions with w ≥ 0; the one before goes with the new one.
+                const V3 strain = withSignOf(twice(point.newRelative), point.newRelative.w);
+                store3(withSignOf(load3(rod_.strain, i), point.newRelative.w), rod_.strainBefore, i);
+                store3(strain, rod_.strain, i);
+                const V bend = hn::Load(D(), rod_.bend + i);
+                stiffness = stiffness + bend;
+                elastic = rodTwiceEnergy(strain, bend, sectionOf(i, bend)) * all(0.5f);
+            }
             const V weight = mass * dot(all3(context_.gravity), position);
             energy = energy + (elastic - weight);
             size = size + (elastic + hn::Abs(weight));
             kinetic = mad(mass * all(0.5f), dot(velocity, velocity), kinetic);
             masses = masses + mass;
-            V load = hn::Zero(D());
             if constexpr (kContacts) {
                 const V3 force = rodContactForce(point.contact, moved - point.displacement);
-                load = hn::Sqrt(dot(force, force)) * normalShare;
+                V load = hn::Sqrt(dot(force, force)) * normalShare;
                 load = hn::IfThenElse(point.contact.touching > all(1.0f), hn::Neg(load), load);
                 load = hn::IfThenElseZero(dot(force, point.contact.normal) > hn::Zero(D()), load);
+                hn::Store(load, D(), rod_.load + node);
+            } else if (rod_.load) {
+                hn::Store(hn::Zero(D()), D(), rod_.load + node);
             }
-            hn::Store(load, D(), rod_.load + node);
         }
         turn = hn::IfThenElse(bounces, all(kRodNoStep), hn::Sqrt(turn));
         // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time
@@ -506,10 +527,11 @@ class RodStrip {
         }
     }
 
-    const BlockView& block_;
+    const RodBlock& block_;
     const RodView& rod_;
     LaneFrame& lanes_;
     const SubstepContext& context_;
+    RodNumbers numbers_;
     std::uint32_t lane_;
     RodPoint* points_;
     std::uint32_t first_, segments_;
@@ -524,22 +546,24 @@ class RodStrip {
     hn::Mask<D> near_;  ///< a shape is near some node
 };
 
-template <bool kTwists, bool kContacts>
-void stepRodsWith(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+template <bool kBends, bool kTwists, bool kContacts>
+void stepRodsWith(const RodBlock& block, LaneFrame& lanes, const SubstepContext& context) {
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
-        RodStrip<kTwists, kContacts>(block, lanes, context, lane).run();
+        RodStrip<kBends, kTwists, kContacts>(block, lanes, context, lane).run();
+}
+
+template <bool kContacts>
+void stepRodsIn(const RodBlock& block, LaneFrame& lanes, const SubstepContext& context) {
+    if (!block.rod.bend) return stepRodsWith<false, false, kContacts>(block, lanes, context);
+    block.rod.curved ? stepRodsWith<true, true, kContacts>(block, lanes, context)
+                     : stepRodsWith<true, false, kContacts>(block, lanes, context);
 }
 
 /// Each block pays for what its strands need.
-void stepRods(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void stepRods(const BlockView& view, LaneFrame& lanes, const SubstepContext& context) {
+    const auto& block = static_cast<const RodBlock&>(view);
     const bool contacts = !lanes.touchable.empty();
-    if (block.rod.curved) {
-        contacts ? stepRodsWith<true, true>(block, lanes, context)
-                 : stepRodsWith<true, false>(block, lanes, context);
-    } else {
-        contacts ? stepRodsWith<false, true>(block, lanes, context)
-                 : stepRodsWith<false, false>(block, lanes, context);
-    }
+    contacts ? stepRodsIn<true>(block, lanes, context) : stepRodsIn<false>(block, lanes, context);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The rods' stage, compiled once for each instruction set.
-#include "engine/kernels.h"
+#include "models/rods/rod_block.h"
 
 // Vector types stand in structs below, which scalable vectors cannot.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)

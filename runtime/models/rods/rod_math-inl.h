@@ -9,6 +9,7 @@
 
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
+#include "models/rods/rod_block.h"
 #include "shaders/rod_constants.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -128,8 +128,10 @@ struct Couple {
 /// One strand of a block, in double precision and in the frame of its root.
 class RestRod {
   public:
-    RestRod(const RestShape& shape, const SimulationSettings& settings, std::size_t index, std::uint32_t lane)
+    RestRod(const RestShape& shape, const SimulationSettings& settings, RodParts parts, std::size_t index,
+            std::uint32_t lane)
         : settings_(settings),
+          parts_(parts),
           section_(rodSectionRatios(settings)),
           block_(shape.blocks[index]),
           size_(planeSize(block_)),
@@ -139,13 +141,17 @@ class RestRod {
           first_(settings.clampedPoints - 1) {
         for (std::uint32_t j = 0; j + 1 < block_.points; ++j) total_ += segment(j);
         carryFrames();
+        if (parts == RodParts::chain) {
+            free_ = authored_;
+            return;
+        }
         if (isFlat()) layFlat();
         fillBends();
         weigh();
         stiffen();
     }
 
-    bool isFlat() const { return section_.flat != 0.0; }
+    bool isFlat() const { return parts_ == RodParts::section; }
     /// Whether twist matters.
     bool curved() const {
         if (isFlat()) return true;
@@ -156,8 +162,9 @@ class RestRod {
         return false;
     }
 
-    /// `count` planes.
-    void write(float* planes, std::size_t count) const {
+    /// As RodRest::planes.
+    void write(float* planes) const {
+        const std::size_t count = kRodRestPlanes[static_cast<std::size_t>(parts_)];
         for (std::uint32_t p = 0; p < block_.points; ++p) {
             Double3 tangent = kAlong, axis = kAlong, normal{};
             Rotation loaded;
@@ -168,9 +175,10 @@ class RestRod {
                 loaded = authored_[p] * inverse(free_[p]);
                 if (isFlat()) normal = across(rotate(free_[p], flat_[p]), axis);
             }
-            const double values[kRodFlatRestPlanes] = {
-                tangent.x,  tangent.y,  tangent.z,  axis.x,   axis.y,   axis.z,   bend_[p], mass(p),
-                loaded.v.x, loaded.v.y, loaded.v.z, loaded.w, normal.x, normal.y, normal.z};
+            const double bend = parts_ == RodParts::chain ? 0.0 : bend_[p];
+            const double values[kRodRestPlanes[3]] = {tangent.x,  tangent.y,  tangent.z,  mass(p),  bend,
+                                                      loaded.v.x, loaded.v.y, loaded.v.z, loaded.w, axis.x,
+                                                      axis.y,     axis.z,     normal.x,   normal.y, normal.z};
             for (std::size_t plane = 0; plane < count; ++plane)
                 planes[plane * size_ + at(p)] = static_cast<float>(values[plane]);
         }
@@ -376,6 +384,7 @@ class RestRod {
     }
 
     const SimulationSettings& settings_;
+    RodParts parts_;
     RodSectionRatios section_;
     const Block& block_;
     std::size_t size_;
@@ -406,17 +415,30 @@ bool haveEqualRodEnergy(const SimulationSettings& a, const SimulationSettings& b
            a.torsionRatio == b.torsionRatio && a.sectionRatio == b.sectionRatio;
 }
 
+RodParts rodPartsOf(const SimulationSettings& settings, bool straight) {
+    if (!(greatestStiffness(settings) > 0.0f)) return RodParts::chain;
+    if (rodSectionRatios(settings).flat != 0.0) return RodParts::section;
+    const bool held = length(settings.gravity) > 0.0f && settings.restGravity > 0.0f;
+    return straight && !held ? RodParts::bending : RodParts::twist;
+}
+
+RodParts rodPartsOf(const RestShape& shape, const SimulationSettings& settings) {
+    return shape.longestPointCount > settings.clampedPoints ? rodPartsOf(settings, shape.straight)
+                                                            : RodParts::chain;
+}
+
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings) {
     RodRest rest;
-    rest.planeCount = rodSectionRatios(settings).flat != 0.0 ? kRodFlatRestPlanes : kRodRestPlanes;
-    rest.planes.assign(shape.planeFloats * rest.planeCount, 0.0f);
-    rest.curved.assign(shape.blocks.size(), 0);
+    rest.parts = rodPartsOf(shape, settings);
+    const bool twists = rest.parts >= RodParts::twist;
+    rest.planes.assign(shape.planeFloats * rest.planeCount(), 0.0f);
+    if (twists) rest.curved.assign(shape.blocks.size(), 0);
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const auto rod =
-                std::make_unique<RestRod>(shape, settings, b, lane);  // too large for a game's stack
-            if (rod->curved()) rest.curved[b] = 1;
-            rod->write(rest.planes.data() + shape.blocks[b].firstPlane * rest.planeCount, rest.planeCount);
+            const auto rod = std::make_unique<RestRod>(shape, settings, rest.parts, b,
+                                                       lane);  // too large for a game's stack
+            if (twists && rod->curved()) rest.curved[b] = 1;
+            rod->write(rest.planes.data() + shape.blocks[b].firstPlane * rest.planeCount());
         }
     }
     return rest;

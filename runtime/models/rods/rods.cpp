@@ -5,10 +5,34 @@
 #include <cmath>
 
 namespace hairloom::runtime {
+namespace {
+
+/// Of a vertex whose outer segment is turned so from its inner one; where there are strains.
+void setStrain(const RodView& rod, std::size_t i, Quat turn) {
+    if (!rod.strain.x) return;
+    const float twice = turn.w < 0.0f ? -2.0f : 2.0f;
+    for (const Planes& strain : {rod.strain, rod.strainBefore}) {
+        strain.x[i] = twice * turn.x;
+        strain.y()[i] = twice * turn.y;
+        strain.z()[i] = twice * turn.z;
+    }
+}
+
+}  // namespace
+
+std::size_t RodRest::planeCount() const {
+    return kRodRestPlanes[static_cast<std::size_t>(parts)];
+}
+
+void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state) {
+    keepFloats(state.own[kOwnMotion], shape.planeFloats * kRodMotionPlanes);
+    keepFloats(state.own[kOwnStrains], parts == RodParts::chain ? 0 : shape.planeFloats * kRodStrainPlanes);
+    keepFloats(state.own[kOwnLoads], loads ? shape.planeFloats : 0);
+    keepFloats(state.own[kOwnLanes], shape.blocks.size() * kRodLaneRows * kBlockLanes);
+}
 
 void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
                     std::uint32_t lane) {
-    if (state.rods.empty()) return;
     const Block& block = shape.blocks[index];
     const float* const roots = state.roots.data() + index * kRootRows * kBlockLanes;
     const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
@@ -21,20 +45,17 @@ void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, s
     Quat inner = root;
     for (std::uint32_t p = 0; p < block.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-        for (std::size_t plane = 0; plane < kRodStatePlanes; ++plane) rod.rotation[plane * size + i] = 0.0f;
+        for (std::size_t plane = 0; plane < kRodMotionPlanes; ++plane) rod.rotation[plane * size + i] = 0.0f;
+        if (rod.load) rod.load[i] = 0.0f;
         Quat q = root;
-        if (p + 1 < block.points) q = root * rotationAt(rod.restRotation, i);
+        if (rod.restRotation && p + 1 < block.points) q = root * rotationAt(rod.restRotation, i);
         normalize(q);
         const float values[] = {q.x, q.y, q.z, q.w};
         for (std::size_t plane = 0; plane < 4; ++plane) rod.rotation[plane * size + i] = values[plane];
         if (p + 1 < block.points) {
-            const Quat turn = conjugate(inner) * q;
-            const float twice = turn.w < 0.0f ? -2.0f : 2.0f;
-            for (const Planes& strain : {rod.strain, rod.strainBefore}) {
-                strain.x[i] = twice * turn.x;
-                strain.y()[i] = twice * turn.y;
-                strain.z()[i] = twice * turn.z;
-            }
+            setStrain(rod, i, conjugate(inner) * q);
+        } else {
+            setStrain(rod, i, Quat{});
         }
         inner = q;
     }
@@ -88,64 +109,83 @@ void placeRodOnPoints(const RestShape& shape, const RodRest& rest, State& state,
         }
         const float values[] = {q.x, q.y, q.z, q.w};
         for (std::size_t plane = 0; plane < 4; ++plane) rod.rotation[plane * size + i] = values[plane];
-        {
-            const Quat between = conjugate(p > 0 ? before : root) * q;
-            const float twice = between.w < 0.0f ? -2.0f : 2.0f;
-            for (const Planes& strain : {rod.strain, rod.strainBefore}) {
-                strain.x[i] = twice * between.x;
-                strain.y()[i] = twice * between.y;
-                strain.z()[i] = twice * between.z;
-            }
-        }
+        setStrain(rod, i, conjugate(p > 0 ? before : root) * q);
         atRestBefore = atRest;
         before = q;
     }
 }
 
-void turnRodAlong(const BlockView& view, std::size_t i, Quat turn) {
-    float* const x = view.rod.rotation + i;
-    const std::size_t pitch = view.pitch;
-    Quat q = turn * Quat{x[0], x[pitch], x[2 * pitch], x[3 * pitch]};
-    normalize(q);
-    x[0] = q.x;
-    x[pitch] = q.y;
-    x[2 * pitch] = q.z;
-    x[3 * pitch] = q.w;
+namespace {
+
+/// The strains of lane `lane` of block `index` where it is.
+void strainRod(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
+               std::uint32_t lane) {
+    const Block& block = shape.blocks[index];
+    const RodView rod = rodViewOf(shape, rest, state, index);
+    const std::size_t size = planeSize(block);
+    const float* const roots = state.roots.data() + index * kRootRows * kBlockLanes;
+    const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
+    Quat inner{row(3), row(4), row(5), row(6)};
+    for (std::uint32_t p = 0; p + 1 < block.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        const Quat q{rod.rotation[i], rod.rotation[size + i], rod.rotation[2 * size + i],
+                     rod.rotation[3 * size + i]};
+        setStrain(rod, i, conjugate(inner) * q);
+        inner = q;
+    }
+}
+
+}  // namespace
+
+void completeRods(const RestShape& shape, const RodRest& rest, bool loads, State& state) {
+    if (state.model != StrandModel::rods) state.own = {};
+    state.model = StrandModel::rods;
+    const bool wereRods = state.own[kOwnMotion].size() == shape.planeFloats * kRodMotionPlanes;
+    const bool hadStrains = !state.own[kOwnStrains].empty();
+    allocateRods(shape, rest.parts, loads, state);
+    if (wereRods && (hadStrains || rest.parts == RodParts::chain)) return;
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
+            wereRods ? strainRod(shape, rest, state, b, lane) : placeRodOnPoints(shape, rest, state, b, lane);
+    }
 }
 
 void forgetRodEnergy(const RestShape& shape, State& state) {
-    if (state.rodLanes.empty()) return;
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
-        float* const energy = state.rodLanes.data() + (b * kRodLaneRows + 1) * kBlockLanes;
+        float* const energy = state.own[kOwnLanes].data() + (b * kRodLaneRows + 1) * kBlockLanes;
         std::fill_n(energy, kBlockLanes, kRodNoEnergy);
     }
 }
 
 RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std::size_t index) {
     RodView view;
-    if (state.rods.empty()) return view;
     const Block& block = shape.blocks[index];
     const std::size_t size = planeSize(block);
-    const float* const fixed = rest.planes.data() + block.firstPlane * rest.planeCount;
-    float* const moving = state.rods.data() + block.firstPlane * kRodStatePlanes;
+    const float* const fixed = rest.planes.data() + block.firstPlane * rest.planeCount();
+    float* const moving = state.own[kOwnMotion].data() + block.firstPlane * kRodMotionPlanes;
     const auto three = [&](std::size_t plane) { return Planes{moving + plane * size, size}; };
     view.tangent = {fixed, size};
-    view.axis = {fixed + 3 * size, size};
-    view.bend = fixed + 6 * size;
-    view.mass = fixed + 7 * size;
-    view.restRotation = fixed + 8 * size;
-    if (rest.planeCount == kRodFlatRestPlanes) view.normal = {fixed + kRodRestPlanes * size, size};
+    view.mass = fixed + kRodMassPlane * size;
+    if (rest.parts >= RodParts::bending) {
+        view.bend = fixed + kRodBendPlane * size;
+        view.restRotation = fixed + kRodRotationPlane * size;
+        float* const strains = state.own[kOwnStrains].data() + block.firstPlane * kRodStrainPlanes;
+        view.strain = {strains, size};
+        view.strainBefore = {strains + 3 * size, size};
+    }
+    if (rest.parts >= RodParts::twist) {
+        view.axis = {fixed + kRodAxisPlane * size, size};
+        view.curved = rest.curved[index] != 0;
+    }
+    if (rest.parts >= RodParts::section) view.normal = {fixed + kRodNormalPlane * size, size};
     view.rotation = moving;
     view.increment = three(4);
     view.displacement = three(7);
     view.velocity = three(10);
     view.velocityBefore = three(13);
-    view.strain = three(16);
-    view.strainBefore = three(19);
-    view.load = moving + 22 * size;
-    view.turn = state.rodLanes.data() + index * kRodLaneRows * kBlockLanes;
+    if (!state.own[kOwnLoads].empty()) view.load = state.own[kOwnLoads].data() + block.firstPlane;
+    view.turn = state.own[kOwnLanes].data() + index * kRodLaneRows * kBlockLanes;
     view.energy = view.turn + kBlockLanes;
-    view.curved = rest.curved[index] != 0;
     return view;
 }
 

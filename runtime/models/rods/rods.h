@@ -6,22 +6,46 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/state.h"
+#include "engine/strand_model.h"
+#include "models/rods/rod_block.h"
 
 namespace hairloom::runtime {
 
+const Model& rodModel();
+
+/// What of a rod there is: each needs the one before it. What is not has no arrays and no part in the kernel.
+enum class RodParts : std::uint8_t {
+    chain,    ///< segments that keep their lengths, free to bend
+    bending,  ///< resists bending
+    twist,    ///< and twist about itself
+    section,  ///< and bends more easily about its long diameter
+};
+/// `straight`: every strand is, at rest.
+RodParts rodPartsOf(const SimulationSettings& settings, bool straight);
+/// The same of these strands; without a free point there is nothing to resist.
+RodParts rodPartsOf(const RestShape& shape, const SimulationSettings& settings);
+
 /// What follows from rest shape and settings; made anew when settings change.
 struct RodRest {
-    Floats planes;               ///< per block: RodView's tangent, axis, bend, mass, rest rotation, normal
-    std::size_t planeCount = 0;  ///< kRodRestPlanes, or kRodFlatRestPlanes of a flat section
-    std::vector<std::uint8_t> curved;  ///< per block: twist matters, by rest curvature or a flat section
+    RodParts parts = RodParts::chain;
+    /// Per block, as far as there are such parts: RodView's tangent and mass; bend and restRotation; axis;
+    /// normal.
+    Floats planes;
+    std::vector<std::uint8_t> curved;  ///< per block: it twists; empty where nothing does
 
-    std::size_t bytes() const { return planes.size() * sizeof(float) + curved.size(); }
+    std::size_t planeCount() const;
 };
-inline constexpr std::size_t kRodRestPlanes = 12;
-inline constexpr std::size_t kRodFlatRestPlanes = 15;
-inline constexpr std::size_t kRodStatePlanes = 23;
-inline constexpr std::size_t kRodLaneRows = 2;
+/// Of a RodRest: planes up to each of RodParts, and where they begin.
+inline constexpr std::size_t kRodRestPlanes[] = {4, 9, 12, 15};
+inline constexpr std::size_t kRodMassPlane = 3, kRodBendPlane = 4, kRodRotationPlane = 5, kRodAxisPlane = 9,
+                             kRodNormalPlane = 12;
+
+/// State::own of rods. Motion: rotation, increment, displacement, velocity, velocityBefore. Strains, where a
+/// rod resists bending: strain, strainBefore. Loads, where there are collisions: load. Lanes: turn, energy.
+inline constexpr std::size_t kOwnMotion = 0, kOwnStrains = 1, kOwnLoads = 2, kOwnLanes = 3;
+inline constexpr std::size_t kRodMotionPlanes = 16, kRodStrainPlanes = 6, kRodLaneRows = 2;
+/// With a plane of loads.
+inline constexpr std::size_t kRodStatePlanes = kRodMotionPlanes + kRodStrainPlanes + 1;
 
 /// What a section bends and twists by, as shares of its stiffer bend: an ellipse of the area of the round
 /// fibre that angularStiffness stands for.
@@ -37,7 +61,16 @@ bool haveEqualRodEnergy(const SimulationSettings& a, const SimulationSettings& b
 
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings);
 
-/// Puts lane `lane` of block `index` at rest on its row of state.roots, without a step before.
+/// Gives a state the arrays of rods with these parts and, where asked for, loads; those that it has keep
+/// their values.
+void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state);
+
+/// Makes any state one of these rods: strands that were none go on as rods through their points, and chains
+/// that now bend back keep all that they have.
+void completeRods(const RestShape& shape, const RodRest& rest, bool loads, State& state);
+
+/// Puts lane `lane` of block `index` at rest on its row of state.roots, without a step before; its points
+/// are there.
 void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
                     std::uint32_t lane);
 
@@ -46,13 +79,13 @@ void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, s
 void placeRodOnPoints(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
                       std::uint32_t lane);
 
-/// Turns segment and vertex `i` of a rod along with its root: what BlockView's positions do not hold.
-void turnRodAlong(const BlockView& view, std::size_t i, Quat turn);
-
 /// Settings have changed what energy rods have: what they had tells nothing of what they may have.
 void forgetRodEnergy(const RestShape& shape, State& state);
 
-/// The rods of a block; all null where there are none.
+/// The rods of a block of a state that has them.
 RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std::size_t index);
+
+/// What the kernels are told of a substep.
+RodNumbers rodNumbersOf(const SimulationSettings& settings, const EffectPlan& plan);
 
 }  // namespace hairloom::runtime

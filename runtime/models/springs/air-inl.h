@@ -7,26 +7,26 @@
 #define HAIRLOOM_RUNTIME_AIR_INL_H
 #endif
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "engine/wind-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/spring_block.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-void sampleWind(const BlockView& block, LaneFrame& lanes, float h, const Wind& wind, const float* from,
+void sampleWind(const SpringBlock& block, LaneFrame& lanes, float h, const Wind& wind, const float* from,
                 const float* to) {
     const std::size_t tip = std::size_t{block.points - 1} * kBlockLanes;
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V3 root = load3(lanes.root, lane);
         const V3 end = root + load3(block.position, tip + lane);
         const V substep = all(h);
-        store3(windAt(wind, from, root) * substep, lanes.windRoot[0], lane);
-        store3(windAt(wind, to, root) * substep, lanes.windRoot[1], lane);
-        store3(windAt(wind, from, end) * substep, lanes.windTip[0], lane);
-        store3(windAt(wind, to, end) * substep, lanes.windTip[1], lane);
+        store3(windAt(wind, from, root) * substep, springLanes(lanes).windRoot[0], lane);
+        store3(windAt(wind, to, root) * substep, springLanes(lanes).windRoot[1], lane);
+        store3(windAt(wind, from, end) * substep, springLanes(lanes).windTip[0], lane);
+        store3(windAt(wind, to, end) * substep, springLanes(lanes).windTip[1], lane);
     }
 }
 

@@ -9,9 +9,9 @@
 
 #include <cmath>
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/spring_block.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -25,7 +25,7 @@ enum class Shape {
 
 /// s = κ·h²·(t − target) of each joint of a block, in LaneFrame::solver; those past the last segment are
 /// zero.
-HWY_INLINE Planes pullsOf(const BlockView& block, const LaneFrame& lanes) {
+HWY_INLINE Planes pullsOf(const SpringBlock& block, const LaneFrame& lanes) {
     return {lanes.solver, block.points * kBlockLanes + kPlanePadding};
 }
 
@@ -61,19 +61,19 @@ HWY_INLINE V3 fromFrame(V3 tangent, V3 normal, V3 local) {
 }
 
 /// The direction that the root carries, before the first segment.
-HWY_INLINE V3 rootDirection(const BlockView& block, const LaneFrame& lanes, std::size_t lane) {
+HWY_INLINE V3 rootDirection(const SpringBlock& block, const LaneFrame& lanes, std::size_t lane) {
     return rotate(load4(lanes.rotation, lane),
                   load3(block.rest, lane) * hn::Load(D(), block.inverseLength + lane));
 }
 /// The normal that it carries; of curved hair.
-HWY_INLINE V3 rootNormal(const BlockView& block, const LaneFrame& lanes, std::size_t lane) {
+HWY_INLINE V3 rootNormal(const SpringBlock& block, const LaneFrame& lanes, std::size_t lane) {
     return rotate(load4(lanes.rotation, lane),
                   load3(block.target, std::size_t{block.points - 1} * kBlockLanes + lane));
 }
 
 /// Pulls of angular springs at `position`.
 template <Shape kShape, bool kExact>
-void measurePulls(const BlockView& block, const LaneFrame& lanes, Planes pulls) {
+void measurePulls(const SpringBlock& block, const LaneFrame& lanes, Planes pulls) {
     constexpr bool kFrames = kShape == Shape::curved;
     alignas(64) float inner[3][kBlockLanes], units[3][kBlockLanes], normals[3][kBlockLanes];
     const std::uint32_t first = block.firstFree - 1;
@@ -112,7 +112,7 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Planes pulls) 
 /// The gradient of the energy by segment s, times h²: (s_s − s_{s+1})/l, or the part of it across the segment
 /// by its true length.
 template <bool kExact>
-HWY_INLINE V3 segmentPull(const BlockView& block, Planes pulls, std::size_t i) {
+HWY_INLINE V3 segmentPull(const SpringBlock& block, Planes pulls, std::size_t i) {
     const V3 difference = load3(pulls, i) - load3(pulls, i + kBlockLanes);
     const V inverseLength = hn::Load(D(), block.inverseLength + i);
     if constexpr (!kExact) return difference * inverseLength;
@@ -125,7 +125,7 @@ HWY_INLINE V3 segmentPull(const BlockView& block, Planes pulls, std::size_t i) {
 
 /// Angular springs as forces.
 template <Shape kShape, bool kExact>
-void applyAngular(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
+void applyAngular(const SpringBlock& block, LaneFrame& lanes, const SubstepContext&) {
     const Planes pulls = pullsOf(block, lanes);
     measurePulls<kShape, kExact>(block, lanes, pulls);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {

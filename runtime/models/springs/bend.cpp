@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "engine/double3.h"
-#include "engine/state.h"
 #include "hairloom/presets.h"
+#include "models/springs/springs.h"
 
 namespace hairloom::runtime {
 namespace {

@@ -11,11 +11,11 @@
 #include <cmath>
 #include <type_traits>
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
 #include "models/springs/bend-inl.h"
 #include "models/springs/rows-inl.h"
+#include "models/springs/spring_block-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -44,7 +44,7 @@ struct Strip {
 /// Fills the directions of segments at `previous`, and by how much less each turns than the one before it, q
 /// of the way to `position`.
 template <class Rows>
-HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+HWY_INLINE void readSegments(const SpringBlock& block, const Rows& rows, const LaneFrame& lanes,
                              const SubstepContext& context, std::size_t lane, Strip& strip) {
     const float* previous = block.previous.x + lane;
     const float* position = block.position.x + lane;
@@ -73,7 +73,7 @@ HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const Lan
 /// Takes the joints' curves, in the frames at `previous`, off what they pull against; returns the least
 /// cosine of a turn. Without `kFolds` it is right only where that is above kFold.
 template <bool kFolds, class Rows>
-HWY_INLINE V takeCurves(const BlockView& block, const Rows& rows, const LaneFrame& lanes, std::size_t lane,
+HWY_INLINE V takeCurves(const SpringBlock& block, const Rows& rows, const LaneFrame& lanes, std::size_t lane,
                         Strip& strip) {
     V3 behind = rootDirection(block, lanes, lane), normal = rootNormal(block, lanes, lane);
     V sharpest = all(1.0f);
@@ -102,7 +102,7 @@ template <Shape kShape>
 class SegmentPulls {
   public:
     template <class Rows>
-    HWY_INLINE SegmentPulls(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+    HWY_INLINE SegmentPulls(const SpringBlock& block, const Rows& rows, const LaneFrame& lanes,
                             const SubstepContext& context, std::size_t lane, Strip& strip) {
         readSegments(block, rows, lanes, context, lane, strip);
         if constexpr (kShape == Shape::curved) {
@@ -142,7 +142,7 @@ class SegmentPulls {
 /// forceOf(row, point, isLast) is the force G of a segment on its outer point, reversed on its inner one; it
 /// is asked for root to tip, with std::true_type for the last one.
 template <class Rows, class ForceOf>
-HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& strip, ForceOf&& forceOf) {
+HWY_INLINE void reduceBend(const SpringBlock& block, const Rows& rows, Strip& strip, ForceOf&& forceOf) {
     constexpr std::false_type kGoesOn;
     constexpr std::true_type kLast;
     V3 last = zero3(), beforeLast = zero3(), inner = zero3();
@@ -179,7 +179,7 @@ HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& stri
 
 /// Calls tip(row, point, δ) for the last point and take(row, point, δ) for each one before it, tip to root.
 template <class Rows, class Tip, class Take>
-HWY_INLINE void finishBend(const BlockView& block, const Rows& rows, Strip& strip, Tip&& tip, Take&& take) {
+HWY_INLINE void finishBend(const SpringBlock& block, const Rows& rows, Strip& strip, Tip&& tip, Take&& take) {
     auto row = rows.at(block.points - 1);
     Strip::Point* at = strip.points + (block.points - 1);
     V3 delta = load3(at->right()) * row.inverseDiagonal();
@@ -200,7 +200,7 @@ HWY_INLINE void finishBend(const BlockView& block, const Rows& rows, Strip& stri
 /// any stiffness (docs/engine.md). With `kTense`, the tension of the last substep along the segments at the
 /// start of this one joins the force.
 template <Shape kShape, bool kTense, class Rows>
-HWY_INLINE void pullStrip(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+HWY_INLINE void pullStrip(const SpringBlock& block, const Rows& rows, const LaneFrame& lanes,
                           const SubstepContext& context, std::size_t lane, Strip& strip) {
     SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);
     reduceBend(block, rows, strip, [&](const auto& row, const Strip::Point& point, auto isLast) HWY_ATTR {
@@ -216,8 +216,8 @@ HWY_INLINE void pullStrip(const BlockView& block, const Rows& rows, const LaneFr
 }
 
 template <Shape kShape>
-void bendBack(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
+void bendBack(const SpringBlock& given, LaneFrame& lanes, const SubstepContext& context) {
+    const SpringBlock block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip(lanes);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {

@@ -12,11 +12,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "engine/spheres-inl.h"
 #include "hwy/highway.h"
 #include "models/springs/near-inl.h"
+#include "models/springs/spring_block-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -34,7 +34,7 @@ struct Contact {
 /// Places the points on their spheres (Eq. 21, to which the centre is added) and gives them the impulse with
 /// restitution (Eq. 20) and Coulomb friction, both relative to the sphere. Returns the positions, of all
 /// lanes.
-HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std::size_t i,
+HWY_INLINE V3 respond(const SpringBlock& block, const SubstepContext& context, std::size_t i,
                       const Contact& contact) {
     const V zero = hn::Zero(D());
     const V3 position = load3(block.position, i);
@@ -148,7 +148,7 @@ HWY_INLINE V depthIn(V3 offset, V reach) {
 template <bool kBackward>
 class Contacts {
   public:
-    HWY_INLINE Contacts(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
+    HWY_INLINE Contacts(const SpringBlock& block, const LaneFrame& lanes, const SubstepContext& context,
                         const SphereSet& spheres, const float* collisionRadii, NearPoints& near)
         : block_(block),
           context_(context),
@@ -284,7 +284,7 @@ class Contacts {
         }
     }
 
-    const BlockView& block_;
+    const SpringBlock& block_;
     const SubstepContext& context_;
     const SphereSet& spheres_;
     const float* const collisionRadii_;
@@ -300,7 +300,7 @@ class Contacts {
 /// one of them pushes into others goes to their common edge. Of more than SphereSet::kMax spheres this holds
 /// within each kMax of them. `fromList` is what farthestFromList() says where there is a list.
 template <bool kBackward>
-HWY_INLINE void collideWith(const BlockView& block, LaneFrame& lanes, const SubstepContext& context,
+HWY_INLINE void collideWith(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context,
                             float fromList) {
     const float step = static_cast<float>(context.index + 1);
     const float maxCollisionRadius = std::max(context.collisionRadiusAtRoot, context.collisionRadiusAtTip);
@@ -309,7 +309,8 @@ HWY_INLINE void collideWith(const BlockView& block, LaneFrame& lanes, const Subs
     SphereSet spheres;
     if (context.spheres.size() <= SphereSet::kMax && block.points <= NearPoints::kMaxPoints) {
         spheres.take(context.spheres, step, maxCollisionRadius);
-        Contacts<kBackward>(block, lanes, context, spheres, collisionRadii, lanes.near).runListed(fromList);
+        Contacts<kBackward>(block, lanes, context, spheres, collisionRadii, springLanes(lanes).near)
+            .runListed(fromList);
         return;
     }
     SubstepContext part = context;
@@ -317,15 +318,16 @@ HWY_INLINE void collideWith(const BlockView& block, LaneFrame& lanes, const Subs
         part.spheres = context.spheres.subspan(
             first, std::min<std::size_t>(SphereSet::kMax, context.spheres.size() - first));
         spheres.take(part.spheres, step, maxCollisionRadius);
-        lanes.near.overlapsKnown = 0;
-        Contacts<kBackward>(block, lanes, part, spheres, collisionRadii, lanes.near).run();
+        springLanes(lanes).near.overlapsKnown = 0;
+        Contacts<kBackward>(block, lanes, part, spheres, collisionRadii, springLanes(lanes).near).run();
     }
 }
 
 template <bool kBackward>
-void collide(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
-    const float fromList = lanes.near.made ? farthestFromList(block, lanes.near) : 0.0f;
+void collide(const SpringBlock& given, LaneFrame& lanes, const SubstepContext& context) {
+    const SpringBlock block = localCopy(given);
+    const float fromList =
+        springLanes(lanes).near.made ? farthestFromList(block, springLanes(lanes).near) : 0.0f;
     collideWith<kBackward>(block, lanes, context, fromList);
 }
 
@@ -335,7 +337,7 @@ struct Points {
 };
 
 /// The force of one sphere.
-HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float radius,
+HWY_INLINE void push(const SpringBlock& block, Points points, V3 centre, float radius,
                      const float* collisionRadii, V stiffness) {
     for (std::uint32_t p = points.begin; p < points.end; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + points.lane;
@@ -356,7 +358,7 @@ HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float rad
 /// Penalty force: a spring of frequency penaltyFrequency from the point to its p_a on each sphere that it is
 /// in, as the acceleration ω²·depth along the normal. Stable while ω·h < 2, where one sphere pushes; the
 /// squares of the frequencies of spheres that push the same way add.
-void applyPenalty(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void applyPenalty(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context) {
     // Positions are still those of the substep's start.
     const float step = static_cast<float>(context.index);
     alignas(64) float collisionRadii[kMaxPoints];

@@ -7,12 +7,12 @@
 #define HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H
 #endif
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "engine/spheres-inl.h"
 #include "hwy/highway.h"
 #include "models/springs/collide-inl.h"
 #include "models/springs/near-inl.h"
+#include "models/springs/spring_block-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -48,7 +48,7 @@ HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, 
 
 /// Catches points that move at least as far as slowestSwept where they first enter a sphere that they have
 /// passed, or passed the middle of, by the end of the substep.
-HWY_NOINLINE void catchFast(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+HWY_NOINLINE void catchFast(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context) {
     const float slow = context.slowestSwept;
     const float step = static_cast<float>(context.index + 1);
     alignas(64) float collisionRadii[kMaxPoints];
@@ -72,7 +72,7 @@ struct Farthest {
     float fromList;   ///< when the list of near points was made
 };
 
-HWY_INLINE float farthestInSubstep(const BlockView& block) {
+HWY_INLINE float farthestInSubstep(const SpringBlock& block) {
     return maxOfBlock(block, [&](std::size_t i) HWY_ATTR {
         const V3 moved = load3(block.position, i) - load3(block.previous, i);
         return dot(moved, moved);
@@ -80,7 +80,7 @@ HWY_INLINE float farthestInSubstep(const BlockView& block) {
 }
 
 /// Both in one pass.
-HWY_INLINE Farthest farthestOfBoth(const BlockView& block, const NearPoints& near) {
+HWY_INLINE Farthest farthestOfBoth(const SpringBlock& block, const NearPoints& near) {
     const ConstPlanes positions{near.positions, nearPlane(block)};
     V ofSubstep = hn::Zero(D()), ofList = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
@@ -103,23 +103,24 @@ HWY_INLINE bool isFast(const SubstepContext& context, float farthestSquared) {
 }
 
 /// Runs before the stage of collisions and leaves slow blocks at once.
-void continuousCollision(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
+void continuousCollision(const SpringBlock& given, LaneFrame& lanes, const SubstepContext& context) {
+    const SpringBlock block = localCopy(given);
     if (isFast(context, farthestInSubstep(block))) catchFast(block, lanes, context);
 }
 
 template <bool kBackward>
-void bothCollisions(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
+void bothCollisions(const SpringBlock& given, LaneFrame& lanes, const SubstepContext& context) {
+    const SpringBlock block = localCopy(given);
     Farthest farthest{0.0f, 0.0f};
-    if (lanes.near.made) {
-        farthest = farthestOfBoth(block, lanes.near);
+    if (springLanes(lanes).near.made) {
+        farthest = farthestOfBoth(block, springLanes(lanes).near);
     } else {
         farthest.inSubstep = farthestInSubstep(block);
     }
     if (HWY_UNLIKELY(isFast(context, farthest.inSubstep))) {
         catchFast(block, lanes, context);
-        if (lanes.near.made) farthest.fromList = farthestFromList(block, lanes.near);
+        if (springLanes(lanes).near.made)
+            farthest.fromList = farthestFromList(block, springLanes(lanes).near);
     }
     collideWith<kBackward>(block, lanes, context, farthest.fromList);
 }

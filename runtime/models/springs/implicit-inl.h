@@ -7,10 +7,10 @@
 #define HAIRLOOM_RUNTIME_IMPLICIT_INL_H
 #endif
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
 #include "models/springs/bend_solve-inl.h"
+#include "models/springs/spring_block.h"
 #include "models/springs/springs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -56,14 +56,14 @@ HWY_INLINE S3 inverseOf(const S3& s) {
 }
 
 /// Closes a step of backward Euler whose displacement is `stepDisplacement`.
-HWY_INLINE void finishImplicit(const BlockView& block, std::size_t i, V3 stepDisplacement) {
+HWY_INLINE void finishImplicit(const SpringBlock& block, std::size_t i, V3 stepDisplacement) {
     const V3 start = load3(block.start, i);
     store3(start + stepDisplacement, block.position, i);
     store3(start, block.previous, i);
 }
 
 /// Puts clamped points to the end of their way.
-HWY_INLINE void finishClamped(const BlockView& block) {
+HWY_INLINE void finishClamped(const SpringBlock& block) {
     const std::size_t end = std::size_t{block.firstFree} * kBlockLanes;
     for (std::size_t i = 0; i < end; i += kWidth) {
         const V3 start = load3(block.start, i);
@@ -73,7 +73,7 @@ HWY_INLINE void finishClamped(const BlockView& block) {
 }
 
 /// Backward Euler without stiff forces: symplectic Euler.
-void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void advanceFree(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     finishClamped(block);
     const std::size_t end = std::size_t{block.points} * kBlockLanes;
     for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth)
@@ -82,7 +82,7 @@ void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
 
 /// Backward Euler (Eq. 9) with angular springs: (M + h² K) d = M u + h² f, where u + h² f/M is the
 /// displacement that the forces left, so that d = u + h² f/M + δ with (M + h² K) δ = −h² K of it.
-void advanceImplicitBend(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
+void advanceImplicitBend(const SpringBlock& block, LaneFrame& lanes, const SubstepContext&) {
     if (block.points <= block.firstFree) return finishClamped(block);
     const auto stepDisplacementAt = [&](std::size_t i) HWY_ATTR {
         return load3(block.position, i) - load3(block.previous, i);
@@ -123,7 +123,7 @@ void advanceImplicitBend(const BlockView& block, LaneFrame& lanes, const Substep
 struct BendRow {
     V diagonal, coupling1, coupling2;
 };
-HWY_INLINE BendRow bendRow(const BlockView& block, std::uint32_t p, std::size_t i) {
+HWY_INLINE BendRow bendRow(const SpringBlock& block, std::uint32_t p, std::size_t i) {
     const V zero = hn::Zero(D());
     const auto stiffness = [&](std::size_t at) { return hn::Load(D(), block.stiffness + at); };
     const auto share = [&](std::size_t at) { return hn::Load(D(), block.inverseLength + at); };
@@ -142,7 +142,7 @@ HWY_INLINE BendRow bendRow(const BlockView& block, std::uint32_t p, std::size_t 
 
 /// h² times the Jacobian of the coil spring of segment s; its compressive part, which would make the matrix
 /// indefinite, is left out (as Choi and Ko 2002).
-HWY_INLINE S3 coilJacobian(const BlockView& block, const SubstepContext& context, std::size_t s) {
+HWY_INLINE S3 coilJacobian(const SpringBlock& block, const SubstepContext& context, std::size_t s) {
     const std::size_t o = s + kBlockLanes;
     const Edge edge = edgeOf(load3(block.start, o) - load3(block.start, s));
     const V step =
@@ -235,7 +235,7 @@ HWY_INLINE void solveSystem(StrandSystem& system, std::uint32_t first, std::uint
 
 /// Backward Euler (Eq. 9) with coil springs: (M − h² ∂f/∂x) d = M u + h² f.
 template <bool kAngular>
-void advanceImplicitSpring(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void advanceImplicitSpring(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context) {
     const V zero = hn::Zero(D());
     StrandSystem system{reinterpret_cast<StrandSystem::Point*>(lanes.solver)};
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {

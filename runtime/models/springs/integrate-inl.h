@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Integrators other than position Verlet (docs/engine.md), and the measure of motion.
+// Integrators other than position Verlet (docs/engine.md).
 #if defined(HAIRLOOM_RUNTIME_INTEGRATE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_INTEGRATE_INL_H
 #undef HAIRLOOM_RUNTIME_INTEGRATE_INL_H
@@ -7,11 +7,9 @@
 #define HAIRLOOM_RUNTIME_INTEGRATE_INL_H
 #endif
 
-#include <cmath>
-
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/spring_block.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -19,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 /// Calls visit(index, point) for every point of the block, clamped ones too.
 template <class Visit>
-HWY_INLINE void forEachPoint(const BlockView& block, Visit&& visit) {
+HWY_INLINE void forEachPoint(const SpringBlock& block, Visit&& visit) {
     for (std::uint32_t p = 0; p < block.points; ++p) {
         for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
             visit(std::size_t{p} * kBlockLanes + lane, p);
@@ -27,13 +25,14 @@ HWY_INLINE void forEachPoint(const BlockView& block, Visit&& visit) {
 }
 
 /// The next evaluation of forces is at `position`, with the displacement `stepDisplacement` for velocity.
-HWY_INLINE void setEvaluationState(const BlockView& block, std::size_t i, V3 position, V3 stepDisplacement) {
+HWY_INLINE void setEvaluationState(const SpringBlock& block, std::size_t i, V3 position,
+                                   V3 stepDisplacement) {
     store3(position, block.position, i);
     store3(position - stepDisplacement, block.previous, i);
 }
 
 /// What the forces have added since setEvaluationState().
-HWY_INLINE V3 takeKick(const BlockView& block, std::size_t i, std::uint32_t p, V3 stepDisplacement) {
+HWY_INLINE V3 takeKick(const SpringBlock& block, std::size_t i, std::uint32_t p, V3 stepDisplacement) {
     if (p < block.firstFree) return zero3();
     return load3(block.position, i) - load3(block.previous, i) - stepDisplacement;
 }
@@ -41,7 +40,7 @@ HWY_INLINE V3 takeKick(const BlockView& block, std::size_t i, std::uint32_t p, V
 /// Keeps where the substep starts, relative to the root at its end, and the displacement of the last one;
 /// that of a clamped point is its displacement in this substep. Forces are evaluated after `kHalves`/2 of it.
 template <int kHalves>
-void openStep(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
+void openStep(const SpringBlock& block, LaneFrame& lanes, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 position = load3(block.position, i);
         const V3 previous = load3(block.previous, i);
@@ -56,7 +55,7 @@ void openStep(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
 }
 
 /// Explicit Euler (Eq. 7): the way of the old velocity.
-void advanceEuler(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void advanceEuler(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 stepDisplacement = load3(block.stepDisplacement, i);
         const V3 kick = takeKick(block, i, p, stepDisplacement);
@@ -66,7 +65,7 @@ void advanceEuler(const BlockView& block, LaneFrame&, const SubstepContext&) {
 
 /// Drift-kick-drift: the second half drift after the kick halfway. Forces that read velocities see that of
 /// the start: with them the order is one.
-void advanceLeapfrog(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void advanceLeapfrog(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 stepDisplacement = load3(block.stepDisplacement, i);
         const V3 after = stepDisplacement + takeKick(block, i, p, stepDisplacement);
@@ -75,7 +74,7 @@ void advanceLeapfrog(const BlockView& block, LaneFrame&, const SubstepContext&) 
 }
 
 /// Velocity Verlet (Eq. 12), first half kick and drift.
-void driftVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void driftVerlet(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 stepDisplacement = load3(block.stepDisplacement, i);
         const V3 half = stepDisplacement + takeKick(block, i, p, stepDisplacement) * all(0.5f);
@@ -85,7 +84,7 @@ void driftVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
 
 /// Velocity Verlet: the constraints have moved points and changed the half-step velocity. Velocity-dependent
 /// forces see the velocity predicted for the end of the step; `start` keeps it.
-void setVerletEvaluationState(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void setVerletEvaluationState(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t) {
         const V3 position = load3(block.position, i);
         const V3 half = position - load3(block.previous, i);
@@ -97,7 +96,7 @@ void setVerletEvaluationState(const BlockView& block, LaneFrame&, const SubstepC
 }
 
 /// Velocity Verlet, second half kick.
-void kickVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void kickVerlet(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 kick = takeKick(block, i, p, load3(block.start, i));
         const V3 stepDisplacement = load3(block.stepDisplacement, i) + kick * all(0.5f);
@@ -108,7 +107,7 @@ void kickVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
 /// Slope k of the classical Runge-Kutta method, 1…4. With A_k what the forces give at slope k, the velocities
 /// are u, u + A₁/2, u + A₂/2 and u + A₃, so the positions need only sums of A.
 template <int kSlope>
-void rk4Stage(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void rk4Stage(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V half = all(0.5f);
         const V3 start = load3(block.start, i), stepDisplacement = load3(block.stepDisplacement, i);
@@ -137,28 +136,6 @@ void rk4Stage(const BlockView& block, LaneFrame&, const SubstepContext&) {
             }
         }
     });
-}
-
-float fastestOf(const BlockView& block) {
-    // Bits of numbers that are not negative have the order of the numbers; what is no number comes after.
-    using Bits = hn::RebindToUnsigned<D>;
-    const auto bitsOfSquare = [](V3 v) HWY_ATTR { return hn::BitCast(Bits(), dot(v, v)); };
-    // Squares of positions farther than this from their root leave single precision.
-    const V maximum = all(1e12f);
-    V ofAll = hn::Zero(D());
-    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        auto fastest = hn::Zero(Bits()), farthest = hn::Zero(Bits());
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 position = load3(block.position, i);
-            fastest = hn::Max(fastest, bitsOfSquare(position - load3(block.previous, i)));
-            farthest = hn::Max(farthest, bitsOfSquare(position));
-        }
-        const V squared = hn::BitCast(D(), fastest);
-        const auto sound = hn::And(squared < maximum, hn::BitCast(D(), farthest) < maximum);
-        ofAll = hn::Max(ofAll, hn::IfThenElse(sound, squared, all(HUGE_VALF)));
-    }
-    return laneMax(ofAll);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

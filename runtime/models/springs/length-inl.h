@@ -7,10 +7,10 @@
 #define HAIRLOOM_RUNTIME_LENGTH_INL_H
 #endif
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
 #include "models/springs/bend_solve-inl.h"
+#include "models/springs/spring_block-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -36,7 +36,7 @@ HWY_INLINE V keepTension(const Row& row, const SubstepContext& context, V weight
 
 /// Brings tensions that are too much back to what Verlet holds; hardly a segment pulls as much.
 template <class Rows>
-HWY_NOINLINE void cutTensions(const BlockView& block, const Rows& rows) {
+HWY_NOINLINE void cutTensions(const SpringBlock& block, const Rows& rows) {
     auto row = rows.at(block.firstFree - 1);
     for (std::size_t left = block.points - block.firstFree; left > 0; --left, row.advance()) {
         const V maximum = row.halfLength() / (row.inverseMass() + (row + 1).inverseMass());
@@ -124,7 +124,7 @@ class LengthElimination {
 
 /// Moves the points by the tension that the system gives, root to tip.
 template <LengthProjection kProjection, bool kKept, class Rows>
-HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const SubstepContext& context,
+HWY_INLINE void applyTension(const SpringBlock& block, const Rows& rows, const SubstepContext& context,
                              std::size_t lane, Strip& strip) {
     const Planes& moving = kProjection == LengthProjection::displacements ? block.previous : block.position;
     float* at = moving.x + block.firstFree * kBlockLanes + lane;
@@ -161,7 +161,7 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
 
 /// Fills the directions at the start of the substep.
 template <class Rows>
-HWY_INLINE void readStart(const BlockView& block, const Rows& rows, std::size_t lane, Strip& strip) {
+HWY_INLINE void readStart(const SpringBlock& block, const Rows& rows, std::size_t lane, Strip& strip) {
     const Planes& start = block.start.x ? block.start : block.previous;
     V3 from = load3(start, (block.firstFree - 1) * kBlockLanes + lane);
     for (std::size_t s = block.firstFree - 1; s + 1 < block.points; ++s) {
@@ -172,7 +172,7 @@ HWY_INLINE void readStart(const BlockView& block, const Rows& rows, std::size_t 
 }
 
 template <LengthProjection kProjection, class Rows>
-HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::size_t lane, Strip& strip) {
+HWY_INLINE void reduceLengths(const SpringBlock& block, const Rows& rows, std::size_t lane, Strip& strip) {
     if constexpr (kProjection == LengthProjection::positions) readStart(block, rows, lane, strip);
     LengthElimination<kProjection> lengths;
     std::size_t i = (block.points - 1) * kBlockLanes + lane;
@@ -195,8 +195,8 @@ HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::siz
 }
 
 template <LengthProjection kProjection, bool kKept = false>
-void projectStrands(const BlockView& given, const LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
+void projectStrands(const SpringBlock& given, const LaneFrame& lanes, const SubstepContext& context) {
+    const SpringBlock block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip(lanes);
     for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
@@ -207,7 +207,7 @@ void projectStrands(const BlockView& given, const LaneFrame& lanes, const Subste
 }
 
 template <LengthProjection kProjection>
-void projectLength(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void projectLength(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context) {
     for (std::uint32_t iteration = 0; iteration < context.lengthIterations; ++iteration) {
         if (kProjection == LengthProjection::positions && block.tension) {
             projectStrands<kProjection, true>(block, lanes, context);
@@ -217,14 +217,14 @@ void projectLength(const BlockView& block, LaneFrame& lanes, const SubstepContex
     }
 }
 
-void projectDisplacements(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void projectDisplacements(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context) {
     projectStrands<LengthProjection::displacements>(block, lanes, context);
 }
 
 /// The stages of angular springs and lengths of a strip in one go, with the same bits: points stay at hand
 /// from the one to the other.
 template <Shape kShape, class Rows>
-HWY_INLINE void bendAndProjectStrip(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+HWY_INLINE void bendAndProjectStrip(const SpringBlock& block, const Rows& rows, const LaneFrame& lanes,
                                     const SubstepContext& context, std::size_t lane, Strip& strip) {
     pullStrip<kShape, true>(block, rows, lanes, context, lane, strip);
     LengthElimination<LengthProjection::positions> lengths;
@@ -252,9 +252,9 @@ HWY_INLINE void bendAndProjectStrip(const BlockView& block, const Rows& rows, co
 
 /// Between the substeps of a frame nothing else reads what CopiedRows copies.
 template <Shape kShape>
-void bendAndProject(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+void bendAndProject(const SpringBlock& given, LaneFrame& lanes, const SubstepContext& context) {
     constexpr bool kCurved = kShape == Shape::curved;
-    const BlockView block = localCopy(given);
+    const SpringBlock block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip(lanes);
     for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
@@ -275,7 +275,7 @@ void bendAndProject(const BlockView& given, LaneFrame& lanes, const SubstepConte
 
 /// Whether a segment of a strip may be longer or shorter than the maximal extension allows. Looks at all of
 /// them before it asks, and with room for rounding.
-HWY_INLINE bool mayExceed(const BlockView& block, float maximum, float minimum, std::size_t lane) {
+HWY_INLINE bool mayExceed(const SpringBlock& block, float maximum, float minimum, std::size_t lane) {
     const V middle = all(0.5f * (maximum + minimum)), half = all(0.5f * (maximum - minimum) - 1e-6f);
     V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
     V excess = hn::Zero(D());
@@ -293,8 +293,8 @@ HWY_INLINE bool mayExceed(const BlockView& block, float maximum, float minimum, 
 
 /// Root to tip, brings segments back to between (1 − ε) and (1 + ε) of their length (Provot 1995, both ways).
 /// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
-void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
+void limitExtension(const SpringBlock& given, LaneFrame& lanes, const SubstepContext& context) {
+    const SpringBlock block = localCopy(given);
     const float longest = 1.0f + context.maximalExtension, shortest = 1.0f - context.maximalExtension;
     const float maximum = longest * longest, minimum = shortest * shortest;
     const V tiny = all(1e-12f), one = all(1.0f), zero = hn::Zero(D());

@@ -10,9 +10,9 @@
 
 #include <algorithm>
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/spring_block-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -26,8 +26,9 @@ struct AirDisplacement {
 HWY_INLINE AirDisplacement airDisplacement(const LaneFrame& lanes, const SubstepContext& context,
                                            std::size_t lane) {
     const V t = all(static_cast<float>(context.index + 1) / static_cast<float>(context.count));
-    const V3 r0 = load3(lanes.windRoot[0], lane), r1 = load3(lanes.windRoot[1], lane);
-    const V3 t0 = load3(lanes.windTip[0], lane), t1 = load3(lanes.windTip[1], lane);
+    const V3 r0 = load3(springLanes(lanes).windRoot[0], lane),
+             r1 = load3(springLanes(lanes).windRoot[1], lane);
+    const V3 t0 = load3(springLanes(lanes).windTip[0], lane), t1 = load3(springLanes(lanes).windTip[1], lane);
     const V3 atRoot{lerp(r0.x, r1.x, t), lerp(r0.y, r1.y, t), lerp(r0.z, r1.z, t)};
     return {atRoot, V3{lerp(t0.x, t1.x, t), lerp(t0.y, t1.y, t), lerp(t0.z, t1.z, t)} - atRoot};
 }
@@ -50,8 +51,8 @@ enum class Motion { position, displacement, integrated };
 /// what holds the hair at rest untouched; then the forces of air and gravity; then position Verlet (Rünz
 /// 2012, Eq. 10).
 template <bool kDamped, Air kAir, bool kHeavy, Motion kFrom, Motion kTo>
-void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
+void moveFree(const SpringBlock& given, LaneFrame& lanes, const SubstepContext& context) {
+    const SpringBlock block = localCopy(given);
     const V kept = all(context.velocityShare), lost = all(1.0f - context.velocityShare);
     const V inverseShareSquared = all(1.0f / std::max(context.dragShare * context.dragShare, 1e-30f));
     const V3 gravity = all3(context.gravityStep);
@@ -93,7 +94,19 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
     }
 }
 
-void startHalfway(const BlockView& block) {
+void rescale(const SpringBlock& block, float factor) {
+    const V share = all(factor);
+    const std::size_t end = std::size_t{block.points} * kBlockLanes;
+    for (std::size_t i = 0; i < end; i += kWidth) {
+        const V3 position = load3(block.position, i);
+        store3(position - (position - load3(block.previous, i)) * share, block.previous, i);
+    }
+    if (!block.tension) return;
+    for (std::size_t i = 0; i < end; i += kWidth)
+        hn::Store(hn::Load(D(), block.tension + i) * share * share, D(), block.tension + i);
+}
+
+void startHalfway(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     const std::size_t end = std::size_t{block.points} * kBlockLanes;
     for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth) {
         const V3 from = load3(block.previous, i);

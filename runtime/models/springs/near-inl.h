@@ -12,10 +12,10 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "engine/spheres-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/spring_block.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 
 /// What a list of near points is made from; `roots` are those of this substep.
 struct NearInput {
-    const BlockView& block;
+    const SpringBlock& block;
     const LaneFrame& lanes;
     const SubstepContext& context;
     const SphereSet& spheres;
@@ -37,7 +37,7 @@ inline constexpr std::uint32_t kPartPoints = 8;
 /// Calls visit(lane, begin, end) for the parts of each strip, kPartPoints free points each, until it is
 /// false.
 template <class Visit>
-HWY_INLINE bool forEachPart(const BlockView& block, Visit&& visit) {
+HWY_INLINE bool forEachPart(const SpringBlock& block, Visit&& visit) {
     for (std::uint32_t p = block.firstFree; p < block.points; p += kPartPoints) {
         const std::uint32_t end = std::min(p + kPartPoints, block.points);
         for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
@@ -104,7 +104,7 @@ HWY_INLINE float farthestFromRoot(const NearInput& in) {
     }));
 }
 
-HWY_INLINE std::size_t nearPlane(const BlockView& block) {
+HWY_INLINE std::size_t nearPlane(const SpringBlock& block) {
     return std::size_t{block.points} * kBlockLanes + kPlanePadding;
 }
 
@@ -141,7 +141,7 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
 }
 
 /// Square of the farthest that a free point is from where it was when the list was made, square metres.
-HWY_INLINE float farthestFromList(const BlockView& block, const NearPoints& near) {
+HWY_INLINE float farthestFromList(const SpringBlock& block, const NearPoints& near) {
     const ConstPlanes positions{near.positions, nearPlane(block)};
     return maxOfBlock(block, [&](std::size_t i) HWY_ATTR {
         const V3 moved = load3(block.position, i) - load3(positions, i);

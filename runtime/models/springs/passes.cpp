@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "engine/kernels.h"
+// Which stages go into one pass.
+#include "models/springs/spring_kernels.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -20,7 +21,7 @@ class StageReader {
     }
 
     /// The pass of Kernels::moves that comes next, or null and nothing is taken.
-    Stage takeMove(const Kernels& kernels) {
+    Stage takeMove(const SpringKernels& kernels) {
         const std::size_t begin = next_;
         const std::size_t damped = takeIf(StageId::damping) ? 1 : 0;
         const Air air = takeIf(StageId::drag) ? Air::still : takeIf(StageId::wind) ? Air::moving : Air::none;
@@ -31,7 +32,7 @@ class StageReader {
     }
 
     /// The pass of Kernels::bendAndProject that comes next, or null and nothing is taken.
-    Stage takeBendAndProject(const Kernels& kernels) {
+    Stage takeBendAndProject(const SpringKernels& kernels) {
         const std::size_t begin = next_;
         const bool curved = takeIf(StageId::angular);
         if ((curved || takeIf(StageId::angularStraight)) && takeIf(StageId::length))
@@ -41,7 +42,7 @@ class StageReader {
     }
 
     /// The pass of Kernels::bothCollisions that comes next, or null and nothing is taken.
-    Stage takeBothCollisions(const Kernels& kernels) {
+    Stage takeBothCollisions(const SpringKernels& kernels) {
         const std::size_t begin = next_;
         if (takeIf(StageId::continuousCollision)) {
             if (takeIf(StageId::collision)) return kernels.bothCollisions[0];
@@ -58,11 +59,12 @@ class StageReader {
 
 }  // namespace
 
-Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
+Passes passesOf(std::span<const StageId> stages, const SpringKernels& kernels) {
     Passes passes;
+    passes.afterStart = kernels.startHalfway;
     for (StageReader reader(stages); !reader.atEnd();) {
         Stage pass = reader.takeMove(kernels);
-        if (pass) passes.moved = passes.count + 1;
+        if (pass) passes.startCalls = passes.count + 1;
         if (!pass) pass = reader.takeBendAndProject(kernels);
         if (!pass) pass = reader.takeBothCollisions(kernels);
         if (!pass) pass = kernels.stages[static_cast<std::size_t>(reader.take())];
@@ -71,8 +73,9 @@ Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
     return passes;
 }
 
-Passes singlePassesOf(std::span<const StageId> stages, const Kernels& kernels) {
+Passes singlePassesOf(std::span<const StageId> stages, const SpringKernels& kernels) {
     Passes passes;
+    passes.afterStart = kernels.startHalfway;
     for (StageReader reader(stages); !reader.atEnd();) {
         const std::size_t first = reader.next();
         const bool move = reader.takeMove(kernels) != nullptr;
@@ -82,7 +85,7 @@ Passes singlePassesOf(std::span<const StageId> stages, const Kernels& kernels) {
             passes.calls[passes.count++] =
                 move ? kernels.partsOfMove[i > first ? 1 : 0][id] : kernels.stages[id];
         }
-        if (move) passes.moved = passes.count;
+        if (move) passes.startCalls = passes.count;
     }
     return passes;
 }

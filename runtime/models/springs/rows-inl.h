@@ -9,9 +9,9 @@
 
 #include <type_traits>
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/spring_block.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -42,10 +42,10 @@ HWY_INLINE void store3(V3 v, Lanes3& to) {
 /// A strip of a block in the block's planes.
 class PlaneRows {
   public:
-    /// Of one point, and of the segment or joint of its number; members are those of BlockView.
+    /// Of one point, and of the segment or joint of its number; members are those of SpringBlock.
     class Row {
       public:
-        HWY_INLINE Row(const BlockView& block, std::size_t at) : block_(&block), at_(at) {}
+        HWY_INLINE Row(const SpringBlock& block, std::size_t at) : block_(&block), at_(at) {}
 
         HWY_INLINE V halfLength() const { return all(0.5f) * one(block_->length); }
         HWY_INLINE V inverseLength() const { return one(block_->inverseLength); }
@@ -65,16 +65,16 @@ class PlaneRows {
       private:
         HWY_INLINE V one(const float* plane) const { return hn::Load(D(), plane + at_); }
 
-        const BlockView* block_;
+        const SpringBlock* block_;
         std::size_t at_;
     };
 
-    HWY_INLINE PlaneRows(const BlockView& block, std::size_t lane) : block_(block), lane_(lane) {}
+    HWY_INLINE PlaneRows(const SpringBlock& block, std::size_t lane) : block_(block), lane_(lane) {}
 
     HWY_INLINE Row at(std::size_t p) const { return {block_, p * kBlockLanes + lane_}; }
 
   private:
-    const BlockView& block_;
+    const SpringBlock& block_;
     const std::size_t lane_;
 };
 
@@ -131,8 +131,8 @@ class CopiedRows {
         Point* point_;
     };
 
-    HWY_INLINE CopiedRows(const BlockView& block, LaneFrame& lanes, std::size_t lane)
-        : points_(reinterpret_cast<Point*>(lanes.copied) + lane / kWidth * block.points) {}
+    HWY_INLINE CopiedRows(const SpringBlock& block, LaneFrame& lanes, std::size_t lane)
+        : points_(reinterpret_cast<Point*>(springLanes(lanes).copied) + lane / kWidth * block.points) {}
 
     HWY_INLINE Row at(std::size_t p) const { return Row(points_ + p); }
 

@@ -7,9 +7,9 @@
 #define HAIRLOOM_RUNTIME_SPRINGS_INL_H
 #endif
 
-#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/spring_block.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -35,7 +35,7 @@ HWY_INLINE V coilStep(const SubstepContext& context, V inverseMassFrom, V invers
 }
 
 /// Coil springs (Rünz 2012, Eq. 3; the whole force on each end).
-void applySprings(const BlockView& block, LaneFrame&, const SubstepContext& context) {
+void applySprings(const SpringBlock& block, LaneFrame&, const SubstepContext& context) {
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         V3 inner = zero3();
         for (std::uint32_t p = block.firstFree - 1; p < block.points; ++p) {
@@ -56,7 +56,7 @@ void applySprings(const BlockView& block, LaneFrame&, const SubstepContext& cont
 }
 
 /// Flexion springs between every second point (Selle et al. 2008 call them bending springs).
-void applyFlexion(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void applyFlexion(const SpringBlock& block, LaneFrame&, const SubstepContext&) {
     for (std::uint32_t p = 1; p + 1 < block.points; ++p) {
         for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
@@ -77,7 +77,7 @@ void applyFlexion(const BlockView& block, LaneFrame&, const SubstepContext&) {
 
 /// Maximal extension by velocities (Bridson et al. 2003): impulses along segments that would leave their
 /// bounds, root to tip, momentum kept.
-void limitBySpeed(const BlockView& block, LaneFrame&, const SubstepContext& context) {
+void limitBySpeed(const SpringBlock& block, LaneFrame&, const SubstepContext& context) {
     const V longest = all(1.0f + context.maximalExtension), shortest = all(1.0f - context.maximalExtension);
     const V zero = hn::Zero(D());
     for (std::uint32_t pass = 0; pass < context.lengthIterations; ++pass) {

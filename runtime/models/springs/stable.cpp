@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/state.h"
+#include "models/springs/springs.h"
 
 namespace hairloom::runtime {
 namespace {

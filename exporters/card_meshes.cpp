@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/levels/card_meshes.h"
+#include "exporters/card_meshes.h"
 
 #include <assimp/config.h>
 #include <assimp/scene.h>
@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <assimp/Exporter.hpp>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <string_view>
 
 #include "core/cards/level_arrays.h"
-#include "core/levels/card_files.h"
 
 namespace hairloom {
 namespace {
@@ -143,10 +143,10 @@ aiNode* jointNodes(const Rig& rig, float scale) {
 
 struct Files {
     std::unique_ptr<aiScene> scene = std::make_unique<aiScene>();
-    NamedImages textures;
+    CardFiles textures;
 };
 
-Files filesOf(const cards::Chain& chain, CardMeshFormat format, const std::string& stem) {
+Result<Files> filesOf(const cards::Chain& chain, CardMeshFormat format, const std::filesystem::path& path) {
     const bool isFbx = format == CardMeshFormat::fbx;
     const float scale = isFbx ? 100.0f : 1.0f;
     Files files;
@@ -156,13 +156,15 @@ Files filesOf(const cards::Chain& chain, CardMeshFormat format, const std::strin
     for (const Level& level : chain.levels) {
         if (level.spec.kind == cards::LevelKind::strands) continue;
         const LevelArrays arrays = cards::arraysOf(level, chain.rig);
-        LevelTextures textures = texturesOf(level, arrays, stem);
+        auto textures = cards::textureFilesOf(level, arrays, path.stem().string());
+        if (!textures) return tl::unexpected(textures.error());
         // Unity makes a group of levels of names that end so.
         const std::string name = fmt::format("{}_LOD{}", level.name, meshes.size());
         const auto index = static_cast<unsigned>(meshes.size());
         meshes.push_back(meshOf(name, arrays, index, scale, isFbx ? &chain.rig : nullptr));
-        materials.push_back(materialOf(level, textures.colour, textures.normal));
-        std::ranges::move(textures.images, std::back_inserter(files.textures));
+        materials.push_back(materialOf(level, textures->colour, textures->normal));
+        for (auto& [beside, bytes] : textures->files)
+            files.textures.emplace_back(path.parent_path() / beside, std::move(bytes));
         nodes.push_back(new aiNode(name));
         nodes.back()->mNumMeshes = 1;
         nodes.back()->mMeshes = new unsigned[1]{index};
@@ -222,24 +224,21 @@ class MendedFbx {
 
 }  // namespace
 
-bool canWriteCardMeshes() {
-    return true;
-}
-
 Result<std::vector<std::string>> writeCardMeshes(const cards::Chain& chain, CardMeshFormat format,
                                                  const std::filesystem::path& path) {
     const auto isStrands = [](const Level& level) { return level.spec.kind == cards::LevelKind::strands; };
     if (std::ranges::all_of(chain.levels, isStrands))
         return fail("no level that a mesh can hold", "one of cards or a shell");
-    const Files files = filesOf(chain, format, path.stem().string());
+    auto files = filesOf(chain, format, path);
+    if (!files) return tl::unexpected(files.error());
     Assimp::Exporter exporter;
     Assimp::ExportProperties properties;
     properties.SetPropertyString(AI_CONFIG_EXPORT_BLOB_NAME, path.stem().string());
     const aiExportDataBlob* blob = exporter.ExportToBlob(
-        files.scene.get(), format == CardMeshFormat::fbx ? "fbx" : "obj", 0u, &properties);
+        files->scene.get(), format == CardMeshFormat::fbx ? "fbx" : "obj", 0u, &properties);
     if (blob == nullptr)
         return fail(fmt::format("assimp: {}", exporter.GetErrorString()), "cards that it can write");
-    std::vector<std::pair<std::filesystem::path, std::vector<std::byte>>> written;
+    CardFiles written;
     for (; blob != nullptr; blob = blob->next) {
         std::vector<std::byte> bytes(blob->size);
         std::memcpy(bytes.data(), blob->data, bytes.size());
@@ -247,7 +246,8 @@ Result<std::vector<std::string>> writeCardMeshes(const cards::Chain& chain, Card
         written.emplace_back(written.empty() ? path : path.parent_path() / blob->name.C_Str(),
                              std::move(bytes));
     }
-    return writeTogether(std::move(written), files.textures);
+    std::ranges::move(files->textures, std::back_inserter(written));
+    return writeTogether(written);
 }
 
 }  // namespace hairloom

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/levels/card_usd.h"
-
+// Cards and shells as USD's text: a mesh for each level, each a variant of the set "lod" (the nearest LOD0),
+// with a UsdPreviewSurface whose textures go beside the file. The same chain gives the same bytes.
 #include <fmt/format.h>
 
-#include "core/levels/card_files.h"
+#include "exporters/card_files.h"
 #include "exporters/usd_curves.h"
 #include "exporters/usda_numbers.h"
 
@@ -72,7 +72,7 @@ std::string textureText(const std::string& material, std::string_view name, cons
         material, name, file, more);
 }
 
-std::string materialText(const std::string& name, const Level& level, const LevelTextures& textures) {
+std::string materialText(const std::string& name, const Level& level, const cards::TextureFiles& textures) {
     const auto* made = std::get_if<cards::Cards>(&level.content);
     std::string surface, readers;
     const auto connect = [&](std::string_view input, std::string_view output) {
@@ -104,21 +104,21 @@ std::string materialText(const std::string& name, const Level& level, const Leve
         name, surface, readers);
 }
 
-}  // namespace
-
-Result<std::vector<std::string>> writeCardUsd(const cards::Chain& chain, const std::filesystem::path& path) {
+Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesystem::path& path) {
     std::string variants, materials;
-    NamedImages images;
+    CardFiles files(1);
     std::size_t lod = 0;
     NameGiver names(isLegalInUsd);
-    for (const Level& level : chain.levels) {
+    for (const Level& level : hair.chain.levels) {
         if (level.spec.kind == cards::LevelKind::strands) continue;
-        const LevelArrays arrays = cards::arraysOf(level, chain.rig);
+        const LevelArrays arrays = cards::arraysOf(level, hair.chain.rig);
         const std::string name = names.give(level.name);
-        LevelTextures textures = texturesOf(level, arrays, path.stem().string());
+        auto textures = cards::textureFilesOf(level, arrays, path.stem().string());
+        if (!textures) return tl::unexpected(textures.error());
         variants += fmt::format("        \"LOD{}\" {{\n{}        }}\n", lod++, meshText(name, arrays));
-        materials += materialText(name, level, textures);
-        std::ranges::move(textures.images, std::back_inserter(images));
+        materials += materialText(name, level, *textures);
+        for (auto& [beside, bytes] : textures->files)
+            files.emplace_back(path.parent_path() / beside, std::move(bytes));
     }
     if (lod == 0) return fail("no level that a mesh can hold", "one of cards or a shell");
     const std::string text = fmt::format(
@@ -128,7 +128,22 @@ Result<std::vector<std::string>> writeCardUsd(const cards::Chain& chain, const s
         "    def Scope \"materials\"\n    {{\n{}    }}\n}}\n",
         variants, materials);
     const auto bytes = std::as_bytes(std::span(text));
-    return writeTogether({{path, {bytes.begin(), bytes.end()}}}, images);
+    files.front() = {path, {bytes.begin(), bytes.end()}};
+    auto companions = writeTogether(files);
+    if (!companions) return tl::unexpected(companions.error());
+    return WrittenCards{std::move(*companions),
+                        {springsLeftBehind(),
+                         jointsLeftBehind(),
+                         {"differences between cards that share a texture",
+                          "multiply displayColor in yourself, because UsdPreviewSurface cannot"}}};
+}
+
+}  // namespace
+
+HairWriter usdaCardsWriter() {
+    return cardWriter("usda-cards", "Cards as USD .usda",
+                      "one variant per level, with textures next to the file",
+                      {"cards-usd", "Engines without strands: cards (USD)", "", {}}, "usda", writeCardUsd);
 }
 
 }  // namespace hairloom

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cards/levels.h"
+#include "exporters/card_files.h"
 
 namespace hairloom {
 
@@ -14,9 +15,6 @@ enum class CardMeshFormat {
     obj,  ///< metres; materials in a .mtl beside it
     fbx,  ///< centimetres, as FBX has them; joints and weights
 };
-
-/// Whether this program is built with what writes them.
-bool canWriteCardMeshes();
 
 /// What of the chain is no strands, a mesh for each level, the nearest NAME_LOD0, and textures beside the
 /// file as STEM_LEVEL_colour.png (albedo and coverage) and STEM_LEVEL_normal.png. The same chain gives the

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The table of stages, compiled once for each instruction set. Each stage walks a block from root to tip and,
-// at every point, over the block's lanes: neighbouring vectors are independent and hide each other's latency.
-#include "engine/kernels.h"
+// The stages of springs, compiled once for each instruction set. Each stage walks a block from root to tip
+// and, at every point, over the block's lanes: neighbouring vectors are independent and hide each other's
+// latency.
+#include "models/springs/spring_kernels.h"
 
 // Vector types stand in structs below, which scalable vectors cannot.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "models/springs/table.cpp"
+#define HWY_TARGET_INCLUDE "models/springs/spring_kernel.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
-#include "engine/roots-inl.h"
 #include "hwy/highway.h"
 #include "models/springs/air-inl.h"
 #include "models/springs/bend-inl.h"
@@ -19,27 +19,34 @@
 #include "models/springs/integrate-inl.h"
 #include "models/springs/length-inl.h"
 #include "models/springs/motion-inl.h"
+#include "models/springs/spring_block-inl.h"
 #include "models/springs/springs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-/// One of the stages that Kernels::moves makes one pass of.
+/// A kernel of springs as a stage.
+template <auto kKernel>
+void ofSprings(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    kKernel(static_cast<const SpringBlock&>(block), lanes, context);
+}
+
+/// One of the stages that SpringKernels::moves makes one pass of.
 template <StageId kPart, Motion kFrom, Motion kTo>
 constexpr Stage partOfMove() {
     constexpr Air kAir = kPart == StageId::drag   ? Air::still
                          : kPart == StageId::wind ? Air::moving
                                                   : Air::none;
-    return moveFree<kPart == StageId::damping, kAir, kPart == StageId::gravity, kFrom, kTo>;
+    return ofSprings<moveFree<kPart == StageId::damping, kAir, kPart == StageId::gravity, kFrom, kTo>>;
 }
 
 Stage stageOf(StageId id) {
     switch (id) {
         case StageId::roots:
-            return moveRoots;
+            return kernels().roots;
         case StageId::rod:
-            return rodKernel().stage;
+            return nullptr;
         case StageId::damping:
             return partOfMove<StageId::damping, Motion::position, Motion::position>();
         case StageId::drag:
@@ -49,71 +56,71 @@ Stage stageOf(StageId id) {
         case StageId::gravity:
             return partOfMove<StageId::gravity, Motion::position, Motion::position>();
         case StageId::springs:
-            return applySprings;
+            return ofSprings<applySprings>;
         case StageId::angularSmallAngle:
-            return applyAngular<Shape::curved, false>;
+            return ofSprings<applyAngular<Shape::curved, false>>;
         case StageId::angularExact:
-            return applyAngular<Shape::curved, true>;
+            return ofSprings<applyAngular<Shape::curved, true>>;
         case StageId::straightSmallAngle:
-            return applyAngular<Shape::straight, false>;
+            return ofSprings<applyAngular<Shape::straight, false>>;
         case StageId::straightExact:
-            return applyAngular<Shape::straight, true>;
+            return ofSprings<applyAngular<Shape::straight, true>>;
         case StageId::flexion:
-            return applyFlexion;
+            return ofSprings<applyFlexion>;
         case StageId::penalty:
-            return applyPenalty;
+            return ofSprings<applyPenalty>;
         case StageId::verlet:
             return partOfMove<StageId::verlet, Motion::position, Motion::integrated>();
         case StageId::open:
-            return openStep<0>;
+            return ofSprings<openStep<0>>;
         case StageId::openHalfway:
-            return openStep<1>;
+            return ofSprings<openStep<1>>;
         case StageId::explicitEuler:
-            return advanceEuler;
+            return ofSprings<advanceEuler>;
         case StageId::leapfrog:
-            return advanceLeapfrog;
+            return ofSprings<advanceLeapfrog>;
         case StageId::verletDrift:
-            return driftVerlet;
+            return ofSprings<driftVerlet>;
         case StageId::verletEvaluationState:
-            return setVerletEvaluationState;
+            return ofSprings<setVerletEvaluationState>;
         case StageId::verletKick:
-            return kickVerlet;
+            return ofSprings<kickVerlet>;
         case StageId::rungeKutta1:
-            return rk4Stage<1>;
+            return ofSprings<rk4Stage<1>>;
         case StageId::rungeKutta2:
-            return rk4Stage<2>;
+            return ofSprings<rk4Stage<2>>;
         case StageId::rungeKutta3:
-            return rk4Stage<3>;
+            return ofSprings<rk4Stage<3>>;
         case StageId::rungeKutta4:
-            return rk4Stage<4>;
+            return ofSprings<rk4Stage<4>>;
         case StageId::implicitFree:
-            return advanceFree;
+            return ofSprings<advanceFree>;
         case StageId::implicitBend:
-            return advanceImplicitBend;
+            return ofSprings<advanceImplicitBend>;
         case StageId::implicitSpring:
-            return advanceImplicitSpring<false>;
+            return ofSprings<advanceImplicitSpring<false>>;
         case StageId::implicitSpringBend:
-            return advanceImplicitSpring<true>;
+            return ofSprings<advanceImplicitSpring<true>>;
         case StageId::angular:
-            return bendBack<Shape::curved>;
+            return ofSprings<bendBack<Shape::curved>>;
         case StageId::angularStraight:
-            return bendBack<Shape::straight>;
+            return ofSprings<bendBack<Shape::straight>>;
         case StageId::length:
-            return projectLength<LengthProjection::positions>;
+            return ofSprings<projectLength<LengthProjection::positions>>;
         case StageId::lengthNow:
-            return projectLength<LengthProjection::positionsWithCurrentGradient>;
+            return ofSprings<projectLength<LengthProjection::positionsWithCurrentGradient>>;
         case StageId::springLimit:
-            return limitBySpeed;
+            return ofSprings<limitBySpeed>;
         case StageId::collision:
-            return collide<false>;
+            return ofSprings<collide<false>>;
         case StageId::collisionBack:
-            return collide<true>;
+            return ofSprings<collide<true>>;
         case StageId::continuousCollision:
-            return continuousCollision;
+            return ofSprings<continuousCollision>;
         case StageId::extension:
-            return limitExtension;
+            return ofSprings<limitExtension>;
         case StageId::lengthRate:
-            return projectDisplacements;
+            return ofSprings<projectDisplacements>;
     }
     return nullptr;
 }
@@ -144,26 +151,25 @@ constexpr std::size_t solverFloats(StageId id) {
 }
 
 template <bool kDamped, Air kAir>
-void fillMoves(Kernels& table) {
+void fillMoves(SpringKernels& table) {
     auto& moves = table.moves[kDamped ? 1 : 0][static_cast<std::size_t>(kAir)];
-    moves[0] = moveFree<kDamped, kAir, false, Motion::position, Motion::integrated>;
-    moves[1] = moveFree<kDamped, kAir, true, Motion::position, Motion::integrated>;
+    moves[0] = ofSprings<moveFree<kDamped, kAir, false, Motion::position, Motion::integrated>>;
+    moves[1] = ofSprings<moveFree<kDamped, kAir, true, Motion::position, Motion::integrated>>;
 }
 
 template <StageId kPart>
-void fillPart(Kernels& table) {
+void fillPart(SpringKernels& table) {
     constexpr Motion kTo = kPart == StageId::verlet ? Motion::integrated : Motion::displacement;
     table.partsOfMove[0][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::position, kTo>();
     table.partsOfMove[1][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::displacement, kTo>();
 }
 
-Kernels makeTable() {
-    Kernels table{};
+SpringKernels makeTable() {
+    SpringKernels table{};
     for (std::uint32_t id = 0; id < kStageCount; ++id) {
         table.stages[id] = stageOf(static_cast<StageId>(id));
         table.solverFloats[id] = solverFloats(static_cast<StageId>(id));
     }
-    table.solverFloats[static_cast<std::size_t>(StageId::rod)] = rodKernel().solverFloats;
     fillMoves<false, Air::none>(table);
     fillMoves<false, Air::still>(table);
     fillMoves<false, Air::moving>(table);
@@ -175,22 +181,18 @@ Kernels makeTable() {
     fillPart<StageId::wind>(table);
     fillPart<StageId::gravity>(table);
     fillPart<StageId::verlet>(table);
-    table.bendAndProject[0] = bendAndProject<Shape::straight>;
-    table.bendAndProject[1] = bendAndProject<Shape::curved>;
-    table.bothCollisions[0] = bothCollisions<false>;
-    table.bothCollisions[1] = bothCollisions<true>;
+    table.bendAndProject[0] = ofSprings<bendAndProject<Shape::straight>>;
+    table.bendAndProject[1] = ofSprings<bendAndProject<Shape::curved>>;
+    table.bothCollisions[0] = ofSprings<bothCollisions<false>>;
+    table.bothCollisions[1] = ofSprings<bothCollisions<true>>;
     table.rescale = rescale;
-    table.startHalfway = startHalfway;
-    table.takeRoots = takeRoots;
+    table.startHalfway = ofSprings<startHalfway>;
     table.sampleWind = sampleWind;
-    table.fastest = fastestOf;
-    table.target = hwy::TargetName(HWY_TARGET);
-    table.fuses = HWY_NATIVE_FMA != 0;
     return table;
 }
 
-const Kernels& kernelsOfTarget() {
-    static const Kernels kTable = makeTable();
+const SpringKernels& springKernelsOfTarget() {
+    static const SpringKernels kTable = makeTable();
     return kTable;
 }
 
@@ -202,10 +204,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hairloom::runtime {
 
-HWY_EXPORT(kernelsOfTarget);
+HWY_EXPORT(springKernelsOfTarget);
 
-const Kernels& kernels() {
-    return HWY_DYNAMIC_DISPATCH(kernelsOfTarget)();
+const SpringKernels& springKernels() {
+    return HWY_DYNAMIC_DISPATCH(springKernelsOfTarget)();
 }
 
 }  // namespace hairloom::runtime
