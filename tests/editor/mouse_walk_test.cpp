@@ -165,19 +165,6 @@ class MouseWalkTest : public WindowTest {
         for (const Vec3f& point : points) moveTo(at(point));
         release(at(*(points.end() - 1)));
     }
-    /// Once a dialog of that kind asks, gives it to `answer`.
-    template <class Dialog>
-    void onceAsked(std::function<void(Dialog&)> answer) {
-        auto* timer = new QTimer(window.get());
-        QObject::connect(timer, &QTimer::timeout, window.get(), [timer, answer = std::move(answer)] {
-            auto* asks = qobject_cast<Dialog*>(QApplication::activeModalWidget());
-            if (!asks || !asks->isVisible()) return;
-            timer->stop();
-            timer->deleteLater();
-            answer(*asks);
-        });
-        timer->start(50);
-    }
     /// The name that a dialog of files proposes is taken.
     void onceAskedForAFileTakeIt() {
         onceAsked<QFileDialog>([](QFileDialog& dialog) {

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Operators panel: what it shows, what each of its buttons does, strokes on top, undo of all of it.
-#include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
 #include <QFile>
-#include <QFileDialog>
 #include <QGuiApplication>
 #include <QImage>
 #include <QInputDialog>
-#include <QLineEdit>
 #include <QListWidget>
 #include <QMenu>
 #include <QPushButton>
-#include <QTimer>
 #include <QToolButton>
 #include <QWidgetAction>
 #include <set>
@@ -170,11 +166,9 @@ TEST_F(OperatorsTest, AStackIsKeptWithAPictureAndUsedAgain) {
         }
         return static_cast<QAction*>(nullptr);
     };
-    QTimer::singleShot(200, window.get(), [] {
-        auto* dialog = qobject_cast<QInputDialog*>(QApplication::activeModalWidget());
-        ASSERT_TRUE(dialog);
-        dialog->setTextValue("Tousled");
-        dialog->accept();
+    onceAsked<QInputDialog>([](QInputDialog& dialog) {
+        dialog.setTextValue("Tousled");
+        dialog.accept();
     });
     entry("Save stack as preset…")->trigger();
     auto* kept = qobject_cast<QWidgetAction*>(entry("Tousled"));
@@ -228,23 +222,14 @@ TEST_F(OperatorsTest, AnImageBecomesAMaskAndTheDensityOfRoots) {
     QFile broken(inFolder("broken.png"));
     ASSERT_TRUE(broken.open(QIODevice::WriteOnly) && broken.write("no picture") > 0);
     broken.close();
-    // The dialog of the file, as a person answers it.
-    const auto answer = [this](const char* file) {
-        QTimer::singleShot(300, this->window.get(), [path = inFolder(file)] {
-            auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
-            ASSERT_TRUE(dialog);
-            dialog->findChild<QLineEdit*>("fileNameEdit")->setText(path);
-            QMetaObject::invokeMethod(dialog, "accept");
-        });
-    };
     choose(kClump);
     const auto before = hash();
-    answer("broken.png");
+    onceAskedForAFile(inFolder("broken.png"));
     window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
     EXPECT_EQ(hash(), before);
     EXPECT_TRUE(window->statusLine().message().contains("broken.png"))
         << window->statusLine().message().toStdString();
-    answer("half.png");
+    onceAskedForAFile(inFolder("half.png"));
     window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
     EXPECT_EQ(maskOf(groom().operators[kClump]).map, MaskMap::mask3) << "the sample uses two";
     const auto mask = groom().strandAttributes.view<float>("mask.3");
@@ -263,14 +248,14 @@ TEST_F(OperatorsTest, AnImageBecomesAMaskAndTheDensityOfRoots) {
     // Masks that are in use stay as they are; where all are, it says so.
     const std::vector<float> painted(groom().strandCount(), 0.5f);
     document().perform(editing::setMask(document().editing().model(), 3, painted));
-    answer("half.png");
+    onceAskedForAFile(inFolder("half.png"));
     window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
     EXPECT_EQ(maskOf(groom().operators[kClump]).map, MaskMap::mask4);
     EXPECT_EQ(groom().strandAttributes.view<float>("mask.3")[0], 0.5f);
     trigger("edit.undo");
     document().perform(editing::setMask(document().editing().model(), 4, painted));
     const auto used = hash();
-    answer("half.png");
+    onceAskedForAFile(inFolder("half.png"));
     window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
     EXPECT_EQ(hash(), used);
     EXPECT_TRUE(window->statusLine().message().contains("all 4 masks are in use", Qt::CaseInsensitive))
@@ -278,7 +263,7 @@ TEST_F(OperatorsTest, AnImageBecomesAMaskAndTheDensityOfRoots) {
     undoAll();
     EXPECT_EQ(hash(), before);
     const auto density = groom().scalpDensity;
-    answer("half.png");
+    onceAskedForAFile(inFolder("half.png"));
     window->panel("scalp")->findChild<QPushButton*>("densityImage")->click();
     EXPECT_EQ(groom().scalpDensity.size(), groom().scalp->vertexCount());
     EXPECT_NE(groom().scalpDensity, density);

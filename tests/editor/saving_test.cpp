@@ -4,7 +4,6 @@
 #include <QAbstractButton>
 #include <QApplication>
 #include <QDir>
-#include <QFileDialog>
 #include <QLabel>
 #include <QMessageBox>
 #include <QPushButton>
@@ -127,15 +126,7 @@ TEST_F(SavingTest, TheirsCanBeReloadedAndOursSavedElsewhere) {
     saveElsewhere(path, 8);
     setDrag(6);
     answer("changedSaveAs");
-    QTimer dialog;
-    QObject::connect(&dialog, &QTimer::timeout, [&] {
-        auto* chooser = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
-        if (!chooser) return;
-        dialog.stop();
-        chooser->selectFile(inFolder("b.hairloom"));
-        QMetaObject::invokeMethod(chooser, "accept");
-    });
-    dialog.start(20);
+    onceAskedForAFile(inFolder("b.hairloom"));
     window->saveTo(inFolder("a.hairloom"));
     EXPECT_EQ(dragIn(path), 8);
     EXPECT_EQ(dragIn(file("b.hairloom")), 6);

@@ -4,13 +4,19 @@
 
 #include <gtest/gtest.h>
 
+#include <QApplication>
+#include <QDialog>
 #include <QElapsedTimer>
+#include <QFileDialog>
 #include <QGuiApplication>
+#include <QLineEdit>
 #include <QScreen>
 #include <QSettings>
 #include <QTemporaryDir>
 #include <QTest>
+#include <QTimer>
 #include <QWindow>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -31,6 +37,8 @@ class WindowTest : public testing::Test {
         QSettings().clear();
         if (!pictures_) qputenv("HAIRLOOM_VIEWPORT", "none");
         ASSERT_TRUE(folder.isValid());
+        QObject::connect(&unanswered_, &QTimer::timeout, [this] { leaveUnanswered(); });
+        unanswered_.start(1000);
         open();
     }
     void TearDown() override {
@@ -106,6 +114,28 @@ class WindowTest : public testing::Test {
         ASSERT_TRUE(groom().scalp) << window->statusLine().message().toStdString();
     }
     QString inFolder(const char* name) const { return folder.filePath(name); }
+
+    /// Once a dialog of that kind asks, gives it to `answer`.
+    template <class Dialog>
+    void onceAsked(std::function<void(Dialog&)> answer) {
+        auto* timer = new QTimer(window.get());
+        QObject::connect(timer, &QTimer::timeout, window.get(), [timer, answer = std::move(answer)] {
+            auto* asks = qobject_cast<Dialog*>(QApplication::activeModalWidget());
+            if (!asks || !asks->isVisible()) return;
+            timer->stop();
+            timer->deleteLater();
+            answer(*asks);
+        });
+        timer->start(50);
+    }
+    /// Once a dialog of files asks, answers with that file. Its name is typed: what selectFile() selects
+    /// is lost when the dialog has listed its folder only afterwards.
+    void onceAskedForAFile(const QString& path) {
+        onceAsked<QFileDialog>([path](QFileDialog& dialog) {
+            dialog.findChild<QLineEdit*>("fileNameEdit")->setText(path);
+            QMetaObject::invokeMethod(&dialog, "accept");
+        });
+    }
 
     // The pointer over the viewport, in its pixels.
     void press(const QPoint& at, Qt::KeyboardModifiers modifiers = {},
@@ -186,7 +216,21 @@ class WindowTest : public testing::Test {
     std::unique_ptr<MainWindow> window;
 
   private:
+    /// A dialog that nobody answers fails the test instead of holding up all others.
+    void leaveUnanswered() {
+        auto* asks = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+        if (asks != stands_) asking_.start();
+        stands_ = asks;
+        if (!asks || asking_.elapsed() < 120'000) return;
+        ADD_FAILURE() << "nobody answers " << asks->metaObject()->className() << " '"
+                      << asks->windowTitle().toStdString() << "'";
+        asks->reject();
+    }
+
     bool pictures_;
+    QTimer unanswered_;
+    const QDialog* stands_ = nullptr;
+    QElapsedTimer asking_;
     QByteArray wished_ = qgetenv("HAIRLOOM_VIEWPORT");
 
     template <class Act>
