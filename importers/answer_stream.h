@@ -151,6 +151,9 @@ enum class AnswerKind : std::uint64_t {
     Scene = 0x31454e4543534c48ull,    // "HLSCENE1"
     Strands = 0x31444e5254534c48ull,  // "HLSTRND1"
     Picture = 0x31544349504c4848ull,  // "HHLPICT1"
+    // Of hairloom-mesh-writer: what it is asked for, and its answer.
+    CardScene = 0x3144524143434c48ull,  // "HLCCARD1"
+    MeshFiles = 0x31454c4946434c48ull,  // "HLCFILE1"
 };
 inline constexpr std::uint64_t kAnswerEnd = 0x31444e45454c4c48ull;  // "HLLEEND1"
 

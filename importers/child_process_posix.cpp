@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -73,22 +74,40 @@ std::uint64_t residentBytes(pid_t process) {
     return bytes;
 }
 
+/// A file without a name that holds the bytes, read from their start.
+Result<Descriptor> fileOf(const std::string& name, std::span<const std::byte> bytes) {
+    Descriptor file(memfd_create("input", MFD_CLOEXEC));
+    for (std::size_t done = 0; file.number() >= 0 && done < bytes.size();) {
+        const ssize_t written = write(file.number(), bytes.data() + done, bytes.size() - done);
+        if (written < 0 && errno != EINTR) break;
+        done += static_cast<std::size_t>(std::max<ssize_t>(written, 0));
+        if (done == bytes.size() && lseek(file.number(), 0, SEEK_SET) == 0) return file;
+    }
+    return fail(fmt::format("no input for {}: {}", name, systemMessage(errno)));
+}
+
 struct Spawned {
     pid_t process;
     Descriptor output;
 };
 
 Result<Spawned> spawn(const std::string& name, const std::filesystem::path& program,
-                      const std::vector<std::string>& arguments) {
+                      const std::vector<std::string>& arguments, std::span<const std::byte> input) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0)
         return fail(fmt::format("no pipe to {}: {}", name, systemMessage(errno)));
     Descriptor readEnd(ends[0]);
     const Descriptor writeEnd(ends[1]);
 
+    Result<Descriptor> given = Descriptor();
+    if (!input.empty() && !(given = fileOf(name, input))) return tl::unexpected(given.error());
+
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (input.empty())
+        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    else
+        posix_spawn_file_actions_adddup2(&actions, given->number(), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, writeEnd.number(), STDOUT_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     std::vector<std::string> words{program.string()};
@@ -125,9 +144,9 @@ bool readSome(int descriptor, std::span<std::byte> piece, std::vector<std::byte>
 }  // namespace
 
 Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
-                                        const std::vector<std::string>& arguments,
-                                        const ChildLimits& limits) {
-    auto spawned = spawn(name, program, arguments);
+                                        const std::vector<std::string>& arguments, const ChildLimits& limits,
+                                        std::span<const std::byte> input) {
+    auto spawned = spawn(name, program, arguments, input);
     if (!spawned) return tl::unexpected(spawned.error());
     Child child(spawned->process);
     ChildWatch watch(name, limits, [id = spawned->process] { return residentBytes(id); });
