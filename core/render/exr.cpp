@@ -49,6 +49,28 @@ int channelNamed(const EXRHeader& header, const char* name) {
     return -1;
 }
 
+/// That the blocks of lines follow each other from their table to the end of the file: what is lost of them,
+/// or put between, is seen, which the library does not look at.
+Status checkBlocks(const std::string& file, std::span<const std::byte> content, const EXRHeader& header,
+                   std::int64_t height) {
+    constexpr std::uint64_t kPreamble = 8, kPlace = 8, kBlockHead = 8;
+    const bool isZip = header.compression_type == TINYEXR_COMPRESSIONTYPE_ZIP;
+    const std::int64_t lines = isZip ? 16 : header.compression_type == TINYEXR_COMPRESSIONTYPE_PIZ ? 32 : 1;
+    const auto blocks = static_cast<std::uint64_t>((height + lines - 1) / lines);
+    std::uint64_t at = kPreamble + header.header_len + kPlace * blocks;
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+        std::uint32_t bytes = 0;
+        if (at > content.size() || content.size() - at < kBlockHead)
+            return failIn(file, Byte{content.size()}, "ends within its pixels");
+        std::memcpy(&bytes, content.data() + at + sizeof(std::int32_t), sizeof bytes);
+        if (bytes > content.size() - at - kBlockHead)
+            return failIn(file, Byte{at}, "is damaged: lines of pixels do not end where the next begin");
+        at += kBlockHead + bytes;
+    }
+    if (at == content.size()) return {};
+    return failIn(file, Byte{at}, "is damaged: it goes on after its lines of pixels");
+}
+
 }  // namespace
 
 Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte> content) {
@@ -74,6 +96,8 @@ Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte
     if (auto status = checkPictureSize(file, static_cast<std::uint64_t>(width),
                                        static_cast<std::uint64_t>(height), (channels + 4) * sizeof(float));
         !status)
+        return tl::unexpected(status.error());
+    if (auto status = checkBlocks(file, content, loaded.header, height); !status)
         return tl::unexpected(status.error());
     std::array<int, 4> places{channelNamed(loaded.header, "R"), channelNamed(loaded.header, "G"),
                               channelNamed(loaded.header, "B"), channelNamed(loaded.header, "A")};
