@@ -197,6 +197,31 @@ class Harm:
                         self.fall("damaged files", "failed and left a file", words)
                     self.judge("damaged files", ("info", output), codes=(0,))
 
+    def cut_strands(self, kinds, number):
+        """Strands of which the end is missing are refused, or what is missing is told, or nothing is."""
+        def read(name):
+            (self.folder / "i.hairloom").unlink(missing_ok=True)
+            words = ("import", "-o", "i.hairloom", "--force", name)
+            done = self.judge("cut strands", words)
+            if done is None or done.returncode != 0:
+                return None
+            return done.stderr, self.run("info", "i.hairloom", "--json").stdout
+        sources = [source for source, job in kinds if job[0] == "import"]
+        whole = {source: read(source) for source in sources}
+        for i in range(number):
+            if self.late():
+                break
+            source = sources[i % len(sources)]
+            data = (self.folder / source).read_bytes()
+            # Every second one lacks little.
+            lost = self.random.randrange(1, min(64, len(data)) if i // len(sources) % 2 else len(data))
+            path = self.folder / ("damaged" + Path(source).suffix)
+            path.write_bytes(data[:-lost])
+            found = read(path.name)
+            told, made = whole[source]
+            if found is not None and found[1] != made and found[0].replace(path.name, source) == told:
+                self.fall("cut strands", f"{source} without its last {lost} bytes came in as if whole", ("import", path.name))
+
     def kills(self, number):
         """Whatever the moment, a project is the old one or the new one, and what is left is found."""
         new = ("set", "g.hairloom", "simulation.windSpeed=3", "-o", "k.hairloom")
@@ -317,7 +342,8 @@ def main():
         harm.limits(asked.limits)
         harm.command_lines(asked.lines)
         harm.windows(asked.windows)
-        harm.damaged_files(kinds, asked.files)
+        harm.damaged_files(kinds, asked.files - asked.files // 5)
+        harm.cut_strands(kinds, asked.files // 5)
     for part, count in harm.counts.items():
         fallen = sum(1 for fall in harm.falls if fall[0] == part)
         print(f"{part}: {count} runs, {fallen} falls")
