@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -72,22 +74,40 @@ std::uint64_t residentBytes(pid_t process) {
     return bytes;
 }
 
+/// A file without a name that holds the bytes, read from their start.
+Result<Descriptor> fileOf(const std::string& name, std::span<const std::byte> bytes) {
+    Descriptor file(memfd_create("input", MFD_CLOEXEC));
+    for (std::size_t done = 0; file.number() >= 0 && done < bytes.size();) {
+        const ssize_t written = write(file.number(), bytes.data() + done, bytes.size() - done);
+        if (written < 0 && errno != EINTR) break;
+        done += static_cast<std::size_t>(std::max<ssize_t>(written, 0));
+        if (done == bytes.size() && lseek(file.number(), 0, SEEK_SET) == 0) return file;
+    }
+    return fail(fmt::format("no input for {}: {}", name, systemMessage(errno)));
+}
+
 struct Spawned {
     pid_t process;
     Descriptor output;
 };
 
 Result<Spawned> spawn(const std::string& name, const std::filesystem::path& program,
-                      const std::vector<std::string>& arguments) {
+                      const std::vector<std::string>& arguments, std::span<const std::byte> input) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0)
         return fail(fmt::format("no pipe to {}: {}", name, systemMessage(errno)));
     Descriptor readEnd(ends[0]);
     const Descriptor writeEnd(ends[1]);
 
+    Result<Descriptor> given = Descriptor();
+    if (!input.empty() && !(given = fileOf(name, input))) return tl::unexpected(given.error());
+
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (input.empty())
+        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    else
+        posix_spawn_file_actions_adddup2(&actions, given->number(), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, writeEnd.number(), STDOUT_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     std::vector<std::string> words{program.string()};
@@ -112,10 +132,10 @@ Status explainEnd(const std::string& name, int status) {
     return {};
 }
 
+constexpr std::size_t kPiece = std::size_t{1} << 18u;
+
 /// Appends what can be read; false at the end of the pipe.
-bool readSome(int descriptor, std::vector<std::byte>& output) {
-    constexpr std::size_t kPiece = std::size_t{1} << 16u;
-    std::array<std::byte, kPiece> piece;
+bool readSome(int descriptor, std::span<std::byte> piece, std::vector<std::byte>& output) {
     const ssize_t got = read(descriptor, piece.data(), piece.size());
     if (got > 0) output.insert(output.end(), piece.begin(), piece.begin() + got);
     return got > 0 || (got < 0 && errno == EINTR);
@@ -124,17 +144,24 @@ bool readSome(int descriptor, std::vector<std::byte>& output) {
 }  // namespace
 
 Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
-                                        const std::vector<std::string>& arguments,
-                                        const ChildLimits& limits) {
-    auto spawned = spawn(name, program, arguments);
+                                        const std::vector<std::string>& arguments, const ChildLimits& limits,
+                                        std::span<const std::byte> input) {
+    auto spawned = spawn(name, program, arguments, input);
     if (!spawned) return tl::unexpected(spawned.error());
     Child child(spawned->process);
     ChildWatch watch(name, limits, [id = spawned->process] { return residentBytes(id); });
-    std::vector<std::byte> output;
+    std::vector<std::byte> output, piece(kPiece);
+#ifdef F_SETPIPE_SZ
+    // Fewer turns between the two; smaller pipes do as well.
+    fcntl(spawned->output.number(), F_SETPIPE_SZ, static_cast<int>(kPiece));
+#endif
     pollfd waiting{spawned->output.number(), POLLIN, 0};
     for (bool open = true; open;) {
         const int ready = poll(&waiting, 1, static_cast<int>(kWatchInterval.count()));
-        if (ready > 0) open = readSome(waiting.fd, output);
+        if (ready > 0) {
+            open = readSome(waiting.fd, piece, output);
+            makeRoom(limits, output);
+        }
         if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
     }
     // A child may close its output and linger.

@@ -64,16 +64,45 @@ Handle openNull(DWORD access) {
                               0, nullptr));
 }
 
-/// A job that ends its processes when it is closed, and denies them memory over the limit.
+/// A file that goes when it is closed and holds the bytes, read from their start.
+Result<Handle> fileOf(const std::string& name, std::span<const std::byte> bytes) {
+    std::wstring folder(MAX_PATH + 1, L'\0'), path(MAX_PATH + 1, L'\0');
+    SECURITY_ATTRIBUTES inherited{sizeof(SECURITY_ATTRIBUTES), nullptr, TRUE};
+    if (GetTempPathW(MAX_PATH, folder.data()) != 0 &&
+        GetTempFileNameW(folder.c_str(), L"hlm", 0, path.data()) != 0) {
+        Handle file(CreateFileW(path.c_str(), GENERIC_READ | GENERIC_WRITE, 0, &inherited, CREATE_ALWAYS,
+                                FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, nullptr));
+        bool isWritten = file.get() != nullptr;
+        while (isWritten && !bytes.empty()) {
+            const auto piece = static_cast<DWORD>(std::min<std::size_t>(bytes.size(), kPipeBytes));
+            DWORD done = 0;
+            isWritten = WriteFile(file.get(), bytes.data(), piece, &done, nullptr) != 0 && done > 0;
+            bytes = bytes.subspan(done);
+        }
+        if (isWritten && SetFilePointer(file.get(), 0, nullptr, FILE_BEGIN) == 0) return file;
+    }
+    return fail(fmt::format("no input for {}: {}", name, systemMessage(GetLastError())));
+}
+
+/// A job that ends its process when it is closed, denies it memory over the limit, other programs, and what
+/// the windows of others show and hold.
 Handle createJob(const ChildLimits& limits) {
     Handle job(CreateJobObjectW(nullptr, nullptr));
     JOBOBJECT_EXTENDED_LIMIT_INFORMATION info{};
-    info.BasicLimitInformation.LimitFlags = JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE |
-                                            JOB_OBJECT_LIMIT_PROCESS_MEMORY |
-                                            JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
+    info.BasicLimitInformation.LimitFlags =
+        JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE | JOB_OBJECT_LIMIT_PROCESS_MEMORY |
+        JOB_OBJECT_LIMIT_ACTIVE_PROCESS | JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
+    info.BasicLimitInformation.ActiveProcessLimit = 1;
     info.ProcessMemoryLimit = static_cast<SIZE_T>(limits.residentBytes);
-    if (job.get() != nullptr)
+    JOBOBJECT_BASIC_UI_RESTRICTIONS windows{};
+    windows.UIRestrictionsClass = JOB_OBJECT_UILIMIT_DESKTOP | JOB_OBJECT_UILIMIT_DISPLAYSETTINGS |
+                                  JOB_OBJECT_UILIMIT_EXITWINDOWS | JOB_OBJECT_UILIMIT_GLOBALATOMS |
+                                  JOB_OBJECT_UILIMIT_HANDLES | JOB_OBJECT_UILIMIT_READCLIPBOARD |
+                                  JOB_OBJECT_UILIMIT_SYSTEMPARAMETERS | JOB_OBJECT_UILIMIT_WRITECLIPBOARD;
+    if (job.get() != nullptr) {
         SetInformationJobObject(job.get(), JobObjectExtendedLimitInformation, &info, sizeof(info));
+        SetInformationJobObject(job.get(), JobObjectBasicUIRestrictions, &windows, sizeof(windows));
+    }
     return job;
 }
 
@@ -121,7 +150,8 @@ class InheritedHandles {
 };
 
 Result<Child> spawn(const std::string& name, const std::filesystem::path& program,
-                    const std::vector<std::string>& arguments, const ChildLimits& limits) {
+                    const std::vector<std::string>& arguments, const ChildLimits& limits,
+                    std::span<const std::byte> bytes) {
     SECURITY_ATTRIBUTES inherited{sizeof(SECURITY_ATTRIBUTES), nullptr, TRUE};
     HANDLE readEnd = nullptr, writeEnd = nullptr;
     if (CreatePipe(&readEnd, &writeEnd, &inherited, kPipeBytes) == 0)
@@ -130,14 +160,15 @@ Result<Child> spawn(const std::string& name, const std::filesystem::path& progra
     child.output = Handle(readEnd);
     const Handle output(writeEnd);
     SetHandleInformation(readEnd, HANDLE_FLAG_INHERIT, 0);
-    const Handle input = openNull(GENERIC_READ);
+    auto input = bytes.empty() ? Result<Handle>(openNull(GENERIC_READ)) : fileOf(name, bytes);
+    if (!input) return tl::unexpected(input.error());
     const Handle errors = openNull(GENERIC_WRITE);
 
-    InheritedHandles handles({input.get(), output.get(), errors.get()});
+    InheritedHandles handles({input->get(), output.get(), errors.get()});
     STARTUPINFOEXW startup{};
     startup.StartupInfo.cb = sizeof(startup);
     startup.StartupInfo.dwFlags = STARTF_USESTDHANDLES;
-    startup.StartupInfo.hStdInput = input.get();
+    startup.StartupInfo.hStdInput = input->get();
     startup.StartupInfo.hStdOutput = output.get();
     startup.StartupInfo.hStdError = errors.get();
     startup.lpAttributeList = handles.list();
@@ -186,9 +217,9 @@ bool readSome(HANDLE pipe, std::vector<std::byte>& output) {
 }  // namespace
 
 Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
-                                        const std::vector<std::string>& arguments,
-                                        const ChildLimits& limits) {
-    auto child = spawn(name, program, arguments, limits);
+                                        const std::vector<std::string>& arguments, const ChildLimits& limits,
+                                        std::span<const std::byte> input) {
+    auto child = spawn(name, program, arguments, limits, input);
     if (!child) return tl::unexpected(child.error());
     const HANDLE process = child->process.get();
     ChildWatch watch(name, limits, [process] { return residentBytes(process); });
@@ -196,6 +227,7 @@ Result<std::vector<std::byte>> runChild(const std::string& name, const std::file
     for (bool ended = false;;) {
         const std::size_t before = output.size();
         const bool open = readSome(child->output.get(), output);
+        makeRoom(limits, output);
         if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
         if (!open) break;
         if (output.size() > before) continue;

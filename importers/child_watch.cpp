@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
 #include <utility>
 
 namespace hairloom {
@@ -35,6 +36,14 @@ Status ChildWatch::check(std::size_t outputBytes) {
 Status ChildWatch::over(const std::string& what) const {
     return fail(fmt::format("{} {} for this file and was stopped", name_, what),
                 "the file is damaged or too large");
+}
+
+void makeRoom(const ChildLimits& limits, std::vector<std::byte>& output) {
+    std::uint64_t length = 0;
+    if (!limits.startsWithLength || output.size() < sizeof length || output.capacity() > limits.outputBytes)
+        return;
+    std::memcpy(&length, output.data(), sizeof length);
+    if (length <= limits.outputBytes) output.reserve(static_cast<std::size_t>(length) + sizeof length);
 }
 
 Status crashed(const std::string& name, const std::string& how) {

@@ -32,6 +32,9 @@ class ChildWatch {
     Clock::time_point nextLook_;
 };
 
+/// Reserves what output that starts with its length says it will be.
+void makeRoom(const ChildLimits& limits, std::vector<std::byte>& output);
+
 /// "the mesh reader crashed on this file (signal 11, Segmentation fault)" with `how` in brackets.
 Status crashed(const std::string& name, const std::string& how);
 /// For an exit status other than 0.

@@ -25,7 +25,8 @@ std::string_view layerStateName(LayerState state);
 struct ConfinementLayer {
     /// "memory": a limit of address space. "processes": other processes have no number here. "paths": only
     /// the folder is there. "files": only the folder can be read, nothing written. "system_calls": few, and
-    /// with few arguments.
+    /// with few arguments. Of Windows: "memory"; "programs": no process but this one; "integrity": nothing
+    /// that the user owns can be written, no process of the user touched.
     std::string name;
     LayerState state = LayerState::Missing;
     std::string why;  ///< of one that is not set

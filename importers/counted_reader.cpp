@@ -99,13 +99,13 @@ std::optional<Layout> layoutOf(std::span<const std::byte> bytes) {
 /// The layout that a file was written in which then was cut or added to: its first strands are plain.
 std::optional<Layout> damagedLayoutOf(std::span<const std::byte> bytes) {
     constexpr std::uint64_t kEnough = 2;
-    constexpr std::uint32_t kMostPoints = 4096;
+    constexpr std::uint32_t kMostOfPlain = 4096;
     for (const std::uint32_t numbers : kNumbers) {
         const Layout layout{Counts::BeforeEach, numbers};
         std::uint64_t plain = 0;
         bool isPlain = true;
         walk(bytes, layout, [&](std::uint64_t at, std::uint32_t count) {
-            isPlain = isPlain && count >= 2 && count <= kMostPoints && isPlausible(bytes, at, numbers, count);
+            isPlain = isPlain && count >= 2 && count <= kMostOfPlain && isPlausible(bytes, at, numbers, count);
             plain += isPlain ? 1 : 0;
         });
         if (plain >= kEnough) return layout;

@@ -21,7 +21,7 @@ constexpr std::string_view kMagic = "\x93NUMPY";
 constexpr std::size_t kMostSides = 8;
 
 /// What stands behind 'key': in the header, which is a Python dictionary.
-std::string_view valueOf(std::string_view header, std::string_view key) {
+std::string_view textBehind(std::string_view header, std::string_view key) {
     const std::size_t at = header.find(key);
     if (at == header.npos) return {};
     const std::size_t colon = header.find(':', at);
@@ -144,7 +144,7 @@ Result<NumpyArray> readNumpy(const std::string& file, const std::string& name,
     const std::string_view header(reinterpret_cast<const char*>(bytes.data() + begin), length);
     NumpyArray array;
     array.name = name;
-    const std::string_view type = valueOf(header, "'descr'");
+    const std::string_view type = textBehind(header, "'descr'");
     if (type.starts_with("'|O") || type.starts_with("'O"))
         return wrong(begin, "holds Python objects (pickle), which are not read",
                      "expected plain numbers: points (N, 3) and a count of points for each strand");
@@ -160,8 +160,8 @@ Result<NumpyArray> readNumpy(const std::string& file, const std::string& name,
     if (!isSize || type[4] != '\'' || (array.kind == 'f' && array.bytesEach == 1))
         return wrong(begin, fmt::format("holds values of type {}", shortened(type.substr(0, 6))),
                      "expected numbers of 1, 2, 4 or 8 bytes");
-    array.isFortran = valueOf(header, "'fortran_order'").starts_with("True");
-    auto shape = shapeIn(valueOf(header, "'shape'"));
+    array.isFortran = textBehind(header, "'fortran_order'").starts_with("True");
+    auto shape = shapeIn(textBehind(header, "'shape'"));
     if (!shape) return wrong(begin, "has no shape", "expected 'shape': (N, …)");
     array.data = bytes.subspan(begin + length);
     std::uint64_t room = array.data.size() / array.bytesEach;

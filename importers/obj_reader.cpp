@@ -29,7 +29,11 @@ Result<RawStrands> readObj(const std::string& file, std::vector<std::byte>&& byt
     const bool hasLines = obj->lineOffsets.size() > 1;
     std::vector<std::uint32_t> vertices;
     auto raw = hasLines ? strandsFromLines(file, *obj, vertices) : strandsFromRibbons(file, *obj, options);
-    if (raw) raw->warnings.insert(raw->warnings.begin(), obj->warnings.begin(), obj->warnings.end());
+    if (!raw) return raw;
+    raw->warnings.insert(raw->warnings.begin(), obj->warnings.begin(), obj->warnings.end());
+    if (!hasLines && obj->faceLines.empty())
+        raw->warnings.push_back(fileNote("points without lines and faces were taken for ribbons", "vertices",
+                                         "if it is none of such, it may be cut short: write it again"));
     return raw;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -23,6 +24,7 @@ class Parser {
             if (auto status = statement(lines_.keyword()); !status) return tl::unexpected(status.error());
         }
         endCurve();
+        if (obj_.lineOffsets.size() > 1) tellUnused();
         placeEvaluated();
         return std::move(obj_);
     }
@@ -85,8 +87,21 @@ class Parser {
                              fmt::format("there are {} vertices before it", count));
             }
             target.push_back(static_cast<std::uint32_t>(fromZero));
+            used_.resize(obj_.vertices.size());
+            used_[target.back()] = true;
         }
         return {};
+    }
+
+    /// Lines come after their vertices, so a file that is cut short shows by these alone.
+    void tellUnused() {
+        used_.resize(obj_.vertices.size());
+        const auto unused = std::ranges::count(used_, false);
+        if (unused == 0) return;
+        const auto first = std::ranges::find(used_, false) - used_.begin() + 1;
+        obj_.warnings.push_back(fileWarning(
+            fmt::format("{} vertices are in no line, curve or face; the first is vertex {}", unused, first),
+            "vertices", "the file may be cut short: where strands are missing, write it again"));
     }
 
     Status line() {
@@ -224,6 +239,7 @@ class Parser {
     std::string type_ = "bspline";
     bool isRational_ = false;
     std::uint32_t degree_ = 1;
+    std::vector<bool> used_;               ///< vertices that something names; those behind are not
     std::vector<float> weights_;           ///< of vertices that have one; 1 of those behind
     std::vector<std::uint32_t> controls_;  ///< of the curve that is open
     std::vector<double> knots_;

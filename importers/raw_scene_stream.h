@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// RawScene as bytes, for the pipe between hairloom-mesh-reader and its parent. Both come from one build, so
-// there is no version to negotiate; the reader treats the bytes as hostile all the same.
+// RawScene as bytes, for the pipe between hairloom-mesh-reader and its parent.
 
 #include <cstddef>
 #include <span>
-#include <string_view>
+#include <string>
 
-#include "core/base/file.h"
+#include "importers/answer_stream.h"
 #include "importers/raw_scene.h"
 
 namespace hairloom {
 
-/// Begins the first warning of a scene whose reader lacked layers of confinement; their names follow.
-inline constexpr std::string_view kGuardWarning = "guard: ";
-
-/// The scene, or the reason why there is none.
-ByteWriter writeRawScene(const Result<RawScene>& scene);
+/// The scene, or the reason why there is none; `lacking` names the layers of confinement that its reader
+/// lacked.
+void writeRawScene(const Result<RawScene>& scene, const std::string& lacking, const AnswerWriter::Sink& sink);
 
 /// What writeRawScene() wrote; the scene is not validated further than that it can be held. Errors: the error
 /// that was written, or a message that the bytes are no scene. `file` is named in errors.
-Result<RawScene> readRawScene(const std::string& file, std::span<const std::byte> bytes);
+Result<RawScene> readRawScene(const std::string& file, std::span<const std::byte> bytes,
+                              std::string& lacking);
 
 }  // namespace hairloom

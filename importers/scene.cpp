@@ -8,21 +8,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <mutex>
 #include <system_error>
 
-#include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/base/write_rules.h"
 #include "importers/child_process.h"
+#include "importers/foreign_reader.h"
 #include "importers/length_unit.h"
 #include "importers/mesh_format.h"
 #include "importers/mesh_reader_program.h"
-#include "importers/obj_mesh.h"
-#include "importers/ply_mesh.h"
 #include "importers/raw_scene.h"
 #include "importers/raw_scene_stream.h"
-#include "importers/reader_security.h"
+#include "importers/reader_limits.h"
 #include "importers/utf8.h"
 
 namespace hairloom {
@@ -67,42 +63,15 @@ bool startsWithUtf16Mark(const std::vector<std::byte>& bytes) {
     return (first == 0xff && second == 0xfe) || (first == 0xfe && second == 0xff);
 }
 
-/// Once in a run: it is of the machine, and of no file.
-void sayWhatTheGuardLacks(RawScene& scene) {
-    static std::once_flag said;
-    if (scene.warnings.empty() || !scene.warnings.front().starts_with(kGuardWarning)) return;
-    const std::string names = scene.warnings.front().substr(kGuardWarning.size());
-    scene.warnings.erase(scene.warnings.begin());
-    std::call_once(said, [&] {
-        log::warning(
-            "the process that reads foreign files runs without {}; `hairloom-cli devices --security` "
-            "says what holds",
-            names);
-    });
-}
-
-Result<RawScene> readInChild(const std::filesystem::path& path, MeshFormat format) {
-    std::vector<std::string> arguments{std::string(name(format)), std::filesystem::absolute(path).string()};
-    if (areUnconfinedReadersAllowed()) arguments.emplace_back("--allow-unconfined");
-    const auto output = runChild("the mesh reader", meshReaderProgram(), arguments, {});
-    if (!output) return tl::unexpected(output.error());
-    auto scene = readRawScene(path.string(), *output);
-    if (scene) sayWhatTheGuardLacks(*scene);
+Result<RawScene> readRaw(const std::filesystem::path& path, MeshFormat format, std::uint64_t fileBytes) {
+    const bool isOurs = format == MeshFormat::Obj || format == MeshFormat::Ply;
+    const auto answer =
+        readInChild(std::string(name(format)), path, {}, isOurs ? limitsOfFile(fileBytes) : meshLimits());
+    if (!answer) return tl::unexpected(answer.error());
+    std::string lacking;
+    auto scene = readRawScene(path.string(), *answer, lacking);
+    sayWhatTheGuardLacks(lacking);
     return scene;
-}
-
-Result<RawScene> readRaw(const std::filesystem::path& path, MeshFormat format) {
-    if (format == MeshFormat::Obj) {
-        const auto text = readTextFile(path, kLargestFile);
-        if (!text) return tl::unexpected(text.error());
-        return readObjMesh(path, *text);
-    }
-    if (format == MeshFormat::Ply) {
-        const auto bytes = readFile(path, kLargestFile);
-        if (!bytes) return tl::unexpected(bytes.error());
-        return readPlyMesh(path.string(), *bytes);
-    }
-    return readInChild(path, format);
 }
 
 void cleanNames(RawScene& scene) {
@@ -185,7 +154,7 @@ Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshI
     if (startsWithUtf16Mark(head->bytes)) return failIn(file, {}, "is UTF-16 text", "expected UTF-8");
     const auto format = meshFormatOf(head->bytes, head->fileSize);
     if (!format) return failIn(file, {}, "is not in a supported mesh format", expectedFormats());
-    auto raw = readRaw(path, *format);
+    auto raw = readRaw(path, *format, head->fileSize);
     if (!raw) return tl::unexpected(inFile(raw.error(), file));
     auto scene = finishScene(std::move(*raw), *format, options);
     if (!scene) return tl::unexpected(inFile(scene.error(), file));

@@ -6,58 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
-#include "core/base/file.h"
-#include "core/base/output_batch.h"
 #include "importers/attribute_units.h"
+#include "importers/foreign_reader.h"
 #include "importers/raw_strands.h"
+#include "importers/strand_file.h"
 #include "importers/strand_parts.h"
 #include "importers/strand_roots.h"
 #include "importers/strand_size.h"
 
 namespace hairloom {
 namespace {
-
-/// Those with a signature first.
-std::vector<const StrandReader*> readersInOrder() {
-    std::vector<const StrandReader*> readers;
-    for (const Recognition recognition :
-         {Recognition::Signature, Recognition::Structure, Recognition::Guess}) {
-        for (const StrandReader& reader : strandReaders()) {
-            if (reader.recognition == recognition) readers.push_back(&reader);
-        }
-    }
-    return readers;
-}
-
-/// Strands are of use without it: what is wrong with it is said, no more.
-void readCompanion(const StrandReader& reader, std::filesystem::path path, RawStrands& raw) {
-    path.replace_extension(reader.companion);
-    std::error_code code;
-    if (!std::filesystem::is_regular_file(whereWritten(path), code)) return;
-    const auto bytes = readFile(path);
-    const Status taken =
-        bytes ? reader.readCompanion(path.string(), *bytes, raw) : Status(tl::unexpected(bytes.error()));
-    if (!taken)
-        raw.warnings.push_back({Severity::Error, taken.error().message(), path.filename().string(),
-                                "it was left out. Write it again, or remove it"});
-}
-
-/// Of a file, and what lies beside it, at `path` unless that is empty.
-Result<RawStrands> readRaw(const std::string& file, std::vector<std::byte> bytes,
-                           const StrandImportOptions& options, const std::filesystem::path& path) {
-    if (bytes.empty()) return failIn(file, {}, "is empty", "expected a strand file");
-    for (const StrandReader* reader : readersInOrder()) {
-        if (!reader->recognise(bytes)) continue;
-        auto raw = reader->read(file, std::move(bytes), options);
-        if (raw && !path.empty() && !reader->companion.empty()) readCompanion(*reader, path, *raw);
-        return raw;
-    }
-    return failIn(file, Byte{0}, "is not in a supported strand format",
-                  "expected " + labelsOf(strandFormats()));
-}
 
 Vec3f toMetresYUp(const Vec3f& position, const StrandImportOptions& options, bool mirrorZ) {
     Vec3f p = position;
@@ -395,26 +355,15 @@ std::string_view dropReasonName(DropReason reason) {
     return names[static_cast<std::size_t>(reason)];
 }
 
-std::vector<FileFormat> strandFormats() {
-    std::vector<FileFormat> formats;
-    for (const StrandReader* reader : readersInOrder()) formats.push_back(reader->format);
-    return formats;
-}
-
-bool looksLikeStrandFile(std::span<const std::byte> bytes) {
-    return std::ranges::any_of(strandReaders(), [&](const StrandReader& reader) {
-        return reader.recognition == Recognition::Signature && reader.recognise(bytes);
-    });
-}
-
 namespace {
 
-Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::byte> bytes,
-                                    const StrandImportOptions& asked, const std::filesystem::path& path) {
-    if (!(asked.metresPerUnit > 0) || !std::isfinite(asked.metresPerUnit)) {
-        return fail(fmt::format("{} metres per unit", asked.metresPerUnit), "expected a positive number");
-    }
-    auto raw = readRaw(file, std::move(bytes), asked, path);
+Status checkUnit(const StrandImportOptions& asked) {
+    if (asked.metresPerUnit > 0 && std::isfinite(asked.metresPerUnit)) return {};
+    return fail(fmt::format("{} metres per unit", asked.metresPerUnit), "expected a positive number");
+}
+
+Result<ImportedStrands> importRaw(const std::string& file, Result<RawStrands> raw,
+                                  const StrandImportOptions& asked) {
     if (!raw) return tl::unexpected(raw.error());
     const StrandImportOptions options = stated(*raw, asked);
     layersFromParts(*raw);
@@ -460,15 +409,18 @@ Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::by
 
 Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,
                                                 const StrandImportOptions& options) {
-    return importBytes(file, {bytes.begin(), bytes.end()}, options, {});
+    if (auto status = checkUnit(options); !status) return tl::unexpected(status.error());
+    return importRaw(file, readStrandFile(file, {bytes.begin(), bytes.end()}, options, {}), options);
 }
 
 Result<ImportedStrands> importStrands(const std::filesystem::path& path, const StrandImportOptions& options) {
-    auto bytes = readFile(path);
-    if (!bytes) return tl::unexpected(bytes.error());
-    StrandImportOptions beside = options;
-    if (beside.folder.empty()) beside.folder = std::filesystem::absolute(path).parent_path();
-    return importBytes(path.string(), std::move(*bytes), beside, path);
+    if (auto status = checkUnit(options); !status) return tl::unexpected(status.error());
+    auto imported = importRaw(path.string(), readStrandsInChild(path, options), options);
+    if (!imported) return imported;
+    // The parts fit each other, and no process but this one says so.
+    if (auto status = checkStructure(imported->groom); !status)
+        return tl::unexpected(inFile(status.error(), path.string()));
+    return imported;
 }
 
 }  // namespace hairloom

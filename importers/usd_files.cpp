@@ -97,7 +97,12 @@ Result<std::string> UsdFiles::keyInFolder(const fs::path& from, const std::strin
     if (code) return fail("is no place of a file");
     const auto [end, rest] = std::ranges::mismatch(folder_, found);
     if (end != folder_.end()) return fail("lies outside the folder of the file");
-    if (!fs::exists(found, code)) return fail("there is no such file");
+    if (!fs::exists(found, code)) {
+        // Where the folder is all that there is, a link out of it leads nowhere.
+        return fail(fs::is_symlink(found, code)
+                        ? "is a link that leads nowhere, or lies outside the folder of the file"
+                        : "there is no such file");
+    }
     if (!fs::is_regular_file(found, code)) return fail("is no file");
     return entry.empty() ? found.string() : fmt::format("{}[{}]", found.string(), entry);
 }

@@ -264,9 +264,9 @@ const std::string& UsdcFile::string(std::uint64_t index) const {
 }
 
 std::string UsdcFile::pathText(std::uint64_t index) const {
-    constexpr std::size_t kMaxDepth = 256;
+    constexpr std::size_t kMaxElements = 256;
     std::vector<const UsdcPath*> elements;
-    while (index < paths_.size() && elements.size() < kMaxDepth) {
+    while (index < paths_.size() && elements.size() < kMaxElements) {
         elements.push_back(&paths_[static_cast<std::size_t>(index)]);
         index = elements.back()->parent;
     }

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/render/png.h"
 #include "core/render/tone_map.h"
+#include "importers/foreign_reader.h"
 
 namespace hairloom {
 
 Result<MaskImage> MaskImage::read(const std::string& path) {
-    auto image = render::readPng(path);
+    auto image = readPicture(path, {PictureKind::Png});
     if (!image) return tl::unexpected(image.error());
     MaskImage mask;
     mask.image_ = std::move(*image);

@@ -14,7 +14,7 @@ namespace hairloom {
 /// (0, 0) is its lower left corner, and it repeats.
 class MaskImage {
   public:
-    /// Errors: as render::readPng(), which names the file.
+    /// Errors: as readPicture(), which names the file.
     static Result<MaskImage> read(const std::string& path);
     /// 0 … 1.
     float at(const Vec2f& uv) const;

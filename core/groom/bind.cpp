@@ -10,7 +10,7 @@ namespace hairloom {
 
 std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> scalp, FaceSet selection) {
     assert(scalp && scalp->triangleCount() > 0);
-    constexpr std::size_t kGrain = 256;
+    constexpr std::size_t kRootsAtATime = 256;
     if (selection.empty()) {
         selection.resize(scalp->triangleCount());
         std::iota(selection.begin(), selection.end(), 0u);
@@ -19,7 +19,7 @@ std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> sc
     std::vector<SurfacePoint> roots(groom.strandCount());
     std::vector<Vec2f> uvs(groom.strandCount());
     std::vector<float> distances(groom.strandCount());
-    parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(groom.strandCount(), kRootsAtATime, [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             const SurfaceTree::Hit hit = tree.closest(groom.strand(s)[0]);
             roots[s] = hit.surface;

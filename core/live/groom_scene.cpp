@@ -15,10 +15,9 @@
 #include "core/interpolation/follow_hairs.h"
 #include "core/live/hair_look.h"
 #include "core/live/root_rotations.h"
-#include "core/render/exr.h"
-#include "core/render/png.h"
 #include "core/simulation/body_push.h"
 #include "core/simulation/simulation.h"
+#include "importers/foreign_reader.h"
 
 namespace hairloom {
 namespace {
@@ -66,7 +65,7 @@ Result<render::Environment> readEnvironment(JsonReader& reader,
         const double scale = reader.has("scale") ? reader.number("scale", 0, kAnyRadiance) : 1;
         if (!reader.ok()) return render::Environment();
         if (auto status = checkLiesBeside(image, folders); !status) return tl::unexpected(status.error());
-        const auto pixels = image.extension() == ".exr" ? render::readExr(image) : render::readPng(image);
+        const auto pixels = readPicture(image, {PictureKind::Png, PictureKind::Exr, PictureKind::Jpeg});
         if (!pixels) return tl::unexpected(pixels.error());
         return render::Environment::fromImage(*pixels, static_cast<float>(scale));
     }

@@ -233,8 +233,8 @@ void SkinField::prepare(std::span<const std::uint32_t> faces) const {
     }
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
-    constexpr std::size_t kGrain = 16;
-    parallelFor(near.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t kCellsAtATime = 16;
+    parallelFor(near.size(), kCellsAtATime, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (std::abs(centreDistance(near[i])) <= halfDiagonal(cell_) + kReach) corners(near[i]);
         }

@@ -49,21 +49,41 @@ int channelNamed(const EXRHeader& header, const char* name) {
     return -1;
 }
 
+/// That the blocks of lines follow each other from their table to the end of the file: what is lost of them,
+/// or put between, is seen, which the library does not look at.
+Status checkBlocks(const std::string& file, std::span<const std::byte> content, const EXRHeader& header,
+                   std::int64_t height) {
+    constexpr std::uint64_t kPreamble = 8, kPlace = 8, kBlockHead = 8;
+    const bool isZip = header.compression_type == TINYEXR_COMPRESSIONTYPE_ZIP;
+    const std::int64_t lines = isZip ? 16 : header.compression_type == TINYEXR_COMPRESSIONTYPE_PIZ ? 32 : 1;
+    const auto blocks = static_cast<std::uint64_t>((height + lines - 1) / lines);
+    std::uint64_t at = kPreamble + header.header_len + kPlace * blocks;
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+        std::uint32_t bytes = 0;
+        if (at > content.size() || content.size() - at < kBlockHead)
+            return failIn(file, Byte{content.size()}, "ends within its pixels");
+        std::memcpy(&bytes, content.data() + at + sizeof(std::int32_t), sizeof bytes);
+        if (bytes > content.size() - at - kBlockHead)
+            return failIn(file, Byte{at}, "is damaged: lines of pixels do not end where the next begin");
+        at += kBlockHead + bytes;
+    }
+    if (at == content.size()) return {};
+    return failIn(file, Byte{at}, "is damaged: it goes on after its lines of pixels");
+}
+
 }  // namespace
 
-Result<LinearImage> readExr(const std::filesystem::path& path) {
-    const auto file = readFile(path, kMaxFileBytes);
-    if (!file) return tl::unexpected(file.error());
+Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte> content) {
     const auto failed = [&](const std::string& why) {
-        return failIn(path.string(), {}, why, "an OpenEXR of one part in lines of pixels");
+        return failIn(file, {}, why, "expected an OpenEXR of one part in lines of pixels");
     };
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(file->data());
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(content.data());
     Loaded loaded;
-    if (ParseEXRVersionFromMemory(&loaded.version, bytes, file->size()) != TINYEXR_SUCCESS)
+    if (ParseEXRVersionFromMemory(&loaded.version, bytes, content.size()) != TINYEXR_SUCCESS)
         return failed("is not an OpenEXR file");
     if (loaded.version.tiled != 0 || loaded.version.non_image != 0 || loaded.version.multipart != 0)
         return failed("is tiled, deep or of several parts");
-    if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, file->size(), &loaded.error) !=
+    if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, content.size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
         loaded.forgetHeader();
         return failed("cannot be read: " + loaded.why());
@@ -73,9 +93,11 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     const std::int64_t height = std::int64_t{window.max_y} - window.min_y + 1;
     if (width < 1 || height < 1) return failed("is a picture without pixels");
     const auto channels = static_cast<std::uint64_t>(loaded.header.num_channels);
-    if (auto status = checkPictureSize(path, static_cast<std::uint64_t>(width),
+    if (auto status = checkPictureSize(file, static_cast<std::uint64_t>(width),
                                        static_cast<std::uint64_t>(height), (channels + 4) * sizeof(float));
         !status)
+        return tl::unexpected(status.error());
+    if (auto status = checkBlocks(file, content, loaded.header, height); !status)
         return tl::unexpected(status.error());
     std::array<int, 4> places{channelNamed(loaded.header, "R"), channelNamed(loaded.header, "G"),
                               channelNamed(loaded.header, "B"), channelNamed(loaded.header, "A")};
@@ -84,7 +106,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     if (places[0] < 0 || places[1] < 0 || places[2] < 0) return failed("has no channels R, G and B, or Y");
     for (int c = 0; c < loaded.header.num_channels; ++c)
         loaded.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
-    if (LoadEXRImageFromMemory(&loaded.image, &loaded.header, bytes, file->size(), &loaded.error) !=
+    if (LoadEXRImageFromMemory(&loaded.image, &loaded.header, bytes, content.size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
         loaded.forgetImage();
         return failed("cannot be read: " + loaded.why());
@@ -98,6 +120,12 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
         for (std::size_t i = 0; i < image.rgba.size() / 4; ++i) image.rgba[4 * i + c] = plane[i];
     }
     return image;
+}
+
+Result<LinearImage> readExr(const std::filesystem::path& path) {
+    const auto bytes = readFile(path, kMaxFileBytes);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return decodeExr(path.string(), *bytes);
 }
 
 Status writeExr(const std::filesystem::path& path, const LinearImage& image,

@@ -24,8 +24,12 @@ Status writeExr(const std::filesystem::path& path, const LinearImage& image,
                 std::span<const ExrLayer> layers = {});
 
 /// OpenEXR of one part in lines of pixels: R, G, B, and A where it is there (else 1), or Y as grey. Half and
-/// single floats, any compression that the library knows. Errors: not there, damaged, tiled, deep or of
-/// several parts, more than 16384 pixels along a side, no such channels.
+/// single floats, any compression that the library knows. From the bytes of a file, which errors name.
+/// Errors: damaged, tiled, deep or of several parts, larger than picture_limits.h allows, no such channels.
+/// Of foreign files this is for the process that reads them (importers/foreign_reader.h).
+Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte> bytes);
+
+/// The same of a file of this program's own.
 Result<LinearImage> readExr(const std::filesystem::path& path);
 
 }  // namespace hairloom::render

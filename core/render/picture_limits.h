@@ -3,7 +3,7 @@
 // How large pictures that are read may be: a file of a few kilobytes can say any size.
 
 #include <cstdint>
-#include <filesystem>
+#include <string>
 
 #include "core/base/result.h"
 
@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kMaxPictureSide = 32768;
 inline constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{3} << 30u;
 
 /// Errors: no pixels, more than these limits; `bytesPerPixel` are those of all that decoding holds at once.
-Status checkPictureSize(const std::filesystem::path& path, std::uint64_t width, std::uint64_t height,
+Status checkPictureSize(const std::string& file, std::uint64_t width, std::uint64_t height,
                         std::uint64_t bytesPerPixel);
 
 }  // namespace hairloom::render

@@ -4,6 +4,7 @@
 #include <png.h>
 #include <zlib.h>
 
+#include <array>
 #include <cstring>
 
 #include "core/base/file.h"
@@ -127,19 +128,17 @@ Status writeAnimatedPng(const std::filesystem::path& path, std::span<const Image
     return writeFileAtomically(path, out);
 }
 
-Result<LinearImage> readPng(const std::filesystem::path& path) {
-    const auto file = readFile(path, kMaxFileBytes);
-    if (!file) return tl::unexpected(file.error());
+Result<LinearImage> decodePng(const std::string& file, std::span<const std::byte> bytes) {
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
     const auto failed = [&](const std::string& why) {
         png_image_free(&png);
-        return failIn(path.string(), {}, why, "a PNG");
+        return failIn(file, {}, "cannot be read: " + why, "expected a whole PNG");
     };
-    if (png_image_begin_read_from_memory(&png, file->data(), file->size()) == 0) return failed(png.message);
+    if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) return failed(png.message);
     // Bytes of the file's own pixels, and of the linear ones.
     constexpr std::uint64_t kBytesPerPixel = 4 + 4 * sizeof(float);
-    if (auto status = checkPictureSize(path, png.width, png.height, kBytesPerPixel); !status) {
+    if (auto status = checkPictureSize(file, png.width, png.height, kBytesPerPixel); !status) {
         png_image_free(&png);
         return tl::unexpected(status.error());
     }
@@ -147,11 +146,19 @@ Result<LinearImage> readPng(const std::filesystem::path& path) {
     std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(png));
     if (png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr) == 0) return failed(png.message);
     LinearImage image{png.width, png.height, std::vector<float>(pixels.size())};
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const float value = static_cast<float>(pixels[i]) / 255;
-        image.rgba[i] = i % 4 == 3 ? value : decodeSrgb(value);
+    std::array<float, 256> linear{}, share{};
+    for (std::size_t i = 0; i < linear.size(); ++i) {
+        share[i] = static_cast<float>(i) / 255;
+        linear[i] = decodeSrgb(share[i]);
     }
+    for (std::size_t i = 0; i < pixels.size(); ++i) image.rgba[i] = (i % 4 == 3 ? share : linear)[pixels[i]];
     return image;
+}
+
+Result<LinearImage> readPng(const std::filesystem::path& path) {
+    const auto bytes = readFile(path, kMaxFileBytes);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return decodePng(path.string(), *bytes);
 }
 
 }  // namespace hairloom::render

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "core/base/result.h"
 #include "core/render/image.h"
@@ -20,7 +21,12 @@ Status writePng(const std::filesystem::path& path, const Image& image);
 Status writeAnimatedPng(const std::filesystem::path& path, std::span<const Image> frames,
                         std::uint32_t milliseconds);
 
-/// Any PNG, as linear light. Errors: not there, damaged, more than 16384 pixels along a side.
+/// Any PNG, as linear light, from the bytes of its file, which errors name. Errors: damaged, larger than
+/// picture_limits.h allows. Of foreign files this is for the process that reads them
+/// (importers/foreign_reader.h).
+Result<LinearImage> decodePng(const std::string& file, std::span<const std::byte> bytes);
+
+/// The same of a file of this program's own.
 Result<LinearImage> readPng(const std::filesystem::path& path);
 
 }  // namespace hairloom::render

@@ -15,13 +15,13 @@ namespace {
 
 constexpr float kQuality = 90;
 
-struct Picture {
+struct WebpPicture {
     WebPPicture value{};
 
-    Picture() { WebPPictureInit(&value); }
-    ~Picture() { WebPPictureFree(&value); }
-    Picture(const Picture&) = delete;
-    Picture& operator=(const Picture&) = delete;
+    WebpPicture() { WebPPictureInit(&value); }
+    ~WebpPicture() { WebPPictureFree(&value); }
+    WebpPicture(const WebpPicture&) = delete;
+    WebpPicture& operator=(const WebpPicture&) = delete;
 };
 
 struct Assembled {
@@ -75,7 +75,7 @@ Status writeAnimatedWebp(const std::filesystem::path& path, std::span<const Imag
     if (!encoder) return failed();
     int time = 0;
     for (const Image& frame : frames) {
-        Picture picture;
+        WebpPicture picture;
         picture.value.use_argb = 1;
         picture.value.width = width;
         picture.value.height = height;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/base/checksum.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
@@ -197,7 +198,7 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
     file.read(reinterpret_cast<char*>(values.data()),
               static_cast<std::streamsize>(values.size() * sizeof(Vec3f)));
     if (!file) return failIn(name, Byte{start}, "is cut short", fmt::format("expected frame {} here", index));
-    if (hash != hashOf(std::span<const Vec3f>(values))) {
+    if (!isChecksum(hashOf(std::span<const Vec3f>(values)), hash)) {
         return failIn(name, Byte{start}, fmt::format("frame {} is damaged", index),
                       "its checksum does not match");
     }

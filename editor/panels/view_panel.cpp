@@ -8,12 +8,15 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/render/tone_map.h"
 #include "editor/fields/number_box.h"
 #include "editor/overlays/overlay_mode.h"
 #include "editor/panels/panel.h"
 #include "editor/style/icons.h"
+#include "importers/foreign_reader.h"
 
 namespace hairloom::editor {
 namespace {
@@ -49,6 +52,21 @@ QToolButton* overlayButton(const Actions& actions) {
     for (QAction* action : all) QObject::connect(action, &QAction::toggled, button, say);
     say();
     return button;
+}
+
+/// As it was painted, its bright parts cut off.
+QImage imageOf(const render::LinearImage& picture) {
+    QImage image(static_cast<int>(picture.width), static_cast<int>(picture.height), QImage::Format_RGBA8888);
+    const auto byte = [](float value) {
+        return static_cast<uchar>(std::lround(255 * std::clamp(value, 0.0f, 1.0f)));
+    };
+    for (std::uint32_t y = 0; y < picture.height && !image.isNull(); ++y) {
+        uchar* to = image.scanLine(static_cast<int>(y));
+        const float* from = &picture.rgba[std::size_t{4} * picture.width * y];
+        for (std::uint32_t i = 0; i < 4 * picture.width; ++i)
+            to[i] = byte(i % 4 == 3 ? from[i] : render::encodeSrgb(std::max(from[i], 0.0f)));
+    }
+    return image;
 }
 
 QWidget* makeParts(const Actions& actions, Viewport& viewport) {
@@ -107,7 +125,7 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
     auto* row = new QHBoxLayout;
     auto* choose = new QPushButton(QObject::tr("Choose…"));
     choose->setObjectName("referenceChoose");
-    choose->setToolTip(QObject::tr("A reference image behind the head: PNG, JPEG"));
+    choose->setToolTip(QObject::tr("A reference image behind the head: PNG, JPEG or OpenEXR"));
     auto* clear = new QPushButton(QObject::tr("Remove"));
     clear->setObjectName("referenceClear");
     clear->setToolTip(QObject::tr("Remove the reference image"));
@@ -128,13 +146,14 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
     };
     QObject::connect(choose, &QPushButton::clicked, widget, [&messages, widget, show] {
         const QString path = QFileDialog::getOpenFileName(widget, QObject::tr("Reference image"), {},
-                                                          QObject::tr("Images (*.png *.jpg *.jpeg *.bmp)"));
+                                                          QObject::tr("Images (*.png *.jpg *.jpeg *.exr)"));
         if (path.isEmpty()) return;
-        const QImage image(path);
-        if (image.isNull()) {
-            messages.warn(QObject::tr("%1 cannot be read as an image").arg(path));
+        const auto picture =
+            readPicture(path.toStdString(), {PictureKind::Png, PictureKind::Jpeg, PictureKind::Exr});
+        if (!picture) {
+            messages.warn(QString::fromStdString(picture.error().message()));
         } else {
-            show(image);
+            show(imageOf(*picture));
         }
     });
     QObject::connect(clear, &QPushButton::clicked, widget, [show] { show({}); });

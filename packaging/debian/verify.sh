@@ -39,7 +39,7 @@ if [ -e "$root/usr/share/hairloom/web/player.js" ]; then
 fi
 inside hairloom --quit-when-shown /try/hair.hairloom
 echo "ok   hairloom-cli and hairloom run"
-for file in bin/hairloom-mesh-reader share/applications/hairloom.desktop share/mime/packages/hairloom.xml \
+for file in bin/hairloom-mesh-reader bin/hairloom-mesh-writer share/applications/hairloom.desktop share/mime/packages/hairloom.xml \
     share/icons/hicolor/scalable/apps/hairloom.svg share/man/man1/hairloom.1 share/man/man1/hairloom-cli.1 share/doc/hairloom/copyright; do
     [ -e "$root/usr/$file" ] || [ -e "$root/usr/$file.gz" ] || { echo "FAIL /usr/$file is missing"; exit 1; }
 done

@@ -359,6 +359,34 @@ TEST_F(StrandWriters, StrandsThatMoveAreReadBackAtEveryFrame) {
     EXPECT_EQ(animating, 4);
 }
 
+/// What is written is read back, so that each reader is asked.
+TEST_F(StrandWriters, APointBeyondAKilometreIsRefusedWithItsStrand) {
+    Groom groom = helices({8, 8});
+    for (const float metres : {1.5e3f, 1e12f}) {
+        std::vector<Vec3f> points(groom.positions().begin(), groom.positions().end());
+        points[11] = Vec3f(0, metres, 0);
+        groom.pointAttributes.set(attribute::kPosition, points);
+        for (const HairWriter& writer : strandWriters()) {
+            StrandExportOptions options = writer.targets.front().options;
+            options.pointsPerStrand = 8;
+            const auto report = writer.write(groom, folder / ("far." + writer.name), options);
+            ASSERT_FALSE(report) << writer.name;
+            EXPECT_THAT(report.error().message(), HasSubstr("from the origin")) << writer.name;
+            EXPECT_THAT(report.error().message(), HasSubstr("strand 1")) << writer.name;
+            if (!writer.animates) continue;
+            // At rest they are near.
+            const Groom near = helices({8, 8});
+            auto frames = std::make_shared<StrandFrames>();
+            frames->points.assign(3, {near.positions().begin(), near.positions().end()});
+            frames->points[2] = points;
+            options.frames = frames;
+            const auto moving = writer.write(near, folder / ("far." + writer.name), options);
+            ASSERT_FALSE(moving) << writer.name;
+            EXPECT_THAT(moving.error().message(), HasSubstr("from the origin")) << writer.name;
+        }
+    }
+}
+
 TEST_F(StrandWriters, TargetsSetWhatTheirProgramWantsAndNameWhatItDoesNotTake) {
     for (const char* const program : {"blender", "houdini", "jolt", "maya", "tressfx", "unity", "unreal"})
         EXPECT_NE(findTarget(preferredWriter(program), program), nullptr) << program;

@@ -12,16 +12,43 @@ import os
 import random
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
 import time
+import zlib
 from pathlib import Path
 
 TIMEOUT_S = 60
 WINDOW_S = 30  # a window that does not answer gets 25
 FORMATS = {"hair": "hair", "tfx": "tfx", "abc": "abc", "usda": "usda", "usdc": "usdc", "obj-lines": "obj", "obj-c4d": "obj", "ply": "ply",
            "runtime": "hairrt"}
+
+
+def png(width, height):
+    """A grey ramp."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = b"".join(b"\0" + bytes((64 + x * 3 + y) & 255 for x in range(width)) for y in range(height))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)) + \
+        chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def exr(width, height):
+    """OpenEXR of three channels of floats, without compression."""
+    def attribute(name, kind, data):
+        return name + b"\0" + kind + b"\0" + struct.pack("<I", len(data)) + data
+    channels = b"".join(name + b"\0" + struct.pack("<IIII", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    head = struct.pack("<II", 20000630, 2) + attribute(b"channels", b"chlist", channels) + attribute(b"compression", b"compression", b"\0") + \
+        attribute(b"dataWindow", b"box2i", window) + attribute(b"displayWindow", b"box2i", window) + \
+        attribute(b"lineOrder", b"lineOrder", b"\0") + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) + \
+        attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
+    line = struct.pack(f"<{3 * width}f", *(0.5 for _ in range(3 * width)))
+    begin = len(head) + 8 * height
+    table = b"".join(struct.pack("<Q", begin + y * (8 + len(line))) for y in range(height))
+    return head + table + b"".join(struct.pack("<iI", y, len(line)) + line for y in range(height))
 
 
 class Harm:
@@ -47,6 +74,11 @@ class Harm:
         self.counts[part] = self.counts.get(part, 0) + 1
 
     def fall(self, part, what, arguments):
+        # Of a damaged file what did it is kept, to be looked at and to become a test.
+        for damaged in self.folder.glob("damaged.*"):
+            kept = Path("out/harm")
+            kept.mkdir(parents=True, exist_ok=True)
+            shutil.copy(damaged, kept / f"{len(self.falls)}-{damaged.name}")
         self.falls.append((part, what, " ".join(map(str, arguments))))
         print(f"FALL {part}: {what}: {' '.join(map(str, arguments))}", flush=True)
 
@@ -91,6 +123,27 @@ class Harm:
                  ("stack.json", ("stack", "g.hairloom", "-o", "s.hairloom", "--force", "--from")),
                  ("script.json", ("groom", "g.hairloom", "-o", "s.hairloom", "--force", "--script")),
                  ("motion.json", ("simulate", "g.hairloom", "--frames", "2", "--motion"))]
+        for name, picture in (("mask.png", png(24, 16)), ("sky.exr", exr(16, 8))):
+            (self.folder / name).write_bytes(picture)
+        (self.folder / "settings.json").write_text('{"simulation": {"windSpeed": 2, "gravity": [0, -9.81, 0]}, "material": {"rootRadius": 5e-5}}')
+        # Its picture is the damaged one, beside it.
+        view = '{"camera": {"eye": [0, 1.6, 1], "target": [0, 1.6, 0], "fov_y_deg": 30}, "lights": [{"type": "environment", "image": "%s"}]}'
+        (self.folder / "view.json").write_text(view % "sky.exr")
+        (self.folder / "damaged_view.json").write_text(view % "damaged.exr")
+        shutil.copy(self.root / "samples/bust/bust.obj", self.folder / "bust.obj")
+        vertices = [line.split()[1:4] for line in (self.root / "samples/bust/bust.obj").read_text().splitlines() if line.startswith("v ")][:3]
+        facet = "facet normal 0 0 1 outer loop " + " ".join("vertex " + " ".join(v) for v in vertices) + " endloop endfacet"
+        (self.folder / "one.stl").write_text(f"solid one\n{facet}\nendsolid one\n")
+        (self.folder / "one.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                                             "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                             + "\n".join(" ".join(v) for v in vertices) + "\n3 0 1 2\n")
+        tiny = ("--size", "16x16", "--passes", 1, "-o", "r.png", "--force")
+        kinds += [("mask.png", ("create", "--mesh", "bust.glb", "--scalp", "material:scalp", "--count", 20, "-o", "i.hairloom", "--force", "--mask")),
+                  ("mask.png", ("set", "g.hairloom", "-o", "s.hairloom", "--force", "--dye-image")),
+                  ("settings.json", ("set", "g.hairloom", "-o", "s.hairloom", "--force", "--from")),
+                  ("bust.obj", ("validate",)), ("one.stl", ("info",)), ("one.ply", ("info",)),
+                  ("view.json", ("render", "g.hairloom", *tiny, "--view")),
+                  ("sky.exr", ("render", "g.hairloom", *tiny, "--view", "damaged_view.json"))]
         for name, suffix in FORMATS.items():
             extra = ("--points", 8) if name == "tfx" else ()
             self.must("export", "g.hairloom", "--format", name, *extra, "--force", "-o", f"{name}.{suffix}")
@@ -131,16 +184,44 @@ class Harm:
             source, job = kinds[i % len(kinds)]
             path = self.folder / ("damaged" + Path(source).suffix)
             path.write_bytes(self.damage((self.folder / source).read_bytes()))
-            for output in ("i.hairloom", "s.hairloom", "f.abc"):
+            for output in ("i.hairloom", "s.hairloom", "f.abc", "r.png"):
                 (self.folder / output).unlink(missing_ok=True)
-            done = self.judge("damaged files", (*job, path.name))
+            words = job if "damaged_view.json" in job else (*job, path.name)
+            done = self.judge("damaged files", words)
             if done is None:
                 continue
             for output in ("i.hairloom", "s.hairloom"):
+                if done.returncode == 0 and path.suffix not in (".json", ".frames", ".glb") and output in job and not (self.folder / output).exists():
+                    self.fall("damaged files", "succeeded and wrote nothing", words)
                 if (self.folder / output).exists():
                     if done.returncode != 0:
-                        self.fall("damaged files", "failed and left a file", (*job, path.name))
+                        self.fall("damaged files", "failed and left a file", words)
                     self.judge("damaged files", ("info", output), codes=(0,))
+
+    def cut_strands(self, kinds, number):
+        """Strands of which the end is missing are refused, or what is missing is told, or nothing is."""
+        def read(name):
+            (self.folder / "i.hairloom").unlink(missing_ok=True)
+            words = ("import", "-o", "i.hairloom", "--force", name)
+            done = self.judge("cut strands", words)
+            if done is None or done.returncode != 0:
+                return None
+            return done.stderr, self.run("info", "i.hairloom", "--json").stdout
+        sources = [source for source, job in kinds if job[0] == "import"]
+        whole = {source: read(source) for source in sources}
+        for i in range(number):
+            if self.late():
+                break
+            source = sources[i % len(sources)]
+            data = (self.folder / source).read_bytes()
+            # Every second one lacks little.
+            lost = self.random.randrange(1, min(64, len(data)) if i // len(sources) % 2 else len(data))
+            path = self.folder / ("damaged" + Path(source).suffix)
+            path.write_bytes(data[:-lost])
+            found = read(path.name)
+            told, made = whole[source]
+            if found is not None and found[1] != made and found[0].replace(path.name, source) == told:
+                self.fall("cut strands", f"{source} without its last {lost} bytes came in as if whole", ("import", path.name))
 
     def kills(self, number):
         """Whatever the moment, a project is the old one or the new one, and what is left is found."""
@@ -265,7 +346,8 @@ def main():
         harm.limits(asked.limits)
         harm.command_lines(asked.lines)
         harm.windows(asked.windows)
-        harm.damaged_files(kinds, asked.files)
+        harm.damaged_files(kinds, asked.files - asked.files // 5)
+        harm.cut_strands(kinds, asked.files // 5)
     for part, count in harm.counts.items():
         fallen = sum(1 for fall in harm.falls if fall[0] == part)
         print(f"{part}: {count} runs, {fallen} falls")

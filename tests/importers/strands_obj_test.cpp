@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OBJ polylines and Cinema 4D ribbons (thesis §4.1).
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
 
 #include "tests/importers/strands_files.h"
 
@@ -118,6 +122,31 @@ TEST(StrandsLines, KeepTheOrderTheyAreListedIn) {
     EXPECT_EQ(imported->groom.strand(0).front(), Vec3f(0, 0, 0));
     EXPECT_EQ(imported->groom.strand(1).front(), Vec3f(0, 0.2f, 0));
     EXPECT_EQ(imported->groom.strand(2).back(), Vec3f(0, 0.2f, 0));
+}
+
+TEST(StrandsLines, AFileThatIsCutShortSaysSo) {
+    std::string text;
+    for (int v = 0; v < 30; ++v) text += fmt::format("v {} {} 0\n", v / 10, 0.01 * (v % 10));
+    for (int s = 0; s < 3; ++s) {
+        text += "l";
+        for (int v = 1; v <= 10; ++v) text += fmt::format(" {}", 10 * s + v);
+        text += "\n";
+    }
+    const auto tells = [](const ImportedStrands& imported) {
+        return std::ranges::any_of(imported.warnings, [](const Finding& finding) {
+            return finding.what.find("are in no line") != std::string::npos ||
+                   finding.what.find("without lines") != std::string::npos;
+        });
+    };
+    const auto whole = read(bytesOf(text));
+    ASSERT_TRUE(whole);
+    EXPECT_FALSE(tells(*whole));
+    // But for the last line's end nothing is lost unseen.
+    for (std::size_t size = 0; size + 1 < text.size(); ++size) {
+        const auto cut = read(bytesOf(text.substr(0, size)));
+        if (!cut) continue;
+        EXPECT_TRUE(tells(*cut)) << size << " of " << text.size() << " bytes";
+    }
 }
 
 TEST(StrandsLines, MostRootsAtTheOtherEndTurnTheWholeFile) {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <cstring>
+
 #include "importers/points_per_strand.h"
 #include "tests/importers/strands_files.h"
 
@@ -290,6 +292,20 @@ TEST(StrandsNumpy, StrandsByPointsByCoordinates) {
             ASSERT_EQ(imported->groom.strandCount(), 7u);
             for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(imported->groom.strand(3)[i], curlPoint(3, i, 5));
         }
+    }
+}
+
+TEST(StrandsNumpy, APointBeyondAKilometreIsRefusedWithItsStrandOfCountedStrandsToo) {
+    Bytes array = npy("<f8", "(7, 5, 3)", cube(false)), counted = countedFile(Counts::Together, 3);
+    const double far = 1e6;
+    const auto farther = static_cast<float>(1e30);
+    std::memcpy(array.data() + array.size() - sizeof far, &far, sizeof far);
+    std::memcpy(counted.data() + counted.size() - sizeof farther, &farther, sizeof farther);
+    for (const Bytes& file : {array, zipOf({{"strands.npy", array, true}}), counted}) {
+        const auto imported = read(file);
+        ASSERT_FALSE(imported);
+        EXPECT_THAT(imported.error().message(), HasSubstr("1000 m"));
+        EXPECT_THAT(imported.error().message(), HasSubstr("strand 6"));
     }
 }
 

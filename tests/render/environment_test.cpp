@@ -58,6 +58,14 @@ TEST(Exr, DamagedFilesAreErrors) {
         ASSERT_TRUE(writeFileAtomically(file, std::span(whole).first(length), Replacing::Anything));
         EXPECT_FALSE(readExr(file)) << length << " of " << whole.size() << " bytes";
     }
+    // Nothing is lost or put in unseen.
+    for (std::size_t at = 0; at < whole.size(); at += 5) {
+        std::vector<std::byte> less = whole, more = whole;
+        less.erase(less.begin() + static_cast<std::ptrdiff_t>(at));
+        more.insert(more.begin() + static_cast<std::ptrdiff_t>(at), 3, std::byte{'n'});
+        EXPECT_FALSE(decodeExr("less", less)) << at;
+        EXPECT_FALSE(decodeExr("more", more)) << at;
+    }
     ASSERT_TRUE(writeFileAtomically(file, std::as_bytes(std::span(std::string_view("no picture"))),
                                     Replacing::Anything));
     EXPECT_FALSE(readExr(file));

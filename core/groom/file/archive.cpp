@@ -10,6 +10,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/base/checksum.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
@@ -141,7 +142,7 @@ Status ArchiveReader::readPreamble() {
     }
     headBytes_ = preamble->headBytes;
     const auto head = std::span(bytes_).subspan(sizeof(Preamble), headBytes_);
-    if (hashBytes(head) != preamble->headChecksum) {
+    if (!isChecksum(hashBytes(head), preamble->headChecksum)) {
         return failIn(file_, Byte{sizeof(Preamble)}, "JSON head is damaged: it does not match its checksum");
     }
     return {};
@@ -239,7 +240,8 @@ Status ArchiveReader::checkContent() const {
     parallelFor(order.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Array& array = order[i]->second;
-            damaged[i] = hashBytes(std::span(bytes_).subspan(array.offset, array.bytes)) != array.checksum;
+            damaged[i] =
+                !isChecksum(hashBytes(std::span(bytes_).subspan(array.offset, array.bytes)), array.checksum);
         }
     });
     for (std::size_t i = 0; i < order.size(); ++i) {
