@@ -164,7 +164,7 @@ Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head)
         transfer.sameMesh ? groom.scalpSelection : carriedSelection(groom, transfer.fit, *head);
     for (const SurfacePoint& root : to) selection.push_back(root.triangle);
     std::ranges::sort(selection);
-    selection.erase(std::ranges::unique(selection).begin(), selection.end());
+    selection.erase(std::unique(selection.begin(), selection.end()), selection.end());
     groom.pointAttributes.set(attribute::kPosition, movedPoints(groom, transfer.fit, *head, from, to));
     groom.strandAttributes.set(attribute::kRootUv, std::move(uvs));
     for (CollisionSphere& sphere : groom.spheres) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <ranges>
+#include <span>
 
 #include "core/simulation/reference/collocation.h"
 #include "core/simulation/reference/lengths.h"
@@ -63,7 +63,7 @@ class RodStep {
           length_(std::accumulate(body.lengths.begin(), body.lengths.end(), 0.0) /
                   static_cast<double>(body.segments())),
           force_(length_ / (h_ * h_)),
-          loose_(std::ranges::any_of(rod.stiffness | std::views::drop(first_),
+          loose_(std::ranges::any_of(std::span(rod.stiffness).subspan(first_),
                                      [](double stiffness) { return !(stiffness > 0.0); })) {
         work_.matrices.resize(stages);
         for (ComplexBandedMatrix& matrix : work_.matrices) matrix.resize(kBlock * free(), kBand);
