@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/card_options.h"
 
+#include "cli/error_report.h"
+#include "core/cards/levels.h"
+
 namespace hairloom::cli {
 
 void addCardOptions(CLI::App& job, LevelBudget& budget) {
@@ -26,6 +29,10 @@ void addCardOptions(CLI::App& job, LevelBudget& budget) {
                    "Levels as KIND[:AMOUNT][@PX],… with strands (share of the hairs), cards (count) and "
                    "shell (triangles). PX is the head height in pixels at which a level starts. The default "
                    "is all strands, 2 in 5, cards, a half and a quarter of them, and a shell");
+}
+
+void checkLevels(const LevelBudget& budget) {
+    if (!budget.levels.empty()) orWrongUsage(cards::parseLevels(budget.levels));
 }
 
 }  // namespace hairloom::cli

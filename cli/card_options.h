@@ -10,5 +10,7 @@ namespace hairloom::cli {
 
 /// --cards, --textures, --segments, --from-px, --atlas, --target-px, --levels.
 void addCardOptions(CLI::App& job, LevelBudget& budget);
+/// Throws WrongUsage where --levels names none.
+void checkLevels(const LevelBudget& budget);
 
 }  // namespace hairloom::cli

@@ -3,10 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <string_view>
+
+#include "cli/error_report.h"
 
 namespace hairloom::cli {
 namespace {
@@ -20,7 +24,37 @@ bool isFinite(const std::string& text) {
            std::isfinite(static_cast<float>(value));
 }
 
+bool hasEmptyItem(std::string_view list, char delimiter) {
+    return list.starts_with(delimiter) || list.ends_with(delimiter) ||
+           list.find(std::string(2, delimiter)) != std::string_view::npos;
+}
+
+void refuseEmptyItems(const CLI::Option& option, const std::vector<std::string>& words) {
+    for (const std::string& name : option.get_lnames()) {
+        const std::string flag = "--" + name;
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            std::string_view list;
+            if (words[i] == flag && i + 1 < words.size()) list = words[i + 1];
+            if (words[i].starts_with(flag + '=')) list = std::string_view(words[i]).substr(flag.size() + 1);
+            if (hasEmptyItem(list, option.get_delimiter()))
+                throw WrongUsage(fmt::format("{} is '{}'", flag, list),
+                                 "expected a value between all commas");
+        }
+    }
+}
+
 }  // namespace
+
+void refuseEmptyItems(const CLI::App& app, const std::vector<std::string>& words) {
+    for (const CLI::App* job : app.get_subcommands()) {
+        for (const CLI::Option* option : job->get_options()) {
+            if (option->get_delimiter() != '\0') refuseEmptyItems(*option, words);
+            if (!option->get_lnames().empty() &&
+                std::ranges::find(option->results(), "") != option->results().end())
+                throw WrongUsage(fmt::format("{} has no value", option->get_name()), "expected one");
+        }
+    }
+}
 
 void refuseNumbersThatAreNone(CLI::App& job) {
     const CLI::Validator finite(

@@ -151,6 +151,7 @@ int main(int argc, char** argv) {
     hairloom::allowUnconfinedReaders(options.allowUnconfined);
     if (options.quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
     try {
+        hairloom::cli::refuseEmptyItems(app, {argv + 1, argv + argc});
         hairloom::setThreadCount(options.threads);
         const int exitCode = runChosenJob(jobs, joined(argc, argv), options.json);
         if (options.profile) printProfile();

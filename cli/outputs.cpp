@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -71,11 +71,13 @@ class MadeFolders {
             made_.push_back(at);
             if (at == at.parent_path()) break;
         }
+        removeFoldersWhenEnded(made_);
         fs::create_directories(folder, failed_);
     }
     MadeFolders(const MadeFolders&) = delete;
     MadeFolders& operator=(const MadeFolders&) = delete;
     ~MadeFolders() {
+        removeFoldersWhenEnded({});
         std::error_code code;
         for (const fs::path& folder : made_) {
             if (!fs::is_empty(folder, code) || code || !fs::remove(folder, code)) return;
@@ -89,6 +91,55 @@ class MadeFolders {
     std::error_code failed_;
 };
 
+/// All that can be known before the work: by the rules, and by writing a byte that goes again.
+Result<OutputFile> tried(const fs::path& path, std::string_view kind) {
+    auto file = OutputFile::open(path, kind);
+    if (!file) return file;
+    if (auto status = file->tryOut(); !status) return tl::unexpected(status.error());
+    return file;
+}
+
+/// What was printed would go to the file that was replaced.
+void refuseOwnOutput(const std::string& path) {
+    const FileVersion file = fileVersion(path), printed = fileVersion("/dev/stdout");
+    std::error_code code;
+    if (file.exists && printed.exists && file.identity == printed.identity && fs::is_regular_file(path, code))
+        throw WrongUsage(fmt::format("standard output goes to {}", path),
+                         "expected another name, or - for standard output");
+}
+
+void refuseOneNameForTwo(const std::vector<Output>& outputs) {
+    std::set<fs::path> names;
+    for (const Output& output : outputs) {
+        if (output.path.empty()) continue;
+        std::error_code code;
+        if (!names.insert(fs::weakly_canonical(fs::absolute(output.path, code), code)).second)
+            throw WrongUsage(fmt::format("{} is named for two outputs", output.path),
+                             "expected a name for each");
+    }
+}
+
+/// Of a sequence: none of its names is kept, as there may be thousands.
+Status trySequence(const Output& output) {
+    if (isPipe(output.path))
+        throw WrongUsage(fmt::format("{} is a pipe, but this job writes {} files", output.path, output.files),
+                         "expected the name of a file");
+    for (std::size_t i = 0; i < output.files; ++i) {
+        if (auto status = OutputFile::check(numbered(output.path, i), output.kind); !status) return status;
+    }
+    const auto file = tried(numbered(output.path, 0), output.kind);
+    return file ? Status() : tl::unexpected(file.error());
+}
+
+/// Where nothing fails all files are in place at once, with `run`'s report.
+Result<Report> inBatch(const std::function<Result<Report>()>& run) {
+    OutputBatch batch;
+    auto report = run();
+    if (!report) return report;
+    if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
+    return report;
+}
+
 }  // namespace
 
 bool writesToStandardOutput() {
@@ -99,48 +150,54 @@ void reportsAsJson(bool json) {
     streams().json = json;
 }
 
-Result<Report> withOutputs(std::initializer_list<Output> outputs, const std::function<Result<Report>()>& run,
+fs::path numbered(const fs::path& path, std::size_t number) {
+    return path.parent_path() /
+           (path.stem().string() + fmt::format("_{:04}", number) + path.extension().string());
+}
+
+Result<Report> withOutputs(const std::vector<Output>& outputs, const std::function<Result<Report>()>& run,
                            ReadBack readBack) {
     const auto count = static_cast<std::size_t>(
         std::ranges::count_if(outputs, [](const Output& output) { return !output.path.empty(); }));
+    refuseOneNameForTwo(outputs);
     std::vector<OutputFile> kept;
     for (const Output& output : outputs) {
         if (output.path.empty()) continue;
+        refuseOwnOutput(output.path);
+        if (output.files > 0) {
+            if (auto status = trySequence(output); !status) return tl::unexpected(status.error());
+            continue;
+        }
         if (isPipe(output.path)) takePipe(output.path, count, readBack);
-        auto file = OutputFile::open(output.path, output.kind);
+        auto file = tried(output.path, output.kind);
         if (!file) return tl::unexpected(file.error());
         kept.push_back(std::move(*file));
         if (output.path != kStandardOutput) sayLeftOvers(output.path);
     }
     // Where nothing was asked for, what is written is the job's own and read by it: files of a benchmark,
     // say.
-    if (count == 0 || readBack == ReadBack::Yes) return run();
-    OutputBatch batch;
-    auto report = run();
-    if (!report) return report;
-    if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
-    return report;
+    return count == 0 ? run() : inBatch(run);
 }
 
-Result<Report> withOutputFolder(const std::string& folder, const std::function<Result<Report>()>& run,
-                                ReadBack readBack) {
+Result<Report> withOutputFolder(const std::string& folder, const std::vector<std::string>& files,
+                                const std::function<Result<Report>()>& run) {
     if (folder.empty()) return run();
+    if (folder == kStandardOutput)
+        throw WrongUsage("- is a pipe, but this job writes several files", "expected the name of a folder");
     MadeFolders made(folder);
     if (made.failed()) return failIn(folder, {}, "the folder cannot be made: " + made.failed().message());
+    for (const std::string& name : files) {
+        if (auto status = OutputFile::check(fs::path(folder) / name); !status)
+            return tl::unexpected(status.error());
+    }
     // Whether it takes a file at all, before anything is computed.
-    if (auto trial = OutputFile::open(fs::path(folder) / "trial"); !trial) {
+    if (auto trial = tried(fs::path(folder) / "trial", {}); !trial) {
         Error error = trial.error();
         error.file = folder;
         return tl::unexpected(std::move(error));
     }
-    std::optional<OutputBatch> batch;
-    if (readBack == ReadBack::No) batch.emplace();
-    auto report = run();
-    if (!report) return report;
-    if (batch) {
-        if (auto status = batch->commit(); !status) return tl::unexpected(status.error());
-    }
-    made.keep();
+    auto report = inBatch(run);
+    if (report) made.keep();
     return report;
 }
 

@@ -5,10 +5,11 @@
 // none.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/job.h"
 
@@ -20,19 +21,23 @@ enum class ReadBack : std::uint8_t {
 };
 
 struct Output {
-    const std::string& path;     ///< no file where it is empty
+    std::string path;            ///< no file where it is empty
     std::string_view kind = {};  ///< one of hairloom::content, where the job knows it
+    std::size_t files = 0;       ///< of a sequence, whose names are numbered; 0 where there is none
 };
+
+/// "hair.png" and 7 give "hair_0007.png".
+std::filesystem::path numbered(const std::filesystem::path& path, std::size_t number);
 
 /// Errors: as OutputFile::open() for any of them, before `run` is called. Throws WrongUsage for a pipe where
 /// none will do.
-Result<Report> withOutputs(std::initializer_list<Output> outputs, const std::function<Result<Report>()>& run,
+Result<Report> withOutputs(const std::vector<Output>& outputs, const std::function<Result<Report>()>& run,
                            ReadBack readBack = ReadBack::No);
 
-/// A folder that gets several files. Made where it is missing, and taken away again, empty, where the job
-/// fails. No folder where the name is empty.
-Result<Report> withOutputFolder(const std::string& folder, const std::function<Result<Report>()>& run,
-                                ReadBack readBack = ReadBack::No);
+/// A folder that gets several files, of which `files` are known before the work. Made where it is missing,
+/// and taken away again, empty, where the job fails or is ended. No folder where the name is empty.
+Result<Report> withOutputFolder(const std::string& folder, const std::vector<std::string>& files,
+                                const std::function<Result<Report>()>& run);
 
 /// The job writes its file to standard output, so that its report goes to standard error.
 bool writesToStandardOutput();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/output_batch.h"
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
@@ -390,7 +391,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     importOptions.frames = options.frames != nullptr;
     // What went into a device cannot be had back.
     std::error_code code;
-    const bool isFile = std::filesystem::is_regular_file(path, code);
+    const bool isFile = std::filesystem::is_regular_file(whereWritten(path), code);
     if (isFile) contents = {};
     std::vector<Vec3f>().swap(prepared.positions);
     const auto readBack = isFile ? importStrands(path, importOptions)

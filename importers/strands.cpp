@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/base/file.h"
+#include "core/base/output_batch.h"
 #include "importers/attribute_units.h"
 #include "importers/raw_strands.h"
 #include "importers/strand_parts.h"
@@ -35,7 +36,7 @@ std::vector<const StrandReader*> readersInOrder() {
 void readCompanion(const StrandReader& reader, std::filesystem::path path, RawStrands& raw) {
     path.replace_extension(reader.companion);
     std::error_code code;
-    if (!std::filesystem::is_regular_file(path, code)) return;
+    if (!std::filesystem::is_regular_file(whereWritten(path), code)) return;
     const auto bytes = readFile(path);
     const Status taken =
         bytes ? reader.readCompanion(path.string(), *bytes, raw) : Status(tl::unexpected(bytes.error()));

@@ -49,7 +49,7 @@ std::vector<std::string> pointsToTry(const Groom& groom) {
 }
 
 /// "FIELD=V1,V2" as an axis.
-Result<GridAxis> parseVariation(const std::string& text) {
+GridAxis parseVariation(const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
         throw WrongUsage(fmt::format("--vary is '{}'", text), "expected FIELD=VALUE,VALUE,…");
@@ -60,10 +60,10 @@ Result<GridAxis> parseVariation(const std::string& text) {
         values.push_back(text.substr(at + 1, next == std::string::npos ? next : next - at - 1));
         at = next;
     }
-    return parseAxis(text.substr(0, equals), values);
+    return orWrongUsage(parseAxis(text.substr(0, equals), values));
 }
 
-Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom& groom) {
+std::vector<GridAxis> axesOf(const AccuracyOptions& options, const Groom& groom) {
     const bool springs = groom.simulation.strandModel == runtime::StrandModel::springs;
     const std::string own = nameOf(groom.simulation.integrator);
     const auto orElse = [](const std::vector<std::string>& given, const std::vector<std::string>& otherwise) {
@@ -76,16 +76,8 @@ Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom
     wanted.emplace_back(kPointsAxis, orElse(options.points, pointsToTry(groom)));
     if (!options.threadCounts.empty()) wanted.emplace_back(kThreadsAxis, options.threadCounts);
     std::vector<GridAxis> axes;
-    for (const auto& [field, values] : wanted) {
-        auto axis = parseAxis(field, values);
-        if (!axis) return tl::unexpected(axis.error());
-        axes.push_back(std::move(*axis));
-    }
-    for (const std::string& variation : options.vary) {
-        auto axis = parseVariation(variation);
-        if (!axis) return tl::unexpected(axis.error());
-        axes.push_back(std::move(*axis));
-    }
+    for (const auto& [field, values] : wanted) axes.push_back(orWrongUsage(parseAxis(field, values)));
+    for (const std::string& variation : options.vary) axes.push_back(parseVariation(variation));
     return axes;
 }
 
@@ -161,10 +153,8 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         scene->groom.simulation.strandModel = runtime::StrandModel::springs;
     const auto scale = pixelsPerMm(options.view, scene->groom);
     if (!scale) return tl::unexpected(scale.error());
-    auto axes = axesOf(options, scene->groom);
-    if (!axes) return tl::unexpected(axes.error());
     WorkPrecisionOptions measuring;
-    measuring.axes = std::move(*axes);
+    measuring.axes = axesOf(options, scene->groom);
     measuring.time.frames = options.motion.frames;
     measuring.time.framesPerSecond = options.motion.framesPerSecond;
     measuring.strands = options.strands;
@@ -284,12 +274,16 @@ JobRun declare(CLI::App& job) {
     });
     return [options](const std::string& commandLine) {
         if (!options->compared.empty()) return compareFolders(options->compared);
-        return withOutputFolder(options->output, [&] {
-            return options->picture.wanted
-                       ? pictureAccuracy(options->picture, options->motion.input, options->view,
-                                         options->repeats, options->output, commandLine)
-                       : accuracy(*options, commandLine);
-        });
+        return withOutputFolder(
+            options->output,
+            options->picture.wanted ? std::vector<std::string>{"report.html", "picture.csv", "picture.svg"}
+                                    : std::vector<std::string>{"report.html", "data.csv"},
+            [&] {
+                return options->picture.wanted
+                           ? pictureAccuracy(options->picture, options->motion.input, options->view,
+                                             options->repeats, options->output, commandLine)
+                           : accuracy(*options, commandLine);
+            });
     };
 }
 

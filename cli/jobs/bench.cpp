@@ -132,7 +132,7 @@ JobRun declare(CLI::App& job) {
         }
     });
     return [options](const std::string& commandLine) {
-        return withOutputFolder(options->output, [&] {
+        return withOutputFolder(options->output, {}, [&] {
             return withOutputs({{options->markdown}}, [&] { return bench(*options, commandLine); });
         });
     };

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <system_error>
 
@@ -14,6 +15,7 @@
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/write_rules.h"
 #include "core/documents/hair_export.h"
 #include "core/documents/web_page.h"
 #include "core/stability/certificate.h"
@@ -66,6 +68,22 @@ Result<Asked> findAsked(const ExportOptions& options) {
     }
     throw WrongUsage(fmt::format("{} does not read {}", options.target, options.format),
                      "expected " + formats);
+}
+
+/// What the writer's files are, for what must be known before one is made; empty where contentKind() does not
+/// tell.
+std::string_view contentOf(const HairWriter& writer) {
+    static const std::map<std::string_view, std::string_view> kinds{
+        {"abc", "an Alembic file"},     {"abc-unreal", "an Alembic file"},
+        {"gltf", "a binary glTF file"}, {"gltf-quantised", "a binary glTF file"},
+        {"vrm", "a binary glTF file"},  {"hair", "a .hair file"},
+        {"obj-c4d", "an OBJ file"},     {"obj-cards", "an OBJ file"},
+        {"obj-lines", "an OBJ file"},   {"ply", "a PLY file"},
+        {"runtime", "a runtime asset"}, {"tfx", "a TressFX 4 file"},
+        {"usda", "a USD file of text"}, {"usda-cards", "a USD file of text"},
+        {"usdc", "a binary USD file"}};
+    const auto found = kinds.find(writer.name);
+    return found == kinds.end() ? std::string_view() : found->second;
 }
 
 /// Not in the report alone, which few open while all seems well.
@@ -193,13 +211,18 @@ JobRun declare(CLI::App& job) {
                    "File to write, or the folder of a web page. The report goes next to a file")
         ->required();
     return [options](const std::string&) {
+        checkLevels(options->levels);
         if (options->format == kWebFormat)
-            return withOutputFolder(
-                options->output, [&] { return exportAsPage(*options); }, ReadBack::Yes);
+            return withOutputFolder(options->output, {"hair.hairrt", "hair.js", "index.html"},
+                                    [&] { return exportAsPage(*options); });
+        const auto asked = findAsked(*options);
+        if (!asked) return Result<Report>(tl::unexpected(asked.error()));
         const std::string companion = companionOf(options->output);
+        // Known before it is read: it is no target, of whatever kind.
+        noteInput(options->input);
         return withOutputs(
-            {{options->output}, {companion, content::kJson}}, [&] { return exportAsset(*options); },
-            ReadBack::Yes);
+            {{options->output, contentOf(*asked->writer)}, {companion, content::kJson}},
+            [&] { return exportAsset(*options); }, ReadBack::Yes);
     };
 }
 

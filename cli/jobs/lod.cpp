@@ -9,9 +9,9 @@
 #include "cli/progress.h"
 #include "core/base/log.h"
 #include "core/base/stopwatch.h"
-#include "exporters/card_character.h"
 #include "core/levels/level_report.h"
 #include "core/levels/spring_fit.h"
+#include "exporters/card_character.h"
 
 namespace hairloom::cli {
 namespace {
@@ -63,7 +63,11 @@ JobRun declare(CLI::App& job) {
                    "Number of directions from which levels are compared")
         ->check(CLI::Range(1, 360));
     return [options](const std::string& commandLine) {
-        return withOutputFolder(options->output, [&] { return run(*options, commandLine); });
+        checkLevels(options->budget);
+        return withOutputFolder(
+            options->output,
+            {"report.html", "levels.csv", "levels.md", "levels.json", "error.svg", "chain.png", "levels.glb"},
+            [&] { return run(*options, commandLine); });
     };
 }
 

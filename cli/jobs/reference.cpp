@@ -149,7 +149,9 @@ JobRun declare(CLI::App& job) {
     man->excludes(readme);
     job.require_option(1);
     return [options](const std::string&) {
-        if (!options->man.empty()) return writeManPages(options->man);
+        if (!options->man.empty())
+            return withOutputFolder(options->man, {"hairloom.1", "hairloom-cli.1"},
+                                    [&] { return writeManPages(options->man); });
         if (!options->readme.empty())
             return withOutputs({{options->readme}}, [&] { return writeReadme(options->readme); });
         return withOutputs({{options->output}}, [&] { return write(options->output); });

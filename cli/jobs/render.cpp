@@ -169,12 +169,6 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
     return shots;
 }
 
-/// "hair.png" and 7 give "hair_0007.png".
-std::filesystem::path numbered(const std::filesystem::path& path, std::size_t number) {
-    return path.parent_path() /
-           (path.stem().string() + fmt::format("_{:04}", number) + path.extension().string());
-}
-
 void turn(render::Camera& camera, float degrees) {
     const Eigen::AngleAxisf rotation(radians(degrees), Vec3f::UnitY());
     camera.eye_ws = camera.target_ws + rotation * (camera.eye_ws - camera.target_ws);
@@ -481,8 +475,11 @@ JobRun declare(CLI::App& job) {
         }
     });
     return [options](const std::string&) {
-        return withOutputs({{options->output, content::kPng},
-                            {options->exr},
+        const auto shots = shotsOf(*options);
+        if (!shots) return Result<Report>(tl::unexpected(shots.error()));
+        const std::size_t files = options->sequence() ? shots->size() : 0;
+        return withOutputs({{options->output, content::kPng, files},
+                            {options->exr, {}, files},
                             {options->animation},
                             {options->strip, content::kPng}},
                            [&] { return renderToFile(*options); });

@@ -34,7 +34,7 @@ struct SetOptions {
 };
 
 /// "simulation.windSpeed=4" into {"simulation": {"windSpeed": 4}}. A value that is no JSON is text.
-Status addAssignment(const std::string& assignment, nlohmann::json& document) {
+void addAssignment(const std::string& assignment, nlohmann::json& document) {
     const std::size_t equals = assignment.find('=');
     const std::string path = assignment.substr(0, equals);
     if (equals == std::string::npos || path.find('.') == std::string::npos)
@@ -53,7 +53,6 @@ Status addAssignment(const std::string& assignment, nlohmann::json& document) {
     nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
     if (value.is_discarded()) value = text;
     (*at)[path.substr(begin)] = std::move(value);
-    return {};
 }
 
 /// Fields in sections; null, which takes a material away, is one.
@@ -68,6 +67,18 @@ std::size_t fieldsIn(const nlohmann::json& document) {
 Result<std::size_t> apply(const nlohmann::json& document, const std::string& source, Groom& groom) {
     if (auto status = applySettings(document, source, groom); !status) return tl::unexpected(status.error());
     return fieldsIn(document);
+}
+
+/// Whether it is not this groom that is in the way, which may have no layer of that name.
+bool isWrongForAnyGroom(const nlohmann::json& assignments) {
+    Groom any;
+    if (const auto layers = assignments.find("layers"); layers != assignments.end() && layers->is_object()) {
+        for (const auto& [name, fields] : layers->items()) {
+            any.layers.emplace_back();
+            any.layers.back().name = name;
+        }
+    }
+    return !applySettings(assignments, "", any);
 }
 
 std::vector<std::string> presetNames() {
@@ -92,12 +103,10 @@ Result<Report> set(const SetOptions& options) {
         changed += *applied;
     }
     nlohmann::json assignments = nlohmann::json::object();
-    for (const std::string& assignment : options.assignments) {
-        if (auto status = addAssignment(assignment, assignments); !status)
-            return tl::unexpected(status.error());
-    }
+    for (const std::string& assignment : options.assignments) addAssignment(assignment, assignments);
     const auto applied = apply(assignments, "", *groom);
-    if (!applied) return tl::unexpected(applied.error());
+    if (!applied && isWrongForAnyGroom(assignments)) throw WrongUsage(applied.error());
+    if (!applied) return tl::unexpected(inFile(applied.error(), options.input));
     changed += *applied;
     if (!options.dyeImage.empty()) {
         if (auto status = dyeFromImage(options.dyeImage, *groom); !status)

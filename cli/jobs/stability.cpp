@@ -200,9 +200,14 @@ JobRun declare(CLI::App& job) {
     job.add_option("--steps-at-rest", options->stepsAtRest, "Substeps of the case at rest")
         ->check(CLI::Range(8, 100'000'000));
     return [options](const std::string& commandLine) {
-        return withOutputFolder(options->output, [&] {
-            return options->groom.empty() ? stability(*options, commandLine) : certificateOf(*options);
-        });
+        return withOutputFolder(
+            options->output,
+            options->groom.empty()
+                ? std::vector<std::string>{"report.html", "cases.json", "cases.csv", "cases.md"}
+                : std::vector<std::string>{"certificate.json"},
+            [&] {
+                return options->groom.empty() ? stability(*options, commandLine) : certificateOf(*options);
+            });
     };
 }
 

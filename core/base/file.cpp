@@ -8,6 +8,7 @@
 #include <memory>
 #include <system_error>
 
+#include "core/base/output_batch.h"
 #include "core/base/regular_file.h"
 #include "core/base/write_rules.h"
 
@@ -36,17 +37,19 @@ template <class Container>
 Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t maxBytes) {
     const std::string name = path.string();
     std::error_code code;
-    if (auto status = checkIsFile(path); !status) return tl::unexpected(status.error());
-    const FileHandle file = openFile(path, "rb");
+    // What this process writes and has not put in place yet is read where it lies.
+    const std::filesystem::path place = whereWritten(path);
+    if (auto status = checkIsFile(place); !status) return tl::unexpected(status.error());
+    const FileHandle file = openFile(place, "rb");
     if (!file) return failIn(name, {}, fmt::format("cannot be read: {}", systemMessage(errno)));
-    const std::uint64_t size = std::filesystem::file_size(path, code);
+    const std::uint64_t size = std::filesystem::file_size(place, code);
     if (code)
         return failIn(name, {}, fmt::format("has no size: {}", code.message()), "expected a regular file");
     if (size > maxBytes) {
         return failIn(name, {}, fmt::format("is {} bytes long", size),
                       fmt::format("expected at most {}", maxBytes));
     }
-    noteInput(path);
+    if (place == path) noteInput(path);
     Container content(static_cast<std::size_t>(size), typename Container::value_type{});
     const std::size_t got = std::fread(content.data(), 1, content.size(), file.get());
     if (got != content.size()) {

@@ -23,4 +23,7 @@ class OutputBatch {
     bool isOuter_ = false;
 };
 
+/// Where what this thread has written to that name can be read: there, unless it waits for its batch.
+std::filesystem::path whereWritten(const std::filesystem::path& path);
+
 }  // namespace hairloom

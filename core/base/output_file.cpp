@@ -137,6 +137,21 @@ Result<OutputFile> OutputFile::open(const fs::path& path, std::string_view kind,
     return OutputFile(std::move(impl));
 }
 
+Status OutputFile::check(const fs::path& path, std::string_view kind) {
+    const auto target = targetOf(path);
+    if (!target) return tl::unexpected(target.error());
+    return mayReplace(path, *target, kind, Replacing::SameKind);
+}
+
+Status OutputFile::tryOut() {
+    if (!impl_->temporary) return {};
+    constexpr std::byte kAny{};
+    if (auto status = impl_->temporary->write({&kAny, 1}); !status)
+        return notWritten(impl_->path, status.error());
+    if (auto status = impl_->temporary->flush(); !status) return notWritten(impl_->path, status.error());
+    return {};
+}
+
 bool OutputFile::isRegular() const {
     return impl_->temporary.has_value();
 }
@@ -204,18 +219,38 @@ OutputBatch::~OutputBatch() {
     waiting().files.clear();
 }
 
+fs::path whereWritten(const fs::path& path) {
+    if (!waiting().open) return path;
+    const auto target = targetOf(path);
+    if (!target) return path;
+    const auto& files = waiting().files;
+    const auto last = std::find_if(files.rbegin(), files.rend(), [&](const auto& file) {
+        return file->temporary && file->target == *target;
+    });
+    return last == files.rend() ? path : (*last)->temporary->path();
+}
+
 Status OutputBatch::commit() {
     if (!isOuter_) return {};
+    const EndsLater whole;
     const auto files = std::exchange(waiting().files, {});
     for (const auto& file : files) {
         if (!file->temporary) continue;
         if (auto status = file->mayReplace(); !status) return status;
     }
+    std::vector<fs::path> made;
     for (std::size_t i = 0; i < files.size(); ++i) {
+        const bool isNew = files[i]->temporary && !fileState(files[i]->target).exists;
         const auto status = files[i]->putInPlace();
-        if (status) continue;
+        if (status) {
+            if (isNew) made.push_back(files[i]->target);
+            continue;
+        }
         Error error = status.error();
-        if (i > 0) error.problem += fmt::format("; {} of {} files are in place", i, files.size());
+        std::error_code code;
+        for (const fs::path& file : made) fs::remove(file, code);
+        if (i > made.size())
+            error.problem += fmt::format("; {} of {} files were replaced", i - made.size(), files.size());
         return tl::unexpected(std::move(error));
     }
     return {};

@@ -46,6 +46,11 @@ class OutputFile {
     /// again.
     Status finish();
 
+    /// What open() would refuse by the rules; nothing is made.
+    static Status check(const std::filesystem::path& path, std::string_view kind = {});
+    /// Errors: the disk takes nothing. What is tried is no content: such a file is not to be finished.
+    Status tryOut();
+
     /// False for a device or a FIFO, which cannot be read back.
     bool isRegular() const;
 
@@ -68,6 +73,8 @@ Result<std::vector<std::string>> writeFiles(const std::filesystem::path& folder,
 /// From now on SIGINT, SIGTERM and SIGHUP (on Windows the console's close and Ctrl+C) take temporary files
 /// away before they end the process.
 void removeTemporariesWhenEnded();
+/// Likewise these folders, where they are empty then; the innermost first. Until it is called again.
+void removeFoldersWhenEnded(const std::vector<std::filesystem::path>& innermostFirst);
 
 /// A temporary file whose writer was killed.
 struct LeftOver {

@@ -49,6 +49,8 @@ class TemporaryFile {
     Status writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
     /// Onto the disk: that it is full shows here, at the latest.
     Status flush();
+    /// Where its content lies now.
+    std::filesystem::path path() const;
     /// Whether the target has the same bytes.
     bool equalsTarget() const;
     /// Takes the target's place, which exists or not. A file that is replaced was last accessed at
@@ -66,6 +68,15 @@ Status writeThrough(const std::filesystem::path& path, std::span<const std::byte
 
 /// As many files open at once as the system lets the process have.
 void allowManyFiles();
+
+/// While one lives, a signal that ends the process waits: what is moved into place is all moved.
+class EndsLater {
+  public:
+    EndsLater();
+    EndsLater(const EndsLater&) = delete;
+    EndsLater& operator=(const EndsLater&) = delete;
+    ~EndsLater();
+};
 
 /// Whether a process has the file open for writing as TemporaryFile does.
 bool isBeingWritten(const std::filesystem::path& temporary);

@@ -60,9 +60,26 @@ bool isOwn(const std::string& name) {
                                [&](const Slot& slot) { return slot.state == 2 && name == slot.name.data(); });
 }
 
+std::atomic<int> endsLater{0};  // NOLINT(readability-identifier-naming): the handler's
+std::atomic<int> endedBy{0};    // NOLINT(readability-identifier-naming)
+
+/// Folders that were made for files that are still to come, the innermost first.
+struct FolderSlot {
+    std::atomic<bool> isUsed{false};
+    std::array<char, 4096> path{};
+};
+std::array<FolderSlot, 16> folderSlots;  // NOLINT(readability-identifier-naming)
+
 extern "C" void removeAndEnd(int signal) {
+    if (endsLater > 0) {
+        endedBy = signal;
+        return;
+    }
     for (Slot& slot : slots) {
         if (slot.state == 2) unlinkat(slot.folder, slot.name.data(), 0);
+    }
+    for (FolderSlot& folder : folderSlots) {
+        if (folder.isUsed) rmdir(folder.path.data());
     }
     struct sigaction action {};
     action.sa_handler = SIG_DFL;
@@ -303,6 +320,10 @@ Status TemporaryFile::flush() {
     return {};
 }
 
+fs::path TemporaryFile::path() const {
+    return impl_->target.parent_path() / impl_->name;
+}
+
 bool TemporaryFile::equalsTarget() const {
     const Descriptor old(
         openat(impl_->folder.number(), impl_->targetName.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
@@ -387,6 +408,25 @@ Status writeThrough(const fs::path& path, std::span<const std::byte> bytes) {
     const Descriptor device(open(path.c_str(), O_WRONLY | O_NOCTTY | O_APPEND | O_CLOEXEC));
     if (!device) return systemError();
     return writeAll(device.number(), bytes);
+}
+
+EndsLater::EndsLater() {
+    ++endsLater;
+}
+
+EndsLater::~EndsLater() {
+    if (--endsLater > 0) return;
+    if (const int signal = endedBy.exchange(0); signal != 0) raise(signal);
+}
+
+void removeFoldersWhenEnded(const std::vector<fs::path>& innermostFirst) {
+    for (FolderSlot& slot : folderSlots) slot.isUsed = false;
+    for (std::size_t i = 0; i < std::min(innermostFirst.size(), folderSlots.size()); ++i) {
+        const std::string& path = innermostFirst[i].native();
+        if (path.size() >= folderSlots[i].path.size()) return;
+        std::memcpy(folderSlots[i].path.data(), path.c_str(), path.size() + 1);
+        folderSlots[i].isUsed = true;
+    }
 }
 
 void allowManyFiles() {

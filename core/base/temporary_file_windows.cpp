@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <mutex>
 #include <system_error>
 #include <vector>
 
@@ -77,12 +78,20 @@ bool isOwn(const fs::path& path) {
                                [&](const Slot& slot) { return slot.state == 2 && path == slot.path.data(); });
 }
 
+std::atomic<int> endsLater{0};          // NOLINT(readability-identifier-naming): the handler's
+std::mutex foldersMutex;                // NOLINT(readability-identifier-naming)
+std::vector<fs::path> foldersToRemove;  // NOLINT(readability-identifier-naming): the innermost first
+
 BOOL WINAPI removeAndEnd(DWORD) {
+    // A thread of its own.
+    while (endsLater > 0) Sleep(10);
     for (Slot& slot : slots) {
         if (slot.state != 2) continue;
         CloseHandle(slot.file);
         DeleteFileW(slot.path.data());
     }
+    const std::lock_guard lock(foldersMutex);
+    for (const fs::path& folder : foldersToRemove) RemoveDirectoryW(folder.c_str());
     return FALSE;  // the next handler ends the process
 }
 
@@ -223,9 +232,9 @@ Status TemporaryFile::Impl::make() {
     if (somebodyWrites(folder, prefix)) return fail("another program is writing it", "wait until it is done");
     const fs::path wanted = folder / fs::path(prefix + randomText() + std::string(kPartSuffix));
     slot = takeSlot(wanted);
-    // Nobody else may open it: that is how isBeingWritten() knows.
-    file = Handle(CreateFileW(wanted.c_str(), GENERIC_READ | GENERIC_WRITE, 0, nullptr, CREATE_NEW,
-                              FILE_ATTRIBUTE_NORMAL, nullptr));
+    // Nobody else may open it for writing: that is how isBeingWritten() knows.
+    file = Handle(CreateFileW(wanted.c_str(), GENERIC_READ | GENERIC_WRITE, FILE_SHARE_READ, nullptr,
+                              CREATE_NEW, FILE_ATTRIBUTE_NORMAL, nullptr));
     if (!file) return systemError();
     if (slot != nullptr) slot->file = file.get();
     path = wanted;
@@ -254,6 +263,10 @@ Status TemporaryFile::writeAt(std::uint64_t offset, std::span<const std::byte> b
 Status TemporaryFile::flush() {
     if (FlushFileBuffers(impl_->file.get()) == 0) return systemError();
     return {};
+}
+
+fs::path TemporaryFile::path() const {
+    return impl_->path;
 }
 
 bool TemporaryFile::equalsTarget() const {
@@ -335,6 +348,19 @@ Status writeThrough(const fs::path& path, std::span<const std::byte> bytes) {
 }
 
 void allowManyFiles() {}  // there is no such limit
+
+EndsLater::EndsLater() {
+    ++endsLater;
+}
+
+EndsLater::~EndsLater() {
+    --endsLater;
+}
+
+void removeFoldersWhenEnded(const std::vector<fs::path>& innermostFirst) {
+    const std::lock_guard lock(foldersMutex);
+    foldersToRemove = innermostFirst;
+}
 
 bool isBeingWritten(const fs::path& temporary) {
     const Handle file = openExisting(temporary, GENERIC_READ | GENERIC_WRITE, 0);

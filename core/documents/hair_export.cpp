@@ -8,6 +8,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "core/base/output_batch.h"
 #include "core/cost/scene_run.h"
 #include "core/documents/guides_beside_hairs.h"
 #include "core/groom/strand_subset.h"
@@ -112,7 +113,7 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
     if (!written) return tl::unexpected(written.error());
     ExportReport report = levelReport(*chain, groom);
     report.format = writer.name;
-    report.bytes = std::filesystem::file_size(path);
+    report.bytes = std::filesystem::file_size(whereWritten(path));
     report.companions = std::move(written->companions);
     if (!written->holdsSprings)
         std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
@@ -201,6 +202,8 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         if (!limits) return tl::unexpected(limits.error());
         exporting.safeLimits = *limits;
     }
+    // With what lies beside it, or not at all; also where it reads back as something else.
+    OutputBatch batch;
     auto report = writer.holdsCards() ? writeCards(shown, wanted, writer, path, exporting)
                                       : writer.write(shown, path, exporting);
     if (report) report->safeLimits = exporting.safeLimits;
@@ -215,6 +218,8 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
                                     fmt::format("{} follow hairs per guide are left out", perGuide),
                                     "interpolation", "export hairs to write the rendered hairs"});
     }
+    if (!report) return report;
+    if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
     return report;
 }
 

@@ -130,7 +130,8 @@ fs::path recoveryFolder() {
 RecoveryPlace::RecoveryPlace(fs::path stem, HeldFile held) : stem_(std::move(stem)), held_(std::move(held)) {}
 
 RecoveryPlace::~RecoveryPlace() {
-    if (!held_) return;
+    // What was moved from has no names: those without a stem would be files of whoever's folder this is.
+    if (!held_ || stem_.empty()) return;
     if (!keepsCopy_) removeCopy();
     std::error_code code;
     if (!fs::exists(copy(), code)) fs::remove(fileOf(kNote), code);

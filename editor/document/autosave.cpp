@@ -27,6 +27,11 @@ Autosave::Autosave(QtDocument& document, const Preferences& preferences, QObject
     connect(&document_, &QtDocument::titleChanged, this, [this] {
         // A recovered document is unsaved without having been changed.
         if (hasUnsaved() && !dirty_) changed();
+        noteUnsaved();
+    });
+    connect(&document_, &QtDocument::strokeBegins, this, [this] {
+        const std::lock_guard lock(unsavedMutex_);
+        unsaved_.reset();
     });
     const auto begin = [this] {
         // What was copied or is being copied is of a document that is gone, or that the project's file has.
@@ -97,6 +102,13 @@ void Autosave::changed() {
     schedule();
 }
 
+void Autosave::noteUnsaved() {
+    if (document_.editing().stroke()) return;
+    const std::lock_guard lock(unsavedMutex_);
+    unsaved_.reset();
+    if (place_ && hasUnsaved()) unsaved_.emplace(document_.groom(), place_->copy());
+}
+
 void Autosave::schedule() {
     const int interval = preferences_.autosaveMinutes() * kMinute_ms;
     if (interval == 0 || !dirty_ || timer_.isActive() || isWriting_ || isPaused_) return;
@@ -161,6 +173,7 @@ void Autosave::finish() {
 }
 
 void Autosave::keep() {
+    isPaused_ = false;
     finish();
     if (hasUnsaved()) {
         dirty_ = true;
@@ -168,6 +181,23 @@ void Autosave::keep() {
         finish();
     }
     keepsCopy_ = hasUnsaved();
+}
+
+void Autosave::keepFromElsewhere() {
+    std::optional<std::pair<Groom, std::filesystem::path>> last;
+    {
+        const std::lock_guard lock(unsavedMutex_);
+        last = unsaved_;
+    }
+    if (!last) return;
+    forgetInput(last->second);
+    // Nobody is left to be told.
+    static_cast<void>(saveProject(last->first, last->second));
+}
+
+void Autosave::leave() {
+    if (place_ && keepsCopy_) place_->keepCopy();
+    place_.reset();
 }
 
 }  // namespace hairloom::editor

@@ -4,9 +4,11 @@
 // program did not end as it should.
 
 #include <QTimer>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "core/documents/recovery.h"
 #include "editor/document/preferences.h"
@@ -28,6 +30,11 @@ class Autosave : public QObject {
     void finish();
     /// The program ends and nobody has been asked: writes what is unsaved, and leaves it.
     void keep();
+    /// The same where the thread of the interface does not come to it: what was unsaved when it last stood
+    /// still. On any thread.
+    void keepFromElsewhere();
+    /// After keep(), where no destructor follows: nothing but the copy is left.
+    void leave();
     /// The question was answered: a proper end takes the copy away again.
     void dismiss() { keepsCopy_ = false; }
     /// The project is being saved: no copy is begun. What is locked by writing() no copy is written in.
@@ -54,6 +61,7 @@ class Autosave : public QObject {
     void schedule();
     void written(quint64 generation, const Status& status);
     bool hasUnsaved() const;
+    void noteUnsaved();
 
     QtDocument& document_;
     const Preferences& preferences_;
@@ -61,6 +69,10 @@ class Autosave : public QObject {
     QTimer timer_;
     std::thread writer_;
     std::mutex writing_;
+    /// What is unsaved, while no stroke goes on, which would pay for a copy that is held, and the copy's
+    /// name.
+    std::optional<std::pair<Groom, std::filesystem::path>> unsaved_;
+    std::mutex unsavedMutex_;
     bool isWriting_ = false, isPaused_ = false;
     bool dirty_ = false;      ///< changed since the copy that was written or is being written
     bool hasFailed_ = false;  ///< the last one did

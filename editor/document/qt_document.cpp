@@ -87,6 +87,11 @@ void QtDocument::performMerged(quint64 key, const Make& make) {
     editing_->performMerged(key, make);
 }
 
+Status QtDocument::beginStroke(editing::Stroke header) {
+    Q_EMIT strokeBegins();
+    return editing_->beginStroke(std::move(header));
+}
+
 quint64 QtDocument::nextMergeKey() {
     static quint64 last = 0;
     return ++last;

@@ -9,12 +9,14 @@
 #include <memory>
 #include <span>
 
+#include "core/base/result.h"
 #include "core/editing/model.h"
 
 namespace hairloom::editing {
 class Command;
 class Document;
 class Subscription;
+struct Stroke;
 }  // namespace hairloom::editing
 
 namespace hairloom::editor {
@@ -53,6 +55,8 @@ class QtDocument : public QObject {
     void performMerged(quint64 key, const Make& make);
     /// One that was never used.
     static quint64 nextMergeKey();
+    /// Errors: as of the document.
+    Status beginStroke(editing::Stroke header);
 
     /// The project as it was at that state of editing() is in the file at `path`, which is the document's
     /// now.
@@ -81,6 +85,8 @@ class QtDocument : public QObject {
     void replaced();
     /// noteSaved() was called; titleChanged() follows.
     void saved();
+    /// Who holds a copy of the groom lets go of it, or the stroke pays for it.
+    void strokeBegins();
     /// Path, name or modification.
     void titleChanged();
 

@@ -124,7 +124,7 @@ MainWindow::MainWindow()
     connect(autosave_.get(), &Autosave::upToDate, status_, [this] { status_->setStanding({}); });
     // The session may end the program before anybody answers.
     connect(
-        qApp, &QGuiApplication::commitDataRequest, this, [this] { autosave_->keep(); }, Qt::DirectConnection);
+        qApp, &QGuiApplication::commitDataRequest, this, [this] { keepUnsaved(); }, Qt::DirectConnection);
     connect(viewport_, &Viewport::keyPressed, this, &MainWindow::runShortcut);
     connect(viewport_, &Viewport::hintChanged, this, [this] {
         const Tool* tool = viewport_->tool();

@@ -7,6 +7,7 @@
 #include <QMainWindow>
 #include <QStackedWidget>
 #include <optional>
+#include <thread>
 
 #include "editor/document/autosave.h"
 #include "editor/panels/panel.h"
@@ -38,6 +39,8 @@ class MainWindow : public QMainWindow {
     /// Writes the project on a thread of its own and keeps the window alive meanwhile. Asks where others have
     /// to do with the file. False where the user cancelled or writing failed.
     bool saveTo(const QString& path);
+    /// The program ends and nobody can be asked: what is unsaved is in a copy when this returns.
+    void keepUnsaved();
     /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself. Nothing
     /// changes before it is accepted. `mayLeave`: what to do about unsaved changes has been asked.
     void showHeadDialog(const QString& path, bool mayLeave = false);
@@ -119,6 +122,10 @@ class MainWindow : public QMainWindow {
     QByteArray firstLayout_;
     Unsaved unsaved_ = Unsaved::Ask;
     bool isSaving_ = false;
+    std::thread saver_;
+    Status saved_;  ///< what the saver came to
+    QString savingTo_;
+    quint64 savingState_ = 0;
     FileVersion toldOf_;              ///< the change of the project's file that was told of
     std::size_t toldWindows_ = 0;     ///< other windows on the project that were told of
     std::optional<bool> shownEmpty_;  ///< what showPage() has made of the document

@@ -98,21 +98,30 @@ bool MainWindow::mayReplaceFile(const QString& path) {
 
 /// The document may be drawn and played meanwhile; what people do waits.
 Status MainWindow::write(const QString& path) {
-    Status written;
     QEventLoop loop;
     isSaving_ = true;
+    savingTo_ = path;
+    savingState_ = document_.editing().state();
     autosave_->pause(true);
-    std::thread writer([this, &written, &loop, groom = document_.groom(), file = path.toStdString()] {
+    saver_ = std::thread([this, &loop, groom = document_.groom(), file = path.toStdString()] {
         {
             const std::lock_guard lock(autosave_->writing());
-            written = saveProject(groom, file);
+            saved_ = saveProject(groom, file);
         }
         QMetaObject::invokeMethod(&loop, &QEventLoop::quit, Qt::QueuedConnection);
     });
     loop.exec(QEventLoop::ExcludeUserInputEvents);
-    writer.join();
+    if (saver_.joinable()) saver_.join();
     isSaving_ = false;
-    return written;
+    return saved_;
+}
+
+void MainWindow::keepUnsaved() {
+    if (saver_.joinable()) {
+        saver_.join();
+        if (saved_) document_.noteSaved(savingTo_, savingState_);
+    }
+    autosave_->keep();
 }
 
 bool MainWindow::saveTo(const QString& path) {
@@ -132,10 +141,9 @@ bool MainWindow::saveTo(const QString& path) {
         }
     }
     if (!mayReplaceFile(path)) return false;
-    const quint64 state = document_.editing().state();
     messages_.say(tr("Saving %1").arg(QFileInfo(path).fileName()));
     const Status written = write(path);
-    if (written) document_.noteSaved(path, state);
+    if (written) document_.noteSaved(path, savingState_);
     autosave_->pause(false);
     if (!written) {
         messages_.warn(errorText(written.error()));

@@ -136,7 +136,7 @@ bool BrushTool::begin(const Pointer& pointer) {
     if (header.tool != brush_.name) header.settings.parameters.clear();
     if (smooths && header.tool == brush_.name) header.settings.parameters["smooth"] = 1;
     if (pointer.modifiers & Qt::ControlModifier) header.settings.invert = !settings_.invert;
-    if (auto begun = document_.editing().beginStroke(std::move(header)); !begun) {
+    if (auto begun = document_.beginStroke(std::move(header)); !begun) {
         messages_.warn(errorText(begun.error()));
         return false;
     }

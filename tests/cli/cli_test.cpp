@@ -298,7 +298,7 @@ TEST_F(Cli, AccuracyMeasuresAGridAndWritesAReport) {
     EXPECT_EQ(engine["strands_compared"], 10);
 
     const Outcome unknown = run("accuracy hair.hairloom -o bad --integrators guess");
-    EXPECT_EQ(unknown.exitCode, 1);
+    EXPECT_EQ(unknown.exitCode, 2);
     EXPECT_THAT(unknown.errors, HasSubstr("verlet")) << "the integrators there are";
     EXPECT_FALSE(fs::exists(folder / "bad"));
 }
@@ -421,10 +421,10 @@ TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
         runJson("set hair.hairloom simulation.windSpeed=4 material.shininess=90 -o hair.hairloom");
     EXPECT_EQ(set["changed"], 2);
     const Outcome range = run("set hair.hairloom simulation.friction=7 -o hair.hairloom");
-    EXPECT_EQ(range.exitCode, 1);
+    EXPECT_EQ(range.exitCode, 2);
     EXPECT_THAT(range.errors, HasSubstr("0 to 1"));
     const Outcome name = run("set hair.hairloom simulation.wobble=1 -o hair.hairloom");
-    EXPECT_EQ(name.exitCode, 1);
+    EXPECT_EQ(name.exitCode, 2);
     EXPECT_THAT(name.errors, HasSubstr("friction")) << "the fields there are";
 }
 
@@ -476,7 +476,7 @@ TEST_F(Cli, TheStiffnessFollowsACurveOfKeys) {
     EXPECT_NE(hashWith("simulation.angularCurve=[[0,1],[0.5,0.05],[1,0.25]]"), straight);
     const Outcome order =
         run("set hair.hairloom simulation.angularCurve=[[0,1],[0.5,1],[0.4,1],[1,1]] -o x.hairloom");
-    EXPECT_EQ(order.exitCode, 1);
+    EXPECT_EQ(order.exitCode, 2);
     EXPECT_THAT(order.errors, HasSubstr("angularCurve has key 2 at 0.4"));
     const nlohmann::json listed = runJson("set --list");
     bool isListed = false;

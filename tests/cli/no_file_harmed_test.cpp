@@ -49,6 +49,8 @@ TEST_F(NoFileHarmed, AJobSavesOverItsProjectAndExportsNeverDo) {
     expectRefused("export g.hairloom --format hair -o g.hairloom", "is an input file");
     expectRefused("simulate g.hairloom --frames 2 --record g.hairloom", "is a Hairloom project");
     expectRefused("reference -o g.hairloom", "is a Hairloom project");
+    runJson("export g.hairloom --format hair -o a.hair");
+    expectRefused("export a.hair --format hair -o a.hair", "is an input file");
     runJson("set g.hairloom simulation.windSpeed=1 -o g.hairloom");
     EXPECT_NE(readText(folder / "g.hairloom"), project);
     EXPECT_EQ(runJson("info g.hairloom")["strands"], 40);

@@ -181,10 +181,10 @@ TEST_F(SavingTest, TheSystemsWordToEndLeavesACopy) {
         setDrag(signal == SIGTERM ? 5 : 6);
         const auto unsaved = hash();
         {
-            EndSignals signals;
+            const EndSignals signals;
             int ended = 0;
             QObject::connect(&signals, &EndSignals::received, window.get(), [&] {
-                window->autosave().keep();
+                window->keepUnsaved();
                 ++ended;
             });
             raise(signal);
@@ -381,6 +381,17 @@ TEST_F(SavingTest, WhatAKillLeavesInTheFolderOfCopiesIsFound) {
     ASSERT_TRUE(remove);
     remove->click();
     EXPECT_FALSE(fs::exists(place / ".0123.hairloom.0123456789abc.hairloom-part"));
+}
+
+TEST_F(SavingTest, FilesOfTheWorkingFolderAreNoCopies) {
+    const QString before = QDir::currentPath();
+    QDir::setCurrent(folder.path());
+    for (const char* name : {".hairloom", ".json", ".window"}) std::ofstream(file(name)) << "mine";
+    { const auto place = RecoveryPlace::take(); }
+    window.reset();
+    open();
+    for (const char* name : {".hairloom", ".json", ".window"}) EXPECT_TRUE(fs::exists(file(name))) << name;
+    QDir::setCurrent(before);
 }
 
 TEST_F(SavingTest, TheWindowSaysWhatGuardsForeignFiles) {

@@ -19,6 +19,7 @@ import time
 from pathlib import Path
 
 TIMEOUT_S = 60
+WINDOW_S = 30  # a window that does not answer gets 25
 FORMATS = {"hair": "hair", "tfx": "tfx", "abc": "abc", "usda": "usda", "usdc": "usdc", "obj-lines": "obj", "obj-c4d": "obj", "ply": "ply",
            "runtime": "hairrt"}
 
@@ -227,11 +228,11 @@ class Harm:
             self.count("window ends")
             window = subprocess.Popen([self.window, "w.hairloom"], cwd=self.folder, env=dict(self.environment, HAIRLOOM_VIEWPORT="none"),
                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            time.sleep(self.random.uniform(0.1, 4))
+            time.sleep(self.random.uniform(0.05, 8))
             sent = self.random.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGHUP))
             window.send_signal(sent)
             try:
-                code = window.wait(timeout=TIMEOUT_S)
+                code = window.wait(timeout=WINDOW_S)
             except subprocess.TimeoutExpired:
                 window.kill()
                 self.fall("window ends", f"did not end after signal {sent}", ())
@@ -240,6 +241,9 @@ class Harm:
                 self.fall("window ends", f"ended with {code} after signal {sent}", ())
             if self.digest("w.hairloom") != before:
                 self.fall("window ends", "the project has changed", ())
+            copies = self.run("clean", "--json").stdout
+            if '"copies": []' not in copies:
+                self.fall("window ends", f"a copy of what was never changed: {copies}", ())
 
 
 def main():
