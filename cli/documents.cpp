@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/base/file.h"
+#include "core/base/log.h"
 #include "importers/length_unit.h"
 
 namespace hairloom::cli {
@@ -61,6 +62,13 @@ Report toReport(const std::vector<Finding>& findings) {
     Report rows = Report::array();
     for (const Finding& finding : findings) rows.push_back(toReport(finding));
     return rows;
+}
+
+void tellFindings(const std::vector<Finding>& findings) {
+    for (const Finding& finding : findings) {
+        if (finding.severity == Severity::Info) continue;
+        log::warning("{}: {}{}{}", finding.where, finding.what, finding.fix.empty() ? "" : "; ", finding.fix);
+    }
 }
 
 Report toReport(const Finding& finding) {

@@ -21,6 +21,8 @@ Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMe
 
 Report toReport(const Finding& finding);
 Report toReport(const std::vector<Finding>& findings);
+/// Warns of all but information: not in the report alone, which few open while all seems well.
+void tellFindings(const std::vector<Finding>& findings);
 Report toReport(const Vec3f& vector);
 /// JSON has no infinities.
 Report finiteOrNull(double value);

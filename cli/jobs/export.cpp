@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <system_error>
 
@@ -14,7 +13,6 @@
 #include "cli/progress.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/base/write_rules.h"
 #include "core/documents/hair_export.h"
 #include "core/documents/web_page.h"
@@ -70,30 +68,6 @@ Result<Asked> findAsked(const ExportOptions& options) {
                      "expected " + formats);
 }
 
-/// What the writer's files are, for what must be known before one is made; empty where contentKind() does not
-/// tell.
-std::string_view contentOf(const HairWriter& writer) {
-    static const std::map<std::string_view, std::string_view> kinds{
-        {"abc", "an Alembic file"},     {"abc-unreal", "an Alembic file"},
-        {"gltf", "a binary glTF file"}, {"gltf-quantised", "a binary glTF file"},
-        {"vrm", "a binary glTF file"},  {"hair", "a .hair file"},
-        {"obj-c4d", "an OBJ file"},     {"obj-cards", "an OBJ file"},
-        {"obj-lines", "an OBJ file"},   {"ply", "a PLY file"},
-        {"runtime", "a runtime asset"}, {"tfx", "a TressFX 4 file"},
-        {"usda", "a USD file of text"}, {"usda-cards", "a USD file of text"},
-        {"usdc", "a binary USD file"}};
-    const auto found = kinds.find(writer.name);
-    return found == kinds.end() ? std::string_view() : found->second;
-}
-
-/// Not in the report alone, which few open while all seems well.
-void tellFindings(const ExportReport& report) {
-    for (const Finding& finding : report.findings) {
-        if (finding.severity == Severity::Info) continue;
-        log::warning("{}: {}{}{}", finding.where, finding.what, finding.fix.empty() ? "" : "; ", finding.fix);
-    }
-}
-
 /// Writes the report beside the file, if that is one.
 Result<Report> withCompanion(const ExportOptions& options, Report report) {
     const std::string companion = companionOf(options.output);
@@ -135,7 +109,7 @@ Result<Report> exportAsPage(const ExportOptions& options) {
     if (options.certify) wanted.storms = CertificateOptions{}.storms;
     const auto written = exportWebPage(*groom, wanted, options.output);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
-    tellFindings(*written);
+    tellFindings(written->findings);
     return toJson(*written);
 }
 
@@ -156,7 +130,7 @@ Result<Report> exportAsset(const ExportOptions& options) {
     };
     const auto written = exportHair(*groom, *wanted, *asked->writer, options.output, exporting);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
-    tellFindings(*written);
+    tellFindings(written->findings);
     return withCompanion(options, toJson(*written));
 }
 
@@ -221,7 +195,7 @@ JobRun declare(CLI::App& job) {
         // Known before it is read: it is no target, of whatever kind.
         noteInput(options->input);
         return withOutputs(
-            {{options->output, contentOf(*asked->writer)}, {companion, content::kJson}},
+            {{options->output, contentKindOfSuffix(asked->writer->suffix())}, {companion, content::kJson}},
             [&] { return exportAsset(*options); }, ReadBack::Yes);
     };
 }

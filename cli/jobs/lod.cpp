@@ -7,7 +7,6 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "core/base/log.h"
 #include "core/base/stopwatch.h"
 #include "core/levels/level_report.h"
 #include "core/levels/spring_fit.h"
@@ -33,8 +32,7 @@ Result<Report> run(const LodOptions& options, const std::string& commandLine) {
     if (!chain) return tl::unexpected(inFile(chain.error(), options.input));
     std::vector<Finding> findings;
     const cards::Character character = cardCharacter(*groom, findings);
-    for (const Finding& finding : findings)
-        log::warning("{}: {}; {}", finding.where, finding.what, finding.fix);
+    tellFindings(findings);
     const auto files = writeChain(*chain, commandLine, collidersOf(*groom), character, options.output);
     if (!files) return tl::unexpected(files.error());
     Report report{{"hairs", chain->strands}, {"directions", chain->views.size()}};

@@ -13,25 +13,27 @@ using std::string_view_literals::operator""sv;
 struct Signature {
     std::string_view start;
     std::string_view kind;
+    std::string_view suffix = {};  ///< of files that are written as that kind
 };
 
 constexpr std::array kSignatures{
     Signature{"HAIRLOOM"sv, content::kProject},
     Signature{"HLFRAMES"sv, content::kFrames},
-    Signature{"HAIR"sv, "a .hair file"},
-    Signature{"\x89HRT\r\n\x1a\n"sv, "a runtime asset"},
-    Signature{"\0\0\x80\x40"sv, "a TressFX 4 file"},
+    Signature{"HAIR"sv, "a .hair file", "hair"},
+    Signature{"\x89HRT\r\n\x1a\n"sv, "a runtime asset", "hairrt"},
+    Signature{"\0\0\x80\x40"sv, "a TressFX 4 file", "tfx"},
     Signature{"\0\0\x40\x40"sv, "a TressFX 3 file"},
     Signature{"# TressFX collision mesh"sv, "a TressFX collision mesh"},
-    Signature{"Ogawa\xff"sv, "an Alembic file"},
+    Signature{"Ogawa\xff"sv, "an Alembic file", "abc"},
     Signature{"Ogawa\0"sv, "an Alembic file"},
-    Signature{"PXR-USDC"sv, "a binary USD file"},
-    Signature{"#usda"sv, "a USD file of text"},
-    Signature{"ply\n"sv, "a PLY file"},
+    Signature{"PXR-USDC"sv, "a binary USD file", "usdc"},
+    Signature{"#usda"sv, "a USD file of text", "usda"},
+    Signature{"ply\n"sv, "a PLY file", "ply"},
     Signature{"ply\r"sv, "a PLY file"},
     Signature{"\x89PNG\r\n\x1a\n"sv, content::kPng},
     Signature{"\x76\x2f\x31\x01"sv, "an OpenEXR picture"},
-    Signature{"glTF"sv, "a binary glTF file"},
+    Signature{"glTF"sv, "a binary glTF file", "glb"},
+    Signature{"glTF"sv, "a binary glTF file", "vrm"},
     Signature{"\x03\x02\x23\x07"sv, "a compiled shader"},
     Signature{"DXBC"sv, "a compiled shader"},
     Signature{"<!doctype html"sv, "an HTML page"},
@@ -41,6 +43,7 @@ constexpr std::array kSignatures{
     Signature{"<?xml"sv, "an SVG drawing"},
 };
 
+constexpr std::string_view kObj = "an OBJ file";
 constexpr std::array kObjWords{"v "sv, "vn "sv, "vt "sv, "o "sv,      "g "sv,      "s "sv,
                                "f "sv, "l "sv,  "p "sv,  "mtllib "sv, "usemtl "sv, "cstype "sv};
 
@@ -78,7 +81,15 @@ std::string_view contentKind(std::span<const std::byte> beginning) {
     if (!isText(text)) return "of no known kind";
     const std::size_t start = text.find_first_not_of(" \t\r\n");
     if (start != std::string_view::npos && (text[start] == '{' || text[start] == '[')) return content::kJson;
-    return isObj(text) ? "an OBJ file" : "text";
+    return isObj(text) ? kObj : "text";
+}
+
+std::string_view contentKindOfSuffix(std::string_view suffix) {
+    if (suffix == "obj") return kObj;
+    const auto* const found = std::ranges::find_if(kSignatures, [&](const Signature& signature) {
+        return !suffix.empty() && signature.suffix == suffix;
+    });
+    return found == kSignatures.end() ? std::string_view() : found->kind;
 }
 
 }  // namespace hairloom

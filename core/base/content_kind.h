@@ -22,4 +22,8 @@ inline constexpr std::size_t kContentKindBytes = 4096;
 /// The kind in words that fit behind "is": one of content's, "an OBJ file", "text", "of no known kind" …
 std::string_view contentKind(std::span<const std::byte> beginning);
 
+/// That of files which writers give the suffix ("hair", "glb"), for what must be known before one is made;
+/// empty where contentKind() does not tell.
+std::string_view contentKindOfSuffix(std::string_view suffix);
+
 }  // namespace hairloom

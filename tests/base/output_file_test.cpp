@@ -116,6 +116,15 @@ TEST_F(OutputFileTest, KindsAreToldFromTheContent) {
     EXPECT_EQ(kind("\1\2\3"), "of no known kind");
 }
 
+TEST_F(OutputFileTest, SuffixesTellTheKindsOfWhatIsToBeWritten) {
+    using std::string_view_literals::operator""sv;
+    EXPECT_EQ(contentKindOfSuffix("tfx"), contentKind(std::as_bytes(std::span("\0\0\x80\x40\1"sv))));
+    EXPECT_EQ(contentKindOfSuffix("obj"), contentKind(std::as_bytes(std::span("v 1 2 3\n"sv))));
+    EXPECT_EQ(contentKindOfSuffix("glb"), contentKindOfSuffix("vrm"));
+    EXPECT_EQ(contentKindOfSuffix("fbx"), "") << "not told by its beginning";
+    EXPECT_EQ(contentKindOfSuffix(""), "");
+}
+
 TEST_F(OutputFileTest, WhatWasReadIsKeptAndAProjectMayBeSavedOver) {
     setWriteRules({.keepInputs = true});
     put("a.txt", "words");

@@ -101,7 +101,7 @@ TEST_F(LodJob, CardsAreShapedByHandThroughTheScriptThatItWrites) {
 TEST_F(LodJob, SaysWhatCannotBe) {
     makeHair();
     const auto spec = run("lod hair.hairloom -o out --levels braids:3");
-    EXPECT_EQ(spec.exitCode, 1);
+    EXPECT_EQ(spec.exitCode, 2) << "wrong usage";
     EXPECT_THAT(spec.errors, HasSubstr("unknown kind"));
     const auto target = run("lod hair.hairloom -o out --levels cards:2@256 --directions 1 --target-px 0.01");
     EXPECT_EQ(target.exitCode, 1);

@@ -74,7 +74,7 @@ class EffectsTest : public WindowTest {
 TEST_F(EffectsTest, PanelPreviewsThePlanBeforePlaying) {
     ASSERT_TRUE(waitForRow("wind"));
     EXPECT_FALSE(parts().player.frame());
-    EXPECT_TRUE(isOn("wind"));
+    EXPECT_TRUE(becomes("wind", true));
     EXPECT_FALSE(row("wind")->text(3).isEmpty());
     Groom still = groom();
     still.simulation.windSpeed = 0;
@@ -86,7 +86,7 @@ TEST_F(EffectsTest, DisablingAnEffectForNowKeepsTheDocument) {
     ASSERT_TRUE(waitForRow("wind"));
     const auto before = hash();
     ASSERT_TRUE(play(0.1));
-    EXPECT_TRUE(isOn("wind"));
+    EXPECT_TRUE(becomes("wind", true));
     EXPECT_TRUE(waitForMilliseconds("solve")) << "milliseconds are live";
     row("wind")->setCheckState(0, Qt::Unchecked);
     EXPECT_EQ(parts().player.leftOut(), QStringList{"wind"});

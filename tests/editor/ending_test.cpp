@@ -25,6 +25,8 @@ class EndingDeathTest : public WindowTest {
   protected:
     void SetUp() override {
         GTEST_FLAG_SET(death_test_style, "threadsafe");
+        // A shell starts what it does not wait for with some of them ignored.
+        for (const int signal : {SIGTERM, SIGINT, SIGHUP}) std::signal(signal, SIG_DFL);
         WindowTest::SetUp();
         openSampleHair("short");
         openFirstStrands(40);
