@@ -38,13 +38,13 @@ struct Trilinear {
 };
 
 /// A cell of a table, and where in it a point is.
-struct Place {
+struct CellPlace {
     std::uint32_t x, y, z;
     Trilinear in;
 };
 
 /// `cells` from the first corner of the table; within its size.
-Place placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
+CellPlace placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
     const auto along = [](float at, std::uint32_t size) {
         return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), size - 1);
     };
@@ -76,7 +76,7 @@ bool isInside(const BodyField& field, Float3 cells) {
     return within(cells.x, field.size[0]) && within(cells.y, field.size[1]) && within(cells.z, field.size[2]);
 }
 
-std::size_t cornerIndex(const BodyField& field, const Place& place) {
+std::size_t cornerIndex(const BodyField& field, const CellPlace& place) {
     return (std::size_t{place.z} * (field.size[1] + 1) + place.y) * (field.size[0] + 1) + place.x;
 }
 
@@ -176,7 +176,7 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
     const float perCell = 1 / cell;
     const Float3 cells = (point_ss - low_ss) * perCell;
     if (!isInside(*this, cells)) return {kInfinite, {0, 1, 0}};
-    const Place place = placeAt(cells, size[0], size[1], size[2]);
+    const CellPlace place = placeAt(cells, size[0], size[1], size[2]);
     const auto coarseSample = [&] {
         const std::size_t row = size[0] + 1, layer = row * (size[1] + 1);
         const std::int16_t* const first = distances.data() + cornerIndex(*this, place);
@@ -187,8 +187,8 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
     const std::uint16_t block = blocks[(std::size_t{place.z} * size[1] + place.y) * size[0] + place.x];
     if (block == kNoBlock) return coarseSample();
     constexpr auto kFine = static_cast<float>(kBlockCells);
-    const Place in = placeAt({place.in.x * kFine, place.in.y * kFine, place.in.z * kFine}, kBlockCells,
-                             kBlockCells, kBlockCells);
+    const CellPlace in = placeAt({place.in.x * kFine, place.in.y * kFine, place.in.z * kFine}, kBlockCells,
+                                 kBlockCells, kBlockCells);
     const std::int8_t* const first = values.data() + std::size_t{block} * kBlockValues +
                                      (std::size_t{in.z} * kBlockCorners + in.y) * kBlockCorners + in.x;
     Sample fine =
@@ -260,7 +260,7 @@ void PosedBody::take(const BodyField& field, std::span<const BonePose> pose) {
 PosedBody::Map PosedBody::mapAt(Float3 point_ss) const {
     const BodyField& field = *field_;
     const Float3 cells = (point_ss - field.low_ss) * (1 / field.cell);
-    const Place place = placeAt(cells, field.size[0], field.size[1], field.size[2]);
+    const CellPlace place = placeAt(cells, field.size[0], field.size[1], field.size[2]);
     const std::size_t row = field.size[0] + 1, layer = row * (field.size[1] + 1);
     const auto skins = cornersOf(field.skins.data() + cornerIndex(field, place), row, layer);
     if (std::all_of(skins.begin(), skins.end(), [&](std::uint16_t skin) { return skin == skins[0]; }))

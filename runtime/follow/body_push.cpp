@@ -17,15 +17,15 @@ constexpr float kPushSlack = 1e-5f;
 
 /// Places of a uniform Catmull-Rom curve between p and p + 1: shares of the points p − 1 to p + 2, at ¼, ½
 /// and ¾.
-struct Place {
+struct CubicPlace {
     float before, a, b, after;
 };
-constexpr std::array<Place, 3> kPlaces{{{-9.0f / 128, 111.0f / 128, 29.0f / 128, -3.0f / 128},
-                                        {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16},
-                                        {-3.0f / 128, 29.0f / 128, 111.0f / 128, -9.0f / 128}}};
+constexpr std::array<CubicPlace, 3> kPlaces{{{-9.0f / 128, 111.0f / 128, 29.0f / 128, -3.0f / 128},
+                                             {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16},
+                                             {-3.0f / 128, 29.0f / 128, 111.0f / 128, -9.0f / 128}}};
 
 /// Missing neighbours repeat the end points.
-Float3 placeOf(std::span<const Float3> hair, std::size_t p, const Place& place) {
+Float3 placeOf(std::span<const Float3> hair, std::size_t p, const CubicPlace& place) {
     const Float3 a = hair[p], b = hair[p + 1];
     const Float3 before = p > 0 ? hair[p - 1] : a, after = p + 2 < hair.size() ? hair[p + 2] : b;
     return before * place.before + a * place.a + b * place.b + after * place.after;
@@ -92,7 +92,7 @@ bool BodyPush::liftCurve(const PosedBody& body, Hair& hair) const {
         // No place is farther from its ends than the ends from each other.
         if (!(std::min(p == 0 ? 0.0f : hair.away[p], hair.away[p + 1]) < length)) continue;
         for (std::size_t i = 0; i < kPlaces.size(); ++i) {
-            const Place& place = kPlaces[i];
+            const CubicPlace& place = kPlaces[i];
             // Roots stay, and what is next to them.
             if (p == 0 && place.b < place.a) continue;
             const Float3 at = placeOf(hair.points, p, place);
