@@ -25,6 +25,10 @@ if [ ! -f "$WINEPREFIX/.ready" ]; then
     ) 9> "$cache/wine.lock"
 fi
 # A server that goes as soon as nobody needs it may be on its way out when the next program looks for it: that program
-# fails. One that waits is there for all programs of a build. Of one that runs already this says nothing.
-(flock 9 && wineserver -p60 < /dev/null > /dev/null 2>&1 9>&-) 9> "$cache/wine.lock" || true
+# fails. One that waits is there for all programs of a build. Of one that runs already this says nothing, and ends with 2.
+# Wine's services begin with the first program and keep its output open: who waits for the end of that would wait for theirs.
+(
+    flock 9
+    if wineserver -p60 < /dev/null > /dev/null 2>&1 9>&-; then wine cmd /c exit < /dev/null > /dev/null 2>&1 9>&-; fi
+) 9> "$cache/wine.lock" || true
 exec wine "$@"

@@ -43,7 +43,7 @@ std::vector<Seed> seeds() {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file() || entry.file_size() > kLargestSeed) continue;
         if (auto bytes = readFile(entry.path()))
-            seeds.push_back({entry.path().filename(), std::move(*bytes)});
+            seeds.push_back({entry.path().filename().string(), std::move(*bytes)});
     }
     std::ranges::sort(seeds, {}, &Seed::name);
     return seeds;

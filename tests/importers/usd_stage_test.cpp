@@ -122,9 +122,11 @@ TEST_F(UsdStages, ReferencesPayloadsAndLayersOfTheFolderAreFollowed) {
 
 TEST_F(UsdStages, FilesElsewhereAreNotReadWhateverLeadsThere) {
     write("secret.usda", kHead + std::string("def Xform \"groom\"\n{\n") + curves("hair", 3) + "}\n");
-    fs::create_symlink(folder / "secret.usda", folder / "in" / "link.usda");
-    const std::string absolute = (folder / "secret.usda").string();
-    for (const std::string& asset : {std::string("../secret.usda"), std::string("./link.usda"), absolute}) {
+    std::vector<std::string> assets{"../secret.usda", (folder / "secret.usda").generic_string()};
+    std::error_code code;
+    fs::create_symlink(folder / "secret.usda", folder / "in" / "link.usda", code);
+    if (!code) assets.emplace_back("./link.usda");
+    for (const std::string& asset : assets) {
         write("in/stage.usda",
               kHead + curves("own", 1, 1) + "def \"groom\" (references = @" + asset + "@)\n{\n}\n");
         const auto imported = read("in/stage.usda");
