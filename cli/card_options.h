@@ -4,12 +4,14 @@
 
 #include <CLI/App.hpp>
 
+#include <vector>
+
 #include "core/levels/level_chain.h"
 
 namespace hairloom::cli {
 
-/// --cards, --textures, --segments, --from-px, --atlas, --target-px, --levels.
-void addCardOptions(CLI::App& job, LevelBudget& budget);
+/// --cards, --textures, --segments, --from-px, --atlas, --target-px, --levels; these in order.
+std::vector<const CLI::Option*> addCardOptions(CLI::App& job, LevelBudget& budget);
 /// Throws WrongUsage where --levels names none.
 void checkLevels(const LevelBudget& budget);
 

@@ -19,6 +19,10 @@ Status setWind(Groom& groom, const std::string& wind) {
     return {};
 }
 
+void checkMotion(const std::string& motion) {
+    if (!motion.starts_with("clip:") && !motion.ends_with(".json")) orWrongUsage(makeRigidMotion(motion, {}));
+}
+
 void addMotionOptions(CLI::App& job, MotionOptions& options) {
     job.add_option("groom", options.input, "Project or hair file")->required();
     job.add_option("--frames", options.frames, "Number of frames in each run")->check(CLI::Range(1, 100'000));
@@ -31,6 +35,7 @@ void addMotionOptions(CLI::App& job, MotionOptions& options) {
 }
 
 Result<MovingGroom> openMovingGroom(const MotionOptions& options) {
+    checkMotion(options.motion);
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     if (auto status = setWind(*groom, options.wind); !status) return tl::unexpected(status.error());

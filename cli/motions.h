@@ -13,6 +13,9 @@ namespace hairloom::cli {
 /// The wind of --wind, "X,Y,Z" in m/s, instead of the groom's own; an empty text changes nothing.
 Status setWind(Groom& groom, const std::string& wind);
 
+/// Throws WrongUsage where --motion is no word that there is; what a file holds is not asked.
+void checkMotion(const std::string& motion);
+
 /// What jobs have in common that run a scene a few times over.
 struct MotionOptions {
     std::string input;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "benchmarks/benchmark.h"
@@ -49,6 +50,11 @@ void checkOptions(const BenchOptions& options) {
         throw WrongUsage(fmt::format("`bench {}` has no option {}", options.name, option),
                          fmt::format("expected it with {}", whoTakes(option)));
     }
+    const auto& strands = options.measuring.strands;
+    if (const auto at = std::ranges::adjacent_find(strands, std::ranges::greater_equal());
+        at != strands.end())
+        throw WrongUsage(fmt::format("--strands has {} behind {}", at[1], at[0]),
+                         "expected numbers in ascending order");
 }
 
 Result<Report> bench(const BenchOptions& options, const std::string& commandLine) {

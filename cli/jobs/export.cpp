@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <vector>
 
 #include "cli/card_options.h"
 #include "cli/documents.h"
@@ -68,6 +70,37 @@ Result<Asked> findAsked(const ExportOptions& options) {
                      "expected " + formats);
 }
 
+/// Throws WrongUsage where one of the options is given with a format that has no cards.
+void checkCardOptions(const ExportOptions& options, const std::vector<const CLI::Option*>& ofCards) {
+    const auto given = std::ranges::find_if(ofCards, [](const auto* option) { return option->count() > 0; });
+    if (given == ofCards.end()) return;
+    const bool isPage = options.format == kWebFormat;
+    if (!isPage && findAsked(options)->writer->holdsCards()) return;
+    std::string formats;
+    for (const HairWriter& writer : hairWriters()) {
+        if (writer.holdsCards()) formats += (formats.empty() ? "" : ", ") + writer.name;
+    }
+    throw WrongUsage(fmt::format("{} applies to cards alone", (*given)->get_name()),
+                     "expected it with --format " + formats);
+}
+
+/// Throws WrongUsage where options ask for what a format does not have.
+void checkFormat(const HairWriter& writer, const ExportOptions& options,
+                 const StrandExportOptions& exporting) {
+    if (writer.holdsCards() &&
+        (exporting.metresPerUnit != 1 || exporting.up != UpAxis::Y || exporting.pointsPerStrand > 0))
+        throw WrongUsage(
+            "--unit, --up and --points do not apply to cards",
+            "leave them out: glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
+    if (options.frames.size() != 2 || options.frames[1] <= options.frames[0] || writer.animates) return;
+    std::string formats;
+    for (const HairWriter& other : strandWriters()) {
+        if (other.animates) formats += (formats.empty() ? "" : ", ") + other.name;
+    }
+    throw WrongUsage(fmt::format("{} holds a single pose, and --frames asks for several", writer.name),
+                     "expected one frame, or --format " + formats);
+}
+
 /// Writes the report beside the file, if that is one.
 Result<Report> withCompanion(const ExportOptions& options, Report report) {
     const std::string companion = companionOf(options.output);
@@ -122,6 +155,7 @@ Result<Report> exportAsset(const ExportOptions& options) {
     if (!options.unit.empty()) exporting.metresPerUnit = metresPerUnit(options.unit);
     if (!options.up.empty()) exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     if (options.points > 0) exporting.pointsPerStrand = options.points;
+    checkFormat(*asked->writer, options, exporting);
     auto wanted = hairToExport(options, *groom);
     if (!wanted) return tl::unexpected(wanted.error());
     Progress bar("exporting", 1000);
@@ -180,12 +214,13 @@ JobRun declare(CLI::App& job) {
     job.add_flag("--certify", options->certify,
                  "Find out with a thousand random storms what a game may do to this hair, for the report and "
                  "the runtime asset. Takes about half a minute");
-    addCardOptions(job, options->levels);
+    const auto ofCards = addCardOptions(job, options->levels);
     job.add_option("-o,--output", options->output,
                    "File to write, or the folder of a web page. The report goes next to a file")
         ->required();
-    return [options](const std::string&) {
+    return [options, ofCards](const std::string&) {
         checkLevels(options->levels);
+        checkCardOptions(*options, ofCards);
         if (options->format == kWebFormat)
             return withOutputFolder(options->output, {"hair.hairrt", "hair.js", "index.html"},
                                     [&] { return exportAsPage(*options); });

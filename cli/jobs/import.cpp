@@ -232,10 +232,12 @@ JobRun declare(CLI::App& job) {
     job.add_option("file", options->file,
                    labelsOf(strandFormats()) + "; or an OBJ of lines or of Cinema 4D ribbons")
         ->required();
-    job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
+    auto* mesh = job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
     job.add_option("--scalp", options->scalp, "Faces of the mesh where hair grows, as for create");
     addUnitOption(job, options->unit);
     addHeadOptions(job, options->head, "mesh-");
+    for (const char* ofMesh : {"--scalp", "--mesh-unit", "--mesh-up", "--turn", "--leave-out"})
+        job.get_option(ofMesh)->needs(mesh);
     job.add_option("--up", options->up, "Up axis of the hair file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--segments", options->segments,
                    "Segments per strand of a Cinema 4D OBJ. 0 detects them from its faces, or from the "

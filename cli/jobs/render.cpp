@@ -484,6 +484,7 @@ JobRun declare(CLI::App& job) {
         }
     });
     return [options](const std::string&) {
+        if (!options->motion.empty()) checkMotion(options->motion);
         const auto shots = shotsOf(*options);
         if (!shots) return Result<Report>(tl::unexpected(shots.error()));
         const std::size_t files = options->sequence() ? shots->size() : 0;

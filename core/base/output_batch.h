@@ -15,8 +15,8 @@ class OutputBatch {
     OutputBatch& operator=(const OutputBatch&) = delete;
     ~OutputBatch();
 
-    /// Errors: one that may not or cannot be put in place; nothing is in place then, unless the disk itself
-    /// fails on the way, and then the error says so.
+    /// Errors: one that may not or cannot be put in place; all places are as they were then. Where even that
+    /// fails the error says so, and where the old content is.
     Status commit();
 
   private:

@@ -79,7 +79,9 @@ struct Coming {
     Status mayReplace() const {
         return hairloom::mayReplace(path, target, contentKind(beginning), replacing);
     }
-    Status putInPlace();
+    Status putInPlace(bool isOldKept = false);
+    /// After putInPlace() with the old kept, also where it failed.
+    Status putBack() { return temporary ? temporary->putBack() : Status(); }
 };
 
 }  // namespace
@@ -182,17 +184,16 @@ Status OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> byte
     return {};
 }
 
-Status Coming::putInPlace() {
+Status Coming::putInPlace(bool isOldKept) {
     if (!temporary) {
         if (auto status = writeThrough(target, held); !status) return notWritten(path, status.error());
         return {};
     }
     if (temporary->equalsTarget()) {
         temporary.reset();
-    } else if (auto status = temporary->replaceTarget(accessed); !status) {
+    } else if (auto status = temporary->replaceTarget(accessed, isOldKept); !status) {
         return notWritten(path, status.error());
     }
-    noteWritten(target);
     return {};
 }
 
@@ -200,7 +201,12 @@ Status OutputFile::finish() {
     if (impl_->temporary) {
         if (auto status = impl_->mayReplace(); !status) return status;
     }
-    if (!waiting().open) return impl_->putInPlace();
+    if (!waiting().open) {
+        const bool isFile = impl_->temporary.has_value();
+        auto status = impl_->putInPlace();
+        if (status && isFile) noteWritten(impl_->target);
+        return status;
+    }
     if (impl_->temporary) {
         if (auto status = impl_->temporary->flush(); !status) return notWritten(impl_->path, status.error());
     }
@@ -233,26 +239,29 @@ fs::path whereWritten(const fs::path& path) {
 Status OutputBatch::commit() {
     if (!isOuter_) return {};
     const EndsLater whole;
-    const auto files = std::exchange(waiting().files, {});
-    for (const auto& file : files) {
-        if (!file->temporary) continue;
+    auto files = std::exchange(waiting().files, {});
+    // What has gone into a device does not come back: it comes last.
+    const auto devices =
+        std::ranges::stable_partition(files, [](const auto& file) { return file->temporary.has_value(); });
+    const auto places = std::span(files).first(files.size() - devices.size());
+    for (const auto& file : places) {
         if (auto status = file->mayReplace(); !status) return status;
     }
-    std::vector<fs::path> made;
+    std::vector<fs::path> written;
+    for (const auto& file : places) written.push_back(file->target);
     for (std::size_t i = 0; i < files.size(); ++i) {
-        const bool isNew = files[i]->temporary && !fileState(files[i]->target).exists;
-        const auto status = files[i]->putInPlace();
-        if (status) {
-            if (isNew) made.push_back(files[i]->target);
-            continue;
-        }
+        const auto status = files[i]->putInPlace(true);
+        if (status) continue;
         Error error = status.error();
-        std::error_code code;
-        for (const fs::path& file : made) fs::remove(file, code);
-        if (i > made.size())
-            error.problem += fmt::format("; {} of {} files were replaced", i - made.size(), files.size());
+        for (std::size_t k = i + 1; k-- > 0;) {
+            if (auto back = files[k]->putBack(); !back) {
+                error.problem +=
+                    fmt::format("; {} cannot be put back: {}", files[k]->path.string(), back.error().problem);
+            }
+        }
         return tl::unexpected(std::move(error));
     }
+    for (const fs::path& target : written) noteWritten(target);
     return {};
 }
 

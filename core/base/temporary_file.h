@@ -54,8 +54,11 @@ class TemporaryFile {
     /// Whether the target has the same bytes.
     bool equalsTarget() const;
     /// Takes the target's place, which exists or not. A file that is replaced was last accessed at
-    /// `accessed`.
-    Status replaceTarget(std::int64_t accessed);
+    /// `accessed`. `isOldKept`: what was there stays beside it until this object goes, for putBack().
+    Status replaceTarget(std::int64_t accessed, bool isOldKept = false);
+    /// After replaceTarget() with the old kept, also where it failed: the target is as it was before. Errors:
+    /// it cannot be; then the old content stays, and the error names its file.
+    Status putBack();
 
   private:
     struct Impl;

@@ -10,15 +10,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
-#include <optional>
 #include <system_error>
 #include <vector>
 
 #include "core/base/descriptor_posix.h"
+#include "core/base/ended_slots_posix.h"
 #include "core/base/output_file.h"
 #include "core/base/temporary_file.h"
 
@@ -27,64 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxName = 255;
 constexpr std::size_t kCopyBytes = std::size_t{1} << 20u;
 
 tl::unexpected<Error> systemError(int code = errno) {
     return fail(std::generic_category().message(code));
-}
-
-/// Names that a signal's handler takes away. A slot is written before its file is made and cleared after it
-/// is gone: removing a name that is not there does no harm.
-struct Slot {
-    std::atomic<int> state{0};  ///< 0 free, 1 being written, 2 in use
-    int folder = -1;
-    std::array<char, kMaxName + 1> name{};
-};
-std::array<Slot, 256> slots;  // NOLINT(readability-identifier-naming): the handler's
-
-Slot* takeSlot(int folder, const std::string& name) {
-    for (Slot& slot : slots) {
-        int isFree = 0;
-        if (!slot.state.compare_exchange_strong(isFree, 1)) continue;
-        slot.folder = folder;
-        std::memcpy(slot.name.data(), name.c_str(), name.size() + 1);
-        slot.state = 2;
-        return &slot;
-    }
-    return nullptr;  // then a killed run leaves the file for findLeftOvers()
-}
-
-bool isOwn(const std::string& name) {
-    return std::ranges::any_of(slots,
-                               [&](const Slot& slot) { return slot.state == 2 && name == slot.name.data(); });
-}
-
-std::atomic<int> endsLater{0};  // NOLINT(readability-identifier-naming): the handler's
-std::atomic<int> endedBy{0};    // NOLINT(readability-identifier-naming)
-
-/// Folders that were made for files that are still to come, the innermost first.
-struct FolderSlot {
-    std::atomic<bool> isUsed{false};
-    std::array<char, 4096> path{};
-};
-std::array<FolderSlot, 16> folderSlots;  // NOLINT(readability-identifier-naming)
-
-extern "C" void removeAndEnd(int signal) {
-    if (endsLater > 0) {
-        endedBy = signal;
-        return;
-    }
-    for (Slot& slot : slots) {
-        if (slot.state == 2) unlinkat(slot.folder, slot.name.data(), 0);
-    }
-    for (FolderSlot& folder : folderSlots) {
-        if (folder.isUsed) rmdir(folder.path.data());
-    }
-    struct sigaction action {};
-    action.sa_handler = SIG_DFL;
-    sigaction(signal, &action, nullptr);
-    raise(signal);
 }
 
 std::string randomText() {
@@ -136,7 +80,7 @@ bool somebodyWrites(const fs::path& folderPath, int folder, const std::string& p
         if (!temporary || !name.starts_with(prefix)) continue;
         // The random part follows at once: ".a.b.RANDOM" is not of "a".
         if (name.find('.', prefix.size()) != name.rfind('.')) continue;
-        if (!isOwn(name) && isLocked(folder, name.c_str())) return true;
+        if (!isInEndedSlot(name) && isLocked(folder, name.c_str())) return true;
     }
     return false;
 }
@@ -163,6 +107,17 @@ std::size_t readPiece(int file, std::vector<std::byte>& piece, std::uint64_t off
     }
     piece.resize(count);
     return count;
+}
+
+/// All that `from` holds becomes all that `to` holds, on the disk.
+Status copyContent(int from, int to) {
+    std::vector<std::byte> piece;
+    std::uint64_t at = 0;
+    for (; readPiece(from, piece, at) > 0; at += piece.size()) {
+        if (auto status = writeAll(to, piece); !status) return status;
+    }
+    if (ftruncate(to, static_cast<off_t>(at)) != 0 || fsync(to) != 0) return systemError();
+    return {};
 }
 
 /// Access lists and attributes of users; what the file system does not take stays behind.
@@ -246,13 +201,23 @@ struct TemporaryFile::Impl {
     std::string targetName;
     std::string name;
     Descriptor folder, file;
-    Slot* slot = nullptr;
+    EndedSlot* slot = nullptr;
+    /// What was there before, where it is kept: the file itself by another name, or a copy of its content.
+    struct Old {
+        std::string name;  ///< empty where nothing is kept
+        bool isCopy = false;
+        struct stat info {};
+        Descriptor file;  ///< locked, as what is being written
+    } old;
+    bool isTouched = false;  ///< the target is no longer as it was
+    bool isLeft = false;     ///< the target is torn, and this has all of what it was to become
 
     Impl() = default;
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
     ~Impl() {
-        if (!name.empty()) unlinkat(folder.number(), name.c_str(), 0);
+        if (!name.empty() && !isLeft) unlinkat(folder.number(), name.c_str(), 0);
+        if (!old.name.empty()) unlinkat(folder.number(), old.name.c_str(), 0);
         clearSlot();
     }
     void clearSlot() {
@@ -261,7 +226,12 @@ struct TemporaryFile::Impl {
     }
 
     Status make();
-    Result<bool> adopt(int old, const struct stat& info, std::int64_t accessed) const;
+    Descriptor openTarget(int flags) const {
+        return Descriptor(openat(folder.number(), targetName.c_str(), flags | O_NOFOLLOW | O_CLOEXEC));
+    }
+    Result<bool> adopt(int from, const struct stat& info, std::int64_t accessed) const;
+    Status keepOld(const struct stat& info, bool isCopy);
+    Status putBack();
     Status moveIntoPlace();
     Status copyIntoPlace();
     Status flushFolder() const {
@@ -285,7 +255,7 @@ Status TemporaryFile::Impl::make() {
     if (somebodyWrites(folderPath, folder.number(), prefix))
         return fail("another program is writing it", "wait until it is done");
     const std::string wanted = prefix + randomText() + std::string(kPartSuffix);
-    slot = takeSlot(folder.number(), wanted);
+    slot = takeEndedSlot(folder.number(), wanted);
     // Nobody else reads what may become a private file; adopt() opens it as far as the target is open.
     const bool exists = faccessat(folder.number(), targetName.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0;
     file = Descriptor(openat(folder.number(), wanted.c_str(),
@@ -325,8 +295,7 @@ fs::path TemporaryFile::path() const {
 }
 
 bool TemporaryFile::equalsTarget() const {
-    const Descriptor old(
-        openat(impl_->folder.number(), impl_->targetName.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+    const Descriptor old(impl_->openTarget(O_RDONLY));
     struct stat own {
     }, theirs{};
     if (!old || fstat(old.number(), &theirs) != 0 || fstat(impl_->file.number(), &own) != 0 ||
@@ -341,14 +310,14 @@ bool TemporaryFile::equalsTarget() const {
 }
 
 /// Gives the new file what belongs to the old; false where it cannot have the old one's owner.
-Result<bool> TemporaryFile::Impl::adopt(int old, const struct stat& info, std::int64_t accessed) const {
+Result<bool> TemporaryFile::Impl::adopt(int from, const struct stat& info, std::int64_t accessed) const {
     struct stat own {};
     if (fstat(file.number(), &own) != 0) return systemError();
     if ((own.st_uid != info.st_uid || own.st_gid != info.st_gid) &&
         fchown(file.number(), info.st_uid, info.st_gid) != 0)
         return false;
     if (fchmod(file.number(), info.st_mode & 07777) != 0) return systemError();
-    copyAttributes(old, file.number());
+    copyAttributes(from, file.number());
     const std::array<timespec, 2> times{timespec{accessed / kNanoseconds, accessed % kNanoseconds},
                                         timespec{0, UTIME_OMIT}};
     futimens(file.number(), times.data());
@@ -359,6 +328,7 @@ Status TemporaryFile::Impl::moveIntoPlace() {
     if (fsync(file.number()) != 0) return systemError();
     if (renameat(folder.number(), name.c_str(), folder.number(), targetName.c_str()) != 0)
         return systemError();
+    isTouched = true;
     name.clear();
     clearSlot();
     return flushFolder();
@@ -367,40 +337,82 @@ Status TemporaryFile::Impl::moveIntoPlace() {
 /// The file itself stays, with all its links. Killed on the way, the run leaves the whole content beside it.
 Status TemporaryFile::Impl::copyIntoPlace() {
     if (fsync(file.number()) != 0) return systemError();
-    const Descriptor old(openat(folder.number(), targetName.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC));
-    if (!old) return systemError();
+    const Descriptor there(openTarget(O_WRONLY));
+    if (!there) return systemError();
     std::string whole = name.substr(0, name.size() - kPartSuffix.size()) + std::string(kWholeSuffix);
     if (renameat(folder.number(), name.c_str(), folder.number(), whole.c_str()) != 0) return systemError();
     name = std::move(whole);
     clearSlot();
     if (auto status = flushFolder(); !status) return status;
-    const std::string kept = std::exchange(name, {});  // an error from here on leaves it for its owner
-    std::vector<std::byte> piece;
-    std::uint64_t at = 0;
-    for (; readPiece(file.number(), piece, at) > 0; at += piece.size()) {
-        if (auto status = writeAll(old.number(), piece); !status) return status;
-    }
-    if (ftruncate(old.number(), static_cast<off_t>(at)) != 0 || fsync(old.number()) != 0)
-        return systemError();
-    name = kept;
+    isLeft = true;
+    isTouched = true;
+    if (auto status = copyContent(file.number(), there.number()); !status) return status;
+    isLeft = false;
     return {};
 }
 
-Status TemporaryFile::replaceTarget(std::int64_t accessed) {
-    const Descriptor old(openat(impl_->folder.number(), impl_->targetName.c_str(),
-                                O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-    struct stat info {};
-    if (!old) {
-        // Nothing is there, or what may be written and not read, whose owner and mode are told all the same.
-        if (fstatat(impl_->folder.number(), impl_->targetName.c_str(), &info, AT_SYMLINK_NOFOLLOW) != 0)
-            return impl_->moveIntoPlace();
-        return impl_->copyIntoPlace();
+/// A second name where the file itself is going to make room, else a copy, as where file systems know no
+/// second names.
+Status TemporaryFile::Impl::keepOld(const struct stat& info, bool isCopy) {
+    std::string kept = prefixFor(target) + randomText() + std::string(kPartSuffix);
+    isCopy |= linkat(folder.number(), targetName.c_str(), folder.number(), kept.c_str(), 0) != 0;
+    if (isCopy) unlinkat(folder.number(), kept.c_str(), 0);
+    Descriptor keeps(
+        openat(folder.number(), kept.c_str(),
+               isCopy ? O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC : O_RDONLY | O_NOFOLLOW | O_CLOEXEC, 0600));
+    if (!keeps) return systemError();
+    old = {std::move(kept), isCopy, info, std::move(keeps)};
+    flock(old.file.number(), LOCK_EX | LOCK_NB);
+    if (!isCopy) return {};
+    const Descriptor there(openTarget(O_RDONLY));
+    const auto status = there ? copyContent(there.number(), old.file.number()) : systemError();
+    if (status) return status;
+    unlinkat(folder.number(), std::exchange(old.name, {}).c_str(), 0);
+    return status;
+}
+
+Status TemporaryFile::Impl::putBack() {
+    if (!isTouched) return {};
+    if (old.name.empty()) {
+        if (unlinkat(folder.number(), targetName.c_str(), 0) != 0) return systemError();
+    } else if (!old.isCopy) {
+        if (renameat(folder.number(), old.name.c_str(), folder.number(), targetName.c_str()) != 0)
+            return systemError();
+        old.name.clear();
+    } else {
+        const Descriptor there(openTarget(O_WRONLY));
+        if (!there) return systemError();
+        if (auto status = copyContent(old.file.number(), there.number()); !status) return status;
+        const std::array<timespec, 2> times{old.info.st_atim, old.info.st_mtim};
+        futimens(there.number(), times.data());
+        isLeft = false;
     }
-    if (fstat(old.number(), &info) != 0) return systemError();
-    if (info.st_nlink > 1) return impl_->copyIntoPlace();
-    const auto adopted = impl_->adopt(old.number(), info, accessed);
-    if (!adopted) return tl::unexpected(adopted.error());
-    return *adopted ? impl_->moveIntoPlace() : impl_->copyIntoPlace();
+    return flushFolder();
+}
+
+Status TemporaryFile::putBack() {
+    auto status = impl_->putBack();
+    if (status || impl_->old.name.empty()) return status;
+    const std::string kept = (impl_->target.parent_path() / std::exchange(impl_->old.name, {})).string();
+    return fail(fmt::format("{}; what was there is in '{}'", status.error().problem, kept));
+}
+
+Status TemporaryFile::replaceTarget(std::int64_t accessed, bool isOldKept) {
+    const Descriptor there(impl_->openTarget(O_RDONLY | O_NONBLOCK));
+    struct stat info {};
+    // What may be written and not read tells its owner and mode all the same.
+    if (fstatat(impl_->folder.number(), impl_->targetName.c_str(), &info, AT_SYMLINK_NOFOLLOW) != 0)
+        return impl_->moveIntoPlace();
+    bool isMoved = there && info.st_nlink == 1;
+    if (isMoved) {
+        const auto adopted = impl_->adopt(there.number(), info, accessed);
+        if (!adopted) return tl::unexpected(adopted.error());
+        isMoved = *adopted;
+    }
+    if (isOldKept) {
+        if (auto status = impl_->keepOld(info, !isMoved); !status) return status;
+    }
+    return isMoved ? impl_->moveIntoPlace() : impl_->copyIntoPlace();
 }
 
 Status writeThrough(const fs::path& path, std::span<const std::byte> bytes) {
@@ -408,25 +420,6 @@ Status writeThrough(const fs::path& path, std::span<const std::byte> bytes) {
     const Descriptor device(open(path.c_str(), O_WRONLY | O_NOCTTY | O_APPEND | O_CLOEXEC));
     if (!device) return systemError();
     return writeAll(device.number(), bytes);
-}
-
-EndsLater::EndsLater() {
-    ++endsLater;
-}
-
-EndsLater::~EndsLater() {
-    if (--endsLater > 0) return;
-    if (const int signal = endedBy.exchange(0); signal != 0) raise(signal);
-}
-
-void removeFoldersWhenEnded(const std::vector<fs::path>& innermostFirst) {
-    for (FolderSlot& slot : folderSlots) slot.isUsed = false;
-    for (std::size_t i = 0; i < std::min(innermostFirst.size(), folderSlots.size()); ++i) {
-        const std::string& path = innermostFirst[i].native();
-        if (path.size() >= folderSlots[i].path.size()) return;
-        std::memcpy(folderSlots[i].path.data(), path.c_str(), path.size() + 1);
-        folderSlots[i].isUsed = true;
-    }
 }
 
 void allowManyFiles() {
@@ -438,22 +431,6 @@ void allowManyFiles() {
 
 bool isBeingWritten(const fs::path& temporary) {
     return isLocked(AT_FDCWD, temporary.c_str());
-}
-
-void removeTemporariesWhenEnded() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction action {};
-        // What the parent had ignored (nohup) stays ignored.
-        if (sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
-        action = {};
-        action.sa_handler = removeAndEnd;
-        sigfillset(&action.sa_mask);
-        sigaction(signal, &action, nullptr);
-    }
-    // A limit on the size of files is an error like a full disk.
-    struct sigaction ignore {};
-    ignore.sa_handler = SIG_IGN;
-    sigaction(SIGXFSZ, &ignore, nullptr);
 }
 
 }  // namespace hairloom

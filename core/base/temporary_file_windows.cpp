@@ -159,6 +159,23 @@ std::size_t readPiece(HANDLE file, std::vector<std::byte>& piece, std::uint64_t 
     return got;
 }
 
+/// All that `from` holds becomes all that `to` holds, on the disk.
+Status copyContent(HANDLE from, HANDLE to) {
+    std::vector<std::byte> piece;
+    for (std::uint64_t at = 0; readPiece(from, piece, at) > 0; at += piece.size()) {
+        if (auto status = writeAll(to, piece); !status) return status;
+    }
+    return SetEndOfFile(to) != 0 && FlushFileBuffers(to) != 0 ? Status() : systemError();
+}
+
+std::string prefixFor(const fs::path& target) {
+    return "." + target.filename().string() + ".";
+}
+
+fs::path beside(const fs::path& target) {
+    return target.parent_path() / fs::path(prefixFor(target) + randomText() + std::string(kPartSuffix));
+}
+
 }  // namespace
 
 FileState fileState(const fs::path& path) {
@@ -201,13 +218,19 @@ struct TemporaryFile::Impl {
     fs::path path;
     Handle file;
     Slot* slot = nullptr;
+    fs::path old;            ///< what was there before; empty where nothing is kept
+    bool isOldCopy = false;  ///< of its content; else the file itself by another name
+    DWORD oldAttributes = FILE_ATTRIBUTE_NORMAL;
+    bool isTouched = false;  ///< the target is no longer as it was
+    bool isLeft = false;     ///< the target is torn, and this has all of what it was to become
 
     Impl() = default;
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
     ~Impl() {
         file.close();
-        if (!path.empty()) DeleteFileW(path.c_str());
+        if (!path.empty() && !isLeft) DeleteFileW(path.c_str());
+        if (!old.empty()) DeleteFileW(old.c_str());
         clearSlot();
     }
     void clearSlot() {
@@ -215,6 +238,8 @@ struct TemporaryFile::Impl {
         slot = nullptr;
     }
     Status make();
+    Status keepOld(bool isCopy);
+    Status putBack();
     Status moveIntoPlace();
     Status copyIntoPlace();
 };
@@ -227,10 +252,10 @@ TemporaryFile::~TemporaryFile() = default;
 Status TemporaryFile::Impl::make() {
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     // As u8string: names outside the code page are text all the same.
-    const std::string prefix = "." + target.filename().string() + ".";
+    const std::string prefix = prefixFor(target);
     const FolderLock lock(folder);
     if (somebodyWrites(folder, prefix)) return fail("another program is writing it", "wait until it is done");
-    const fs::path wanted = folder / fs::path(prefix + randomText() + std::string(kPartSuffix));
+    const fs::path wanted = beside(target);
     slot = takeSlot(wanted);
     // Nobody else may open it for writing: that is how isBeingWritten() knows.
     file = Handle(CreateFileW(wanted.c_str(), GENERIC_READ | GENERIC_WRITE, FILE_SHARE_READ, nullptr,
@@ -288,6 +313,9 @@ Status TemporaryFile::Impl::moveIntoPlace() {
     if (FlushFileBuffers(file.get()) == 0) return systemError();
     const DWORD attributes = GetFileAttributesW(target.c_str());
     const bool exists = attributes != INVALID_FILE_ATTRIBUTES;
+    // One that a program holds stays. ReplaceFile() may leave pieces of its own before it says so.
+    if (exists && !openExisting(target, DELETE) && GetLastError() == ERROR_SHARING_VIOLATION)
+        return systemError();
     // Forced: a read-only file stays one.
     const bool readOnly = exists && (attributes & FILE_ATTRIBUTE_READONLY) != 0;
     if (readOnly) SetFileAttributesW(target.c_str(), attributes & ~DWORD{FILE_ATTRIBUTE_READONLY});
@@ -302,6 +330,7 @@ Status TemporaryFile::Impl::moveIntoPlace() {
     const DWORD code = GetLastError();
     if (readOnly) SetFileAttributesW(target.c_str(), attributes);
     if (!moved) return systemError(code);
+    isTouched = true;
     path.clear();
     clearSlot();
     return {};
@@ -310,34 +339,75 @@ Status TemporaryFile::Impl::moveIntoPlace() {
 /// The file itself stays, with all its links. Killed on the way, the run leaves the whole content beside it.
 Status TemporaryFile::Impl::copyIntoPlace() {
     if (FlushFileBuffers(file.get()) == 0) return systemError();
-    const Handle old = openExisting(target, GENERIC_WRITE, FILE_SHARE_READ);
-    if (!old) return systemError();
+    const Handle there = openExisting(target, GENERIC_WRITE, FILE_SHARE_READ);
+    if (!there) return systemError();
     fs::path whole = path;
     whole.replace_extension(std::string(kWholeSuffix));
     if (slot != nullptr) slot->file = INVALID_HANDLE_VALUE;
     file.close();
     clearSlot();
     if (MoveFileExW(path.c_str(), whole.c_str(), MOVEFILE_WRITE_THROUGH) == 0) return systemError();
-    path.clear();  // an error from here on leaves it for its owner
+    path = whole;
     file = openExisting(whole, GENERIC_READ, 0);
     if (!file) return systemError();
-    std::vector<std::byte> piece;
-    for (std::uint64_t at = 0; readPiece(file.get(), piece, at) > 0; at += piece.size()) {
-        if (auto status = writeAll(old.get(), piece); !status) return status;
-    }
-    if (SetEndOfFile(old.get()) == 0 || FlushFileBuffers(old.get()) == 0) return systemError();
-    path = whole;
+    isLeft = isTouched = true;
+    if (auto status = copyContent(file.get(), there.get()); !status) return status;
+    isLeft = false;
     return {};
 }
 
+/// A second name where the file itself is going to make room, else a copy, as where file systems know no
+/// second names.
+Status TemporaryFile::Impl::keepOld(bool isCopy) {
+    const fs::path kept = beside(target);
+    oldAttributes = GetFileAttributesW(target.c_str());
+    isOldCopy = isCopy || CreateHardLinkW(kept.c_str(), target.c_str(), nullptr) == 0;
+    if (isOldCopy && CopyFileW(target.c_str(), kept.c_str(), TRUE) == 0) return systemError();
+    if (isOldCopy) SetFileAttributesW(kept.c_str(), FILE_ATTRIBUTE_NORMAL);
+    old = kept;
+    return {};
+}
+
+Status TemporaryFile::Impl::putBack() {
+    if (!isTouched) return {};
+    if (old.empty()) return DeleteFileW(target.c_str()) != 0 ? Status() : systemError();
+    if (!isOldCopy) {
+        if (MoveFileExW(old.c_str(), target.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) == 0)
+            return systemError();
+        SetFileAttributesW(target.c_str(), oldAttributes);
+        old.clear();
+        return {};
+    }
+    const Handle kept = openExisting(old, GENERIC_READ);
+    const Handle there = openExisting(target, GENERIC_WRITE, FILE_SHARE_READ);
+    FILETIME written{};
+    if (!kept || !there || GetFileTime(kept.get(), nullptr, nullptr, &written) == 0) return systemError();
+    if (auto status = copyContent(kept.get(), there.get()); !status) return status;
+    SetFileTime(there.get(), nullptr, nullptr, &written);
+    isLeft = false;
+    return {};
+}
+
+Status TemporaryFile::putBack() {
+    auto status = impl_->putBack();
+    if (status || impl_->old.empty()) return status;
+    const fs::path kept = std::exchange(impl_->old, {});
+    return fail(fmt::format("{}; what was there is in '{}'", status.error().problem, kept.string()));
+}
+
 /// ReplaceFile() takes care of times.
-Status TemporaryFile::replaceTarget(std::int64_t) {
+Status TemporaryFile::replaceTarget(std::int64_t, bool isOldKept) {
     BY_HANDLE_FILE_INFORMATION info{};
-    const bool linked = [&] {
-        const Handle old = openExisting(impl_->target, 0);
-        return old && GetFileInformationByHandle(old.get(), &info) != 0 && info.nNumberOfLinks > 1;
+    const bool isThere = [&] {
+        const Handle there = openExisting(impl_->target, 0);
+        if (there && GetFileInformationByHandle(there.get(), &info) == 0) info.nNumberOfLinks = 1;
+        return static_cast<bool>(there);
     }();
-    return linked ? impl_->copyIntoPlace() : impl_->moveIntoPlace();
+    const bool isLinked = info.nNumberOfLinks > 1;
+    if (isThere && isOldKept) {
+        if (auto status = impl_->keepOld(isLinked); !status) return status;
+    }
+    return isLinked ? impl_->copyIntoPlace() : impl_->moveIntoPlace();
 }
 
 Status writeThrough(const fs::path& path, std::span<const std::byte> bytes) {

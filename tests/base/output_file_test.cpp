@@ -4,13 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/held_file.h"
-#include "core/base/output_batch.h"
 #include "core/base/write_rules.h"
+#include "tests/base/output_folder.h"
 
 #ifndef _WIN32
 #include <fcntl.h>
@@ -24,38 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-class OutputFileTest : public testing::Test {
-  protected:
-    void SetUp() override {
-        folder =
-            fs::path(testing::TempDir()) /
-            (std::string("hairloom-output-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-    }
-    void TearDown() override {
-        setWriteRules({});
-        fs::remove_all(folder);
-    }
-    std::size_t filesInFolder() const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-    }
-    void put(const std::string& name, std::string_view text) const {
-        std::ofstream(folder / name, std::ios::binary) << text;
-    }
-    std::string get(const std::string& name) const {
-        std::ifstream file(folder / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
-    /// The error of writing text over a file, or nothing.
-    std::string writeError(const std::string& name, std::string_view text) const {
-        const auto status = writeFileAtomically(folder / name, text);
-        return status ? std::string() : status.error().message();
-    }
-    fs::path folder;
-};
 
 TEST_F(OutputFileTest, WritesReplacesAndLeavesNoTemporaryFile) {
     EXPECT_EQ(writeError("a.txt", "first"), "");
@@ -171,38 +137,6 @@ TEST_F(OutputFileTest, AFreedNumberOfAFileIsNoInput) {
     fs::rename(folder / "a.txt", folder / "b.txt");
     put("a.txt", "other words, which another program wrote");
     EXPECT_EQ(writeError("b.txt", "mine"), "") << "it is not what has the name that was read";
-}
-
-TEST_F(OutputFileTest, OfSeveralFilesAllComeOrNone) {
-    put("a.txt", "old");
-    {
-        const OutputBatch batch;
-        EXPECT_EQ(writeError("a.txt", "new"), "");
-        EXPECT_EQ(writeError("b.txt", "new"), "");
-    }
-    EXPECT_EQ(get("a.txt"), "old");
-    EXPECT_EQ(filesInFolder(), 1u);
-    {
-        OutputBatch batch;
-        EXPECT_EQ(writeError("a.txt", "new"), "");
-        EXPECT_EQ(writeError("b.txt", "new"), "");
-        EXPECT_EQ(get("a.txt"), "old");
-        fs::create_directories(folder / "b.txt");
-        const auto status = batch.commit();
-        ASSERT_FALSE(status);
-        EXPECT_THAT(status.error().message(), HasSubstr("is a folder"));
-    }
-    EXPECT_EQ(get("a.txt"), "old");
-    fs::remove(folder / "b.txt");
-    EXPECT_EQ(filesInFolder(), 1u);
-    OutputBatch batch;
-    EXPECT_EQ(writeError("a.txt", "new"), "");
-    ASSERT_TRUE(writeFiles(folder, {{"c.txt", "one"}, {"d.txt", "two"}}));
-    EXPECT_FALSE(fs::exists(folder / "c.txt")) << "a batch inside is part of the outer one";
-    ASSERT_TRUE(batch.commit());
-    EXPECT_EQ(get("a.txt"), "new");
-    EXPECT_EQ(get("d.txt"), "two");
-    EXPECT_EQ(filesInFolder(), 3u);
 }
 
 TEST_F(OutputFileTest, AHeldFileIsHeldByOneAndGoesWithIt) {

@@ -278,5 +278,37 @@ TEST_F(Outputs, NumbersInListsAreWrongUsageWhereTheyAreNone) {
     EXPECT_EQ(run("set g.hairloom layers.None.density=nan -o h.hairloom").exitCode, 2);
 }
 
+TEST_F(Outputs, OptionsThatDoNotGoWithTheOthersAreWrongUsage) {
+    const std::pair<const char*, const char*> wrong[] = {
+        {"simulate g.hairloom --frames 2 --motion hop", "there is no motion 'hop'; expected none, spin, nod"},
+        {"render g.hairloom -o f.png --motion hop", "there is no motion 'hop'"},
+        {"effects g.hairloom -o f --motion hop", "there is no motion 'hop'"},
+        {"budget g.hairloom --motion hop", "there is no motion 'hop'"},
+        {"accuracy g.hairloom -o f --motion hop", "there is no motion 'hop'"},
+        {"bench sim --strands 10,5", "--strands has 5 behind 10; expected numbers in ascending order"},
+        {"bench sim --strands 5,5", "--strands has 5 behind 5"},
+        {"import g.hair -o f.hairloom --scalp all", "--scalp requires --mesh"},
+        {"import g.hair -o f.hairloom --turn 90", "--turn requires --mesh"},
+        {"import g.hair -o f.hairloom --mesh-up z", "--mesh-up requires --mesh"},
+        {"import g.hair -o f.hairloom --mesh-unit cm", "--mesh-unit requires --mesh"},
+        {"import g.hair -o f.hairloom --leave-out eyes", "--leave-out requires --mesh"},
+        {"export g.hairloom -o f.hair --format hair --levels cards:12@64", "--levels applies to cards alone"},
+        {"export g.hairloom -o f.hairrt --format runtime --cards 12", "expected it with --format"},
+        {"export g.hairloom -o f.tfx --target tressfx --atlas 512", "--atlas applies to cards alone"},
+        {"export g.hairloom -o f --format web --target-px 1", "--target-px applies to cards alone"},
+        {"export g.hairloom -o f.glb --format gltf --up z", "do not apply to cards"},
+        {"export g.hairloom -o f.hair --format hair --record r --frames 1,3", "hair holds a single pose"}};
+    for (const auto& [arguments, words] : wrong) {
+        const auto before = names();
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.errors;
+        EXPECT_THAT(outcome.errors, testing::StartsWith("error: ")) << arguments;
+        EXPECT_THAT(outcome.errors, testing::HasSubstr(words)) << arguments;
+        EXPECT_EQ(names(), before) << arguments;
+    }
+    EXPECT_EQ(run("simulate g.hairloom --frames 2 --motion clip:hop").exitCode, 1) << "a file may have it";
+    EXPECT_EQ(run("simulate g.hairloom --frames 2 --motion hop.json").exitCode, 1) << "a file may be there";
+}
+
 }  // namespace
 }  // namespace hairloom::test

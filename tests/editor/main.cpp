@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
     qputenv("XDG_CONFIG_HOME", home.path().toUtf8());
     qputenv("XDG_DATA_HOME", home.path().toUtf8());
     qputenv("XDG_CACHE_HOME", home.path().toUtf8());
+    // Processes that a test begins and a signal ends take nothing away: it goes with the folder of this one.
+    qputenv("TMPDIR", home.path().toUtf8());
 #ifdef _WIN32
     qputenv("APPDATA", home.path().toUtf8());
     // Windows asks no environment variable for the other folders.
