@@ -36,17 +36,22 @@ class Token {
     HANDLE handle_ = nullptr;
 };
 
-/// The limits of the job that this process is in; nothing where it is in none.
-bool askJob(JOBOBJECT_EXTENDED_LIMIT_INFORMATION& limits) {
-    limits = {};
-    return QueryInformationJobObject(nullptr, JobObjectExtendedLimitInformation, &limits, sizeof limits,
-                                     nullptr) != 0;
-}
-
-ConfinementLayer jobLayer(const char* name, DWORD flag, bool isMeant) {
-    JOBOBJECT_EXTENDED_LIMIT_INFORMATION limits;
-    ConfinementLayer layer{name, LayerState::Missing, "the process is in no job that has this limit"};
-    if (!askJob(limits) || (limits.BasicLimitInformation.LimitFlags & flag) == 0 || !isMeant) return layer;
+/// What the job that the parent makes is to hold this process to.
+ConfinementLayer jobLayer(const char* name, DWORD flag,
+                          bool (*isMeant)(const JOBOBJECT_EXTENDED_LIMIT_INFORMATION&, std::uint64_t),
+                          std::uint64_t memoryBytes) {
+    BOOL isInJob = FALSE;
+    if (IsProcessInJob(GetCurrentProcess(), nullptr, &isInJob) == 0 || isInJob == FALSE)
+        return {name, LayerState::Failed, "the process is in no job"};
+    JOBOBJECT_EXTENDED_LIMIT_INFORMATION limits{};
+    if (QueryInformationJobObject(nullptr, JobObjectExtendedLimitInformation, &limits, sizeof limits,
+                                  nullptr) == 0)
+        return {name, LayerState::Failed, reason()};
+    // The parent always sets some.
+    if (limits.BasicLimitInformation.LimitFlags == 0)
+        return {name, LayerState::Missing, "this system does not tell the limits of a job"};
+    if ((limits.BasicLimitInformation.LimitFlags & flag) == 0 || !isMeant(limits, memoryBytes))
+        return {name, LayerState::Failed, "the job of the process has another limit"};
     return {name, LayerState::Set, {}};
 }
 
@@ -116,12 +121,18 @@ bool couldTake(std::uint64_t bytes, DWORD protection) {
 }  // namespace
 
 Confinement confineProcess(const std::filesystem::path&, std::uint64_t memoryBytes) {
-    JOBOBJECT_EXTENDED_LIMIT_INFORMATION limits;
-    const bool isSmall = askJob(limits) && limits.ProcessMemoryLimit <= memoryBytes;
-    const bool isAlone = askJob(limits) && limits.BasicLimitInformation.ActiveProcessLimit == 1;
+    using Limits = JOBOBJECT_EXTENDED_LIMIT_INFORMATION;
     Confinement confinement;
-    confinement.layers.push_back(jobLayer("memory", JOB_OBJECT_LIMIT_PROCESS_MEMORY, isSmall));
-    confinement.layers.push_back(jobLayer("programs", JOB_OBJECT_LIMIT_ACTIVE_PROCESS, isAlone));
+    confinement.layers.push_back(jobLayer(
+        "memory", JOB_OBJECT_LIMIT_PROCESS_MEMORY,
+        [](const Limits& limits, std::uint64_t bytes) { return limits.ProcessMemoryLimit <= bytes; },
+        memoryBytes));
+    confinement.layers.push_back(jobLayer(
+        "programs", JOB_OBJECT_LIMIT_ACTIVE_PROCESS,
+        [](const Limits& limits, std::uint64_t) {
+            return limits.BasicLimitInformation.ActiveProcessLimit == 1;
+        },
+        memoryBytes));
     confinement.layers.push_back(lowerIntegrity());
     return confinement;
 }

@@ -313,9 +313,6 @@ Status TemporaryFile::Impl::moveIntoPlace() {
     if (FlushFileBuffers(file.get()) == 0) return systemError();
     const DWORD attributes = GetFileAttributesW(target.c_str());
     const bool exists = attributes != INVALID_FILE_ATTRIBUTES;
-    // One that a program holds stays. ReplaceFile() may leave pieces of its own before it says so.
-    if (exists && !openExisting(target, DELETE) && GetLastError() == ERROR_SHARING_VIOLATION)
-        return systemError();
     // Forced: a read-only file stays one.
     const bool readOnly = exists && (attributes & FILE_ATTRIBUTE_READONLY) != 0;
     if (readOnly) SetFileAttributesW(target.c_str(), attributes & ~DWORD{FILE_ATTRIBUTE_READONLY});
@@ -404,6 +401,10 @@ Status TemporaryFile::replaceTarget(std::int64_t, bool isOldKept) {
         return static_cast<bool>(there);
     }();
     const bool isLinked = info.nNumberOfLinks > 1;
+    // One that a program holds stays. ReplaceFile() may leave pieces of its own before it says so.
+    if (isThere && !isLinked && !openExisting(impl_->target, DELETE) &&
+        GetLastError() == ERROR_SHARING_VIOLATION)
+        return systemError();
     if (isThere && isOldKept) {
         if (auto status = impl_->keepOld(isLinked); !status) return status;
     }
