@@ -241,9 +241,9 @@ Status OutputBatch::commit() {
     const EndsLater whole;
     auto files = std::exchange(waiting().files, {});
     // What has gone into a device does not come back: it comes last.
-    const auto devices =
-        std::ranges::stable_partition(files, [](const auto& file) { return file->temporary.has_value(); });
-    const auto places = std::span(files).first(files.size() - devices.size());
+    const auto devices = std::stable_partition(files.begin(), files.end(),
+                                               [](const auto& file) { return file->temporary.has_value(); });
+    const auto places = std::span(files.begin(), devices);
     for (const auto& file : places) {
         if (auto status = file->mayReplace(); !status) return status;
     }
