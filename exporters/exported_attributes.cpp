@@ -8,6 +8,7 @@
 #include <charconv>
 #include <optional>
 
+#include "core/groom/strand_subset.h"
 #include "importers/attribute_units.h"
 
 namespace hairloom {
@@ -220,6 +221,14 @@ class Collector {
     std::vector<ExportedAttribute> result_;
 };
 
+/// Whether the file said a number alone, or nothing.
+bool isNumbered(const std::string& group) {
+    constexpr std::string_view kPrefix = "group ";
+    const auto isDigit = [](char c) { return (c >= '0' && c <= '9') || c == '-'; };
+    return group == "no group" ||
+           (group.starts_with(kPrefix) && std::ranges::all_of(group.substr(kPrefix.size()), isDigit));
+}
+
 bool isLegalInPly(char c, bool) {
     return static_cast<unsigned char>(c) > 0x20 && c != 0x7f;
 }
@@ -234,7 +243,7 @@ ExportNames usdNames() {
 ExportNames alembicNames(bool unreal) {
     ExportNames names{isLegalInAlembic, {}};
     names.isUnreal = unreal;
-    if (unreal) names.taken.emplace_back("groom_closest_guides");
+    if (unreal) names.taken = {"groom_closest_guides", "groom_group_name"};
     return names;
 }
 
@@ -245,6 +254,24 @@ ExportNames plyNames() {
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
                                                   const ExportNames& names) {
     return Collector(groom, strands, names).run();
+}
+
+std::vector<std::string> unrealGroupNames(const Groom& groom, const PreparedStrands& strands) {
+    const auto groups = groom.strandAttributes.view<std::uint32_t>(attribute::kGroup);
+    const std::vector<std::uint32_t> layers = layersOfStrands(groom);
+    std::vector<std::string> names;
+    bool isNamed = false;
+    for (const std::uint32_t source : strands.sources) {
+        std::string name;
+        if (groups.size() == groom.strandCount() && groups[source] < groom.groupNames.size())
+            name = groom.groupNames[groups[source]];
+        if (name.empty() || isNumbered(name))
+            name = layers[source] < groom.layers.size() ? groom.layers[layers[source]].name : std::string();
+        isNamed = isNamed || name != Layer{}.name;
+        names.push_back(std::move(name));
+    }
+    if (!isNamed) names.clear();
+    return names;
 }
 
 std::size_t roomOf(const PreparedStrands& strands, std::span<const ExportedAttribute> attributes) {

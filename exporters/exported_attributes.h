@@ -49,6 +49,10 @@ ExportNames plyNames();
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
                                                   const ExportNames& names);
 
+/// The group of each strand as Unreal shows it: its name, else that of its layer; empty where all have the
+/// name that layers have by themselves.
+std::vector<std::string> unrealGroupNames(const Groom& groom, const PreparedStrands& strands);
+
 /// About what a binary file of them takes, in bytes, so that it grows without being copied.
 std::size_t roomOf(const PreparedStrands& strands, std::span<const ExportedAttribute> attributes);
 

@@ -29,7 +29,7 @@ std::string displayLine(const std::string& name, int indent) {
                                       std::string(static_cast<std::size_t>(indent), ' '), inQuotes(name));
 }
 
-void writeAttribute(std::string& out, const UsdPart& part, const ExportedAttribute& attribute) {
+void writeAttribute(std::string& out, const ExportedPart& part, const ExportedAttribute& attribute) {
     out += fmt::format("        {}[] primvars:{} = ", usdTypeOf(attribute), attribute.name);
     if (attribute.type == ExportedAttribute::Type::Number)
         writeNumbers(out, part.numbers(attribute), attribute.components);
@@ -40,7 +40,7 @@ void writeAttribute(std::string& out, const UsdPart& part, const ExportedAttribu
 }
 
 /// What strands that move have at each frame beside the first, which stands for all who look at no time.
-void writeSamples(std::string& out, const UsdPart& part, const PreparedStrands& strands,
+void writeSamples(std::string& out, const ExportedPart& part, const PreparedStrands& strands,
                   const StrandFrames& frames) {
     const auto write = [&](std::string_view name, const auto& valueOf) {
         out += fmt::format("        {}.timeSamples = {{\n", name);
@@ -66,7 +66,7 @@ std::string timesInHead(const StrandExportOptions& options) {
         last, options.frames->framesPerSecond, options.frames->first, options.frames->framesPerSecond);
 }
 
-void writePart(std::string& out, const UsdPart& part, const PreparedStrands& strands,
+void writePart(std::string& out, const ExportedPart& part, const PreparedStrands& strands,
                std::span<const ExportedAttribute> attributes, const StrandExportOptions& options) {
     out += fmt::format("    def BasisCurves \"{}\"{}\n    {{\n", part.name,
                        part.displayName.empty() ? "" : " (\n" + displayLine(part.displayName, 8) + "    )");
@@ -98,7 +98,8 @@ std::string usdaText(const Groom& groom, PreparedStrands& strands, const StrandE
     // About what points and widths take as text.
     out.reserve(strands.positions.size() * 48 * (1 + strands.frames.size()));
     const auto attributes = exportedAttributes(groom, strands, usdNames());
-    for (const UsdPart& part : usdParts(groom, strands)) writePart(out, part, strands, attributes, options);
+    for (const ExportedPart& part : exportedParts(groom, strands, isLegalInUsd))
+        writePart(out, part, strands, attributes, options);
     out += "}\n";
     return out;
 }

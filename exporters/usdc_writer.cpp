@@ -8,7 +8,7 @@
 namespace hairloom {
 namespace {
 
-UsdcRep valueOf(UsdcBuilder& file, const UsdPart& part, const ExportedAttribute& attribute,
+UsdcRep valueOf(UsdcBuilder& file, const ExportedPart& part, const ExportedAttribute& attribute,
                 std::string_view type) {
     if (attribute.type == ExportedAttribute::Type::Number)
         return file.floats(part.numbers(attribute), attribute.components);
@@ -46,7 +46,7 @@ class PartWriter {
             times_.push_back(options.frames->first + static_cast<double>(f));
     }
 
-    void write(const UsdPart& part, std::span<const ExportedAttribute> attributes) {
+    void write(const ExportedPart& part, std::span<const ExportedAttribute> attributes) {
         std::vector<std::string> names{"type", "wrap", "extent", "curveVertexCounts", "points", "widths"};
         for (const ExportedAttribute& attribute : attributes) names.push_back("primvars:" + attribute.name);
         UsdcBuilder::Fields fields{{"specifier", file_.definition()},
@@ -68,7 +68,7 @@ class PartWriter {
     }
 
   private:
-    void writePoints(const UsdPart& part) {
+    void writePoints(const ExportedPart& part) {
         const auto add = [&](const std::string& name, const char* type, UsdcRep value,
                              std::span<const UsdcRep> frames = {}) {
             UsdcBuilder::Fields fields{{"typeName", file_.token(type)}, {"default", value}};
@@ -92,7 +92,7 @@ class PartWriter {
         add("points", "point3f[]", points(strands_.positions), shapes);
     }
 
-    void writeAttribute(const UsdPart& part, const ExportedAttribute& attribute) {
+    void writeAttribute(const ExportedPart& part, const ExportedAttribute& attribute) {
         const std::string type(usdTypeOf(attribute));
         UsdcBuilder::Fields fields{{"typeName", file_.token(type + "[]")},
                                    {"interpolation", file_.token(attribute.perPoint ? "vertex" : "uniform")},
@@ -111,18 +111,18 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
     auto strands = prepareStrands(groom, options, options.pointsPerStrand, true);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     const auto attributes = exportedAttributes(groom, *strands, usdNames());
-    const std::vector<UsdPart> parts = usdParts(groom, *strands);
+    const std::vector<ExportedPart> parts = exportedParts(groom, *strands, isLegalInUsd);
     UsdcBuilder file;
     file.reserve(roomOf(*strands, attributes));
     writeRoot(file, *strands, options);
     std::vector<std::string> names;
-    for (const UsdPart& part : parts) names.push_back(part.name);
+    for (const ExportedPart& part : parts) names.push_back(part.name);
     file.prim(1, "groom",
               {{"specifier", file.definition()},
                {"typeName", file.token("Xform")},
                {"primChildren", file.tokens(names)}});
     PartWriter writer(file, *strands, options);
-    for (const UsdPart& part : parts) writer.write(part, attributes);
+    for (const ExportedPart& part : parts) writer.write(part, attributes);
     return writeAndCompare(groom, std::move(*strands), options, path, file.finish());
 }
 

@@ -105,7 +105,9 @@ struct ObjStrandText {
     std::vector<std::uint32_t> lineIndices;
     std::vector<std::uint32_t> faceOffsets{0};
     std::vector<std::uint32_t> faceIndices;
-    std::vector<std::uint64_t> faceLines;  ///< line of the file of each face, from 1
+    std::vector<std::uint64_t> faceLines;             ///< line of the file of each face, from 1
+    std::vector<StrandPart> parts;                    ///< objects and groups that have lines or faces
+    std::vector<std::uint32_t> lineParts, faceParts;  ///< of each line and face, or of none
     std::vector<Finding> warnings;
 };
 Result<ObjStrandText> parseObjStrands(const std::string& file, std::string_view text);
