@@ -54,13 +54,14 @@ class CurvesWriter {
 
     std::vector<std::byte> write() {
         std::vector<AlembicChild> hair;
-        for (const ExportedPart& part : parts_)
-            hair.push_back(
-                {part.name, kCurveObject,
-                 alembicObject(file_, metadata_, objectOf(".geom", geometry(part), kCurveSchema), {})});
-        const AlembicChild root{
-            "groom", kXformObject,
-            alembicObject(file_, metadata_, objectOf(".xform", transform(), kXformSchema), hair)};
+        for (const ExportedPart& part : parts_) {
+            const AlembicChild curves{
+                parts_.size() == 1 ? part.name : "hair", kCurveObject,
+                alembicObject(file_, metadata_, objectOf(".geom", geometry(part), kCurveSchema), {})};
+            // Blender shows curves under the name of what stands above them.
+            hair.push_back(parts_.size() == 1 ? curves : below(part.name, std::span(&curves, 1), compound()));
+        }
+        const AlembicChild root = below("groom", hair, rootParameters());
         const std::uint64_t top = alembicObject(file_, metadata_, 0, std::span(&root, 1));
         return finishAlembic(file_, metadata_, top,
                              "_ai_AlembicVersion=Alembic 1.8.3;_ai_Application=Hairloom", times_);
@@ -78,12 +79,20 @@ class CurvesWriter {
         return properties.write();
     }
 
-    AlembicCompound transform() {
+    /// A transform that moves nothing.
+    AlembicChild below(const std::string& name, std::span<const AlembicChild> children,
+                       const AlembicCompound& parameters) {
         AlembicCompound xform = compound();
         const std::uint8_t inherits = 1;
         xform.scalar(".inherits", AlembicType::Bool, 1, std::as_bytes(std::span(&inherits, 1)));
-        if (!unreal_) return xform;
+        if (!parameters.isEmpty()) xform.compound(".arbGeomParams", parameters);
+        return {name, kXformObject,
+                alembicObject(file_, metadata_, objectOf(".xform", xform, kXformSchema), children)};
+    }
+
+    AlembicCompound rootParameters() {
         AlembicCompound parameters = compound();
+        if (!unreal_) return parameters;
         const auto text = [&](const std::string& name, const std::string& value) {
             parameters.scalar(name, AlembicType::Text, 1,
                               std::as_bytes(std::span(value.c_str(), value.size() + 1)));
@@ -95,8 +104,7 @@ class CurvesWriter {
         version("groom_version_minor", 5);
         text("groom_tool", "Hairloom");
         text("groom_properties", "");
-        xform.compound(".arbGeomParams", parameters);
-        return xform;
+        return parameters;
     }
 
     static std::array<double, 6> boxOf(std::span<const Vec3f> positions) {

@@ -14,7 +14,10 @@ std::string objGroup(const ExportedPart& part) {
     for (char& c : title) {
         if (static_cast<unsigned char>(c) < 0x20 || c == '#' || c == '\\') c = ' ';
     }
-    return fmt::format("o {}\ng {}\n", title.empty() ? part.name : title, part.name);
+    // A part alone is called "hair" whatever its layer is.
+    const bool isAlone = !title.empty() && part.name == "hair";
+    const std::string group = isAlone ? NameGiver(isLegalInObj).give(title) : part.name;
+    return fmt::format("o {}\ng {}\n", title.empty() ? part.name : title, group);
 }
 
 }  // namespace hairloom

@@ -64,6 +64,7 @@ class AlembicCompound {
     void texts(const std::string& name, std::span<const std::string> values,
                const std::string& metadata = {});
     void compound(const std::string& name, const AlembicCompound& inside, const std::string& metadata = {});
+    bool isEmpty() const { return parts_.empty(); }
     /// Its group.
     std::uint64_t write() const;
 
