@@ -166,7 +166,8 @@ class Collector {
 
     void addOther(const std::string& name, const AttributeData& data, bool perPoint, std::size_t elements,
                   const std::vector<std::uint32_t>& chosen) {
-        if (isCarriedOtherwise(name, perPoint) || sizeOf(data) != elements) return;
+        const bool isBase = perPoint && names_.hasOperators && isOperatorAttribute(name);
+        if ((isCarriedOtherwise(name, perPoint) && !isBase) || sizeOf(data) != elements) return;
         std::visit([&](const auto& array) { add(name, perPoint, array.view(), chosen); }, data);
         ExportedAttribute& added = result_.back();
         added.isColour = added.components == 3 && (name == kColours || name == kDisplayColours);
@@ -235,9 +236,11 @@ bool isLegalInPly(char c, bool) {
 
 }  // namespace
 
-ExportNames usdNames() {
+ExportNames usdNames(bool operators) {
     // Of curves: a primvar of such a name would go before the attribute.
-    return {isLegalInUsd, {"widths", "normals"}};
+    ExportNames names{isLegalInUsd, {"widths", "normals"}};
+    names.hasOperators = operators;
+    return names;
 }
 
 ExportNames alembicNames(bool unreal) {

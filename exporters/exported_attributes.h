@@ -35,9 +35,11 @@ struct ExportedAttribute {
 struct ExportNames {
     NameGiver::Legal isLegal;
     std::vector<std::string_view> taken;  ///< by what the format writes beside attributes
+    bool hasOperators = false;            ///< what operators start from goes along
     bool isUnreal = false;                ///< widths are "groom_width", too, and layers groups without others
 };
-ExportNames usdNames();
+/// `operators`: the file has these.
+ExportNames usdNames(bool operators = false);
 ExportNames alembicNames(bool unreal);
 ExportNames plyNames();
 

@@ -60,8 +60,9 @@ struct RawStrands {
     std::optional<float> assumedMetresPerUnit;
     std::optional<UpAxis> statedUp;       ///< as well
     std::optional<RibbonsFound> ribbons;  ///< of hair written as polygons
-    /// Settings, material, interpolation and spheres, of a file that has them; no strands.
+    /// Settings, material, interpolation, spheres, layers and operators, of a file that has them; no strands.
     std::shared_ptr<const Groom> authored;
+    std::uint64_t authoredShape = 0;  ///< hash of the positions that the operators of `authored` made
     std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out
     std::vector<Finding> warnings;
 };

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "core/base/file.h"
+#include "core/geometry/scalp_mesh.h"
 #include "exporters/strands.h"
 #include "importers/alembic_archive.h"
 #include "importers/usd_stage.h"
@@ -189,6 +190,111 @@ TEST_F(LayersOut, MovingObjectsOfAlembicHaveTheirOwnPointsAndVelocities) {
     EXPECT_NEAR(middle[0], 0.01f * 4 * 2 * 24 / 2, 1e-4f) << "from the frame before to the one after";
     EXPECT_NEAR(middle[3 * 3], 0.01f * 4 * 9 * 24 / 2, 1e-4f);
     EXPECT_NEAR(archive->floats(*velocities, 0).value()[0], 0.01f * 2 * 24, 1e-4f);
+}
+
+TEST_F(LayersOut, SettingsAndOperatorsComeBackFromUsdBitForBit) {
+    Groom groom = layered({"Fringe", "Tail", "Brows", "empty"});
+    groom.layers[1].material = HairMaterial{};
+    groom.layers[1].material->rootColour = Vec3f(0.1f, 0.2f, 0.3f);
+    groom.layers[2].density = 0.3f;
+    groom.layers[3].locked = true;
+    groom.material.eumelanin = 0.123456789f;
+    groom.material.shadingModel = ShadingModel::marschner;
+    groom.simulation.gravity.y = -9.123456f;
+    groom.interpolation.followPerGuide = 7;
+    groom.placement.seed = 123456789012345ull;
+    groom.spheres.push_back({"head \"1\"", Vec3f(0, 1.5f, 0.1f), 0.09f, "neck\\bone"});
+    groom.operators.push_back({"trim", "{\"keep\":0.5}", true, 0.25f, 0});
+    std::vector<Vec3f> base(groom.positions().begin(), groom.positions().end());
+    for (Vec3f& point : base) point *= 1.7f;
+    groom.pointAttributes.set(attribute::kBasePosition, base);
+    for (const std::string format : {"usda", "usdc"}) {
+        SCOPED_TRACE(format);
+        const fs::path path = write(groom, format);
+        EXPECT_TRUE(std::ranges::none_of(last.leftBehind, [](const LeftBehind& one) {
+            return one.what.find("settings") != std::string::npos;
+        }));
+        const auto back = importStrands(path);
+        ASSERT_TRUE(back) << back.error().message();
+        EXPECT_TRUE(back->hasSettings);
+        EXPECT_EQ(back->groom.simulation, groom.simulation);
+        EXPECT_EQ(back->groom.material.eumelanin, groom.material.eumelanin);
+        EXPECT_EQ(back->groom.material.shadingModel, ShadingModel::marschner);
+        EXPECT_EQ(back->groom.interpolation.followPerGuide, 7u);
+        EXPECT_EQ(back->groom.placement.seed, groom.placement.seed);
+        ASSERT_EQ(back->groom.spheres.size(), 1u);
+        EXPECT_EQ(back->groom.spheres[0].name, "head \"1\"");
+        EXPECT_EQ(back->groom.spheres[0].bone, "neck\\bone");
+        ASSERT_EQ(back->groom.layers.size(), 4u);
+        ASSERT_TRUE(back->groom.layers[1].material);
+        EXPECT_EQ(back->groom.layers[1].material->rootColour, Vec3f(0.1f, 0.2f, 0.3f));
+        EXPECT_EQ(back->groom.layers[2].density, 0.3f);
+        EXPECT_TRUE(back->groom.layers[3].locked);
+        expectSameLayers(groom, back->groom, 0);
+        ASSERT_EQ(back->groom.operators.size(), 1u);
+        EXPECT_EQ(back->groom.operators[0].op, "trim");
+        EXPECT_EQ(back->groom.operators[0].weight, 0.25f);
+        const auto from = back->groom.pointAttributes.view<Vec3f>(attribute::kBasePosition);
+        ASSERT_EQ(from.size(), groom.pointCount());
+        EXPECT_EQ(from[0], back->groom.positions()[0] * 1.7f);
+        // In another unit points are not those that operators made.
+        StrandExportOptions centimetres;
+        centimetres.metresPerUnit = 0.01f;
+        const auto other = importStrands(write(groom, format, centimetres));
+        ASSERT_TRUE(other);
+        EXPECT_TRUE(other->groom.operators.empty());
+        EXPECT_EQ(other->groom.simulation, groom.simulation);
+    }
+    // Hair that somebody has moved since is none that operators made.
+    std::string text = readTextFile(write(groom, "usda")).value();
+    const std::size_t at = text.find("point3f[] points = [(") + 21;
+    text.replace(at, 1, text[at] == '-' ? "-1" : "1");
+    const auto moved = importStrandsFromMemory("a.usda", std::as_bytes(std::span(text)));
+    ASSERT_TRUE(moved) << moved.error().message();
+    EXPECT_TRUE(moved->groom.operators.empty());
+    EXPECT_TRUE(
+        std::ranges::any_of(moved->warnings, [](const Finding& f) { return f.where == "operators"; }));
+    // Settings that no version has are told, and the strands come in.
+    text = readTextFile(write(groom, "usda")).value();
+    text.replace(text.find("eumelanin"), 9, "eumelanon");
+    const auto odd = importStrandsFromMemory("a.usda", std::as_bytes(std::span(text)));
+    ASSERT_TRUE(odd) << odd.error().message();
+    EXPECT_EQ(odd->groom.strandCount(), 6u);
+    EXPECT_FALSE(odd->hasSettings);
+    EXPECT_TRUE(std::ranges::any_of(
+        odd->warnings, [](const Finding& f) { return f.what.find("eumelanon") != std::string::npos; }));
+}
+
+TEST_F(LayersOut, UsdHasMaterialsAndTheScalpBesideTheCurves) {
+    Groom groom = layered({"scalp", "materials", "Brows"});
+    groom.layers[2].material = HairMaterial{};
+    PolygonSoup soup;
+    soup.positions = {{-1, 1.69f, -1}, {-1, 1.69f, 1}, {1, 1.69f, 1}, {1, 1.69f, -1}};
+    soup.corners = {0, 1, 2, 3};
+    soup.offsets = {0, 4};
+    groom.scalp = std::make_shared<const ScalpMesh>(ScalpMesh::make(soup).value());
+    groom.scalpSelection = {1};
+    for (const std::string format : {"usda", "usdc"}) {
+        SCOPED_TRACE(format);
+        const auto stage = openUsdStage("a." + format, readFile(write(groom, format)).value(), {});
+        ASSERT_TRUE(stage) << stage.error().message();
+        EXPECT_TRUE(stage->repeated.empty());
+        const UsdPrim& hair = stage->root.children.at(0);
+        std::vector<std::string> names;
+        for (const UsdPrim& prim : hair.children) names.push_back(prim.type + " " + prim.name);
+        EXPECT_THAT(names, ElementsAre("BasisCurves scalp", "BasisCurves materials", "BasisCurves Brows",
+                                       "Mesh scalp_2", "Scope materials_2"));
+        EXPECT_THAT(hair.children[0].find("material:binding")->value.texts,
+                    ElementsAre("/groom/materials_2/hair"));
+        EXPECT_THAT(hair.children[2].find("material:binding")->value.texts,
+                    ElementsAre("/groom/materials_2/Brows"));
+        EXPECT_EQ(hair.children[3].find("points")->value.numbers.size(), 9u) << "of one triangle";
+        const UsdPrim& material = hair.children[4].children.at(0);
+        EXPECT_EQ(material.type, "Material");
+        const UsdPrim* const fibre = material.child("fibre");
+        ASSERT_NE(fibre, nullptr);
+        EXPECT_THAT(fibre->find("info:id")->value.texts, ElementsAre("ND_chiang_hair_bsdf"));
+    }
 }
 
 std::pair<int, std::string> outputOf(const std::string& command) {
