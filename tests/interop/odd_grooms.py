@@ -229,7 +229,7 @@ def check_alembic(path, expected, own):
 def check_motion(cli, folder, project, name):
     """A record that came in goes out with its times, in both formats that move."""
     record = os.path.join(folder, name + ".frames")
-    came = run(cli, "import", os.path.join(folder, name), "-o", project, "--record", record, "--force")
+    came = run(cli, "import", os.path.join(folder, name), "-o", project, "--record", record, "--fps", "24", "--force")
     last = came["frames"] - 1
     rate = came["fps"]
     for form in ("abc", "usda", "usdc"):
