@@ -24,7 +24,7 @@ ROWS = (
     ("Maya, USD", "maya", "usda", "usd-core"),
     ("Houdini and Maya, Alembic", None, "abc", "Alembic's library"),
     ("Unreal", "unreal", "abc-unreal", "Alembic's library"),
-    ("Unity", "unity", None, "a reader of its page"),
+    ("Unity", "unity", "abc", "Alembic's library"),
     ("TressFX", "tressfx", "tfx", "a reader of its page"),
     ("Jolt", "jolt", "hair", "a reader of its page"),
     ("scripts, OBJ", "plain", "obj-lines", "a reader of its page"),
@@ -127,10 +127,7 @@ def row_of(cli, folder, project, row, blender):
     words = ["export", project, "--force"]
     if target:
         words += ["--target", target]
-    if form:
-        words += ["--format", form]
-    else:
-        form = "abc"
+    words += ["--format", form]
     path = os.path.join(folder, f"target-{odd_grooms.legal(program)}.{form.split('-')[0]}")
     if judge == "Blender" and not blender:
         return None
@@ -139,7 +136,7 @@ def row_of(cli, folder, project, row, blender):
         return by_blender(path)
     if judge == "usd-core":
         return by_usd(path)
-    if judge == "Alembic's library" or (target == "unity"):
+    if judge == "Alembic's library":
         return by_alembic(path)
     return by_reader(path, form, report)
 
