@@ -9,6 +9,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/file.h"
 #include "core/geometry/scalp_mesh.h"
@@ -158,6 +161,17 @@ TEST_F(LayersOut, ObjectsAndGroupsOfObjAreLayers) {
                 ElementsAre("head/a", "head/b", "brows/a", "brows/a"));
     EXPECT_THAT(layersOf("o all\n" + points + "l 1 2\nl 3 4\nl 5 6\nl 7 8\n"),
                 ElementsAre("all", "all", "all", "all"));
+}
+
+TEST_F(LayersOut, ThousandsOfObjectsAreOneLayer) {
+    std::string text;
+    for (int s = 0; s < 300; ++s)
+        text += "o Curve." + std::to_string(s) + "\nv 0 0 0\nv 0 0.1 0\nv 0 0.2 0\nl -3 -2 -1\n";
+    const auto back = importStrandsFromMemory("a.obj", std::as_bytes(std::span(text)));
+    ASSERT_TRUE(back) << back.error().message();
+    EXPECT_EQ(back->groom.strandCount(), 300u);
+    ASSERT_EQ(back->groom.layers.size(), 1u);
+    EXPECT_EQ(back->groom.layers[0].name, Layer{}.name);
 }
 
 TEST_F(LayersOut, MovingObjectsOfAlembicHaveTheirOwnPointsAndVelocities) {
