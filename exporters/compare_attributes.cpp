@@ -110,7 +110,7 @@ void reportLayers(const Groom& groom, const PreparedStrands& prepared, const Imp
     if (readBack.hasSettings && readBack.groom.layers.size() == groom.layers.size()) return;
     if (!haveSameLayers(groom, prepared, readBack.groom)) {
         report.leftBehind.push_back({fmt::format("{} layers", groom.layers.size()),
-                                     "export to USD, which has them as prims, or keep the project"});
+                                     "export to USD, Alembic or OBJ, which have them, or keep the project"});
         return;
     }
     report.leftBehind.push_back({"materials, locks and densities of layers", "keep the project"});

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <optional>
 
+#include "core/groom/strand_subset.h"
 #include "importers/attribute_units.h"
 
 namespace hairloom {
@@ -165,7 +166,8 @@ class Collector {
 
     void addOther(const std::string& name, const AttributeData& data, bool perPoint, std::size_t elements,
                   const std::vector<std::uint32_t>& chosen) {
-        if (isCarriedOtherwise(name, perPoint) || sizeOf(data) != elements) return;
+        const bool isBase = perPoint && names_.hasOperators && isOperatorAttribute(name);
+        if ((isCarriedOtherwise(name, perPoint) && !isBase) || sizeOf(data) != elements) return;
         std::visit([&](const auto& array) { add(name, perPoint, array.view(), chosen); }, data);
         ExportedAttribute& added = result_.back();
         added.isColour = added.components == 3 && (name == kColours || name == kDisplayColours);
@@ -220,21 +222,31 @@ class Collector {
     std::vector<ExportedAttribute> result_;
 };
 
+/// Whether the file said a number alone, or nothing.
+bool isNumbered(const std::string& group) {
+    constexpr std::string_view kPrefix = "group ";
+    const auto isDigit = [](char c) { return (c >= '0' && c <= '9') || c == '-'; };
+    return group == "no group" ||
+           (group.starts_with(kPrefix) && std::ranges::all_of(group.substr(kPrefix.size()), isDigit));
+}
+
 bool isLegalInPly(char c, bool) {
     return static_cast<unsigned char>(c) > 0x20 && c != 0x7f;
 }
 
 }  // namespace
 
-ExportNames usdNames() {
+ExportNames usdNames(bool operators) {
     // Of curves: a primvar of such a name would go before the attribute.
-    return {isLegalInUsd, {"widths", "normals"}};
+    ExportNames names{isLegalInUsd, {"widths", "normals"}};
+    names.hasOperators = operators;
+    return names;
 }
 
 ExportNames alembicNames(bool unreal) {
     ExportNames names{isLegalInAlembic, {}};
     names.isUnreal = unreal;
-    if (unreal) names.taken.emplace_back("groom_closest_guides");
+    if (unreal) names.taken = {"groom_closest_guides", "groom_group_name"};
     return names;
 }
 
@@ -245,6 +257,24 @@ ExportNames plyNames() {
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
                                                   const ExportNames& names) {
     return Collector(groom, strands, names).run();
+}
+
+std::vector<std::string> unrealGroupNames(const Groom& groom, const PreparedStrands& strands) {
+    const auto groups = groom.strandAttributes.view<std::uint32_t>(attribute::kGroup);
+    const std::vector<std::uint32_t> layers = layersOfStrands(groom);
+    std::vector<std::string> names;
+    bool isNamed = false;
+    for (const std::uint32_t source : strands.sources) {
+        std::string name;
+        if (groups.size() == groom.strandCount() && groups[source] < groom.groupNames.size())
+            name = groom.groupNames[groups[source]];
+        if (name.empty() || isNumbered(name))
+            name = layers[source] < groom.layers.size() ? groom.layers[layers[source]].name : std::string();
+        isNamed = isNamed || name != Layer{}.name;
+        names.push_back(std::move(name));
+    }
+    if (!isNamed) names.clear();
+    return names;
 }
 
 std::size_t roomOf(const PreparedStrands& strands, std::span<const ExportedAttribute> attributes) {

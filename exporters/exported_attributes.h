@@ -35,9 +35,11 @@ struct ExportedAttribute {
 struct ExportNames {
     NameGiver::Legal isLegal;
     std::vector<std::string_view> taken;  ///< by what the format writes beside attributes
+    bool hasOperators = false;            ///< what operators start from goes along
     bool isUnreal = false;                ///< widths are "groom_width", too, and layers groups without others
 };
-ExportNames usdNames();
+/// `operators`: the file has these.
+ExportNames usdNames(bool operators = false);
 ExportNames alembicNames(bool unreal);
 ExportNames plyNames();
 
@@ -48,6 +50,10 @@ ExportNames plyNames();
 /// of `strands`.
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
                                                   const ExportNames& names);
+
+/// The group of each strand as Unreal shows it: its name, else that of its layer; empty where all have the
+/// name that layers have by themselves.
+std::vector<std::string> unrealGroupNames(const Groom& groom, const PreparedStrands& strands);
 
 /// About what a binary file of them takes, in bytes, so that it grows without being copied.
 std::size_t roomOf(const PreparedStrands& strands, std::span<const ExportedAttribute> attributes);

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "core/geometry/curve.h"
-#include "exporters/prepared_strands.h"
+#include "exporters/obj_groups.h"
 
 namespace hairloom {
 namespace {
@@ -25,9 +25,9 @@ std::uint32_t pointsOfAll(const Groom& groom, const StrandExportOptions& options
 Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path& path,
                                  const StrandExportOptions& options) {
     const std::uint32_t points = pointsOfAll(groom, options);
-    auto strands = prepareStrands(groom, options, points);
+    auto strands = prepareStrands(groom, options, points, true);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
-    std::string text = fmt::format("# Hairloom, {} m in a unit, {} up\no hair\n", options.metresPerUnit,
+    std::string text = fmt::format("# Hairloom, {} m in a unit, {} up\n", options.metresPerUnit,
                                    options.up == UpAxis::Z ? "Z" : "Y");
     text.reserve(strands->positions.size() * 112);
     const auto end = std::back_inserter(text);
@@ -40,9 +40,13 @@ Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path
                            right.x(), right.y(), right.z());
         }
     }
-    for (std::size_t first = 0; first < strands->positions.size(); first += points) {
-        for (std::size_t left = 2 * first + 1; left + 2 < 2 * (first + points); left += 2)
-            fmt::format_to(end, "f {} {} {} {}\n", left, left + 1, left + 3, left + 2);
+    for (const ExportedPart& part : exportedParts(groom, *strands, isLegalInObj)) {
+        text += objGroup(part);
+        for (std::size_t first = part.firstPoint; first < part.firstPoint + part.pointCount;
+             first += points) {
+            for (std::size_t left = 2 * first + 1; left + 2 < 2 * (first + points); left += 2)
+                fmt::format_to(end, "f {} {} {} {}\n", left, left + 1, left + 3, left + 2);
+        }
     }
     return writeAndCompare(groom, std::move(*strands), options, path, std::move(text));
 }
@@ -52,7 +56,7 @@ Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path
 HairWriter objC4dWriter() {
     return {"obj-c4d",
             "Cinema 4D hair OBJ",
-            "the width of each point, as the width of its ribbon",
+            "the width of each point, as the width of its ribbon; layers, as groups",
             "all strands have the same number of points",
             {{"plain", "Cinema 4D", ".obj in metres, Y up, with one ribbon per strand, root first", {}}},
             writeObjC4d};

@@ -123,6 +123,20 @@ void AlembicCompound::arrays(const std::string& name, AlembicType type, std::uin
     parts_.push_back(file_.group(parts));
 }
 
+void AlembicCompound::texts(const std::string& name, std::span<const std::string> values,
+                            const std::string& metadata) {
+    constexpr std::uint32_t kArray = 2, kHomogeneous = 0x400, kOne = 1u << 12u;
+    header(name, kArray | static_cast<std::uint32_t>(AlembicType::Text) << 4u | kHomogeneous | kOne, 1,
+           metadata);
+    std::string all;
+    for (const std::string& value : values) all.append(value.c_str()).push_back('\0');
+    // The size of the data does not tell how many they are.
+    const std::uint64_t count = values.size();
+    const std::array<std::uint64_t, 2> parts{file_.sample(std::as_bytes(std::span(all))),
+                                             file_.data(std::as_bytes(std::span(&count, 1)))};
+    parts_.push_back(file_.group(parts));
+}
+
 void AlembicCompound::compound(const std::string& name, const AlembicCompound& inside,
                                const std::string& metadata) {
     header(name, 0, 0, metadata);

@@ -60,7 +60,11 @@ class AlembicCompound {
                  std::span<const std::span<const std::byte>> samples, const std::string& metadata = {});
     void arrays(const std::string& name, AlembicType type, std::uint32_t extent,
                 std::span<const std::span<const std::byte>> samples, const std::string& metadata = {});
+    /// An array of texts without a NUL.
+    void texts(const std::string& name, std::span<const std::string> values,
+               const std::string& metadata = {});
     void compound(const std::string& name, const AlembicCompound& inside, const std::string& metadata = {});
+    bool isEmpty() const { return parts_.empty(); }
     /// Its group.
     std::uint64_t write() const;
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "exporters/usd_curves.h"
+#include "exporters/usd_scene.h"
 #include "exporters/usda_numbers.h"
 
 namespace hairloom {
@@ -29,7 +30,7 @@ std::string displayLine(const std::string& name, int indent) {
                                       std::string(static_cast<std::size_t>(indent), ' '), inQuotes(name));
 }
 
-void writeAttribute(std::string& out, const UsdPart& part, const ExportedAttribute& attribute) {
+void writeAttribute(std::string& out, const ExportedPart& part, const ExportedAttribute& attribute) {
     out += fmt::format("        {}[] primvars:{} = ", usdTypeOf(attribute), attribute.name);
     if (attribute.type == ExportedAttribute::Type::Number)
         writeNumbers(out, part.numbers(attribute), attribute.components);
@@ -40,7 +41,7 @@ void writeAttribute(std::string& out, const UsdPart& part, const ExportedAttribu
 }
 
 /// What strands that move have at each frame beside the first, which stands for all who look at no time.
-void writeSamples(std::string& out, const UsdPart& part, const PreparedStrands& strands,
+void writeSamples(std::string& out, const ExportedPart& part, const PreparedStrands& strands,
                   const StrandFrames& frames) {
     const auto write = [&](std::string_view name, const auto& valueOf) {
         out += fmt::format("        {}.timeSamples = {{\n", name);
@@ -54,6 +55,73 @@ void writeSamples(std::string& out, const UsdPart& part, const PreparedStrands& 
     };
     write("float3[] extent", [&](const std::vector<Vec3f>& points) { return part.extent(strands, points); });
     write("point3f[] points", [&](const std::vector<Vec3f>& points) { return part.points(points); });
+    std::vector<std::span<const Vec3f>> shapes;
+    for (const std::vector<Vec3f>& frame : strands.frames) shapes.push_back(part.points(frame));
+    if (shapes.size() < 2) return;
+    out += "        vector3f[] velocities.timeSamples = {\n";
+    for (std::size_t f = 0; f < shapes.size(); ++f) {
+        out += fmt::format("            {}: ", frames.first + static_cast<double>(f));
+        const std::vector<Vec3f> velocities = pointVelocities(shapes, f, frames.framesPerSecond);
+        writeNumbers(out, numbersOf(velocities), 3);
+        out += ",\n";
+    }
+    out += "        }\n";
+}
+
+std::string inputText(const UsdShaderInput& input) {
+    std::string out = fmt::format("                {} inputs:{}", input.type, input.name);
+    if (!input.connection.empty()) return out + fmt::format(".connect = <{}>\n", input.connection);
+    out += " = ";
+    if (input.numbers.empty()) return out + inQuotes(input.text) + '\n';
+    if (input.numbers.size() == 1) return out + fmt::format("{}\n", input.numbers[0]);
+    return out + fmt::format("({})\n", fmt::join(input.numbers, ", "));
+}
+
+std::string materialsText(const std::string& folder, const UsdMaterials& materials) {
+    std::string out = fmt::format("    def Scope \"{}\"\n    {{\n", folder);
+    for (const UsdMaterial& material : materials.all) {
+        out += fmt::format(
+            "        def Material \"{}\"\n        {{\n            token outputs:surface.connect = <{}>\n"
+            "            token outputs:mtlx:surface.connect = <{}>\n",
+            material.name, material.preview, material.surface);
+        for (const UsdShader& shader : material.shaders) {
+            out += fmt::format(
+                "            def Shader \"{}\"\n            {{\n                uniform token info:id = "
+                "\"{}\"\n",
+                shader.name, shader.id);
+            for (const UsdShaderInput& input : shader.inputs) out += inputText(input);
+            for (const auto& [type, name] : shader.outputs)
+                out += fmt::format("                {} outputs:{}\n", type, name);
+            out += "            }\n";
+        }
+        out += "        }\n";
+    }
+    return out + "    }\n";
+}
+
+std::string scalpText(const std::string& name, const UsdScalp& scalp) {
+    if (scalp.empty()) return {};
+    std::string out = fmt::format(
+        "    def Mesh \"{}\"\n    {{\n        uniform token subdivisionScheme = \"none\"\n"
+        "        uniform bool doubleSided = 1\n        float3[] extent = ",
+        name);
+    const std::array<Vec3f, 2> extent = extentOf(scalp.points);
+    writeNumbers(out, numbersOf(extent), 3);
+    out += "\n        int[] faceVertexCounts = ";
+    writeNumbers(out, std::span<const std::int32_t>(scalp.faceVertexCounts), 1);
+    out += "\n        int[] faceVertexIndices = ";
+    writeNumbers(out, std::span<const std::int32_t>(scalp.faceVertexIndices), 1);
+    out += "\n        point3f[] points = ";
+    writeNumbers(out, numbersOf(scalp.points), 3);
+    out += "\n        normal3f[] normals = ";
+    writeNumbers(out, numbersOf(scalp.normals), 3);
+    out += " (\n            interpolation = \"vertex\"\n        )\n";
+    if (!scalp.uvs.empty()) {
+        out += "        texCoord2f[] primvars:st = ";
+        writeNumbers(out, std::span<const float>(scalp.uvs), 2);
+        out += " (\n            interpolation = \"faceVarying\"\n        )\n";
+    }
+    return out + "    }\n";
 }
 
 /// The lines of the head that say which times there are.
@@ -61,15 +129,20 @@ std::string timesInHead(const StrandExportOptions& options) {
     if (!options.frames) return {};
     const double last = options.frames->first + static_cast<double>(options.frames->points.size() - 1);
     return fmt::format(
-        "    endTimeCode = {}\n    framesPerSecond = {}\n    startTimeCode = {}\n    timeCodesPerSecond = "
+        "    endTimeCode = {}\n    framesPerSecond = {}\n    startTimeCode = {}\n    "
+        "timeCodesPerSecond = "
         "{}\n",
         last, options.frames->framesPerSecond, options.frames->first, options.frames->framesPerSecond);
 }
 
-void writePart(std::string& out, const UsdPart& part, const PreparedStrands& strands,
-               std::span<const ExportedAttribute> attributes, const StrandExportOptions& options) {
-    out += fmt::format("    def BasisCurves \"{}\"{}\n    {{\n", part.name,
-                       part.displayName.empty() ? "" : " (\n" + displayLine(part.displayName, 8) + "    )");
+void writePart(std::string& out, const ExportedPart& part, const PreparedStrands& strands,
+               std::span<const ExportedAttribute> attributes, const StrandExportOptions& options,
+               const UsdMaterial& material) {
+    out += fmt::format(
+        "    def BasisCurves \"{}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n{}    "
+        ")\n    "
+        "{{\n        rel material:binding = <{}>\n",
+        part.name, displayLine(part.displayName, 8), material.path);
     out +=
         "        uniform token type = \"linear\"\n        uniform token wrap = \"nonperiodic\"\n"
         "        float3[] extent = ";
@@ -91,14 +164,23 @@ void writePart(std::string& out, const UsdPart& part, const PreparedStrands& str
 
 std::string usdaText(const Groom& groom, PreparedStrands& strands, const StrandExportOptions& options) {
     std::string out = fmt::format(
-        "#usda 1.0\n(\n    defaultPrim = \"groom\"\n    doc = \"Hairloom\"\n{}    metersPerUnit = {}\n    "
+        "#usda 1.0\n(\n    defaultPrim = \"groom\"\n    doc = \"Hairloom\"\n{}    metersPerUnit = "
+        "{}\n    "
         "upAxis = \"{}\"\n)\n\n"
         "def Xform \"groom\"\n{{\n",
         timesInHead(options), options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y");
     // About what points and widths take as text.
     out.reserve(strands.positions.size() * 48 * (1 + strands.frames.size()));
-    const auto attributes = exportedAttributes(groom, strands, usdNames());
-    for (const UsdPart& part : usdParts(groom, strands)) writePart(out, part, strands, attributes, options);
+    const bool hasOperators = usdHasOperators(groom, options);
+    for (const auto& [name, text] : usdSettings(groom, strands, hasOperators))
+        out += fmt::format("    custom string {} = {}\n", name, inQuotes(text));
+    const auto attributes = exportedAttributes(groom, strands, usdNames(hasOperators));
+    const std::vector<ExportedPart> parts = exportedParts(groom, strands, isLegalInUsd);
+    const UsdBeside beside = usdBeside(parts);
+    const UsdMaterials materials = usdMaterials(groom, strands, attributes, beside.materials);
+    for (std::size_t p = 0; p < parts.size(); ++p)
+        writePart(out, parts[p], strands, attributes, options, materials.all[materials.ofPart[p]]);
+    out += scalpText(beside.scalp, usdScalp(groom, options)) + materialsText(beside.materials, materials);
     out += "}\n";
     return out;
 }

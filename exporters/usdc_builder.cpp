@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exporters/usdc_builder.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -10,10 +11,11 @@ namespace hairloom {
 namespace {
 
 constexpr std::size_t kBootstrap = 88;
-constexpr std::uint32_t kAttribute = 1, kPrim = 6, kRoot = 7;
+constexpr std::uint32_t kAttribute = 1, kPrim = 6, kRoot = 7, kRelationship = 8;
 constexpr std::uint8_t kBool = 1, kUChar = 2, kInt = 3, kFloat = 8, kDouble = 9, kString = 10, kToken = 11,
-                       kVec2f = 20, kVec3f = 24, kVec4f = 28, kTokenVector = 41, kSpecifier = 42,
-                       kVariability = 44, kTimeSamples = 46, kDoubleVector = 48;
+                       kVec2f = 20, kVec3f = 24, kVec4f = 28, kTokenListOp = 32, kPathListOp = 34,
+                       kTokenVector = 41, kSpecifier = 42, kVariability = 44, kTimeSamples = 46,
+                       kDoubleVector = 48;
 
 UsdcRep inlined(std::uint8_t type, std::uint32_t payload) {
     return {std::uint64_t{1} << 62u | std::uint64_t{type} << 48u | payload};
@@ -94,6 +96,55 @@ UsdcRep UsdcBuilder::number(double value) {
     return {std::uint64_t{kDouble} << 48u | offset};
 }
 
+UsdcRep UsdcBuilder::single(float value) {
+    return inlined(kFloat, std::bit_cast<std::uint32_t>(value));
+}
+
+UsdcRep UsdcBuilder::vector(std::span<const float> value) {
+    constexpr std::array<std::uint8_t, 5> kTypes{0, kFloat, kVec2f, kVec3f, kVec4f};
+    out_.align(8);
+    const std::uint64_t offset = out_.size();
+    out_.writeArray(value);
+    return {std::uint64_t{kTypes[value.size()]} << 48u | offset};
+}
+
+UsdcRep UsdcBuilder::boolean(bool value) const {
+    return inlined(kBool, value ? 1 : 0);
+}
+
+UsdcRep UsdcBuilder::prepended(std::span<const std::string> texts) {
+    constexpr std::uint8_t kHasPrepended = 32;
+    const std::uint64_t offset = out_.size();
+    out_.write(kHasPrepended);
+    out_.write(std::uint64_t{texts.size()});
+    for (const std::string& text : texts) out_.write(tokenIndex(text));
+    return {std::uint64_t{kTokenListOp} << 48u | offset};
+}
+
+UsdcRep UsdcBuilder::path(const std::string& path) {
+    constexpr std::uint8_t kIsExplicit = 1, kHasItems = 2;
+    const std::uint64_t offset = out_.size();
+    out_.write(static_cast<std::uint8_t>(kIsExplicit | kHasItems));
+    out_.write(std::uint64_t{1});
+    named_.emplace_back(out_.size(), path);
+    out_.write(std::uint32_t{0});
+    return {std::uint64_t{kPathListOp} << 48u | offset};
+}
+
+std::vector<std::string> UsdcBuilder::pathTexts() const {
+    std::vector<std::string> texts, above;
+    for (const Path& path : paths_) {
+        // What stands above it: the root has depth 0 and no name.
+        above.resize(path.depth > 0 ? path.depth - 1 : 0);
+        std::string text;
+        for (const std::string& name : above) text += name;
+        const bool isProperty = path.type == kAttribute || path.type == kRelationship;
+        if (path.depth > 0) above.push_back((isProperty ? "." : "/") + tokens_[path.token]);
+        texts.push_back(path.depth > 0 ? text + above.back() : "/");
+    }
+    return texts;
+}
+
 UsdcRep UsdcBuilder::definition() const {
     return inlined(kSpecifier, 0);
 }
@@ -154,6 +205,10 @@ void UsdcBuilder::attribute(std::uint32_t depth, const std::string& name, const 
     add(depth, name, kAttribute, fields);
 }
 
+void UsdcBuilder::relationship(std::uint32_t depth, const std::string& name, const Fields& fields) {
+    add(depth, name, kRelationship, fields);
+}
+
 void UsdcBuilder::add(std::uint32_t depth, const std::string& name, std::uint32_t type,
                       const Fields& fields) {
     paths_.push_back(
@@ -183,6 +238,12 @@ std::vector<std::int32_t> UsdcBuilder::jumps() const {
 }
 
 std::vector<std::byte> UsdcBuilder::finish() {
+    const std::vector<std::string> texts = pathTexts();
+    for (const auto& [at, text] : named_) {
+        const auto found = std::ranges::find(texts, text);
+        assert(found != texts.end());
+        out_.overwrite(at, static_cast<std::uint32_t>(found - texts.begin()));
+    }
     struct Section {
         std::array<char, 16> name{};
         std::uint64_t begin = 0, size = 0;
@@ -226,7 +287,7 @@ std::vector<std::byte> UsdcBuilder::finish() {
     for (const Path& path : paths_) {
         indices.push_back(static_cast<std::uint32_t>(indices.size()));
         const auto token = static_cast<std::int32_t>(path.token);
-        elements.push_back(path.type == kAttribute ? -token : token);
+        elements.push_back(path.type == kAttribute || path.type == kRelationship ? -token : token);
         sets.push_back(path.fieldSet);
         types.push_back(path.type);
     }

@@ -31,6 +31,14 @@ class UsdcBuilder {
     UsdcRep string(const std::string& text);
     UsdcRep tokens(std::span<const std::string> texts);
     UsdcRep number(double value);
+    UsdcRep single(float value);
+    /// One element of 2 to 4 numbers.
+    UsdcRep vector(std::span<const float> value);
+    UsdcRep boolean(bool value) const;
+    /// Tokens that are put before what weaker layers say.
+    UsdcRep prepended(std::span<const std::string> texts);
+    /// The path of a prim or an attribute ("/a/b.c") that is in the file when it is finished.
+    UsdcRep path(const std::string& path);
     /// What a prim is (def) and whether an attribute may change in time.
     UsdcRep definition() const;
     UsdcRep uniform() const;
@@ -47,6 +55,7 @@ class UsdcBuilder {
     void root(const Fields& fields);
     void prim(std::uint32_t depth, const std::string& name, const Fields& fields);
     void attribute(std::uint32_t depth, const std::string& name, const Fields& fields);
+    void relationship(std::uint32_t depth, const std::string& name, const Fields& fields);
 
     /// Room for so many bytes in all.
     void reserve(std::size_t bytes) { out_.reserve(bytes); }
@@ -63,6 +72,8 @@ class UsdcBuilder {
     void add(std::uint32_t depth, const std::string& name, std::uint32_t type, const Fields& fields);
     /// Of the written paths: where the next sibling stands, as the format says it.
     std::vector<std::int32_t> jumps() const;
+    /// "/a/b.c" of each path.
+    std::vector<std::string> pathTexts() const;
 
     ByteWriter out_;
     std::vector<std::string> tokens_;
@@ -71,6 +82,7 @@ class UsdcBuilder {
     std::vector<std::uint32_t> fieldTokens_, fieldSets_;
     std::vector<std::uint64_t> fieldValues_;
     std::vector<Path> paths_;
+    std::vector<std::pair<std::size_t, std::string>> named_;  ///< where the number of a path is to stand
 };
 
 }  // namespace hairloom

@@ -3,12 +3,13 @@
 
 #include "core/groom/file/json_reader.h"
 #include "exporters/usd_curves.h"
+#include "exporters/usd_scene.h"
 #include "exporters/usdc_builder.h"
 
 namespace hairloom {
 namespace {
 
-UsdcRep valueOf(UsdcBuilder& file, const UsdPart& part, const ExportedAttribute& attribute,
+UsdcRep valueOf(UsdcBuilder& file, const ExportedPart& part, const ExportedAttribute& attribute,
                 std::string_view type) {
     if (attribute.type == ExportedAttribute::Type::Number)
         return file.floats(part.numbers(attribute), attribute.components);
@@ -44,16 +45,24 @@ class PartWriter {
         : file_(file), strands_(strands) {
         for (std::size_t f = 0; f < strands.frames.size(); ++f)
             times_.push_back(options.frames->first + static_cast<double>(f));
+        if (options.frames) framesPerSecond_ = options.frames->framesPerSecond;
     }
 
-    void write(const UsdPart& part, std::span<const ExportedAttribute> attributes) {
-        std::vector<std::string> names{"type", "wrap", "extent", "curveVertexCounts", "points", "widths"};
+    void write(const ExportedPart& part, std::span<const ExportedAttribute> attributes,
+               const UsdMaterial& material) {
+        std::vector<std::string> names{"material:binding",  "type",   "wrap",  "extent",
+                                       "curveVertexCounts", "points", "widths"};
+        if (strands_.frames.size() > 1) names.emplace_back("velocities");
         for (const ExportedAttribute& attribute : attributes) names.push_back("primvars:" + attribute.name);
         UsdcBuilder::Fields fields{{"specifier", file_.definition()},
                                    {"typeName", file_.token("BasisCurves")},
                                    {"properties", file_.tokens(names)}};
         if (!part.displayName.empty()) fields.emplace_back("displayName", file_.string(part.displayName));
+        const std::vector<std::string> schemas{"MaterialBindingAPI"};
+        fields.emplace_back("apiSchemas", file_.prepended(schemas));
         file_.prim(2, part.name, fields);
+        file_.relationship(3, "material:binding",
+                           {{"variability", file_.uniform()}, {"targetPaths", file_.path(material.path)}});
         for (const auto& [name, value] : {std::pair("type", "linear"), std::pair("wrap", "nonperiodic")})
             file_.attribute(3, name,
                             {{"typeName", file_.token("token")},
@@ -64,11 +73,12 @@ class PartWriter {
                         {{"typeName", file_.token("float[]")},
                          {"interpolation", file_.token("vertex")},
                          {"default", file_.floats(part.widths(strands_), 1)}});
+        writeVelocities(part);
         for (const ExportedAttribute& attribute : attributes) writeAttribute(part, attribute);
     }
 
   private:
-    void writePoints(const UsdPart& part) {
+    void writePoints(const ExportedPart& part) {
         const auto add = [&](const std::string& name, const char* type, UsdcRep value,
                              std::span<const UsdcRep> frames = {}) {
             UsdcBuilder::Fields fields{{"typeName", file_.token(type)}, {"default", value}};
@@ -92,7 +102,19 @@ class PartWriter {
         add("points", "point3f[]", points(strands_.positions), shapes);
     }
 
-    void writeAttribute(const UsdPart& part, const ExportedAttribute& attribute) {
+    void writeVelocities(const ExportedPart& part) {
+        std::vector<std::span<const Vec3f>> shapes;
+        for (const std::vector<Vec3f>& frame : strands_.frames) shapes.push_back(part.points(frame));
+        if (shapes.size() < 2) return;
+        std::vector<UsdcRep> values;
+        for (std::size_t f = 0; f < shapes.size(); ++f)
+            values.push_back(file_.floats(numbersOf(pointVelocities(shapes, f, framesPerSecond_)), 3));
+        file_.attribute(
+            3, "velocities",
+            {{"typeName", file_.token("vector3f[]")}, {"timeSamples", file_.samples(times_, values)}});
+    }
+
+    void writeAttribute(const ExportedPart& part, const ExportedAttribute& attribute) {
         const std::string type(usdTypeOf(attribute));
         UsdcBuilder::Fields fields{{"typeName", file_.token(type + "[]")},
                                    {"interpolation", file_.token(attribute.perPoint ? "vertex" : "uniform")},
@@ -104,25 +126,127 @@ class PartWriter {
     UsdcBuilder& file_;
     const PreparedStrands& strands_;
     std::vector<double> times_;
+    double framesPerSecond_ = 0;
 };
+
+UsdcRep valueOf(UsdcBuilder& file, const UsdShaderInput& input) {
+    if (!input.numbers.empty())
+        return input.numbers.size() == 1 ? file.single(input.numbers[0]) : file.vector(input.numbers);
+    return input.type == "token" ? file.token(input.text) : file.string(input.text);
+}
+
+void writeShader(UsdcBuilder& file, const UsdShader& shader) {
+    std::vector<std::string> names{"info:id"};
+    for (const UsdShaderInput& input : shader.inputs) names.push_back("inputs:" + input.name);
+    for (const auto& [type, name] : shader.outputs) names.push_back("outputs:" + name);
+    file.prim(4, shader.name,
+              {{"specifier", file.definition()},
+               {"typeName", file.token("Shader")},
+               {"properties", file.tokens(names)}});
+    file.attribute(5, "info:id",
+                   {{"typeName", file.token("token")},
+                    {"variability", file.uniform()},
+                    {"default", file.token(shader.id)}});
+    for (const UsdShaderInput& input : shader.inputs) {
+        UsdcBuilder::Fields fields{{"typeName", file.token(input.type)}};
+        if (input.connection.empty())
+            fields.emplace_back("default", valueOf(file, input));
+        else
+            fields.emplace_back("connectionPaths", file.path(input.connection));
+        file.attribute(5, "inputs:" + input.name, fields);
+    }
+    for (const auto& [type, name] : shader.outputs)
+        file.attribute(5, "outputs:" + name, {{"typeName", file.token(type)}});
+}
+
+void writeMaterials(UsdcBuilder& file, const std::string& folder, const UsdMaterials& materials) {
+    std::vector<std::string> names;
+    for (const UsdMaterial& material : materials.all) names.push_back(material.name);
+    file.prim(2, folder,
+              {{"specifier", file.definition()},
+               {"typeName", file.token("Scope")},
+               {"primChildren", file.tokens(names)}});
+    for (const UsdMaterial& material : materials.all) {
+        std::vector<std::string> shaders;
+        for (const UsdShader& shader : material.shaders) shaders.push_back(shader.name);
+        const std::vector<std::string> outputs{"outputs:surface", "outputs:mtlx:surface"};
+        file.prim(3, material.name,
+                  {{"specifier", file.definition()},
+                   {"typeName", file.token("Material")},
+                   {"primChildren", file.tokens(shaders)},
+                   {"properties", file.tokens(outputs)}});
+        for (const UsdShader& shader : material.shaders) writeShader(file, shader);
+        file.attribute(4, outputs[0],
+                       {{"typeName", file.token("token")}, {"connectionPaths", file.path(material.preview)}});
+        file.attribute(4, outputs[1],
+                       {{"typeName", file.token("token")}, {"connectionPaths", file.path(material.surface)}});
+    }
+}
+
+void writeScalp(UsdcBuilder& file, const std::string& name, const UsdScalp& scalp) {
+    std::vector<std::string> names{"subdivisionScheme", "doubleSided", "extent", "faceVertexCounts",
+                                   "faceVertexIndices", "points",      "normals"};
+    if (!scalp.uvs.empty()) names.emplace_back("primvars:st");
+    file.prim(2, name,
+              {{"specifier", file.definition()},
+               {"typeName", file.token("Mesh")},
+               {"properties", file.tokens(names)}});
+    const auto add = [&](const char* attribute, const char* type, UsdcRep value,
+                         const char* interpolation = "") {
+        UsdcBuilder::Fields fields{{"typeName", file.token(type)}, {"default", value}};
+        if (*interpolation != '\0') fields.emplace_back("interpolation", file.token(interpolation));
+        file.attribute(3, attribute, fields);
+    };
+    file.attribute(3, "subdivisionScheme",
+                   {{"typeName", file.token("token")},
+                    {"variability", file.uniform()},
+                    {"default", file.token("none")}});
+    file.attribute(
+        3, "doubleSided",
+        {{"typeName", file.token("bool")}, {"variability", file.uniform()}, {"default", file.boolean(true)}});
+    const std::array<Vec3f, 2> extent = extentOf(scalp.points);
+    add("extent", "float3[]", file.floats({extent[0].data(), 6}, 3));
+    add("faceVertexCounts", "int[]", file.ints(scalp.faceVertexCounts));
+    add("faceVertexIndices", "int[]", file.ints(scalp.faceVertexIndices));
+    add("points", "point3f[]", file.floats(numbersOf(scalp.points), 3));
+    add("normals", "normal3f[]", file.floats(numbersOf(scalp.normals), 3), "vertex");
+    if (!scalp.uvs.empty()) add("primvars:st", "texCoord2f[]", file.floats(scalp.uvs, 2), "faceVarying");
+}
 
 Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& path,
                                const StrandExportOptions& options) {
     auto strands = prepareStrands(groom, options, options.pointsPerStrand, true);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
-    const auto attributes = exportedAttributes(groom, *strands, usdNames());
-    const std::vector<UsdPart> parts = usdParts(groom, *strands);
+    const bool hasOperators = usdHasOperators(groom, options);
+    const auto attributes = exportedAttributes(groom, *strands, usdNames(hasOperators));
+    const std::vector<ExportedPart> parts = exportedParts(groom, *strands, isLegalInUsd);
+    const UsdBeside beside = usdBeside(parts);
+    const UsdMaterials materials = usdMaterials(groom, *strands, attributes, beside.materials);
+    const UsdScalp scalp = usdScalp(groom, options);
     UsdcBuilder file;
     file.reserve(roomOf(*strands, attributes));
     writeRoot(file, *strands, options);
-    std::vector<std::string> names;
-    for (const UsdPart& part : parts) names.push_back(part.name);
+    std::vector<std::string> names, properties;
+    for (const ExportedPart& part : parts) names.push_back(part.name);
+    if (!scalp.empty()) names.push_back(beside.scalp);
+    names.push_back(beside.materials);
+    const auto settings = usdSettings(groom, *strands, hasOperators);
+    for (const auto& [name, text] : settings) properties.push_back(name);
     file.prim(1, "groom",
               {{"specifier", file.definition()},
                {"typeName", file.token("Xform")},
-               {"primChildren", file.tokens(names)}});
+               {"primChildren", file.tokens(names)},
+               {"properties", file.tokens(properties)}});
     PartWriter writer(file, *strands, options);
-    for (const UsdPart& part : parts) writer.write(part, attributes);
+    for (std::size_t p = 0; p < parts.size(); ++p)
+        writer.write(parts[p], attributes, materials.all[materials.ofPart[p]]);
+    if (!scalp.empty()) writeScalp(file, beside.scalp, scalp);
+    writeMaterials(file, beside.materials, materials);
+    for (const auto& [name, text] : settings)
+        file.attribute(2, name,
+                       {{"typeName", file.token("string")},
+                        {"custom", file.boolean(true)},
+                        {"default", file.string(text)}});
     return writeAndCompare(groom, std::move(*strands), options, path, file.finish());
 }
 

@@ -383,4 +383,20 @@ Result<std::string> AlembicArchive::text(const AlembicProperty& property, std::u
     return std::string(text.substr(0, text.find('\0')));
 }
 
+Result<std::vector<std::string>> AlembicArchive::texts(const AlembicProperty& property,
+                                                       std::uint32_t index) const {
+    if (property.pod != AlembicPod::String)
+        return file_.error(property.node, property.name + " is no string", "expected strings");
+    const auto bytes = sample(property, index);
+    if (!bytes) return tl::unexpected(bytes.error());
+    std::vector<std::string> found;
+    // Each ends with a NUL; the last one may not.
+    for (std::string_view rest = asText(*bytes); !rest.empty();) {
+        const std::size_t end = std::min(rest.find('\0'), rest.size());
+        found.emplace_back(rest.substr(0, end));
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    return found;
+}
+
 }  // namespace hairloom

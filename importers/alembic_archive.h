@@ -83,6 +83,8 @@ class AlembicArchive {
     Result<std::vector<double>> doubles(const AlembicProperty& property, std::uint32_t index) const;
     Result<std::vector<std::int64_t>> integers(const AlembicProperty& property, std::uint32_t index) const;
     Result<std::string> text(const AlembicProperty& property, std::uint32_t index) const;
+    /// All texts of an array.
+    Result<std::vector<std::string>> texts(const AlembicProperty& property, std::uint32_t index) const;
 
   private:
     explicit AlembicArchive(OgawaFile file) : file_(std::move(file)) {}

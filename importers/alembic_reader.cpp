@@ -19,6 +19,8 @@
 namespace hairloom {
 namespace {
 
+constexpr const char* kGroupName = "groom_group_name";
+
 /// Of all curves together, which instances make many from few, and of all frames.
 constexpr std::uint64_t kMaxPoints = 200'000'000, kMaxFramePoints = 1'000'000'000;
 
@@ -276,14 +278,18 @@ class Reader {
                 // Properties of the object, such as Blender's resolution, are of no curve.
                 const bool isOfObject = !ofCurves && property.kind != AlembicProperty::Kind::Array;
                 if (isOfObject && !isOfHair(property)) continue;
+                if (property.name == kGroupName) {
+                    if (auto status = addGroupNames(property, found.path, set); !status) return status;
+                    continue;
+                }
                 if (auto status = addAttribute(property, set); !status) return status;
             }
         }
         for (const auto& [name, property] : found.inherited.ofObjects) {
-            if (name == "groom_group_name" && isText(property)) {
+            if (name == kGroupName && isText(property)) {
                 auto text = archive_.text(property, first(property));
                 if (!text) return tl::unexpected(text.error());
-                partNames_[found.path] = *text;
+                partNames_.emplace(found.path, *text);
                 continue;
             }
             const bool isKnown =
@@ -291,6 +297,45 @@ class Reader {
             if (isKnown) continue;
             if (auto status = addAttribute(property, set); !status) return status;
         }
+        return {};
+    }
+
+    /// A text is the name of all curves of an object; texts are of a strand each, as they stand or by
+    /// indices.
+    Status addGroupNames(const AlembicProperty& property, const std::string& path, CurveSet& set) {
+        std::vector<AlembicProperty> inside;
+        if (property.kind == AlembicProperty::Kind::Compound) {
+            auto read = archive_.properties(property);
+            if (!read) return tl::unexpected(read.error());
+            inside = std::move(*read);
+        }
+        const AlembicProperty* const values = inside.empty() ? &property : findProperty(inside, ".vals");
+        if (values == nullptr || !isText(*values)) return {};
+        const auto texts = archive_.texts(*values, first(*values));
+        if (!texts) return tl::unexpected(texts.error());
+        if (texts->empty()) return {};
+        if (texts->size() == 1) {
+            partNames_.emplace(path, texts->front());
+            return {};
+        }
+        CurveAttribute attribute;
+        attribute.name = kGroupName;
+        attribute.scope = scopeOf(property.metadata);
+        std::map<std::string, std::int64_t> known;
+        for (const std::string& text : *texts) {
+            const auto [place, isNew] =
+                known.emplace(text, static_cast<std::int64_t>(strands_.groupTexts.size()));
+            if (isNew) {
+                const auto before = std::ranges::find(strands_.groupTexts, text);
+                place->second = before - strands_.groupTexts.begin();
+                if (before == strands_.groupTexts.end()) strands_.groupTexts.push_back(text);
+            }
+            attribute.whole.push_back(place->second);
+        }
+        if (const AlembicProperty* const indices = findProperty(inside, ".indices")) {
+            if (auto status = expand(attribute, *indices); !status) return status;
+        }
+        set.attributes.push_back(std::move(attribute));
         return {};
     }
 

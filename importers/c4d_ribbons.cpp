@@ -139,6 +139,14 @@ Result<RawStrands> strandsFromRibbons(const std::string& file, const ObjStrandTe
     for (std::size_t piece = 0; piece < pieces->count(); ++piece)
         maker.add(pieces->verticesOf(piece), (*grids)[piece]);
     RawStrands raw = maker.finish();
+    if (!obj.faceLines.empty()) {
+        raw.parts = obj.parts;
+        for (std::size_t piece = 0; piece < pieces->count(); ++piece) {
+            const std::uint32_t first = pieces->faceOffsets[piece];
+            const bool hasFace = pieces->faceOffsets[piece + 1] > first;
+            raw.partOfStrand.push_back(hasFace ? obj.faceParts[pieces->faces[first]] : 0);
+        }
+    }
     RibbonsFound found;
     found.order = grids->front().order;
     const bool isOneOrder = std::ranges::all_of(

@@ -131,6 +131,7 @@ Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText
     RawStrands raw;
     raw.format = "OBJ lines";
     raw.rootFirst = false;
+    raw.parts = obj.parts;
     const std::size_t lineCount = obj.lineOffsets.size() - 1;
     const auto line = [&](std::size_t index) {
         return std::span(obj.lineIndices)
@@ -153,10 +154,14 @@ Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText
         const auto indices = line(i);
         if (indices.size() == 2) {
             const std::size_t before = raw.sourceIndices.size() + raw.dropped.size();
+            const std::size_t made = raw.sourceIndices.size();
             chains.emit(indices[0], strand);
+            if (raw.sourceIndices.size() > made && !obj.lineParts.empty())
+                raw.partOfStrand.push_back(obj.lineParts[i]);
             if (raw.sourceIndices.size() + raw.dropped.size() > before) ++strand;
             continue;
         }
+        if (!obj.lineParts.empty()) raw.partOfStrand.push_back(obj.lineParts[i]);
         for (const std::uint32_t index : indices) raw.positions.push_back(obj.vertices[index]);
         vertices.insert(vertices.end(), indices.begin(), indices.end());
         raw.offsets.push_back(static_cast<std::uint32_t>(raw.positions.size()));

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <string>
+#include <unordered_map>
 
 #include "importers/curve_evaluation.h"
 #include "importers/obj_text.h"
 #include "importers/raw_strands.h"
+#include "importers/strand_parts.h"
 
 namespace hairloom {
 namespace {
@@ -35,6 +38,8 @@ class Parser {
         if (keyword == "l") return line();
         if (keyword == "f") return face();
         if (keyword == "curv") return curve();
+        if (keyword == "o") named(object_);
+        if (keyword == "g") named(group_);
         if (keyword == "deg") degree();
         if (keyword == "cstype") type();
         if (keyword == "parm") parameters();
@@ -110,12 +115,42 @@ class Parser {
         return status;
     }
 
-    void endLine() { obj_.lineOffsets.push_back(static_cast<std::uint32_t>(obj_.lineIndices.size())); }
+    void endLine() {
+        obj_.lineOffsets.push_back(static_cast<std::uint32_t>(obj_.lineIndices.size()));
+        obj_.lineParts.push_back(part());
+    }
+
+    void named(std::string& name) {
+        name = rest_;
+        part_.reset();
+    }
+
+    /// The part that lines and faces belong to from here on. Where a group has the name of its object as
+    /// groups have names, without blanks, the object's is what people call it.
+    std::uint32_t part() {
+        if (part_) return *part_;
+        const auto [known, isNew] =
+            parts_.emplace(object_ + '\n' + group_, static_cast<std::uint32_t>(obj_.parts.size()));
+        if (isNew) {
+            const bool isOne = object_.empty() || group_.empty() || isNamedAfter(group_, object_);
+            obj_.parts.push_back(
+                {"/" + object_ + "/" + group_, isOne ? (object_.empty() ? group_ : object_) : std::string()});
+        }
+        part_ = known->second;
+        return *part_;
+    }
+
+    /// Whether they are alike but for characters that became underscores, and a number behind.
+    static bool isNamedAfter(std::string_view group, std::string_view object) {
+        return isGivenTo(group, object,
+                         [](char c, bool) { return static_cast<unsigned char>(c) > 0x20 && c != 0x7f; });
+    }
 
     Status face() {
         auto status = indices("face", obj_.faceIndices);
         obj_.faceOffsets.push_back(static_cast<std::uint32_t>(obj_.faceIndices.size()));
         obj_.faceLines.push_back(lines_.number());
+        obj_.faceParts.push_back(part());
         return status;
     }
 
@@ -236,6 +271,9 @@ class Parser {
     ObjLines lines_;
     std::string_view rest_;  ///< of the statement, behind the words read
     ObjStrandText obj_;
+    std::string object_, group_;         ///< as the last `o` and `g` say
+    std::optional<std::uint32_t> part_;  ///< of these, where it is known
+    std::unordered_map<std::string, std::uint32_t> parts_;
     std::string type_ = "bspline";
     bool isRational_ = false;
     std::uint32_t degree_ = 1;

@@ -60,8 +60,9 @@ struct RawStrands {
     std::optional<float> assumedMetresPerUnit;
     std::optional<UpAxis> statedUp;       ///< as well
     std::optional<RibbonsFound> ribbons;  ///< of hair written as polygons
-    /// Settings, material, interpolation and spheres, of a file that has them; no strands.
+    /// Settings, material, interpolation, spheres, layers and operators, of a file that has them; no strands.
     std::shared_ptr<const Groom> authored;
+    std::uint64_t authoredShape = 0;  ///< hash of the positions that the operators of `authored` made
     std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out
     std::vector<Finding> warnings;
 };
@@ -105,7 +106,9 @@ struct ObjStrandText {
     std::vector<std::uint32_t> lineIndices;
     std::vector<std::uint32_t> faceOffsets{0};
     std::vector<std::uint32_t> faceIndices;
-    std::vector<std::uint64_t> faceLines;  ///< line of the file of each face, from 1
+    std::vector<std::uint64_t> faceLines;             ///< line of the file of each face, from 1
+    std::vector<StrandPart> parts;                    ///< objects and groups that have lines or faces
+    std::vector<std::uint32_t> lineParts, faceParts;  ///< of each line and face, or of none
     std::vector<Finding> warnings;
 };
 Result<ObjStrandText> parseObjStrands(const std::string& file, std::string_view text);

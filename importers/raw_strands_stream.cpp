@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/groom/file/layers_json.h"
-#include "core/groom/file/settings_json.h"
+#include "importers/authored_settings.h"
 
 namespace hairloom {
 namespace {
@@ -59,6 +58,7 @@ constexpr auto kStrandMembers = [](auto& archive, auto& raw) {
         archive(found.fewestSegments);
         archive(found.mostSegments);
     });
+    archive(raw.authoredShape);
     archive.each(raw.dropped, [&](auto& dropped) {
         archive(dropped.strand);
         archive.choice(dropped.reason, DropReason::ClosedLoop);
@@ -80,32 +80,6 @@ constexpr auto kContentMembers = [](auto& archive, auto& content) {
     kStrandMembers(archive, content.strands);
     archive(content.authored);
 };
-
-std::string authoredText(const Groom& authored) {
-    const nlohmann::ordered_json json{{"simulation", toJson(authored.simulation)},
-                                      {"material", toJson(authored.material)},
-                                      {"interpolation", toJson(authored.interpolation)},
-                                      {"spheres", toJson(authored.spheres)},
-                                      {"layers", toJson(authored.layers)}};
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-Result<std::shared_ptr<const Groom>> readAuthored(const std::string& file, const std::string& text) {
-    const auto json = parseJson(file, text);
-    if (!json) return tl::unexpected(json.error());
-    auto authored = std::make_shared<Groom>();
-    JsonReader reader(*json, file);
-    readSettings(reader.object("simulation"), authored->simulation);
-    readSettings(reader.object("material"), authored->material);
-    readSettings(reader.object("interpolation"), authored->interpolation);
-    for (JsonReader& sphere : reader.objects("spheres")) authored->spheres.push_back(readSphere(sphere));
-    authored->layers = readLayers(reader);
-    if (auto status = reader.status(); !status) {
-        // There is no byte of the file to point at: these were numbers there.
-        return failIn(file, {}, "its settings: " + status.error().problem, status.error().expected);
-    }
-    return authored;
-}
 
 /// One value for each of `count`, or none at all.
 bool isOfAllOrNone(std::size_t size, std::size_t count) {
@@ -156,7 +130,7 @@ Status checkRawStrands(const RawStrands& raw) {
 
 void writeRawStrands(const Result<RawStrands>& strands, const std::string& lacking,
                      const AnswerWriter::Sink& sink) {
-    const std::string authored = strands && strands->authored ? authoredText(*strands->authored) : "";
+    const std::string authored = strands && strands->authored ? settingsText(*strands->authored) : "";
     writeAnswer(strands, AnswerKind::Strands, lacking, sink, [&](auto& archive, const RawStrands& raw) {
         kStrandMembers(archive, raw);
         archive(authored);
@@ -173,7 +147,7 @@ Result<RawStrands> readRawStrands(const std::string& file, std::span<const std::
                       "the file is damaged in a way that breaks the reader");
     }
     if (!content->authored.empty()) {
-        auto authored = readAuthored(file, content->authored);
+        auto authored = readSettingsText(file, content->authored);
         if (!authored) return tl::unexpected(authored.error());
         raw.authored = std::move(*authored);
     }

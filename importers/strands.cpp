@@ -8,6 +8,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/hash.h"
+#include "core/groom/strand_subset.h"
 #include "importers/attribute_units.h"
 #include "importers/foreign_reader.h"
 #include "importers/raw_strands.h"
@@ -311,13 +313,50 @@ StrandImportOptions stated(RawStrands& raw, StrandImportOptions options) {
     return options;
 }
 
-void takeSettings(const Groom& authored, ImportedStrands& result) {
+/// Layers as the file authored them, where its parts are of these by name; else those of the parts.
+void takeLayers(const Groom& authored, Groom& groom, bool hasParts) {
+    if (!hasParts) {
+        groom.layers = authored.layers;
+        return;
+    }
+    std::vector<std::uint32_t> places;
+    for (const Layer& layer : groom.layers) {
+        const auto found = std::ranges::find(authored.layers, layer.name, &Layer::name);
+        if (found == authored.layers.end()) return;
+        places.push_back(static_cast<std::uint32_t>(found - authored.layers.begin()));
+    }
+    std::vector<std::uint32_t> layers = layersOfStrands(groom);
+    for (std::uint32_t& layer : layers) layer = places[layer];
+    groom.layers = authored.layers;
+    if (groom.layers.size() > 1) groom.strandAttributes.set(attribute::kLayer, std::move(layers));
+}
+
+/// Operators, where the file has what they start from, and its strands are what they made.
+void takeOperators(const Groom& authored, std::uint64_t shape, ImportedStrands& result) {
+    Groom& groom = result.groom;
+    if (authored.operators.empty()) return;
+    const bool isBased =
+        groom.pointAttributes.view<Vec3f>(attribute::kBasePosition).size() == groom.pointCount();
+    if (isBased && hashOf(groom.positions()) == shape) {
+        groom.operators = authored.operators;
+        return;
+    }
+    dropOperators(groom);
+    result.warnings.push_back(
+        fileNote("the operators were left out, since strands are not those that they made", "operators",
+                 "keep the project, or export in metres with Y up"));
+}
+
+void takeSettings(const RawStrands& raw, ImportedStrands& result) {
+    const Groom& authored = *raw.authored;
     result.hasSettings = true;
     result.groom.simulation = authored.simulation;
     result.groom.material = authored.material;
     result.groom.interpolation = authored.interpolation;
+    result.groom.placement = authored.placement;
     result.groom.spheres = authored.spheres;
-    result.groom.layers = authored.layers;
+    takeLayers(authored, result.groom, !raw.parts.empty());
+    takeOperators(authored, raw.authoredShape, result);
 }
 
 /// Attribute values that no consumer could use become the nearest that they can.
@@ -397,7 +436,7 @@ Result<ImportedStrands> importRaw(const std::string& file, Result<RawStrands> ra
     for (RawAttribute& attribute : raw->attributes) toMetres(attribute, options, raw->mirrorZ);
     result.groom = makeFrom(*raw, options.metresPerUnit);
     for (Finding& finding : findThickHair(result.groom)) result.warnings.push_back(std::move(finding));
-    if (raw->authored) takeSettings(*raw->authored, result);
+    if (raw->authored) takeSettings(*raw, result);
     result.frames = std::move(raw->frames);
     result.framesPerSecond = raw->framesPerSecond;
     result.isResampled = raw->isResampled;

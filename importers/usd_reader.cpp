@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "importers/authored_settings.h"
 #include "importers/curve_set.h"
 #include "importers/hermite_curves.h"
 #include "importers/sample_times.h"
@@ -83,6 +84,7 @@ class Reader {
             if (auto status = readCurves(curves); !status)
                 return tl::unexpected(inFile(status.error(), file_));
         }
+        takeUsdSettings(stage_.root, file_, strands_);
         return append();
     }
 

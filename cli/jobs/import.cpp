@@ -177,6 +177,7 @@ Result<Report> import(const ImportOptions& options) {
     }
     auto imported = importStrands(options.file, strandsAs);
     if (!imported) return tl::unexpected(imported.error());
+    checkOperators(options.file, *imported);
     Groom& groom = imported->groom;
     logFindings(options.file, imported->warnings);
 

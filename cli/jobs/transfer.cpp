@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kFar_m = 0.005f;  ///< roots that were farther off are named
 constexpr std::size_t kNamed = 100;
+constexpr std::size_t kFewFar = 10;  ///< one in so many far roots is worth no word
 
 struct TransferOptions {
     std::string input, to, output;
@@ -35,7 +36,14 @@ Result<Report> transferHair(const TransferOptions& options) {
     report["same_mesh"] = transfer->sameMesh;
     report["scale"] = transfer->fit.scale;
     report["max_root_error_mm"] = 1e3 * static_cast<double>(*std::ranges::max_element(transfer->distances));
-    report["strands_far"] = std::ranges::count_if(transfer->distances, [](float d) { return d > kFar_m; });
+    const auto far = static_cast<std::size_t>(
+        std::ranges::count_if(transfer->distances, [](float d) { return d > kFar_m; }));
+    report["strands_far"] = far;
+    if (far > groom->strandCount() / kFewFar)
+        log::warning(
+            "{}: {} of {} roots moved more than {} mm to reach its surface. Heads may be unlike each other, "
+            "or hair lies on another part: look at it, and use --turn, --up or --leave-out",
+            options.to, far, groom->strandCount(), 1e3f * kFar_m);
     report["strands_named"] = Report::array();
     for (std::size_t s = 0; s < transfer->distances.size() && report["strands_named"].size() < kNamed; ++s) {
         if (transfer->distances[s] > kFar_m)

@@ -127,7 +127,7 @@ BareSolve::BareSolve(std::uint32_t strands, std::uint32_t points, runtime::Stran
     scene.longestStrand = shape_->longestStrand;
     scene.straight = shape_->straight;
     plan_ = runtime::plan(scene);
-    hair_->takeSettings(*shape_, settings_, nullptr, state_);
+    hair_->takeSettings(*shape_, settings_, nullptr, state_, {});
     hair_->takeState(*shape_, settings_, state_);
     hair_->allocate(*shape_, settings_, plan_, plan_.on(runtime::Effect::collision), state_);
     const runtime::Model& kernels = runtime::modelOf(model);

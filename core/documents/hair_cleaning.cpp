@@ -264,6 +264,7 @@ class Cleaner {
 
 Result<CleanedHair> cleanHair(Groom& groom, const HairCleaning& cleaning) {
     Groom cleaned = groom;
+    dropOperators(cleaned);
     auto done = Cleaner(cleaned, cleaning).run();
     if (done) groom = std::move(cleaned);
     return done;

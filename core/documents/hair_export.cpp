@@ -222,6 +222,12 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         if (!baked) return tl::unexpected(baked.error());
         shown = marksGuides ? guidesBesideHairs(guides, bindings, *baked) : std::move(*baked);
     }
+    if (isBaked) {
+        // Hairs are written, and settings beside them where a format has these.
+        shown.simulation = guides.simulation;
+        shown.spheres = guides.spheres;
+        shown.placement = guides.placement;
+    }
     if (wanted.storms > 0) {
         const auto limits = safeLimits(guides, isBaked ? 0 : exporting.pointsPerStrand, wanted);
         if (!limits) return tl::unexpected(limits.error());

@@ -10,6 +10,7 @@
 #include "core/documents/head_transfer.h"
 #include "core/editing/replay.h"
 #include "core/groom/file/json_reader.h"
+#include "core/operations/stack.h"
 
 namespace hairloom {
 namespace {
@@ -97,8 +98,18 @@ Result<ImportedStrands> importHairFor(const Groom& groom, const std::string& pat
                                       StrandImportOptions options) {
     options.scalp = groom.scalp.get();
     auto imported = importStrands(path, options);
+    if (imported) checkOperators(path, *imported);
     if (imported && groom.scalp) bindToScalp(imported->groom, groom.scalp, groom.scalpSelection);
     return imported;
+}
+
+void checkOperators(const std::string& path, ImportedStrands& imported) {
+    const auto complete = completeOperators(path, imported.groom);
+    if (complete) return;
+    dropOperators(imported.groom);
+    imported.warnings.push_back({Severity::Warning,
+                                 "its operators were left out: " + complete.error().problem, "operators",
+                                 complete.error().expected});
 }
 
 void replaceHair(Groom& groom, const Groom& hair) {
@@ -115,6 +126,8 @@ void replaceHair(Groom& groom, const Groom& hair) {
 
 void appendGuides(Groom& groom, const Groom& guides) {
     Groom behind = guides;
+    dropOperators(groom);
+    dropOperators(behind);
     const bool hasRadii =
         groom.pointAttributes.has(attribute::kRadius) || behind.pointAttributes.has(attribute::kRadius);
     if (hasRadii) {

@@ -16,12 +16,15 @@ namespace hairloom {
 Result<ImportedStrands> importHairFor(const Groom& groom, const std::string& path,
                                       StrandImportOptions options);
 
+/// Operators that came with the strands, as this version knows them; otherwise they go, with a warning.
+void checkOperators(const std::string& path, ImportedStrands& imported);
+
 /// Puts strands, group names and scalp selection of `hair` in place of the groom's, and its layers where it
 /// has several; settings and spheres stay.
 void replaceHair(Groom& groom, const Groom& hair);
 
 /// Puts guides behind the strands of a groom; all others become hairs that are not simulated. Attributes that
-/// one of both lacks are zeros there; radii are the material's.
+/// one of both lacks are zeros there; radii are the material's. Operators go, and strands stay as they are.
 void appendGuides(Groom& groom, const Groom& guides);
 
 /// The operation "import" of a script (JSON) that does both. It holds the file's absolute path, not the file.

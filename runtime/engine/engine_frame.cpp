@@ -41,7 +41,7 @@ Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& setting
     nextRoots_.assign(state_.roots.size(), 0.0f);
     state_.model = settings.strandModel;
     strands_ = OwnedStrands(model().make());
-    strands_->takeSettings(*shape_, settings_, nullptr, state_);
+    strands_->takeSettings(*shape_, settings_, nullptr, state_, host_);
     strands_->takeState(*shape_, settings_, state_);
     wind_.wind = makeWind(settings);
     reset(shape_->restRoots);
@@ -126,7 +126,7 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
         strands_ = OwnedStrands(model().make());
         allocateForBody();
     }
-    strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_);
+    strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_, host_);
     strands_->takeState(*shape_, settings_, state_);
     scratch_ = {};
     wind_ = {makeWind(settings), false};

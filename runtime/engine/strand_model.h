@@ -17,6 +17,7 @@
 #include "engine/kernels.h"
 #include "engine/plan_builder.h"
 #include "engine/state.h"
+#include "hairloom/host.h"
 
 namespace hairloom::runtime {
 
@@ -58,9 +59,10 @@ class ModelStrands {
     virtual ~ModelStrands() = default;
     virtual std::unique_ptr<ModelStrands> copy() const = 0;
 
-    /// Takes other settings; `before` are those of the state, null where strands are new.
+    /// Takes other settings, on the host's threads; `before` are those of the state, null where strands are
+    /// new.
     virtual void takeSettings(const RestShape& shape, const SimulationSettings& settings,
-                              const SimulationSettings* before, State& state) = 0;
+                              const SimulationSettings* before, State& state, const Host& host) = 0;
     /// Makes any state one of this model and these settings: strands that were none of them go on from where
     /// their points are.
     virtual void takeState(const RestShape& shape, const SimulationSettings& settings, State& state) = 0;

@@ -5,10 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/base/file.h"
+#include "core/documents/hair_import.h"
+#include "core/operations/stack.h"
 #include "core/stability/certificate.h"
 #include "hairloom/asset.h"
 #include "tests/documents/small_head.h"
@@ -84,6 +90,32 @@ TEST_F(HairExportTest, StormsAreCancelledAndNothingIsWritten) {
     wanted.cancel = &stop;
     EXPECT_FALSE(exportHair(smallHead(), wanted, strandWriter("runtime"), folder_ / "a.hairrt", {}));
     EXPECT_FALSE(fs::exists(folder_ / "a.hairrt"));
+}
+
+TEST_F(HairExportTest, OperatorsComeBackFromUsdWhereThisVersionKnowsThem) {
+    Groom groom = smallHead();
+    groom.pointAttributes.set(attribute::kBasePosition,
+                              std::vector<Vec3f>(groom.positions().begin(), groom.positions().end()));
+    groom.operators = {newOperator("trim"), newOperator("noise")};
+    const fs::path path = folder_ / "a.usda";
+    ASSERT_TRUE(exportHair(groom, {}, strandWriter("usda"), path, {}));
+    const auto back = importHairFor(smallHead(), path.string(), {});
+    ASSERT_TRUE(back) << back.error().message();
+    EXPECT_EQ(back->groom.operators, groom.operators);
+    Groom beside = back->groom;
+    appendGuides(beside, smallHead());
+    EXPECT_TRUE(beside.operators.empty()) << "strands that operators did not make";
+    EXPECT_FALSE(beside.pointAttributes.has(attribute::kBasePosition));
+    std::string text = readTextFile(path).value();
+    const std::size_t at = text.find("trim");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, 4, "trin");
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view(text)));
+    const auto odd = importHairFor(smallHead(), path.string(), {});
+    ASSERT_TRUE(odd) << odd.error().message();
+    EXPECT_TRUE(odd->groom.operators.empty());
+    EXPECT_FALSE(odd->groom.pointAttributes.has(attribute::kBasePosition));
+    EXPECT_TRUE(std::ranges::any_of(odd->warnings, [](const Finding& f) { return f.where == "operators"; }));
 }
 
 }  // namespace

@@ -143,33 +143,6 @@ TEST_F(Names, RestPositionsAndVelocitiesFollowUnitAndAxis) {
     EXPECT_LT((back->groom.pointAttributes.view<Vec3f>("Pref")[0] - Vec3f(1, 2, 3)).norm(), 1e-5f);
 }
 
-TEST_F(Names, LayersArePrimsAndComeBackWithTheirStrands) {
-    Groom groom = helices({2, 3, 4, 5});
-    groom.layers.clear();
-    for (const char* name : {"Fringe (left)", "Fringe_(left)", "\xe9\xa0\xad"})
-        groom.layers.emplace_back().name = name;
-    groom.strandAttributes.set(attribute::kLayer, std::vector<std::uint32_t>{2, 0, 1, 0});
-    groom.strandAttributes.set(attribute::kStrandId, std::vector<std::uint32_t>{10, 11, 12, 13});
-    for (const std::string format : {"usda", "usdc"}) {
-        const UsdStage stage = written(groom, format);
-        std::vector<std::string> prims;
-        for (const UsdPrim& prim : stage.root.children.at(0).children) prims.push_back(prim.name);
-        EXPECT_THAT(prims, ElementsAre("Fringe__left_", "Fringe__left__2", "_"));
-        const auto back = importStrands(folder / ("a." + format));
-        ASSERT_TRUE(back) << back.error().message();
-        const auto layers = back->groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
-        const auto ids = back->groom.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
-        ASSERT_EQ(layers.size(), 4u);
-        for (std::size_t s = 0; s < 4; ++s) {
-            const std::size_t authored = ids[s] - 10;
-            EXPECT_EQ(
-                back->groom.layers[layers[s]].name,
-                groom.layers[groom.strandAttributes.view<std::uint32_t>(attribute::kLayer)[authored]].name);
-            EXPECT_TRUE(std::ranges::equal(back->groom.strand(s), groom.strand(authored))) << "bit for bit";
-        }
-    }
-}
-
 TEST_F(Names, TheExtentHasHalfTheWidth) {
     Groom groom = helices({8});
     groom.pointAttributes.set(attribute::kRadius, std::vector<float>(8, 0.001f));

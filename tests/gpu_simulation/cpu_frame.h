@@ -263,7 +263,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
     const runtime::Model& model = runtime::modelOf(scene.settings.strandModel);
     const bool rods = scene.settings.strandModel == runtime::StrandModel::rods;
     const runtime::OwnedStrands strands(model.make());
-    strands->takeSettings(shape, scene.settings, nullptr, state);
+    strands->takeSettings(shape, scene.settings, nullptr, state, {});
     strands->takeState(shape, scene.settings, state);
     const bool touches = frame.plan.on(runtime::Effect::collision);
     strands->allocate(shape, scene.settings, frame.plan, touches, state);

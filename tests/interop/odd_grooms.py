@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes USD stages of the odd kinds that people's files are full of, imports each with hairloom-cli, exports it again,
-and has Pixar's usd-core open and traverse every file: the strands that the stage shows, each name once, each array as
-long as its interpolation says, each number in range, an extent that holds the hair, layers under their names."""
+and has Pixar's usd-core, the Alembic library and Blender open and traverse every file: the strands that the stage
+shows, each name once, each array as long as its interpolation says, each number in range, an extent that holds the hair,
+widths, layers under their names, and motion at its times."""
 import argparse
 import json
 import math
@@ -11,7 +12,10 @@ import sys
 
 from pxr import Gf, Sdf, Usd, UsdGeom
 
+import alembic_judge
+
 FORMATS = ("usda", "usdc")
+BY_BLENDER = ("usdc", "abc", "obj-lines")
 CURVES = ("BasisCurves", "NurbsCurves", "HermiteCurves")
 
 
@@ -124,7 +128,20 @@ def variants(folder, ext):
     made.Save()
 
 
-STAGES = (names, ids, wide_ids, colours, layers, moving, composed, variants)
+def empty(folder, ext):
+    """Parts without strands, and values that there are not."""
+    made = stage(folder, f"empty.{ext}")
+    primvar(curves(made, "/full", 2), "tint", Sdf.ValueTypeNames.FloatArray, "uniform", [0.5, 0.25])
+    bare = curves(made, "/bare", 3, x=1)
+    primvar(bare, "nothing", Sdf.ValueTypeNames.FloatArray, "uniform", [])
+    UsdGeom.PrimvarsAPI(bare).CreatePrimvar("blocked", Sdf.ValueTypeNames.FloatArray, "uniform").GetAttr().Block()
+    none = UsdGeom.BasisCurves.Define(made, "/none")
+    none.CreatePointsAttr([])
+    none.CreateCurveVertexCountsAttr([])
+    made.Save()
+
+
+STAGES = (names, ids, wide_ids, colours, layers, moving, composed, variants, empty)
 
 
 def shown(path):
@@ -182,7 +199,85 @@ def layers_of(cli, project):
     return sorted((layer["name"], layer["strands"]) for layer in run(cli, "layers", project)["layers"])
 
 
-def check(cli, folder, name):
+def blender_objects(path):
+    """What Blender has of a file: an object each."""
+    judge = os.path.join(os.path.dirname(__file__), "blender_judge.py")
+    done = subprocess.run([sys.executable, judge, path], capture_output=True, text=True)
+    lines = [line for line in done.stdout.splitlines() if line.startswith("OBJECTS")]
+    if not lines:
+        raise ValueError(f"Blender ended with {done.returncode}: {done.stderr.strip()[-200:]}")
+    return json.loads(lines[0][len("OBJECTS"):])
+
+
+def legal(name):
+    """As Blender's names of objects that come from other programs may differ from layers': letters alone."""
+    return "".join(c for c in name if c.isascii() and c.isalnum()).lower()
+
+
+def check_alembic(path, expected, own):
+    objects = alembic_judge.curves_of(path)
+    for one in objects:
+        alembic_judge.check(one)
+    strands = sum(len(one["counts"]) for one in objects)
+    if strands != expected:
+        raise ValueError(f"abc: {strands} strands went out of {expected}")
+    names = sorted((one["group"] or one["path"].split("/")[2], len(one["counts"])) for one in objects)
+    if len(own) > 1 and names != own:
+        raise ValueError(f"abc: layers {own} went out as {names}")
+
+
+def check_motion(cli, folder, project, name):
+    """A record that came in goes out with its times, in both formats that move."""
+    record = os.path.join(folder, name + ".frames")
+    came = run(cli, "import", os.path.join(folder, name), "-o", project, "--record", record, "--fps", "24", "--force")
+    last = came["frames"] - 1
+    rate = came["fps"]
+    for form in ("abc", "usda", "usdc"):
+        out = os.path.join(folder, f"{name}.moving.{form}")
+        run(cli, "export", project, "--format", form, "-o", out, "--record", record, "--frames", f"0,{last}", "--force")
+        if form == "abc":
+            for one in alembic_judge.curves_of(out):
+                alembic_judge.check(one)
+                times, moved = one["times"], one["velocities"]
+                points = one["frames"]
+        else:
+            made, prims = shown(out)
+            curve = UsdGeom.Curves(prims[0])
+            codes = curve.GetPointsAttr().GetTimeSamples()
+            times = [code / made.GetTimeCodesPerSecond() for code in codes]
+            points = [curve.GetPointsAttr().Get(code) for code in codes]
+            moved = [UsdGeom.PointBased(prims[0]).GetVelocitiesAttr().Get(code) for code in codes]
+        if len(times) != last + 1 or abs(times[-1] - times[0] - last / rate) > 1e-6:
+            raise ValueError(f"{form}: {len(times)} frames to {times[-1]} s of {last + 1} at {rate} a second")
+        # Velocities are those of the frames before and after.
+        for axis in range(3):
+            wanted = (points[2][1][axis] - points[0][1][axis]) * rate / 2
+            if abs(moved[1][1][axis] - wanted) > 1e-3:
+                raise ValueError(f"{form}: a velocity of {moved[1][1][axis]} where points move at {wanted}")
+
+
+def check_blender(cli, folder, project, name, expected, own, points):
+    for form in BY_BLENDER:
+        out = os.path.join(folder, f"{name}.out.{form.split('-')[0]}")
+        run(cli, "export", project, "--format", form, "-o", out, "--unit", "m", "--force")
+        objects = blender_objects(out)
+        hair = [one for one in objects if one["type"] == ("MESH" if form == "obj-lines" else "CURVES")]
+        strands = sum(one.get("strands", 0) for one in hair)
+        if form != "obj-lines" and strands != expected:
+            raise ValueError(f"{form}: Blender has {strands} strands of {expected}")
+        if sum(one["points"] for one in hair) != points:
+            raise ValueError(f"{form}: Blender has {sum(one['points'] for one in hair)} points of {points}")
+        if len(own) > 1 and len(hair) != len(own):
+            raise ValueError(f"{form}: Blender has {len(hair)} objects of {len(own)} layers")
+        found = {legal(one["name"]) for one in hair}
+        missing = [layer for layer, _ in own if len(own) > 1 and layer.isascii() and legal(layer) not in found]
+        if missing:
+            raise ValueError(f"{form}: Blender has no object named as {missing}: {sorted(found)}")
+        if form != "obj-lines" and not all(0 < one["radius"][1] < 0.005 for one in hair):
+            raise ValueError(f"{form}: Blender has radii of {[one['radius'] for one in hair]}")
+
+
+def check(cli, folder, name, blender):
     path = os.path.join(folder, name)
     _, prims = shown(path)
     expected = strands_of(prims)
@@ -203,6 +298,26 @@ def check(cli, folder, name):
         run(cli, "import", out, "-o", again, "--force")
         if len(own) > 1 and layers_of(cli, again) != own:
             raise ValueError(f"{form}: layers {own} came back as {layers_of(cli, again)}")
+    for form in ("abc", "abc-unreal", "obj-lines"):
+        out = os.path.join(folder, f"{name}.{form}.{form.split('-')[0]}")
+        run(cli, "export", project, "--format", form, "-o", out, "--force")
+        if form == "abc":
+            check_alembic(out, expected, own)
+        elif form == "abc-unreal":
+            for one in alembic_judge.curves_of(out):
+                alembic_judge.check(one)
+        again = out + ".hairloom"
+        run(cli, "import", out, "-o", again, "--force")
+        if len(own) > 1 and layers_of(cli, again) != own:
+            raise ValueError(f"{form}: layers {own} came back as {layers_of(cli, again)}")
+    if blender:
+        check_blender(cli, folder, project, name, expected, own, imported["points"])
+    if name.startswith("moving"):
+        check_motion(cli, folder, project, name)
+
+
+def has_blender():
+    return subprocess.run([sys.executable, "-c", "import bpy"], capture_output=True).returncode == 0
 
 
 def main():
@@ -211,14 +326,17 @@ def main():
     parser.add_argument("-o", "--output", required=True)
     asked = parser.parse_args()
     os.makedirs(asked.output, exist_ok=True)
+    blender = has_blender()
+    if not blender:
+        print("skipped: Blender's judgement, since its module bpy is not there for this Python")
     failed = 0
     for make in STAGES:
         for ext in FORMATS:
             make(asked.output, ext)
             name = f"{make.__name__}.{ext}"
             try:
-                check(asked.cli, asked.output, name)
-                print(f"{name}: as usd-core has it")
+                check(asked.cli, asked.output, name, blender)
+                print(f"{name}: as usd-core, the Alembic library{' and Blender have it' if blender else ' have it'}")
             except (ValueError, KeyError) as problem:
                 print(f"FAILED {name}: {problem}")
                 failed += 1

@@ -69,8 +69,8 @@ class RodStrands final : public ModelStrands {
     std::unique_ptr<ModelStrands> copy() const override { return std::make_unique<RodStrands>(*this); }
 
     void takeSettings(const RestShape& shape, const SimulationSettings& settings,
-                      const SimulationSettings* before, State& state) override {
-        rest_ = makeRodRest(shape, settings);
+                      const SimulationSettings* before, State& state, const Host& host) override {
+        rest_ = makeRodRest(shape, settings, host);
         if (before && state.model == StrandModel::rods && !haveEqualRodEnergy(settings, *before))
             forgetRodEnergy(shape, state);
     }

@@ -146,6 +146,7 @@ class RestRod {
             return;
         }
         if (isFlat()) layFlat();
+        turnedAt_.fill(-1.0);
         fillBends();
         weigh();
         stiffen();
@@ -276,6 +277,17 @@ class RestRod {
     /// in all are what is searched for.
     void stiffen() {
         const std::array<double, kMaxPoints> own = bend_;
+        std::array<double, kMaxPoints> moments, bent;
+        for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
+            moments[j] = lengthOf(moment_[j]);
+            bent[j] = own[j] > 0.0 ? moments[j] / own[j] : 0.0;
+        }
+        // Radians by which the weight bends the strand where no vertex bends by more than `most`.
+        const auto bentBy = [&](double most) {
+            double sum = 0.0;
+            for (std::uint32_t j = first_; j + 1 < block_.points; ++j) sum += std::min(bent[j], most);
+            return sum;
+        };
         const auto holds = [&](double held) {
             bend_ = own;
             if (bentBy(1e30) > held) {
@@ -285,8 +297,7 @@ class RestRod {
                     (bentBy(middle) > held ? high : low) = middle;
                 }
                 for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
-                    if (bend_[j] > 0.0)
-                        bend_[j] = std::max(bend_[j], lengthOf(moment_[j]) / std::max(low, 1e-9));
+                    if (bend_[j] > 0.0) bend_[j] = std::max(bend_[j], moments[j] / std::max(low, 1e-9));
                 }
             }
             unload();
@@ -299,14 +310,6 @@ class RestRod {
             (holds(std::exp2(middle)) ? low : high) = middle;
         }
         holds(std::exp2(low));
-    }
-    /// Radians by which the weight bends the strand where no vertex bends by more than `most`.
-    double bentBy(double most) const {
-        double sum = 0.0;
-        for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
-            if (bend_[j] > 0.0) sum += std::min(lengthOf(moment_[j]) / bend_[j], most);
-        }
-        return sum;
     }
 
     /// Whether the second variation of the energy of shape and weight is positive in the authored shape, by
@@ -361,26 +364,34 @@ class RestRod {
         return true;
     }
 
-    /// The shape without load that hangs in the authored one under its weight.
+    /// The shape without load that hangs in the authored one under its weight. A vertex whose stiffness is
+    /// that of the last time turns as then.
     void unload() {
         for (std::uint32_t j = 0; j < first_; ++j) free_[j] = authored_[j];
         for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
-            const Rotation loaded = inverse(inner(authored_, j)) * authored_[j];
-            const Double3 n = rotate(inverse(authored_[j]), moment_[j]);
-            Rotation turn = loaded;
-            // The axis of twist depends on the shape that is sought.
-            for (int step = 0; step < 4 && bend_[j] > 0.0 && lengthOf(n) > 0.0; ++step) {
-                const Double3 both = kAlong + rotate(inverse(turn), kAlong);
-                const Double3 axis = both * (1.0 / std::max(lengthOf(both), 1e-9));
-                const Couple couple{bend_[j], section_, axis, isFlat() ? across(flat_[j], axis) : Double3{}};
-                const Double3 v = couple.solve(n);
-                const Rotation next = loaded * Rotation{v * -1.0, std::sqrt(1.0 - dotOf(v, v))};
-                const bool found = lengthOf(next.v - turn.v) < 1e-9;
-                turn = next;
-                if (found) break;
+            if (!(bend_[j] == turnedAt_[j])) {
+                turn_[j] = turnWithoutLoad(j);
+                turnedAt_[j] = bend_[j];
             }
-            free_[j] = normalized(inner(free_, j) * turn);
+            free_[j] = normalized(inner(free_, j) * turn_[j]);
         }
+    }
+    Rotation turnWithoutLoad(std::uint32_t j) const {
+        const Rotation loaded = inverse(inner(authored_, j)) * authored_[j];
+        const Double3 n = rotate(inverse(authored_[j]), moment_[j]);
+        Rotation turn = loaded;
+        // The axis of twist depends on the shape that is sought.
+        for (int step = 0; step < 4 && bend_[j] > 0.0 && lengthOf(n) > 0.0; ++step) {
+            const Double3 both = kAlong + rotate(inverse(turn), kAlong);
+            const Double3 axis = both * (1.0 / std::max(lengthOf(both), 1e-9));
+            const Couple couple{bend_[j], section_, axis, isFlat() ? across(flat_[j], axis) : Double3{}};
+            const Double3 v = couple.solve(n);
+            const Rotation next = loaded * Rotation{v * -1.0, std::sqrt(1.0 - dotOf(v, v))};
+            const bool found = lengthOf(next.v - turn.v) < 1e-9;
+            turn = next;
+            if (found) break;
+        }
+        return turn;
     }
 
     const SimulationSettings& settings_;
@@ -397,6 +408,8 @@ class RestRod {
     std::array<Double3, kMaxPoints> moment_;
     std::array<Double3, kMaxPoints> flat_;  // in segments' frames, of a flat section
     std::array<double, kMaxPoints> bend_;
+    Frames turn_;                              // of each vertex without load
+    std::array<double, kMaxPoints> turnedAt_;  // stiffness for which that is; −1 where it is not known
 };
 
 }  // namespace
@@ -427,20 +440,27 @@ RodParts rodPartsOf(const RestShape& shape, const SimulationSettings& settings) 
                                                             : RodParts::chain;
 }
 
-RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings) {
+RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings, const Host& host) {
     RodRest rest;
     rest.parts = rodPartsOf(shape, settings);
     const bool twists = rest.parts >= RodParts::twist;
     rest.planes.assign(shape.planeFloats * rest.planeCount(), 0.0f);
     if (twists) rest.curved.assign(shape.blocks.size(), 0);
-    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const auto rod = std::make_unique<RestRod>(shape, settings, rest.parts, b,
-                                                       lane);  // too large for a game's stack
-            if (twists && rod->curved()) rest.curved[b] = 1;
-            rod->write(rest.planes.data() + shape.blocks[b].firstPlane * rest.planeCount());
+    const auto fill = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+                const auto rod = std::make_unique<RestRod>(shape, settings, rest.parts, b,
+                                                           lane);  // too large for a game's stack
+                if (twists && rod->curved()) rest.curved[b] = 1;
+                rod->write(rest.planes.data() + shape.blocks[b].firstPlane * rest.planeCount());
+            }
         }
-    }
+    };
+    constexpr std::size_t kBlocksPerPiece = 4;
+    if (host.parallelFor)
+        host.parallelFor(shape.blocks.size(), kBlocksPerPiece, fill);
+    else
+        fill(0, shape.blocks.size());
     return rest;
 }
 

@@ -59,7 +59,8 @@ RodSectionRatios rodSectionRatios(const SimulationSettings& settings);
 /// Whether a rod has as much energy of shape and weight under both.
 bool haveEqualRodEnergy(const SimulationSettings& a, const SimulationSettings& b);
 
-RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings);
+/// The same on any number of the host's threads.
+RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings, const Host& host = {});
 
 /// Gives a state the arrays of rods with these parts and, where asked for, loads; those that it has keep
 /// their values.

@@ -58,8 +58,8 @@ class SpringStrands final : public ModelStrands {
   public:
     std::unique_ptr<ModelStrands> copy() const override { return std::make_unique<SpringStrands>(*this); }
 
-    void takeSettings(const RestShape&, const SimulationSettings&, const SimulationSettings*,
-                      State&) override {
+    void takeSettings(const RestShape&, const SimulationSettings&, const SimulationSettings*, State&,
+                      const Host&) override {
         bend_.substep = 0.0f;
     }
     void takeState(const RestShape&, const SimulationSettings&, State& state) override {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "importers/authored_settings.h"
+
+#include <charconv>
+
+#include "core/groom/file/layers_json.h"
+#include "core/groom/file/operators_json.h"
+#include "core/groom/file/settings_json.h"
+
+namespace hairloom {
+
+std::string settingsText(const Groom& groom) {
+    const nlohmann::ordered_json json{{"simulation", toJson(groom.simulation)},
+                                      {"material", toJson(groom.material)},
+                                      {"interpolation", toJson(groom.interpolation)},
+                                      {"placement", toJson(groom.placement)},
+                                      {"spheres", toJson(groom.spheres)},
+                                      {"layers", toJson(groom.layers)},
+                                      {"operators", toJson(groom.operators)}};
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+Result<std::shared_ptr<const Groom>> readSettingsText(const std::string& file, const std::string& text) {
+    const auto json = parseJson(file, text);
+    if (!json) return tl::unexpected(json.error());
+    auto authored = std::make_shared<Groom>();
+    JsonReader reader(*json, file);
+    readSettings(reader.object("simulation"), authored->simulation);
+    readSettings(reader.object("material"), authored->material);
+    readSettings(reader.object("interpolation"), authored->interpolation);
+    readSettings(reader.object("placement"), authored->placement);
+    for (JsonReader& sphere : reader.objects("spheres")) authored->spheres.push_back(readSphere(sphere));
+    authored->layers = readLayers(reader);
+    authored->operators = readOperatorList(reader, readOperatorShape);
+    if (auto status = reader.status(); !status) {
+        // There is no byte of the file to point at.
+        return failIn(file, {}, "its settings: " + status.error().problem, status.error().expected);
+    }
+    return authored;
+}
+
+void takeUsdSettings(const UsdPrim& root, const std::string& file, RawStrands& strands) {
+    for (const UsdPrim& prim : root.children) {
+        const UsdAttribute* const text = prim.find(kUsdSettings);
+        if (text == nullptr || text->value.texts.empty()) continue;
+        auto authored = readSettingsText(file, text->value.texts.front());
+        if (!authored) {
+            strands.warnings.push_back(fileWarning(authored.error().problem + "; they were left out",
+                                                   prim.name, authored.error().expected));
+            continue;
+        }
+        strands.authored = std::move(*authored);
+        const UsdAttribute* const shape = prim.find(kUsdShape);
+        if (shape == nullptr || shape->value.texts.empty()) return;
+        const std::string& number = shape->value.texts.front();
+        std::from_chars(number.data(), number.data() + number.size(), strands.authoredShape);
+        return;
+    }
+}
+
+}  // namespace hairloom
