@@ -21,7 +21,7 @@ Result<std::uint32_t> freeMask(const Groom& groom) {
         const auto map = static_cast<MaskMap>(kFirst + number - 1);
         const auto painted = groom.strandAttributes.view<float>(maskAttribute(number));
         if (std::ranges::none_of(groom.operators,
-                                 [&](const Operator& one) { return readsMap(maskOf(one), map); }) &&
+                                 [&](const Operator& one) { return readsMap(one, map); }) &&
             std::ranges::none_of(painted, [](float share) { return share > 0; }))
             return number;
     }

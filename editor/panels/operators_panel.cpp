@@ -391,7 +391,8 @@ class OperatorsPanel : public QWidget {
         if (findStackOperator(op)->hasCurve) settings_->addWidget(curveRow(index));
         settings_->addWidget(new FieldForm(
             document_, preferences_,
-            pickable(operatorFields(document_.groom(), index, failed), index, SettingsPart::own)));
+            withFormulas(pickable(operatorFields(document_.groom(), index, failed), index, SettingsPart::own),
+                         index)));
         settings_->addWidget(
             collapsible(tr("Mask"), maskForm(index, failed), !maskOf(operators()[index]).isWhole()));
         if (!findStackOperator(op)->hasRegion) return;
@@ -410,6 +411,18 @@ class OperatorsPanel : public QWidget {
                 if (!tool) return;
                 tools_.activate(tool);
                 tool->pickOnHead(index, info, part);
+            };
+        }
+        return fields;
+    }
+
+    std::vector<Field> withFormulas(std::vector<Field> fields, std::size_t index) {
+        const auto takers = findStackOperator(operators()[index].op)->formulaFields;
+        for (Field& field : fields) {
+            const std::string_view name = field.name;
+            if (std::ranges::find(takers, name) == takers.end()) continue;
+            field.formula = [this, index, named = QString::fromUtf8(field.name)] {
+                return new FormulaEdit(document_, index, named);
             };
         }
         return fields;

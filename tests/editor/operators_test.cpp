@@ -6,6 +6,8 @@
 #include <QGuiApplication>
 #include <QImage>
 #include <QInputDialog>
+#include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QMenu>
 #include <QPushButton>
@@ -347,6 +349,53 @@ TEST_F(OperatorsTest, AnotherDocumentShowsItsOwn) {
     openSampleHair("long");
     EXPECT_EQ(list().count(), 12);
     EXPECT_EQ(rows().at(6), "Curl");
+}
+
+TEST_F(OperatorsTest, ANumberBecomesAFormulaAndBack) {
+    choose(kClump);
+    const auto before = hash();
+    auto* button = window->panel("operators")->findChild<QToolButton*>("strengthFormulaButton");
+    auto* edit = window->panel("operators")->findChild<QLineEdit*>("strengthFormula");
+    auto* problem = window->panel("operators")->findChild<QLabel*>("strengthFormulaProblem");
+    ASSERT_TRUE(button && edit && problem);
+    EXPECT_FALSE(window->panel("operators")->findChild<QToolButton*>("spacingFormulaButton"))
+        << "one number says where all clumps are";
+    EXPECT_FALSE(edit->isVisible());
+    QTest::mouseClick(button, Qt::LeftButton);
+    ASSERT_TRUE(edit->isVisible());
+    const auto type = [&](const QString& text) {
+        edit->setFocus();
+        edit->setText(text);
+        QTest::keyClick(edit, Qt::Key_Return);
+        QCoreApplication::processEvents();
+    };
+    type("0.2 + 0.8*random");
+    EXPECT_FALSE(problem->isVisible()) << problem->text().toStdString();
+    EXPECT_EQ(formulaOf(groom().operators[kClump], "strength"), "0.2 + 0.8*random");
+    EXPECT_FALSE(number("strength")->isEnabled());
+    EXPECT_NE(hash(), before);
+    expectEvaluated();
+    const auto formed = hash();
+    for (const auto& [wrong, said] :
+         std::initializer_list<std::pair<const char*, const char*>>{{"1/0", "no number"},
+                                                                    {"3*random", "expected 0 to 1"},
+                                                                    {"t", "along the strand"},
+                                                                    {"strength", "not known"},
+                                                                    {"noise(", "ends"}}) {
+        type(wrong);
+        EXPECT_TRUE(problem->isVisible()) << wrong;
+        EXPECT_TRUE(problem->text().contains(said)) << problem->text().toStdString();
+        EXPECT_EQ(hash(), formed) << "the last good one stays";
+    }
+    EXPECT_EQ(document().stepCount(), 1);
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(number("strength")->isEnabled());
+    trigger("edit.redo");
+    EXPECT_EQ(hash(), formed);
+    QTest::mouseClick(button, Qt::LeftButton);
+    EXPECT_EQ(hash(), before) << "the number stayed beside it";
+    EXPECT_FALSE(edit->isVisible());
 }
 
 }  // namespace
