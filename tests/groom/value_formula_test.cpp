@@ -160,8 +160,8 @@ TEST(ValueFormula, IsKeptInProjectsAndRunAgainWhereItsMapChanges) {
     EXPECT_TRUE(readsMap(groom.operators[0], MaskMap::mask2));
     EXPECT_FALSE(readsMap(groom.operators[0], MaskMap::mask1));
     groom = *evaluated(groom);
-    ASSERT_TRUE(saveProject(groom, folder.path() / "a.hairloom"));
-    const auto again = openProject(folder.path() / "a.hairloom");
+    ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
+    const auto again = openProject(folder / "a.hairloom");
     ASSERT_TRUE(again) << again.error().message();
     EXPECT_EQ(formulaOf(again->operators[0], "amplitude"), "0.01*mask2");
     EXPECT_EQ(formulaOf(again->operators[0], "frequency"), "");
