@@ -13,6 +13,7 @@
 #include <QPushButton>
 #include <QToolButton>
 #include <QWidgetAction>
+#include <algorithm>
 #include <set>
 
 #include "core/editing/selection_commands.h"
@@ -349,6 +350,38 @@ TEST_F(OperatorsTest, AnotherDocumentShowsItsOwn) {
     openSampleHair("long");
     EXPECT_EQ(list().count(), 12);
     EXPECT_EQ(rows().at(6), "Curl");
+}
+
+TEST_F(OperatorsTest, EachColourOfAnImageBecomesAMaskInOneStep) {
+    QImage image(64, 64, QImage::Format_RGB32);
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x)
+            image.setPixel(x, y, x / 4 % 2 == 1 ? qRgb(0, 0, 255) : qRgb(255, 128, 0));
+    }
+    ASSERT_TRUE(image.save(inFolder("regions.png")));
+    choose(kClump);
+    const auto before = hash();
+    onceAskedForAFile(inFolder("regions.png"));
+    window->panel("operators")->findChild<QPushButton*>("regionsImage")->click();
+    EXPECT_TRUE(window->statusLine().message().contains("mask 3: orange ("))
+        << window->statusLine().message().toStdString();
+    EXPECT_TRUE(window->statusLine().message().contains("mask 4: blue (")) << "the sample uses two";
+    const auto orange = groom().strandAttributes.view<float>("mask.3");
+    const auto blue = groom().strandAttributes.view<float>("mask.4");
+    ASSERT_EQ(orange.size(), groom().strandCount());
+    ASSERT_EQ(blue.size(), groom().strandCount());
+    for (std::size_t s = 0; s < blue.size(); ++s) ASSERT_EQ(orange[s] + blue[s], 1.0f) << s;
+    EXPECT_GT(std::ranges::count(blue, 1.0f), 0);
+    EXPECT_GT(std::ranges::count(orange, 1.0f), 0);
+    EXPECT_EQ(document().stepCount(), 1);
+    const auto filled = hash();
+    onceAskedForAFile(inFolder("regions.png"));
+    window->panel("operators")->findChild<QPushButton*>("regionsImage")->click();
+    EXPECT_TRUE(window->statusLine().message().contains("0 of 4 are free"))
+        << window->statusLine().message().toStdString();
+    EXPECT_EQ(hash(), filled) << "what is painted stays";
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
 }
 
 TEST_F(OperatorsTest, ANumberBecomesAFormulaAndBack) {
