@@ -42,9 +42,12 @@ Result<Report> replay(const GroomOptions& options) {
 Result<Report> list() {
     Report operators = Report::array();
     for (const Operation& operation : operations()) {
+        Report formulas = Report::array();
+        for (const char* field : operation.formulaFields) formulas.push_back(field);
         operators.push_back(Report{{"name", operation.name},
                                    {"meaning", operation.meaning},
-                                   {"fields", reportOf(operation.fields())}});
+                                   {"fields", reportOf(operation.fields())},
+                                   {"formulas", std::move(formulas)}});
     }
     Report brushes = Report::array();
     for (const std::string_view name : editing::brushNames()) {

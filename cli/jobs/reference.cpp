@@ -80,6 +80,11 @@ void addOperations(std::string& page) {
     for (const Operation& operation : operations()) {
         page += fmt::format("\n### `{}`\n\n{}\n", operation.name, asSentence(operation.meaning));
         addFields(operation.fields(), page);
+        if (operation.formulaFields.empty()) continue;
+        page += "\nFields that may be formulas:";
+        for (const char* field : operation.formulaFields)
+            page += fmt::format("{} `{}`", field == operation.formulaFields.front() ? "" : ",", field);
+        page += ".\n";
     }
 }
 

@@ -31,15 +31,44 @@ struct StackOptions {
     std::string keep;
     std::string layer;  ///< name; empty: all
     std::string maskImage;
+    std::string regionsImage;
     std::optional<std::uint32_t> mask;
     std::string output;
     std::optional<std::size_t> at, solo, duplicate, remove, only;
     bool bake = false;
 };
 
-/// The steps that the options ask for, in the order of the help. `filled` gets the mask that the image is in.
-Status perform(const StackOptions& options, editing::Document& document,
-               std::optional<std::uint32_t>& filled) {
+/// A mask for each colour of the image, and what is in which.
+Result<Report> fillRegions(const StackOptions& options, editing::Document& document) {
+    const editing::Model& model = document.model();
+    const auto image = MaskImage::read(options.regionsImage);
+    if (!image) return tl::unexpected(image.error());
+    const auto regions = regionsAtRoots(*image, model.groom);
+    if (!regions) return tl::unexpected(inFile(regions.error(), options.regionsImage));
+    const auto numbers = editing::masksFor(model.groom, regions->size(), options.mask.value_or(0));
+    if (!numbers) return tl::unexpected(inFile(numbers.error(), options.regionsImage));
+    std::vector<std::vector<float>> values;
+    Report filled = Report::array();
+    for (std::size_t i = 0; i < regions->size(); ++i) {
+        const ColourRegion& region = (*regions)[i];
+        filled.push_back(Report{{"colour", region.name},
+                                {"rgb", fmt::format("#{:06x}", region.rgb)},
+                                {"mask", (*numbers)[i]},
+                                {"strands", region.strands}});
+        values.push_back(region.shares);
+    }
+    document.perform(editing::fillMasks(model, "Regions from image", *numbers, values));
+    return filled;
+}
+
+/// What images were read into.
+struct Filled {
+    std::optional<std::uint32_t> mask;
+    std::optional<Report> regions;
+};
+
+/// The steps that the options ask for, in the order of the help.
+Status perform(const StackOptions& options, editing::Document& document, Filled& filled) {
     const auto step = [&](editing::StackCommand command, const std::string& file = {}) -> Status {
         if (!command) return tl::unexpected(file.empty() ? command.error() : inFile(command.error(), file));
         document.perform(std::move(*command));
@@ -55,7 +84,12 @@ Status perform(const StackOptions& options, editing::Document& document,
             options.mask ? Result<std::uint32_t>(*options.mask) : editing::freeMask(model.groom);
         if (!number) return tl::unexpected(inFile(number.error(), options.input));
         document.perform(editing::setMask(model, *number, *values));
-        filled = *number;
+        filled.mask = *number;
+    }
+    if (!options.regionsImage.empty()) {
+        auto regions = fillRegions(options, document);
+        if (!regions) return tl::unexpected(regions.error());
+        filled.regions = std::move(*regions);
     }
     if (!options.from.empty()) {
         auto operators = loadOperators(options.from);
@@ -88,12 +122,13 @@ Status perform(const StackOptions& options, editing::Document& document,
 Result<Report> edit(const StackOptions& options, Groom groom) {
     const Stopwatch watch;
     editing::Document document(std::move(groom));
-    std::optional<std::uint32_t> filled;
+    Filled filled;
     if (auto done = perform(options, document, filled); !done) return tl::unexpected(done.error());
     if (auto saved = saveProject(document.groom(), options.output); !saved)
         return tl::unexpected(saved.error());
     Report report{{"operators", toJson(document.groom().operators)}};
-    if (filled) report["mask"] = *filled;
+    if (filled.mask) report["mask"] = *filled.mask;
+    if (filled.regions) report["regions"] = std::move(*filled.regions);
     report["seconds"] = watch.seconds();
     report["output"] = options.output;
     return report;
@@ -157,9 +192,17 @@ JobRun declare(CLI::App& job) {
     auto* image = job.add_option("--mask-image", options->maskImage,
                                  "PNG whose values at the root UVs become a mask of operators");
     image->needs(output);
-    job.add_option("--mask", options->mask, "Number of that mask (default: the first unused one)")
-        ->check(CLI::Range(1u, kPaintedMasks))
-        ->needs(image);
+    auto* regions = job.add_option("--regions-image", options->regionsImage,
+                                   "PNG of flat colours: each colour at the root UVs becomes a mask");
+    regions->needs(output)->excludes(image);
+    auto* number =
+        job.add_option("--mask", options->mask,
+                       "Number of that mask, or of the mask of the first region (default: unused ones)")
+            ->check(CLI::Range(1u, kPaintedMasks));
+    job.final_callback([number, image, regions] {
+        if (number->count() > 0 && image->count() + regions->count() == 0)
+            throw CLI::RequiresError("--mask", "--mask-image or --regions-image");
+    });
     from->needs(output);
     bake->needs(output);
     return [options](const std::string&) {

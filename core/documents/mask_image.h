@@ -2,6 +2,8 @@
 #pragma once
 // What people paint in other programs as a mask of strands or of the scalp.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +20,34 @@ class MaskImage {
     static Result<MaskImage> read(const std::string& path);
     /// 0 … 1.
     float at(const Vec2f& uv) const;
+    /// As it was painted, 0xrrggbb; nothing where it is more transparent than not.
+    std::optional<std::uint32_t> colourAt(const Vec2f& uv) const;
+    /// Colours that fill at least 0.2 % of the image, from the highest number down. Black and what is
+    /// transparent are no colour. Error: less than nine tenths of the image are of such colours, as in a
+    /// photograph.
+    Result<std::vector<std::uint32_t>> flatColours() const;
 
   private:
+    std::optional<std::uint32_t> colourOf(std::size_t pixel) const;
+    std::size_t pixelAt(const Vec2f& uv) const;
+
     render::LinearImage image_;
 };
 
 /// One value for each strand, at its root UV. Errors: strands without root UVs, or one that is not finite.
 Result<std::vector<float>> valuesAtRoots(const MaskImage& image, const Groom& groom);
+/// What is painted in one colour.
+struct ColourRegion {
+    std::string name;  ///< "red", or "#c04010"
+    std::uint32_t rgb = 0;
+    std::vector<float> shares;  ///< one for each strand, 1 inside
+    std::size_t strands = 0;    ///< inside
+};
+std::string colourName(std::uint32_t rgb);
+/// A region for each colour of the image; roots between colours, as at soft edges, belong to the nearest,
+/// which may be black, and then to none. Errors: those of flatColours() and valuesAtRoots(), and an image
+/// without regions.
+Result<std::vector<ColourRegion>> regionsAtRoots(const MaskImage& image, const Groom& groom);
 /// One value for each vertex, the mean of those that its corners have. Errors: a mesh without UVs.
 Result<std::vector<float>> valuesAtVertices(const MaskImage& image, const ScalpMesh& mesh);
 

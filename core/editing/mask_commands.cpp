@@ -16,16 +16,46 @@ constexpr auto kFirst = static_cast<std::uint32_t>(MaskMap::mask1);
 
 }  // namespace
 
-Result<std::uint32_t> freeMask(const Groom& groom) {
+std::vector<std::uint32_t> freeMasks(const Groom& groom) {
+    std::vector<std::uint32_t> free;
     for (std::uint32_t number = 1; number <= kPaintedMasks; ++number) {
         const auto map = static_cast<MaskMap>(kFirst + number - 1);
         const auto painted = groom.strandAttributes.view<float>(maskAttribute(number));
-        if (std::ranges::none_of(groom.operators,
-                                 [&](const Operator& one) { return readsMap(maskOf(one), map); }) &&
+        if (std::ranges::none_of(groom.operators, [&](const Operator& one) { return readsMap(one, map); }) &&
             std::ranges::none_of(painted, [](float share) { return share > 0; }))
-            return number;
+            free.push_back(number);
     }
+    return free;
+}
+
+Result<std::uint32_t> freeMask(const Groom& groom) {
+    const auto free = freeMasks(groom);
+    if (!free.empty()) return free.front();
     return fail(fmt::format("all {} masks are in use", kPaintedMasks), "name the one to overwrite");
+}
+
+Result<std::vector<std::uint32_t>> masksFor(const Groom& groom, std::size_t count, std::uint32_t first) {
+    std::vector<std::uint32_t> numbers = freeMasks(groom);
+    if (first > 0) {
+        numbers.clear();
+        for (std::uint32_t number = first; number <= kPaintedMasks; ++number) numbers.push_back(number);
+    }
+    if (count > numbers.size())
+        return fail(
+            fmt::format("{} regions need a mask each, and {} of {} {}", count, numbers.size(), kPaintedMasks,
+                        first > 0 ? fmt::format("begin at {}", first) : std::string("are free")),
+            first > 0 ? "an image of fewer colours, or a lower first mask"
+                      : "an image of fewer colours, or name the first mask to overwrite");
+    numbers.resize(count);
+    return numbers;
+}
+
+std::unique_ptr<Command> fillMasks(const Model& model, std::string name,
+                                   std::span<const std::uint32_t> numbers,
+                                   std::span<const std::vector<float>> values) {
+    std::vector<std::unique_ptr<Command>> steps;
+    for (std::size_t i = 0; i < numbers.size(); ++i) steps.push_back(setMask(model, numbers[i], values[i]));
+    return together(std::move(name), std::move(steps));
 }
 
 StackCommand fillMaskOf(const Model& model, std::size_t index, std::span<const float> values) {

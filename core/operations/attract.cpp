@@ -37,15 +37,17 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the positions around the curve"),
 };
+constexpr const char* kFormulaFields[] = {"strength", "profile", "spread", "reach"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> attract(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("attract", settings); !status) return tl::unexpected(status.error());
-    if (!CurveLine::isDrawn(settings.curve)) return std::size_t{0};
-    const CurveLine line(settings.curve);
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+Result<std::size_t> attract(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("attract", varied.base()); !status) return tl::unexpected(status.error());
+    if (!CurveLine::isDrawn(varied.base().curve)) return std::size_t{0};
+    const CurveLine line(varied.base().curve);
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const float away = line.nearest(strand.points[0]).distance;
         const float reached =
             settings.reach > 0 ? 1 - smoothStep(0.5f * settings.reach, settings.reach, away) : 1.0f;
@@ -74,7 +76,7 @@ Result<std::size_t> attract(Groom& groom, const S& settings, const Region& regio
 }  // namespace
 
 Operation attractOperation() {
-    return operation<S, attract>("attract", 24, "pulls strands towards a curve");
+    return variedOperation<S, attract, kFormulaFields>("attract", 24, "pulls strands towards a curve");
 }
 
 }  // namespace hairloom

@@ -25,13 +25,15 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the variation"),
 };
+constexpr const char* kFormulaFields[] = {"inwardDegrees", "sidewaysDegrees", "start", "variation"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> bend(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("bend", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+Result<std::size_t> bend(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("bend", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const float total = strand.totalLength();
         if (!(total > 0)) return;
         const float own = 1 - settings.variation * strand.random(settings.seed).uniform();
@@ -54,7 +56,7 @@ Result<std::size_t> bend(Groom& groom, const S& settings, const Region& region) 
 }  // namespace
 
 Operation bendOperation() {
-    return operation<S, bend>("bend", 66, "bends tips in, out or to the side");
+    return variedOperation<S, bend, kFormulaFields>("bend", 66, "bends tips in, out or to the side");
 }
 
 }  // namespace hairloom

@@ -23,6 +23,7 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the angles"),
 };
+constexpr const char* kFormulaFields[] = {"radius", "frequency", "start", "phaseVariation"};
 
 constexpr float kSegmentsPerTurn = 4;
 
@@ -51,16 +52,25 @@ void curlStrand(std::span<Vec3f> points, std::span<const float> lengths, const C
     restoreLengthsByDirection(points, lengths);
 }
 
-Result<std::size_t> curl(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("curl", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+namespace {
+
+Result<std::size_t> curlVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("curl", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const float phase = 2 * kPi * settings.phaseVariation * strand.random(settings.seed).uniform();
         curlStrand(strand.points, strand.lengths, settings, phase);
     });
 }
 
+}  // namespace
+
+Result<std::size_t> curl(Groom& groom, const S& settings, const Region& region) {
+    return curlVaried(groom, settings, region);
+}
+
 Operation curlOperation() {
-    return operation<S, curl>("curl", 50, "curls strands into helices");
+    return variedOperation<S, curlVaried, kFormulaFields>("curl", 50, "curls strands into helices");
 }
 
 }  // namespace hairloom

@@ -14,6 +14,7 @@ constexpr Field<S> kFields[] = {
     field<&S::rootAmount>("rootAmount", "", 0, 1, "the same at the root. It changes linearly in between"),
     clearanceField<&S::clearance>(),
 };
+constexpr const char* kFormulaFields[] = {"amount", "rootAmount"};
 
 /// Turns a unit vector by a share of its angle to straight down.
 Vec3f turnDown(const Vec3f& direction, float share) {
@@ -27,9 +28,12 @@ std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> drape(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("drape", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+namespace {
+
+Result<std::size_t> drapeVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("drape", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const std::size_t segments = strand.lengths.size();
         Vec3f before = strand.points[0];
         for (std::size_t i = 1; i <= segments; ++i) {
@@ -44,8 +48,15 @@ Result<std::size_t> drape(Groom& groom, const S& settings, const Region& region)
     });
 }
 
+}  // namespace
+
+Result<std::size_t> drape(Groom& groom, const S& settings, const Region& region) {
+    return drapeVaried(groom, settings, region);
+}
+
 Operation drapeOperation() {
-    return operation<S, drape>("drape", 70, "bends strands downwards, as gravity does");
+    return variedOperation<S, drapeVaried, kFormulaFields>("drape", 70,
+                                                           "bends strands downwards, as gravity does");
 }
 
 }  // namespace hairloom

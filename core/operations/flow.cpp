@@ -39,6 +39,8 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the variation"),
 };
+constexpr const char* kFormulaFields[] = {"whorlDegrees", "parting", "gravity", "fall",     "liftRoot",
+                                          "liftTip",      "rise",    "bend",    "variation"};
 
 constexpr float kWhorlReach = 0.04f;    ///< metres from the crown at which the turn is down to 1/e
 constexpr float kCrownBlur = 0.004f;    ///< metres; at the crown itself the direction is random
@@ -141,17 +143,31 @@ std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> flow(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("flow", settings); !status) return tl::unexpected(status.error());
+namespace {
+
+Result<std::size_t> flowVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("flow", varied.base()); !status) return tl::unexpected(status.error());
     if (!groom.scalp) return fail("flow: the groom has no scalp", "bind it to one first");
-    S placed = settings;
-    if (placed.crown.isZero(0)) placed.crown = crownOfHead(groom);
-    if (placed.partingPoint.isZero(0)) placed.partingPoint = topOfHead(groom);
-    return editStrands(groom, region, {-1.0f, true}, [&](StrandEdit& strand) { layStrand(strand, placed); });
+    const S& asked = varied.base();
+    const Vec3f crown = asked.crown.isZero(0) ? crownOfHead(groom) : asked.crown;
+    const Vec3f parting = asked.partingPoint.isZero(0) ? topOfHead(groom) : asked.partingPoint;
+    return editStrands(groom, region, {-1.0f, true}, [&](StrandEdit& strand) {
+        S settings = varied.at(strand.index);
+        settings.crown = crown;
+        settings.partingPoint = parting;
+        layStrand(strand, settings);
+    });
+}
+
+}  // namespace
+
+Result<std::size_t> flow(Groom& groom, const S& settings, const Region& region) {
+    return flowVaried(groom, settings, region);
 }
 
 Operation flowOperation() {
-    return operation<S, flow>("flow", 20, "lays strands along the head from a crown, a parting or a sweep");
+    return variedOperation<S, flowVaried, kFormulaFields>(
+        "flow", 20, "lays strands along the head from a crown, a parting or a sweep");
 }
 
 }  // namespace hairloom

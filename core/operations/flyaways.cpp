@@ -27,13 +27,15 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the flyaways"),
 };
+constexpr const char* kFormulaFields[] = {"share", "angleDegrees", "start", "waves"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> flyaways(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("flyaways", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+Result<std::size_t> flyaways(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("flyaways", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         Random random = strand.random(settings.seed);
         const std::uint64_t stream = random.next();
         if (random.uniform() >= settings.share) return;
@@ -68,7 +70,7 @@ Result<std::size_t> flyaways(Groom& groom, const S& settings, const Region& regi
 }  // namespace
 
 Operation flyawaysOperation() {
-    return operation<S, flyaways>("flyaways", 86, "turns single strands into flyaways");
+    return variedOperation<S, flyaways, kFormulaFields>("flyaways", 86, "turns single strands into flyaways");
 }
 
 }  // namespace hairloom

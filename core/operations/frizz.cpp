@@ -27,15 +27,17 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the kinks"),
 };
+constexpr const char* kFormulaFields[] = {"angleDegrees", "frequency", "share", "start"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
 /// Turns segments, and keeps the course: kinks lead to and fro about it.
-Result<std::size_t> frizz(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("frizz", settings); !status) return tl::unexpected(status.error());
-    const float sine = std::sin(radians(settings.angleDegrees));
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+Result<std::size_t> frizz(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("frizz", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
+        const float sine = std::sin(radians(settings.angleDegrees));
         Random random = strand.random(settings.seed);
         const std::uint64_t stream = random.next();
         if (random.uniform() >= settings.share) return;
@@ -60,7 +62,8 @@ Result<std::size_t> frizz(Groom& groom, const S& settings, const Region& region)
 }  // namespace
 
 Operation frizzOperation() {
-    return operation<S, frizz>("frizz", 42, "adds random kinks to strands, to some more than to others");
+    return variedOperation<S, frizz, kFormulaFields>(
+        "frizz", 42, "adds random kinks to strands, to some more than to others");
 }
 
 }  // namespace hairloom

@@ -5,22 +5,16 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cmath>
-#include <numeric>
 
-#include "core/base/hash.h"
 #include "core/base/parallel.h"
-#include "core/base/random.h"
-#include "core/groom/point_dye.h"
 #include "core/operations/formula.h"
+#include "core/operations/formula_values.h"
 #include "core/operations/length_constraint.h"
 
 namespace hairloom {
 namespace {
 
 constexpr std::size_t kGrain = 256;
-constexpr std::uint64_t kFormulaSeed = 0xf0a1;
 constexpr std::array<const char*, 7> kMaps = {"none", "density", "dye", "mask1", "mask2", "mask3", "mask4"};
 constexpr Field<Mask> kFields[] = {
     choiceField<&Mask::map>("map",
@@ -31,38 +25,7 @@ constexpr Field<Mask> kFields[] = {
     rampField<&Mask::ramp>("ramp", "strength from root to tip"),
 };
 
-std::uint32_t numberOf(MaskMap map) {
-    return static_cast<std::uint32_t>(map) - static_cast<std::uint32_t>(MaskMap::mask1) + 1;
-}
-
-/// The map at each point, before it is inverted.
-std::vector<float> valuesOf(const Groom& groom, MaskMap map) {
-    if (map == MaskMap::dye) return pointDyes(groom);
-    std::vector<float> values(groom.pointCount(), map == MaskMap::none ? 1.0f : 0.0f);
-    if (map == MaskMap::none) return values;
-    const auto painted = map == MaskMap::density
-                             ? std::span<const float>()
-                             : groom.strandAttributes.view<float>(maskAttribute(numberOf(map)));
-    const std::vector<SurfacePoint> roots =
-        map == MaskMap::density ? groom.rootBindings() : std::vector<SurfacePoint>();
-    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
-        float value = s < painted.size() ? painted[s] : 0.0f;
-        if (s < roots.size()) {
-            const Triangle& corners = groom.scalp->triangles()[roots[s].triangle];
-            value = groom.scalpDensity.empty() ? 1.0f : 0.0f;
-            for (int c = 0; c < 3 && !groom.scalpDensity.empty(); ++c)
-                value += roots[s].barycentric[c] * groom.scalpDensity[corners[static_cast<std::size_t>(c)]];
-        }
-        std::fill(values.begin() + groom.offsets[s], values.begin() + groom.offsets[s + 1], value);
-    }
-    return values;
-}
-
 }  // namespace
-
-std::string maskAttribute(std::uint32_t number) {
-    return fmt::format("mask.{}", number);
-}
 
 std::span<const Field<Mask>> fieldsOf(const Mask&) {
     return kFields;
@@ -95,91 +58,24 @@ const std::vector<FieldRow>& scriptMaskFields() {
 
 namespace {
 
-/// Maps that formulas name, where they do.
-constexpr std::array<std::pair<FormulaName, MaskMap>, 6> kNamedMaps = {
-    {{FormulaName::density, MaskMap::density},
-     {FormulaName::dye, MaskMap::dye},
-     {FormulaName::mask1, MaskMap::mask1},
-     {FormulaName::mask2, MaskMap::mask2},
-     {FormulaName::mask3, MaskMap::mask3},
-     {FormulaName::mask4, MaskMap::mask4}}};
-
 /// The maps that a mask reads, each once.
 std::vector<MaskMap> mapsOf(const Mask& mask) {
     std::vector<MaskMap> maps;
     if (mask.map != MaskMap::none) maps.push_back(mask.map);
     if (mask.formula.empty()) return maps;
-    const auto formula = Formula::read(mask.formula);
-    for (const auto& [name, map] : kNamedMaps) {
-        if (formula && formula->names(name) && std::ranges::find(maps, map) == maps.end())
-            maps.push_back(map);
+    if (const auto formula = Formula::read(mask.formula)) {
+        for (const MaskMap map : mapsOf(*formula)) {
+            if (std::ranges::find(maps, map) == maps.end()) maps.push_back(map);
+        }
     }
     return maps;
-}
-
-/// Multiplies the shares by a formula's.
-Status applyFormula(const Groom& groom, const Formula& formula, std::span<const Vec3f> positions,
-                    std::vector<float>& shares) {
-    const auto uvs = groom.strandAttributes.view<Vec2f>(attribute::kRootUv);
-    if (uvs.size() != groom.strandCount() && (formula.names(FormulaName::u) || formula.names(FormulaName::v)))
-        return fail("the formula names u or v, and the hair has no UVs", "bind it to a head with UVs");
-    std::array<std::vector<float>, kNamedMaps.size()> maps;
-    for (std::size_t m = 0; m < maps.size(); ++m) {
-        if (formula.names(kNamedMaps[m].first)) maps[m] = valuesOf(groom, kNamedMaps[m].second);
-    }
-    const auto ids = groom.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
-    std::atomic<std::size_t> wrong = groom.strandCount();
-    parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> lengths;
-        FormulaValues values{};
-        const auto set = [&](FormulaName name, float value) {
-            values[static_cast<std::size_t>(name)] = value;
-        };
-        set(FormulaName::pi, kPi);
-        for (std::size_t s = begin; s < end; ++s) {
-            const std::size_t first = groom.offsets[s], count = groom.offsets[s + 1] - first;
-            if (count < 2) continue;
-            measureSegments(positions.subspan(first, count), lengths);
-            const float total = std::accumulate(lengths.begin(), lengths.end(), 0.0f);
-            set(FormulaName::length, total);
-            set(FormulaName::random, Random(kFormulaSeed, s < ids.size() ? ids[s] : s).uniform());
-            set(FormulaName::x, positions[first].x());
-            set(FormulaName::y, positions[first].y());
-            set(FormulaName::z, positions[first].z());
-            if (s < uvs.size()) {
-                set(FormulaName::u, uvs[s].x());
-                set(FormulaName::v, uvs[s].y());
-            }
-            float arc = 0;
-            for (std::size_t i = 0; i < count; ++i) {
-                arc += i > 0 ? lengths[i - 1] : 0;
-                set(FormulaName::t, total > 0 ? std::min(arc / total, 1.0f) : 0.0f);
-                for (std::size_t m = 0; m < maps.size(); ++m) {
-                    if (!maps[m].empty()) set(kNamedMaps[m].first, maps[m][first + i]);
-                }
-                const float value = formula.at(values);
-                if (!std::isfinite(value)) {
-                    std::size_t before = wrong;
-                    while (s < before && !wrong.compare_exchange_weak(before, s)) {
-                    }
-                }
-                shares[first + i] *= std::clamp(value, 0.0f, 1.0f);
-            }
-        }
-    });
-    if (wrong == groom.strandCount()) return {};
-    return fail(
-        fmt::format("the formula gives no number at strand {}: it divides by 0, or takes the root or power "
-                    "of less than 0",
-                    wrong.load()),
-        "max(…, 0.001) or if(…) keeps it away from there");
 }
 
 }  // namespace
 
 Result<std::vector<float>> maskShares(const Groom& groom, const Mask& mask,
                                       std::span<const Vec3f> positions) {
-    std::vector<float> shares = valuesOf(groom, mask.map);
+    std::vector<float> shares = paintedValues(groom, mask.map);
     const bool isEven = mask.ramp == runtime::Ramp();
     parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
         std::vector<float> lengths;
@@ -202,7 +98,7 @@ Result<std::vector<float>> maskShares(const Groom& groom, const Mask& mask,
     if (mask.formula.empty()) return shares;
     const auto formula = Formula::read(mask.formula);
     if (!formula) return tl::unexpected(formula.error());
-    if (auto status = applyFormula(groom, *formula, positions, shares); !status)
+    if (auto status = multiplyByFormula(groom, *formula, positions, shares); !status)
         return tl::unexpected(status.error());
     return shares;
 }
@@ -216,28 +112,9 @@ bool readsMaps(const Mask& mask) {
     return !mapsOf(mask).empty();
 }
 
-namespace {
-
-std::string mapState(const Groom& groom, MaskMap map) {
-    switch (map) {
-        case MaskMap::none:
-            return {};
-        case MaskMap::density:
-            return fmt::format("density {:x}", hashOf(std::span<const float>(groom.scalpDensity)));
-        case MaskMap::dye:
-            return fmt::format("dye {} {} {}", groom.pointAttributes.version(attribute::kPointDye),
-                               groom.strandAttributes.version(attribute::kDye),
-                               groom.material.dyeStrength > 0);
-        default:
-            return fmt::format("mask {}", groom.strandAttributes.version(maskAttribute(numberOf(map))));
-    }
-}
-
-}  // namespace
-
 std::string mapState(const Groom& groom, const Mask& mask) {
     std::string state;
-    for (const MaskMap map : mapsOf(mask)) state += mapState(groom, map) + ' ';
+    for (const MaskMap map : mapsOf(mask)) state += paintedState(groom, map) + ' ';
     if (!mask.formula.empty())
         state += fmt::format("uv {}", groom.strandAttributes.version(attribute::kRootUv));
     return state;
@@ -272,7 +149,7 @@ std::vector<Vec3f> blendShapes(const Groom& groom, std::span<const Vec3f> from, 
 Result<std::size_t> runMasked(Groom& groom, const Mask& mask,
                               const std::function<Result<std::size_t>(Groom&)>& edit) {
     if (mask.isWhole()) return edit(groom);
-    if (readsMap(mask, MaskMap::density) && groom.strandCount() > 0 && groom.rootBindings().empty())
+    if (mask.map == MaskMap::density && groom.strandCount() > 0 && groom.rootBindings().empty())
         return fail("the mask's map is density, and the hair is bound to no scalp",
                     "bind it to one first, or another map");
     const Groom input = groom;

@@ -8,15 +8,9 @@
 #include <vector>
 
 #include "core/groom/file/json_reader.h"
+#include "core/operations/painted_maps.h"
 
 namespace hairloom {
-
-/// What is painted.
-enum class MaskMap : std::uint32_t { none, density, dye, mask1, mask2, mask3, mask4 };
-inline constexpr std::uint32_t kPaintedMasks = 4;
-
-/// "mask.1": float per strand in [0, 1]; 0 where nothing was painted. `number` counts from 1.
-std::string maskAttribute(std::uint32_t number);
 
 /// The map's share times the ramp's and the formula's. fieldsOf() describes the members but the formula.
 struct Mask {

@@ -22,6 +22,7 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the waves"),
 };
+constexpr const char* kFormulaFields[] = {"amplitude", "frequency", "rootShare"};
 
 constexpr float kSegmentsPerWave = 4;
 
@@ -48,16 +49,26 @@ void noiseStrand(std::span<Vec3f> points, std::span<const float> lengths, const 
     restoreLengthsByDirection(points, lengths);
 }
 
-Result<std::size_t> noise(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("noise", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+namespace {
+
+Result<std::size_t> noiseVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("noise", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         Random random = strand.random(settings.seed);
         noiseStrand(strand.points, strand.lengths, settings, random.next());
     });
 }
 
+}  // namespace
+
+Result<std::size_t> noise(Groom& groom, const S& settings, const Region& region) {
+    return noiseVaried(groom, settings, region);
+}
+
 Operation noiseOperation() {
-    return operation<S, noise>("noise", 40, "bends strands at random, for frizz or an uneven fall");
+    return variedOperation<S, noiseVaried, kFormulaFields>(
+        "noise", 40, "bends strands at random, for frizz or an uneven fall");
 }
 
 }  // namespace hairloom

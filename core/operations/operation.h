@@ -12,6 +12,7 @@
 #include "core/operations/drawn_curve.h"
 #include "core/operations/mask.h"
 #include "core/operations/strand_edit.h"
+#include "core/operations/varied.h"
 
 namespace hairloom {
 
@@ -28,6 +29,8 @@ struct Operation {
     std::string (*settings)(JsonReader&);
     bool stacks = true;     ///< moves points of strands and changes nothing else, so that a stack may hold it
     bool hasCurve = false;  ///< takes a "curve" (drawn_curve.h)
+    /// Names of the fields that may be formulas, one value for each strand ("formulas").
+    std::span<const char* const> formulaFields{};
 };
 
 namespace operation_detail {
@@ -56,10 +59,14 @@ S readSettings(JsonReader& reader) {
 }
 
 template <class S, bool Masked>
-std::string settings(JsonReader& reader) {
+std::string settings(JsonReader& reader, std::span<const char* const> formulaFields) {
     const S settings = readSettings<S>(reader);
     nlohmann::ordered_json json = fieldsToJson(settings);
     if constexpr (hasCurve<S>) json["curve"] = toJson(settings.curve);
+    if (!formulaFields.empty()) {
+        const SettingFormulas formulas = readFormulas(reader, formulaFields);
+        if (!formulas.empty()) json["formulas"] = formulas;
+    }
     if (reader.has("region")) json["region"] = fieldsToJson(readRegion(reader));
     if (Masked && reader.has("mask")) json["mask"] = toJson(readMask(reader));
     return json.dump();
@@ -75,21 +82,52 @@ RunOperation read(JsonReader& reader) {
     };
 }
 
+template <class S, Result<std::size_t> (*Apply)(Groom&, const Varied<S>&, const Region&), const auto& Fields>
+RunOperation readVaried(JsonReader& reader) {
+    const S settings = readSettings<S>(reader);
+    const SettingFormulas formulas = readFormulas(reader, Fields);
+    const Region region = readRegion(reader);
+    const Mask mask = readMask(reader);
+    return [settings, formulas, region, mask](Groom& groom) -> Result<std::size_t> {
+        const auto varied = Varied<S>::make(groom, settings, formulas, region);
+        if (!varied) return tl::unexpected(varied.error());
+        return runMasked(groom, mask, [&](Groom& edited) { return Apply(edited, *varied, region); });
+    };
+}
+
+template <class S, bool Masked>
+std::string plainSettings(JsonReader& reader) {
+    return settings<S, Masked>(reader, {});
+}
+template <class S, const auto& Fields>
+std::string variedSettings(JsonReader& reader) {
+    return settings<S, true>(reader, Fields);
+}
+
 }  // namespace operation_detail
 
 /// An operation that moves points and nothing else, with the fields of S, a region and a mask.
 template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
 Operation operation(std::string_view name, int order, std::string_view meaning) {
     using namespace operation_detail;
-    return {name, meaning,    order, &read<S, Apply, true>, &fieldRows<S>, &settings<S, true>,
+    return {name, meaning,    order, &read<S, Apply, true>, &fieldRows<S>, &plainSettings<S, true>,
             true, hasCurve<S>};
+}
+
+/// The same where those fields may be formulas. `Apply` asks for the settings of each strand.
+template <class S, Result<std::size_t> (*Apply)(Groom&, const Varied<S>&, const Region&), const auto& Fields>
+Operation variedOperation(std::string_view name, int order, std::string_view meaning) {
+    using namespace operation_detail;
+    return {
+        name, meaning,     order, &readVaried<S, Apply, Fields>, &fieldRows<S>, &variedSettings<S, Fields>,
+        true, hasCurve<S>, Fields};
 }
 
 /// One that does more, which no stack holds. It has no mask.
 template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
 Operation lastingOperation(std::string_view name, int order, std::string_view meaning) {
     using namespace operation_detail;
-    return {name, meaning, order, &read<S, Apply, false>, &fieldRows<S>, &settings<S, false>, false};
+    return {name, meaning, order, &read<S, Apply, false>, &fieldRows<S>, &plainSettings<S, false>, false};
 }
 
 /// One of each file, in order of file name (hairloom_registry).

@@ -27,6 +27,7 @@ constexpr Field<S> kFields[] = {
     field<&S::rise>("rise", "m", 0, 1, "distance from the root over which that angle fades"),
     clearanceField<&S::clearance>(),
 };
+constexpr const char* kFormulaFields[] = {"strength", "reach", "liftDegrees", "rise"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
@@ -84,12 +85,13 @@ bool layAwayFrom(const CurveLine& line, const PartingForce& force, std::span<Vec
 
 namespace {
 
-Result<std::size_t> part(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("part", settings); !status) return tl::unexpected(status.error());
-    if (!CurveLine::isDrawn(settings.curve)) return std::size_t{0};
-    const CurveLine line(settings.curve);
-    const PartingForce force{settings.strength, settings.reach, settings.liftDegrees, settings.rise};
-    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+Result<std::size_t> part(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("part", varied.base()); !status) return tl::unexpected(status.error());
+    if (!CurveLine::isDrawn(varied.base().curve)) return std::size_t{0};
+    const CurveLine line(varied.base().curve);
+    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
+        const PartingForce force{settings.strength, settings.reach, settings.liftDegrees, settings.rise};
         layAwayFrom(line, force, strand.points, strand.lengths, strand.outward(), strand.skin);
     });
 }
@@ -97,7 +99,8 @@ Result<std::size_t> part(Groom& groom, const S& settings, const Region& region) 
 }  // namespace
 
 Operation partOperation() {
-    return operation<S, part>("part", 22, "lays strands away from a parting drawn on the scalp");
+    return variedOperation<S, part, kFormulaFields>("part", 22,
+                                                    "lays strands away from a parting drawn on the scalp");
 }
 
 }  // namespace hairloom

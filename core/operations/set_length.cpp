@@ -24,6 +24,7 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the variation"),
 };
+constexpr const char* kFormulaFields[] = {"length", "variation"};
 
 float gradientAt(const S& settings, const Vec3f& root) {
     if (settings.gradientDistance <= 0 || settings.gradientAxis.isZero(0.0f)) return 1;
@@ -39,9 +40,13 @@ std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> setLength(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("set_length", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+namespace {
+
+Result<std::size_t> setLengthVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("set_length", varied.base()); !status)
+        return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const float share = 1 - settings.variation * strand.random(settings.seed).uniform();
         const float length =
             std::max(kShortest, settings.length * share * gradientAt(settings, strand.points[0]));
@@ -53,8 +58,15 @@ Result<std::size_t> setLength(Groom& groom, const S& settings, const Region& reg
     });
 }
 
+}  // namespace
+
+Result<std::size_t> setLength(Groom& groom, const S& settings, const Region& region) {
+    return setLengthVaried(groom, settings, region);
+}
+
 Operation setLengthOperation() {
-    return operation<S, setLength>("set_length", 10, "sets the length of strands");
+    return variedOperation<S, setLengthVaried, kFormulaFields>("set_length", 10,
+                                                               "sets the length of strands");
 }
 
 }  // namespace hairloom

@@ -32,6 +32,7 @@ constexpr Field<S> kFields[] = {
         "group", "", 0, 65535,
         "group of the head file to wrap to, such as a cap or a helmet, numbered from 1: 0 is the whole head"),
 };
+constexpr const char* kFormulaFields[] = {"strength", "distance", "reach", "variation"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
@@ -55,16 +56,18 @@ Result<std::shared_ptr<const Skin>> skinOfGroup(const ScalpMesh& head, std::uint
     return std::make_shared<const Skin>(std::make_shared<const ScalpMesh>(std::move(*mesh)));
 }
 
-Result<std::size_t> shrinkwrap(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("shrinkwrap", settings); !status) return tl::unexpected(status.error());
+Result<std::size_t> shrinkwrap(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("shrinkwrap", varied.base()); !status)
+        return tl::unexpected(status.error());
     if (!groom.scalp) return fail("shrinkwrap: the groom has no scalp", "bind it to one first");
     std::shared_ptr<const Skin> group;
-    if (settings.group > 0) {
-        auto made = skinOfGroup(*groom.scalp, settings.group);
+    if (varied.base().group > 0) {
+        auto made = skinOfGroup(*groom.scalp, varied.base().group);
         if (!made) return tl::unexpected(made.error());
         group = std::move(*made);
     }
-    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const Skin& onto = group ? *group : *strand.skin;
         const float height =
             settings.distance * (1 - settings.variation * strand.random(settings.seed).uniform());
@@ -86,8 +89,8 @@ Result<std::size_t> shrinkwrap(Groom& groom, const S& settings, const Region& re
 }  // namespace
 
 Operation shrinkwrapOperation() {
-    return operation<S, shrinkwrap>("shrinkwrap", 26,
-                                    "wraps strands to the skin of the head or to a group of its file");
+    return variedOperation<S, shrinkwrap, kFormulaFields>(
+        "shrinkwrap", 26, "wraps strands to the skin of the head or to a group of its file");
 }
 
 }  // namespace hairloom

@@ -18,6 +18,7 @@ constexpr Field<S> kFields[] = {
     field<&S::passes>("passes", "", 1, 100, "number of passes: more smooths over longer stretches"),
     clearanceField<&S::clearance>(),
 };
+constexpr const char* kFormulaFields[] = {"amount"};
 
 }  // namespace
 
@@ -25,9 +26,12 @@ std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> smooth(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("smooth", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+namespace {
+
+Result<std::size_t> smoothVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("smooth", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         std::vector<Vec3f> before(strand.points.begin(), strand.points.end());
         for (std::uint32_t pass = 0; pass < settings.passes; ++pass) {
             for (std::size_t i = 1; i + 1 < before.size(); ++i) {
@@ -40,8 +44,14 @@ Result<std::size_t> smooth(Groom& groom, const S& settings, const Region& region
     });
 }
 
+}  // namespace
+
+Result<std::size_t> smooth(Groom& groom, const S& settings, const Region& region) {
+    return smoothVaried(groom, settings, region);
+}
+
 Operation smoothOperation() {
-    return operation<S, smooth>("smooth", 60, "smooths strands");
+    return variedOperation<S, smoothVaried, kFormulaFields>("smooth", 60, "smooths strands");
 }
 
 }  // namespace hairloom

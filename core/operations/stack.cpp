@@ -79,10 +79,10 @@ const std::vector<StackOperator>& stackOperators() {
         std::vector<StackOperator> known;
         for (const Operation& operation : operations()) {
             if (operation.stacks)
-                known.push_back(
-                    {operation.name, operation.meaning, operation.fields(), true, operation.hasCurve});
+                known.push_back({operation.name, operation.meaning, operation.fields(), true,
+                                 operation.hasCurve, operation.formulaFields});
         }
-        known.push_back({kSculpt, "holds brush strokes", {}, false, false});
+        known.push_back({kSculpt, "holds brush strokes", {}, false, false, {}});
         return known;
     }();
     return kKnown;
@@ -184,8 +184,47 @@ void setCurveOf(Operator& one, const DrawnCurve& curve) {
     one.settings = settings.dump();
 }
 
+namespace {
+
+SettingFormulas formulasOf(const Operator& one) {
+    const nlohmann::json json = nlohmann::json::parse(one.settings);
+    const auto found = json.find("formulas");
+    return found == json.end() ? SettingFormulas() : found->get<SettingFormulas>();
+}
+
+}  // namespace
+
+std::string formulaOf(const Operator& one, std::string_view field) {
+    const SettingFormulas formulas = formulasOf(one);
+    const auto found = formulas.find(field);
+    return found == formulas.end() ? std::string() : found->second;
+}
+
+Status setFormulaOf(Operator& one, std::string_view field, const std::string& formula) {
+    const StackOperator* const known = findStackOperator(one.op);
+    if (!known || std::ranges::find(known->formulaFields, field) == known->formulaFields.end())
+        return fail(fmt::format("'{}' of '{}' takes no formula", field, one.op));
+    if (!formula.empty()) {
+        if (const auto read = readSettingFormula(formula); !read) return tl::unexpected(read.error());
+    }
+    SettingFormulas formulas = formulasOf(one);
+    formulas.erase(std::string(field));
+    if (!formula.empty()) formulas.emplace(field, formula);
+    auto settings = nlohmann::ordered_json::parse(one.settings);
+    settings.erase("formulas");
+    if (!formulas.empty()) settings["formulas"] = formulas;
+    one.settings = settings.dump();
+    return {};
+}
+
+bool readsMap(const Operator& one, MaskMap map) {
+    return readsMap(maskOf(one), map) || std::ranges::count(mapsOf(formulasOf(one)), map) > 0;
+}
+
 bool readsMaps(const std::vector<Operator>& operators) {
-    return std::ranges::any_of(operators, [](const Operator& one) { return readsMaps(maskOf(one)); });
+    return std::ranges::any_of(operators, [](const Operator& one) {
+        return readsMaps(maskOf(one)) || !mapsOf(formulasOf(one)).empty();
+    });
 }
 
 std::uint32_t layerOf(const Operator& one) {
@@ -255,8 +294,8 @@ class StackRun {
     std::string keyOf(const Operator& one) const {
         const Version strokes =
             one.op == kSculpt ? groom_.pointAttributes.version(sculptAttribute(one.number)) : 0;
-        return fmt::format("{} {} {} {} {}", one.op, one.weight, strokes, one.settings,
-                           mapState(groom_, maskOf(one)));
+        return fmt::format("{} {} {} {} {} {}", one.op, one.weight, strokes, one.settings,
+                           mapState(groom_, maskOf(one)), formulaState(groom_, formulasOf(one)));
     }
 
     Result<AttributeData> apply(const Operator& one, const AttributeData& input) {

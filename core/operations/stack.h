@@ -21,7 +21,8 @@ struct StackOperator {
     std::string_view meaning;
     std::vector<FieldRow> fields;
     bool hasRegion;
-    bool hasCurve;  ///< one is drawn for it
+    bool hasCurve;                               ///< one is drawn for it
+    std::span<const char* const> formulaFields;  ///< names of the fields that may be formulas
 };
 const std::vector<StackOperator>& stackOperators();
 /// The one of that name, or null.
@@ -54,6 +55,14 @@ bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint
 Mask maskOf(const Operator& one);
 void setMaskOf(Operator& one, const Mask& mask);
 
+/// The formula of a setting, empty where it has none. The plain value stays beside it.
+std::string formulaOf(const Operator& one, std::string_view field);
+/// An empty text takes it away. Errors, and no change: a field that takes none, a formula that does not read.
+Status setFormulaOf(Operator& one, std::string_view field, const std::string& formula);
+
+/// Whether it reads what is painted there, by its mask or a formula.
+bool readsMap(const Operator& one, MaskMap map);
+
 /// The layer that an operator's region names, counted from 1; 0 where it reaches all.
 std::uint32_t layerOf(const Operator& one);
 /// Of an operator whose region names one.
@@ -84,7 +93,8 @@ inline constexpr std::size_t kWholeStack = std::numeric_limits<std::size_t>::max
 DrawnCurve curveOf(const Operator& one);
 void setCurveOf(Operator& one, const DrawnCurve& curve);
 
-/// Whether a mask of the stack shows what is painted on a map, so that it runs again where that changes.
+/// Whether a mask or formula of the stack shows what is painted on a map, so that it runs again where that
+/// changes.
 bool readsMaps(const std::vector<Operator>& operators);
 
 /// The positions that the first `count` operators make of the groom's base shape; the base shape itself where

@@ -25,6 +25,7 @@ constexpr Field<S> kFields[] = {
                     "stay. 0 straightens the whole strand"),
     clearanceField<&S::clearance>(),
 };
+constexpr const char* kFormulaFields[] = {"amount", "over"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
@@ -72,9 +73,11 @@ void straightenStrand(std::span<Vec3f> points, std::span<const float> lengths, f
 
 namespace {
 
-Result<std::size_t> straighten(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("straighten", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+Result<std::size_t> straighten(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("straighten", varied.base()); !status)
+        return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         straightenStrand(strand.points, strand.lengths, settings.over, settings.amount);
     });
 }
@@ -82,7 +85,8 @@ Result<std::size_t> straighten(Groom& groom, const S& settings, const Region& re
 }  // namespace
 
 Operation straightenOperation() {
-    return operation<S, straighten>("straighten", 62, "removes waves and curls and keeps the fall");
+    return variedOperation<S, straighten, kFormulaFields>("straighten", 62,
+                                                          "removes waves and curls and keeps the fall");
 }
 
 }  // namespace hairloom

@@ -22,6 +22,7 @@ constexpr Field<S> kFields[] = {
     field<&S::minLength>("minLength", "m", 0.001, 1, "minimum length that remains"),
     seedField<&S::seed>("seed", "random seed of the ragged ends"),
 };
+constexpr const char* kFormulaFields[] = {"maxLength", "raggedness", "minLength"};
 
 /// Arc length at which the strand first crosses the plane; infinite when it does not.
 float lengthToPlane(const StrandEdit& strand, const S& settings) {
@@ -46,9 +47,12 @@ std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
-Result<std::size_t> trim(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("trim", settings); !status) return tl::unexpected(status.error());
+namespace {
+
+Result<std::size_t> trimVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("trim", varied.base()); !status) return tl::unexpected(status.error());
     return editStrands(groom, region, {}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const float now = strand.totalLength();
         const float ragged = settings.raggedness * strand.random(settings.seed).uniform();
         const float cut = std::min(lengthToPlane(strand, settings), settings.maxLength);
@@ -58,8 +62,15 @@ Result<std::size_t> trim(Groom& groom, const S& settings, const Region& region) 
     });
 }
 
+}  // namespace
+
+Result<std::size_t> trim(Groom& groom, const S& settings, const Region& region) {
+    return trimVaried(groom, settings, region);
+}
+
 Operation trimOperation() {
-    return operation<S, trim>("trim", 80, "cuts strands by a plane or to a length, blunt or ragged");
+    return variedOperation<S, trimVaried, kFormulaFields>(
+        "trim", 80, "cuts strands by a plane or to a length, blunt or ragged");
 }
 
 }  // namespace hairloom

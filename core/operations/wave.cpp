@@ -35,15 +35,18 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "random seed of the variation"),
 };
+constexpr const char* kFormulaFields[] = {"amplitude",   "frequency",      "start",
+                                          "turnDegrees", "phaseVariation", "amplitudeVariation"};
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
 constexpr float kSegmentsPerWave = 4;
 
-Result<std::size_t> wave(Groom& groom, const S& settings, const Region& region) {
-    if (auto status = checkFields("wave", settings); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+Result<std::size_t> wave(Groom& groom, const Varied<S>& varied, const Region& region) {
+    if (auto status = checkFields("wave", varied.base()); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+        const S settings = varied.at(strand.index);
         const float total = strand.totalLength();
         if (!(total > 0)) return;
         Random random = strand.random(settings.seed);
@@ -67,7 +70,7 @@ Result<std::size_t> wave(Groom& groom, const S& settings, const Region& region) 
 }  // namespace
 
 Operation waveOperation() {
-    return operation<S, wave>("wave", 46, "adds flat waves to strands");
+    return variedOperation<S, wave, kFormulaFields>("wave", 46, "adds flat waves to strands");
 }
 
 }  // namespace hairloom

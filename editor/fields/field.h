@@ -14,6 +14,8 @@
 
 namespace hairloom::editor {
 
+class FormulaEdit;
+
 struct Field : FieldInfo {
     QString label;                             ///< "Wind speed"
     std::array<double, 3> defaultValue{};      ///< the default of each component
@@ -27,6 +29,9 @@ struct Field : FieldInfo {
 
     /// Lets a person point at the place that it holds; empty where it holds none.
     std::function<void()> pick;
+
+    /// Makes the control of its formula; empty where it takes none.
+    std::function<FormulaEdit*()> formula{};
 
     QStringList choiceLabels() const;
 };

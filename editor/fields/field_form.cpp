@@ -11,6 +11,7 @@
 
 #include "core/editing/settings_commands.h"
 #include "editor/fields/colour.h"
+#include "editor/fields/formula_edit.h"
 #include "editor/fields/number_box.h"
 #include "editor/fields/number_spin.h"
 #include "editor/fields/price_tag.h"
@@ -86,7 +87,7 @@ void FieldForm::addRow(const Field& field) {
         grid_->addWidget(control, row, 0, 1, 2);
     } else {
         grid_->addWidget(label, row, 0);
-        grid_->addWidget(control, row, 1);
+        grid_->addWidget(field.formula ? withFormula(field, control, row + 1) : control, row, 1);
     }
     grid_->addWidget(defaultValue, row, 2);
     if (prices_) grid_->addWidget(new PriceTag(*prices_, preferences_, field.name), row + 1, 1, 1, 2);
@@ -113,6 +114,46 @@ QWidget* FieldForm::pickButton(const Field& field) {
         tr("Activates the handles: click the head to place the point, or drag it in the viewport"));
     connect(button, &QPushButton::clicked, this, [&field] { field.pick(); });
     return button;
+}
+
+QWidget* FieldForm::withFormula(const Field& field, QWidget* number, int row) {
+    auto* both = new QWidget;
+    auto* layout = new QHBoxLayout(both);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(2);
+    auto* button = new QToolButton;
+    button->setObjectName(QString::fromUtf8(field.name) + "FormulaButton");
+    button->setText(QStringLiteral("ƒ"));
+    button->setCheckable(true);
+    button->setAutoRaise(true);
+    button->setToolTip(tr("Use a formula instead of the number: a value for each strand"));
+    button->setAccessibleName(tr("%1: formula").arg(field.label));
+    layout->addWidget(number, 1);
+    layout->addWidget(button);
+    FormulaEdit* const edit = field.formula();
+    edit->hide();
+    grid_->addWidget(edit, row, 0, 1, 3);
+    connect(button, &QToolButton::clicked, edit, [edit](bool on) {
+        edit->setVisible(on);
+        if (on) {
+            edit->begin();
+        } else {
+            edit->clear();
+        }
+    });
+    refreshers_.push_back([button, edit, number, was = false]() mutable {
+        const bool isSet = edit->isSet();
+        number->setEnabled(!isSet);
+        if (isSet == was) return;
+        was = isSet;
+        button->setChecked(isSet);
+        // One that was just emptied stays open for the next.
+        if (isSet || !edit->isAncestorOf(edit->window()->focusWidget()))
+            edit->setVisible(isSet);
+        else
+            button->setChecked(true);
+    });
+    return both;
 }
 
 Shown FieldForm::shownOf(const Field& field) const {

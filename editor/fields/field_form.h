@@ -29,6 +29,8 @@ class FieldForm : public QWidget {
   private:
     void addRow(const Field& field);
     QWidget* pickButton(const Field& field);
+    /// The number with a button for its formula, which is shown in the row below.
+    QWidget* withFormula(const Field& field, QWidget* number, int row);
     /// In the unit of the preferences.
     Shown shownOf(const Field& field) const;
     QWidget* makeNumber(const Field& field);

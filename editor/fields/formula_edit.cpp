@@ -11,28 +11,37 @@
 
 namespace hairloom::editor {
 
-FormulaEdit::FormulaEdit(QtDocument& document, std::size_t index, QWidget* parent)
+FormulaEdit::FormulaEdit(QtDocument& document, std::size_t index, const QString& field, QWidget* parent)
     : QWidget(parent),
       document_(document),
       index_(index),
       op_(document.groom().operators[index].op),
+      field_(field.toStdString()),
       edit_(new QLineEdit),
       problem_(new QLabel) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(4);
-    edit_->setObjectName("maskFormula");
+    const QString name = (field.isEmpty() ? QStringLiteral("mask") : field) + "Formula";
+    edit_->setObjectName(name);
     edit_->setMaxLength(static_cast<int>(Formula::kMostCharacters));
-    edit_->setPlaceholderText(tr("Formula, as 0.5 + 0.5*noise(u*20, v*20)"));
-    edit_->setAccessibleName(tr("Formula of the mask"));
-    edit_->setToolTip(tr(
-        "<p><b>Formula</b></p><p>Multiplies the mask; 0 to 1, empty is 1. Names: u, v (UV of the root), t (0 "
-        "root, 1 "
-        "tip), length (m), random (of the strand), x, y, z (of the root, m), density, dye, mask1 to mask4, "
-        "pi. "
-        "+ - * / % ^, comparisons, abs, floor, fract, sqrt, sin, cos, min, max, pow, clamp, mix, smoothstep, "
-        "noise, if(a, b, c).</p>"));
-    problem_->setObjectName("maskFormulaProblem");
+    edit_->setPlaceholderText(field.isEmpty() ? tr("Formula, as 0.5 + 0.5*noise(u*20, v*20)")
+                                              : tr("Formula, as 0.02*random + 0.1*length"));
+    edit_->setAccessibleName(field.isEmpty() ? tr("Formula of the mask")
+                                             : tr("Formula of %1").arg(labelOf(field)));
+    const QString names =
+        tr("u, v (UV of the root), length (m), random (of the strand), x, y, z (of the root, m), density, "
+           "dye, mask1 to mask4, pi. + - * / % ^, comparisons, abs, floor, fract, sqrt, sin, cos, min, max, "
+           "pow, clamp, mix, smoothstep, noise, if(a, b, c).");
+    edit_->setToolTip(
+        field.isEmpty()
+            ? tr("<p><b>Formula</b></p><p>Multiplies the mask; 0 to 1, empty is 1. Names: t (0 root, 1 tip), "
+                 "%1</p>")
+                  .arg(names)
+            : tr("<p><b>Formula</b></p><p>Replaces the number, one value for each strand; lengths in "
+                 "metres. Names: %1</p>")
+                  .arg(names));
+    problem_->setObjectName(name + "Problem");
     problem_->setWordWrap(true);
     problem_->setProperty("role", "problem");
     problem_->hide();
@@ -50,31 +59,51 @@ const Operator* FormulaEdit::shown() const {
     return index_ < operators.size() && operators[index_].op == op_ ? &operators[index_] : nullptr;
 }
 
-void FormulaEdit::refresh() {
+std::string FormulaEdit::kept() const {
     const Operator* one = shown();
-    if (!one || edit_->hasFocus()) return;
-    edit_->setText(QString::fromStdString(maskOf(*one).formula));
+    if (!one) return {};
+    return field_.empty() ? maskOf(*one).formula : formulaOf(*one, field_);
+}
+
+void FormulaEdit::refresh() {
+    if (!shown() || edit_->hasFocus()) return;
+    edit_->setText(QString::fromStdString(kept()));
     problem_->hide();
+}
+
+void FormulaEdit::clear() {
+    edit_->clear();
+    store();
+}
+
+Status FormulaEdit::put(Operator& one, const std::string& formula) const {
+    if (!field_.empty()) return setFormulaOf(one, field_, formula);
+    if (const auto read = Formula::read(formula); !formula.empty() && !read)
+        return tl::unexpected(read.error());
+    Mask mask = maskOf(one);
+    mask.formula = formula;
+    setMaskOf(one, mask);
+    return {};
+}
+
+void FormulaEdit::say(const Error& error) {
+    problem_->setText(errorText(error));
+    problem_->show();
 }
 
 void FormulaEdit::store() {
     const Operator* one = shown();
     if (!one) return;
-    Mask mask = maskOf(*one);
     const std::string typed = edit_->text().trimmed().toStdString();
     problem_->hide();
-    if (typed == mask.formula) return;
-    const auto say = [this](const Error& error) {
-        problem_->setText(errorText(error));
-        problem_->show();
-    };
-    if (const auto read = Formula::read(typed); !typed.empty() && !read) return say(read.error());
-    mask.formula = typed;
+    if (typed == kept()) return;
     Operator changed = *one;
-    setMaskOf(changed, mask);
-    auto made =
-        editing::setOperator(document_.editing().model(), index_, changed,
-                             tr("%1: formula").arg(labelOf(QString::fromStdString(op_))).toStdString());
+    if (const Status status = put(changed, typed); !status) return say(status.error());
+    const QString of =
+        field_.empty() ? tr("formula") : tr("formula of %1").arg(QString::fromStdString(field_));
+    auto made = editing::setOperator(
+        document_.editing().model(), index_, changed,
+        QStringLiteral("%1: %2").arg(labelOf(QString::fromStdString(op_)), of).toStdString());
     if (!made) return say(made.error());
     document_.perform(std::move(*made));
 }

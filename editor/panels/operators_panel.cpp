@@ -14,7 +14,6 @@
 #include <QVBoxLayout>
 #include <QWidgetAction>
 #include <algorithm>
-#include <map>
 
 #include "core/editing/document.h"
 #include "core/editing/mask_commands.h"
@@ -25,8 +24,8 @@
 #include "editor/fields/formula_edit.h"
 #include "editor/fields/image_button.h"
 #include "editor/fields/mask_ramp.h"
+#include "editor/panels/operator_kinds.h"
 #include "editor/panels/panel.h"
-#include "editor/style/icons.h"
 #include "editor/tools/curve_tool.h"
 #include "editor/tools/handle_tool.h"
 #include "editor/viewport/strand_preview.h"
@@ -107,41 +106,6 @@ class OperatorsPanel : public QWidget {
         return text;
     }
 
-    /// What artists look for an operator under, in the order of a day's work.
-    static QString kindOf(std::string_view name) {
-        static const std::vector<std::pair<QString, std::vector<std::string_view>>> kinds{
-            {tr("Direction"), {"flow", "part", "attract", "shrinkwrap", "drape", "mirror"}},
-            {tr("Length"), {"set_length", "trim"}},
-            {tr("Locks"), {"clump", "braid", "bun"}},
-            {tr("Texture"), {"curl", "wave", "noise", "frizz", "flyaways"}},
-            {tr("Shape"), {"smooth", "straighten", "bend", "collide", "sculpt"}}};
-        for (const auto& [kind, names] : kinds) {
-            if (std::ranges::find(names, name) != names.end()) return kind;
-        }
-        return tr("Others");
-    }
-    static std::vector<StackOperator> sortedByKind() {
-        std::vector<StackOperator> sorted = stackOperators();
-        const QStringList order{tr("Direction"), tr("Length"), tr("Locks"),
-                                tr("Texture"),   tr("Shape"),  tr("Others")};
-        std::ranges::stable_sort(sorted, {},
-                                 [&](const StackOperator& one) { return order.indexOf(kindOf(one.name)); });
-        return sorted;
-    }
-    /// That of the brush that does alike, where there is one.
-    static QIcon iconOf(std::string_view name) {
-        static const std::map<std::string_view, const char*> icons{
-            {"flow", "comb"},         {"part", "part"},     {"attract", "curve"},
-            {"shrinkwrap", "shrink"}, {"drape", "grab"},    {"mirror", "mirror"},
-            {"set_length", "length"}, {"trim", "cut"},      {"clump", "clump"},
-            {"braid", "twist"},       {"bun", "sphere"},    {"curl", "curl"},
-            {"wave", "wind"},         {"noise", "noise"},   {"frizz", "noise"},
-            {"flyaways", "puff"},     {"smooth", "smooth"}, {"straighten", "straighten"},
-            {"bend", "pinch"},        {"collide", "frame"}, {"sculpt", "brush"}};
-        const auto found = icons.find(name);
-        return icon(found == icons.end() ? "brush" : found->second);
-    }
-
     QWidget* makeAddButton() {
         auto* add = new QPushButton(tr("Add"));
         add->setObjectName("operatorAdd");
@@ -149,10 +113,10 @@ class OperatorsPanel : public QWidget {
         auto* menu = new QMenu(add);
         menu->setToolTipsVisible(true);
         QString last;
-        for (const StackOperator& known : sortedByKind()) {
+        for (const StackOperator& known : operatorsByKind()) {
             const std::string name(known.name);
-            if (const QString kind = kindOf(name); kind != last) menu->addSection(last = kind);
-            QAction* action = menu->addAction(iconOf(name), labelOf(newOperator(name)));
+            if (const QString kind = operatorKind(name); kind != last) menu->addSection(last = kind);
+            QAction* action = menu->addAction(operatorIcon(name), labelOf(newOperator(name)));
             action->setToolTip(sentence(known.meaning));
             connect(action, &QAction::triggered, this, [this, name] {
                 const std::size_t at = chosen() == kNone ? operators().size() : chosen() + 1;
@@ -391,7 +355,8 @@ class OperatorsPanel : public QWidget {
         if (findStackOperator(op)->hasCurve) settings_->addWidget(curveRow(index));
         settings_->addWidget(new FieldForm(
             document_, preferences_,
-            pickable(operatorFields(document_.groom(), index, failed), index, SettingsPart::own)));
+            withFormulas(pickable(operatorFields(document_.groom(), index, failed), index, SettingsPart::own),
+                         index)));
         settings_->addWidget(
             collapsible(tr("Mask"), maskForm(index, failed), !maskOf(operators()[index]).isWhole()));
         if (!findStackOperator(op)->hasRegion) return;
@@ -415,6 +380,18 @@ class OperatorsPanel : public QWidget {
         return fields;
     }
 
+    std::vector<Field> withFormulas(std::vector<Field> fields, std::size_t index) {
+        const auto takers = findStackOperator(operators()[index].op)->formulaFields;
+        for (Field& field : fields) {
+            const std::string_view name = field.name;
+            if (std::ranges::find(takers, name) == takers.end()) continue;
+            field.formula = [this, index, named = QString::fromUtf8(field.name)] {
+                return new FormulaEdit(document_, index, named);
+            };
+        }
+        return fields;
+    }
+
     QWidget* maskForm(std::size_t index, const SayError& failed) {
         auto* form = new QWidget;
         auto* rows = new QVBoxLayout(form);
@@ -426,6 +403,11 @@ class OperatorsPanel : public QWidget {
             tr("Fills the painted mask of the operator with the values of a PNG at the root UVs. If the "
                "operator has no mask, it gets the first unused one"),
             [this, index](const MaskImage& image) { return takeMask(index, image); }, failed));
+        rows->addWidget(imageButton(
+            "regionsImage", tr("Regions from image…"),
+            tr("Fills an unused painted mask for each colour of a PNG at the root UVs. Operators then choose "
+               "a region by its mask"),
+            [this](const MaskImage& image) { return takeRegions(image); }, failed));
         rows->addWidget(new MaskRamp(document_, index, failed));
         rows->addWidget(new FormulaEdit(document_, index));
         return form;
@@ -437,6 +419,27 @@ class OperatorsPanel : public QWidget {
         auto step = editing::fillMaskOf(model(), index, *values);
         if (!step) return tl::unexpected(step.error());
         document_.perform(std::move(*step));
+        return {};
+    }
+
+    Status takeRegions(const MaskImage& image) {
+        const auto regions = regionsAtRoots(image, document_.groom());
+        if (!regions) return tl::unexpected(regions.error());
+        const auto numbers = editing::masksFor(document_.groom(), regions->size());
+        if (!numbers) return tl::unexpected(numbers.error());
+        std::vector<std::vector<float>> values;
+        QStringList told;
+        for (std::size_t i = 0; i < regions->size(); ++i) {
+            const ColourRegion& region = (*regions)[i];
+            values.push_back(region.shares);
+            told += tr("mask %1: %2 (%L3 strands)")
+                        .arg((*numbers)[i])
+                        .arg(QString::fromStdString(region.name))
+                        .arg(region.strands);
+        }
+        document_.perform(
+            editing::fillMasks(model(), tr("Regions from image").toStdString(), *numbers, values));
+        messages_.say(tr("Regions from image: %1").arg(told.join(QStringLiteral(", "))));
         return {};
     }
 

@@ -6,15 +6,19 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
 
 #include "core/editing/document.h"
 #include "core/editing/place.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/surface_disc.h"
+#include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
+#include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
@@ -145,7 +149,12 @@ class PlacePanel : public QWidget {
   public:
     PlacePanel(QtDocument& document, const Preferences& preferences, const Prices& prices, Tasks& tasks,
                Messages& messages, Viewport& viewport)
-        : document_(document), tasks_(tasks), messages_(messages), viewport_(viewport), note_(new QLabel) {
+        : document_(document),
+          tasks_(tasks),
+          messages_(messages),
+          viewport_(viewport),
+          count_(new QLabel),
+          note_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -161,6 +170,10 @@ class PlacePanel : public QWidget {
         row->addWidget(preview);
         row->addWidget(place);
         layout->addLayout(row);
+        count_->setObjectName("placeCount");
+        count_->setWordWrap(true);
+        count_->setProperty("role", "dim");
+        layout->addWidget(count_);
         layout->addWidget(imageButton(
             "densityImage", tr("Density from image…"),
             tr("Reads the root density from a PNG at the UVs of the head's vertices. The next Place hair "
@@ -187,7 +200,11 @@ class PlacePanel : public QWidget {
         });
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
             if (contains(parts, editing::Part::Placement | editing::kScalpParts)) refresh();
+            if (contains(parts,
+                         editing::Part::Placement | editing::kScalpParts | editing::Part::Interpolation))
+                foretell();
         });
+        foretell();
         viewport_.addMarks([this](Marks& marks) {
             const Groom& groom = document_.groom();
             if (!groom.scalp) return;
@@ -198,6 +215,26 @@ class PlacePanel : public QWidget {
     }
 
   private:
+    /// What the next *Place hair* makes, by area.
+    void foretell() {
+        const Groom& groom = document_.groom();
+        count_->clear();
+        if (!groom.scalp || groom.scalpSelection.empty()) return;
+        const double area_cm2 = 1e4 * maskedArea(*groom.scalp, groom.scalpSelection, groom.scalpDensity);
+        const double density = static_cast<double>(groom.placement.densityPerCm2);
+        const double strands = density > 0 ? density * area_cm2 : groom.placement.count;
+        const auto whole = [](double number) { return static_cast<qlonglong>(std::llround(number)); };
+        QString text = tr("Places about %L1 strands on %L2 cm²").arg(whole(strands)).arg(whole(area_cm2));
+        if (area_cm2 > 0) text += tr(", %1 per cm²").arg(numberLocale().toString(strands / area_cm2, 'f', 1));
+        if (const std::uint32_t each = groom.interpolation.followPerGuide; each > 0)
+            text +=
+                tr(". With %L1 follow hairs each: %L2 hairs, %3 per cm²")
+                    .arg(each)
+                    .arg(whole(strands * (each + 1.0)))
+                    .arg(numberLocale().toString(strands * (each + 1.0) / std::max(area_cm2, 1e-9), 'f', 0));
+        count_->setText(text);
+    }
+
     void refresh() {
         roots_.clear();
         note_->clear();
@@ -238,6 +275,7 @@ class PlacePanel : public QWidget {
     Tasks& tasks_;
     Messages& messages_;
     Viewport& viewport_;
+    QLabel* count_;
     QLabel* note_;
     Roots roots_;
     bool previewing_ = false;

@@ -2,8 +2,11 @@
 // Operators on the command line: copied between projects, masked, alone; guides and shapes that are taken.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "core/groom/file/project_file.h"
+#include "core/operations/painted_maps.h"
 #include "core/render/png.h"
 #include "tests/cli/command.h"
 
@@ -70,6 +73,59 @@ TEST_F(OperatorsCli, AnImageBecomesAMaskAndADensity) {
     }
     EXPECT_THAT(run("stack filled.hairloom" + fill).errors, HasSubstr("all 4 masks are in use"));
     EXPECT_EQ(runJson("stack filled.hairloom --mask 3" + fill)["mask"], 3);
+}
+
+TEST_F(OperatorsCli, EachColourOfAnImageBecomesAMask) {
+    // Stripes of four colours, the last of them black; each fourth pixel of the red ones is a shade of it.
+    const std::uint8_t stripes[4][3] = {{255, 0, 0}, {0, 0, 255}, {0x12, 0x80, 0x40}, {0, 0, 0}};
+    render::Image image{64, 64, {}};
+    for (int i = 0; i < 64 * 64; ++i) {
+        const int stripe = i % 64 / 4 % 4;
+        for (int c = 0; c < 3; ++c) {
+            const std::uint8_t value = stripes[stripe][c];
+            image.rgba.push_back(i % 64 % 16 == 0 && c == 0 ? static_cast<std::uint8_t>(155 + i / 64)
+                                                            : value);
+        }
+        image.rgba.push_back(255);
+    }
+    ASSERT_TRUE(render::writePng(folder / "regions.png", image));
+    const std::string fill = " --regions-image regions.png -o regions.hairloom --force";
+    const auto filled = runJson("stack hair.hairloom" + fill)["regions"];
+    ASSERT_EQ(filled.size(), 3u) << filled;
+    const char* const names[] = {"red", "#128040", "blue"};
+    int strands = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(filled[i]["colour"], names[i]);
+        EXPECT_EQ(filled[i]["mask"], i + 1);
+        EXPECT_GT(filled[i]["strands"], 0);
+        strands += filled[i]["strands"].get<int>();
+    }
+    const int all = runJson("info hair.hairloom")["strands"];
+    EXPECT_LT(strands, all) << "some roots are on black";
+    const auto groom = loadProject(folder / "regions.hairloom");
+    ASSERT_TRUE(groom) << groom.error().message();
+    std::vector<int> in(groom->strandCount(), 0);
+    for (const std::uint32_t number : {1u, 2u, 3u}) {
+        const auto mask = groom->strandAttributes.view<float>(maskAttribute(number));
+        ASSERT_EQ(mask.size(), in.size());
+        for (std::size_t s = 0; s < in.size(); ++s) in[s] += mask[s] == 1.0f;
+        EXPECT_EQ(std::ranges::count(mask, 1.0f), filled[number - 1]["strands"].get<int>());
+    }
+    EXPECT_EQ(std::ranges::max(in), 1) << "no strand is in two regions";
+
+    EXPECT_THAT(run("stack regions.hairloom" + fill).errors,
+                HasSubstr("regions.png: 3 regions need a mask each, and 1 of 4 are free"));
+    EXPECT_EQ(runJson("stack regions.hairloom --mask 2" + fill)["regions"][2]["mask"], 4);
+    EXPECT_THAT(run("stack regions.hairloom --mask 3" + fill).errors, HasSubstr("2 of 4 begin at 3"));
+    EXPECT_EQ(run("stack hair.hairloom --mask-image regions.png" + fill).exitCode, 2);
+    for (std::size_t i = 0; i < image.rgba.size(); ++i)
+        image.rgba[i] = static_cast<std::uint8_t>(i * 37 / 11);
+    ASSERT_TRUE(render::writePng(folder / "regions.png", image));
+    EXPECT_THAT(run("stack hair.hairloom" + fill).errors, HasSubstr("expected regions of one colour each"));
+    std::ranges::fill(image.rgba, std::uint8_t{0});
+    ASSERT_TRUE(render::writePng(folder / "regions.png", image));
+    EXPECT_THAT(run("stack hair.hairloom" + fill).errors,
+                HasSubstr("no regions: it is black or transparent"));
 }
 
 TEST_F(OperatorsCli, AHeadIsTurnedAndTakenWithoutHelpers) {

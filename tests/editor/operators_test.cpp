@@ -6,11 +6,14 @@
 #include <QGuiApplication>
 #include <QImage>
 #include <QInputDialog>
+#include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QMenu>
 #include <QPushButton>
 #include <QToolButton>
 #include <QWidgetAction>
+#include <algorithm>
 #include <set>
 
 #include "core/editing/selection_commands.h"
@@ -347,6 +350,85 @@ TEST_F(OperatorsTest, AnotherDocumentShowsItsOwn) {
     openSampleHair("long");
     EXPECT_EQ(list().count(), 12);
     EXPECT_EQ(rows().at(6), "Curl");
+}
+
+TEST_F(OperatorsTest, EachColourOfAnImageBecomesAMaskInOneStep) {
+    QImage image(64, 64, QImage::Format_RGB32);
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x)
+            image.setPixel(x, y, x / 4 % 2 == 1 ? qRgb(0, 0, 255) : qRgb(255, 128, 0));
+    }
+    ASSERT_TRUE(image.save(inFolder("regions.png")));
+    choose(kClump);
+    const auto before = hash();
+    onceAskedForAFile(inFolder("regions.png"));
+    window->panel("operators")->findChild<QPushButton*>("regionsImage")->click();
+    EXPECT_TRUE(window->statusLine().message().contains("mask 3: orange ("))
+        << window->statusLine().message().toStdString();
+    EXPECT_TRUE(window->statusLine().message().contains("mask 4: blue (")) << "the sample uses two";
+    const auto orange = groom().strandAttributes.view<float>("mask.3");
+    const auto blue = groom().strandAttributes.view<float>("mask.4");
+    ASSERT_EQ(orange.size(), groom().strandCount());
+    ASSERT_EQ(blue.size(), groom().strandCount());
+    for (std::size_t s = 0; s < blue.size(); ++s) ASSERT_EQ(orange[s] + blue[s], 1.0f) << s;
+    EXPECT_GT(std::ranges::count(blue, 1.0f), 0);
+    EXPECT_GT(std::ranges::count(orange, 1.0f), 0);
+    EXPECT_EQ(document().stepCount(), 1);
+    const auto filled = hash();
+    onceAskedForAFile(inFolder("regions.png"));
+    window->panel("operators")->findChild<QPushButton*>("regionsImage")->click();
+    EXPECT_TRUE(window->statusLine().message().contains("0 of 4 are free"))
+        << window->statusLine().message().toStdString();
+    EXPECT_EQ(hash(), filled) << "what is painted stays";
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(OperatorsTest, ANumberBecomesAFormulaAndBack) {
+    choose(kClump);
+    const auto before = hash();
+    auto* button = window->panel("operators")->findChild<QToolButton*>("strengthFormulaButton");
+    auto* edit = window->panel("operators")->findChild<QLineEdit*>("strengthFormula");
+    auto* problem = window->panel("operators")->findChild<QLabel*>("strengthFormulaProblem");
+    ASSERT_TRUE(button && edit && problem);
+    EXPECT_FALSE(window->panel("operators")->findChild<QToolButton*>("spacingFormulaButton"))
+        << "one number says where all clumps are";
+    EXPECT_FALSE(edit->isVisible());
+    QTest::mouseClick(button, Qt::LeftButton);
+    ASSERT_TRUE(edit->isVisible());
+    const auto type = [&](const QString& text) {
+        edit->setFocus();
+        edit->setText(text);
+        QTest::keyClick(edit, Qt::Key_Return);
+        QCoreApplication::processEvents();
+    };
+    type("0.2 + 0.8*random");
+    EXPECT_FALSE(problem->isVisible()) << problem->text().toStdString();
+    EXPECT_EQ(formulaOf(groom().operators[kClump], "strength"), "0.2 + 0.8*random");
+    EXPECT_FALSE(number("strength")->isEnabled());
+    EXPECT_NE(hash(), before);
+    expectEvaluated();
+    const auto formed = hash();
+    for (const auto& [wrong, said] :
+         std::initializer_list<std::pair<const char*, const char*>>{{"1/0", "no number"},
+                                                                    {"3*random", "expected 0 to 1"},
+                                                                    {"t", "along the strand"},
+                                                                    {"strength", "not known"},
+                                                                    {"noise(", "ends"}}) {
+        type(wrong);
+        EXPECT_TRUE(problem->isVisible()) << wrong;
+        EXPECT_TRUE(problem->text().contains(said)) << problem->text().toStdString();
+        EXPECT_EQ(hash(), formed) << "the last good one stays";
+    }
+    EXPECT_EQ(document().stepCount(), 1);
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(number("strength")->isEnabled());
+    trigger("edit.redo");
+    EXPECT_EQ(hash(), formed);
+    QTest::mouseClick(button, Qt::LeftButton);
+    EXPECT_EQ(hash(), before) << "the number stayed beside it";
+    EXPECT_FALSE(edit->isVisible());
 }
 
 }  // namespace

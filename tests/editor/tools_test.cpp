@@ -380,6 +380,12 @@ TEST_F(ToolsTest, RootsArePreviewedAndFollowTheSettings) {
     change("Count", fewer);
     finishWork();
     EXPECT_TRUE(noted("777 roots"));
+    EXPECT_TRUE(find<QLabel>("placeCount")->text().startsWith("Places about 777 strands on "));
+    Groom many = groom();
+    many.interpolation.followPerGuide = 9;
+    change("Follow hairs", many);
+    EXPECT_TRUE(noted("With 9 follow hairs each: 7")) << find<QLabel>("placeCount")->text().toStdString();
+    trigger("edit.undo");
     preview->click();
     EXPECT_FALSE(noted("777 roots"));
     trigger("edit.undo");

@@ -104,6 +104,8 @@ std::vector<Tested> testedOperations() {
     return {
         tested("Flow", flow, parted),
         tested("Clump", clump),
+        scripted("ClumpsInClumps", R"({"op": "clump", "levels": 3, "noise": 0.004, "noise3": 0.001})"),
+        scripted("Formulas", R"({"op": "noise", "formulas": {"amplitude": "0.002 + 0.003*random"}})"),
         tested("Noise", noise),
         tested("Curl", curl),
         tested("Smooth", smooth),

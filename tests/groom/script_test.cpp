@@ -55,7 +55,8 @@ TEST(Script, NamesWhatIsWrongAndWhatIsAllowed) {
                 HasSubstr("/operations/0/op is \"comb\"; expected one of set_length, flow, part"));
     EXPECT_THAT(
         parseError(oneStep(R"({"op": "curl", "raduis": 1})")),
-        HasSubstr("/operations/0/raduis is not known to this program; expected only clearance, frequency"));
+        HasSubstr("/operations/0/raduis is not known to this program; expected only clearance, formulas, "
+                  "frequency, mask"));
     EXPECT_THAT(parseError(oneStep(R"({"op": "curl", "radius": 1})")),
                 HasSubstr("/operations/0/radius is 1; expected a number from 0 to 0.1 m"));
     EXPECT_THAT(parseError(oneStep(R"({"op": "smooth", "passes": 1.5})")),
