@@ -51,6 +51,7 @@ class RodStrip {
           numbers_(context.numbers.as<RodNumbers>()),
           lane_(lane),
           points_(reinterpret_cast<RodPoint*>(lanes.solver)),
+          planes_(reinterpret_cast<BodyPlane*>(points_ + block.points)),
           first_(block.firstFree - 1),
           segments_(block.points - 1) {
         openStep();
@@ -58,6 +59,11 @@ class RodStrip {
 
     void run() {
         kept_ = hn::Not(noLane());
+        if constexpr (kContacts) {
+            if (context_.body) {
+                for (std::uint32_t j = first_; j < segments_; ++j) forgetPlane(planes_[j]);
+            }
+        }
         predict();
         const auto worse =
             objective_ > hn::MulAdd(startObjective_, all(static_cast<float>(HAIRLOOM_ROD_PREDICTION_SHARE)),
@@ -307,7 +313,7 @@ class RodStrip {
         const RodNode node = nodeOf(point, point.displacement, tangent, position, p);
         point.contact = noContact();
         auto near = noLane();
-        forEachShape(rootPosition(), node, at(p), [&](const RodTouch& touch, RodMask here) {
+        forEachShape(rootPosition(), node, p, hn::Not(noLane()), [&](const RodTouch& touch, RodMask here) {
             near = either(near, here);
             press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, point.contact);
         });
@@ -316,25 +322,44 @@ class RodStrip {
         point.near = hn::IfThenElseZero(near, all(1.0f));
     }
 
-    /// As forEachTouch(), of spheres and the body; `i` is where the node stands in planes.
+    /// As forEachTouch(), of spheres for lanes that are `near` some, and of the body; `p`: the node's number.
     template <class Visit>
-    void forEachShape(V3 root, const RodNode& node, std::size_t i, Visit&& visit) const {
-        forEachTouch(lanes_, root, node, context_, visit);
-        if (context_.body) touchBody(*context_.body, root, node, block_, i, context_.index, visit);
+    void forEachShape(V3 root, const RodNode& node, std::uint32_t p, RodMask near, Visit&& visit) {
+        if (!hn::AllFalse(D(), near)) forEachTouch(lanes_, root, node, context_, visit);
+        if (context_.body)
+            touchBody(*context_.body, root, node, block_, at(p), context_.index, planes_[p - 1], visit);
     }
 
-    /// Calls visit(point, node, i, near) for the outer node of each segment where the step has led.
+    /// Lanes whose outer node of segment j is near a shape, or has come there since it was last seen.
+    RodMask mayTouch(std::uint32_t j) const {
+        const RodPoint& point = points_[j];
+        const auto near = point.near > hn::Zero(D());
+        if (!context_.body) return near;
+        const V3 x = point.newDisplacement - planes_[j].moved;
+        const V room = hn::IfThenElseZero(planes_[j].room > hn::Zero(D()), planes_[j].room);
+        return either(near, dot(x, x) > room * room);
+    }
+    bool anyMayTouch() const {
+        if (!hn::AllFalse(D(), near_)) return true;
+        if (!context_.body) return false;
+        auto any = noLane();
+        for (std::uint32_t j = first_; j < segments_; ++j) any = either(any, mayTouch(j));
+        return !hn::AllFalse(D(), any);
+    }
+
+    /// Calls visit(point, node, p, lanes) for the outer node of each segment where the step has led, for
+    /// lanes that may touch there.
     template <class Visit>
-    void forEachNode(Visit&& visit) const {
+    void forEachNode(Visit&& visit) {
         V3 position = zero3();
         if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
         for (std::uint32_t j = first_; j < segments_; ++j) {
             RodPoint& point = points_[j];
             const V3 tangent = rodRotate(loadRotation(rod_.rotation, at(j)), restTangent(j));
             position = mad3(tangent, lengthOf(j), position);
-            const auto near = point.near > hn::Zero(D());
-            if (!hn::AllFalse(D(), near))
-                visit(point, nodeOf(point, point.newDisplacement, tangent, position, j + 1), at(j + 1), near);
+            const auto lanes = mayTouch(j);
+            if (!hn::AllFalse(D(), lanes))
+                visit(point, nodeOf(point, point.newDisplacement, tangent, position, j + 1), j + 1, lanes);
         }
     }
 
@@ -342,26 +367,27 @@ class RodStrip {
     /// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
     /// false: nowhere.
     bool lookAgain() {
-        if (HWY_LIKELY(hn::AllFalse(D(), near_))) return false;
+        if (HWY_LIKELY(!anyMayTouch())) return false;
         const V3 root = rootPosition();
         const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
         auto wrong = noLane();
-        forEachNode([&](const RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
+        forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
+            point.near = choose(lanes, all(1.0f), point.near);
             const auto held = point.contact.touching > hn::Zero(D());
             const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
             auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
-            forEachShape(root, node, i, [&](const RodTouch& touch, RodMask) {
+            forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
                 inside = either(inside, touch.depth > reach);
                 lifted = hn::AndNot(rodHolds(touch, reach), lifted);
             });
-            wrong = either(wrong, both(near, either(lifted, hn::AndNot(held, inside))));
+            wrong = either(wrong, both(lanes, either(lifted, hn::AndNot(held, inside))));
         });
         if (hn::AllFalse(D(), wrong)) return false;
-        forEachNode([&](RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
+        forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
             const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
             RodContact found = noContact();
-            forEachShape(root, node, i, [&](const RodTouch& touch, RodMask) {
-                press(touch, both(near, rodHolds(touch, slack)), node, found);
+            forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
+                press(touch, both(lanes, rodHolds(touch, slack)), node, found);
             });
             point.contact = rodChosen(wrong, found, point.contact);
         });
@@ -545,6 +571,7 @@ class RodStrip {
     RodNumbers numbers_;
     std::uint32_t lane_;
     RodPoint* points_;
+    BodyPlane* planes_;  ///< of outer nodes
     std::uint32_t first_, segments_;
     V blend_, step_, inverseStep_;
     V velocityAhead_;          ///< share of the last change of velocity that is expected again

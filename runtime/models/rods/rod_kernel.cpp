@@ -16,7 +16,7 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 RodKernel rodKernelOfTarget() {
-    return {stepRods, sizeof(RodPoint) / sizeof(float)};
+    return {stepRods, (sizeof(RodPoint) + sizeof(BodyPlane)) / sizeof(float)};
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
