@@ -10,6 +10,8 @@
 // After foreach_target.h, as Highway asks.
 #include "hwy/highway.h"
 #include "models/rods/rod-inl.h"
+#include "models/rods/rod_finish-inl.h"
+#include "models/rods/rod_look-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
