@@ -44,7 +44,7 @@ struct CellPlace {
 };
 
 /// `cells` from the first corner of the table; within its size.
-CellPlace placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
+inline CellPlace placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
     const auto along = [](float at, std::uint32_t size) {
         return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), size - 1);
     };
@@ -85,6 +85,11 @@ BonePose blendOf(const BonePose& a, const BonePose& b, float weight) {
 }
 constexpr BonePose kNothing{{}, {}, {}, {}};
 
+/// Of a gradient at rest, by what takes places from the world to there.
+Float3 gradientBack(const BonePose& inverse, Float3 g) {
+    return {dot(inverse.x, g), dot(inverse.y, g), dot(inverse.z, g)};
+}
+
 float volumeOf(const BonePose& pose) {
     return dot(pose.x, cross(pose.y, pose.z));
 }
@@ -108,6 +113,13 @@ float distanceTo(const BodyField::Box& box, Float3 p) {
     const auto beside = [](float at, float low, float high) { return std::max({low - at, at - high, 0.0f}); };
     return length(Float3{beside(p.x, box.low.x, box.high.x), beside(p.y, box.low.y, box.high.y),
                          beside(p.z, box.low.z, box.high.z)});
+}
+
+/// Metres at rest that what a bone carries is away at least. Skin between two bones may be closer than it was
+/// at rest, but hardly by half.
+float freeOfBone(const BodyField& field, std::size_t bone, Float3 point_ss) {
+    const float beside = field.boxes.empty() ? 0.0f : distanceTo(field.boxes[bone], point_ss);
+    return std::max(beside, 0.5f * field.freeAround(point_ss));
 }
 
 bool isIn(const BodyField::Box& box, Float3 p) {
@@ -218,9 +230,10 @@ float BodyField::freeAround(Float3 point_ss) const {
     return std::max(unit * static_cast<float>(there) - kFarthest * cell, 0.0f);
 }
 
+/// What takes places near one at rest to the world.
 struct PosedBody::Map {
     BonePose pose;
-    bool flat;
+    const BonePose* inverse;  ///< where it is known; it is not flat then
 };
 
 void PosedBody::take(const BodyField& field, std::span<const BonePose> pose) {
@@ -230,7 +243,9 @@ void PosedBody::take(const BodyField& field, std::span<const BonePose> pose) {
     usable_.clear();
     inverse_.clear();
     palette_.clear();
-    const std::size_t bones = std::max<std::size_t>(field.bones.size(), 1);
+    // Bones that all move alike move a body as a whole, which is looked up for a third of the price.
+    const bool alike = std::all_of(pose.begin(), pose.end(), [&](const BonePose& b) { return b == pose[0]; });
+    const std::size_t bones = alike ? 1 : std::max<std::size_t>(field.bones.size(), 1);
     for (std::size_t b = 0; b < bones; ++b) {
         const BonePose& own = pose[std::min(b, pose.size() - 1)];
         const bool flat = isFlatPose(own);
@@ -240,6 +255,11 @@ void PosedBody::take(const BodyField& field, std::span<const BonePose> pose) {
         if (!flat) least_ = std::min({least_, length(own.x), length(own.y), length(own.z)});
     }
     if (!std::isfinite(least_)) least_ = 1;
+    if (alike) {
+        flattened_ *= static_cast<std::uint32_t>(std::max<std::size_t>(field.bones.size(), 1));
+        palette_.push_back(flattened_ > 0 && !field.bones.empty() ? BonePose{} : pose[0]);
+        return;
+    }
     for (const BodyField::Skin& skin : field.palette) {
         float sum = 0;
         BonePose blended = kNothing;
@@ -251,25 +271,29 @@ void PosedBody::take(const BodyField& field, std::span<const BonePose> pose) {
             blended = blendOf(blended, pose[bone], weight);
             sum += weight;
         }
-        palette_.push_back(sum > 0               ? blendOf(kNothing, blended, 1 / sum)
-                           : field.bones.empty() ? pose[0]
-                                                 : BonePose{});
+        palette_.push_back(sum > 0 ? blendOf(kNothing, blended, 1 / sum) : BonePose{});
+        // Behind those of bones. What is flat has the inverse that takes nothing anywhere.
+        inverse_.push_back(isFlatPose(palette_.back()) ? kNothing : inverseOf(palette_.back()));
     }
 }
 
 PosedBody::Map PosedBody::mapAt(Float3 point_ss) const {
+    if (isWhole()) return {palette_[0], inverse_.data()};
     const BodyField& field = *field_;
     const Float3 cells = (point_ss - field.low_ss) * (1 / field.cell);
     const CellPlace place = placeAt(cells, field.size[0], field.size[1], field.size[2]);
     const std::size_t row = field.size[0] + 1, layer = row * (field.size[1] + 1);
     const auto skins = cornersOf(field.skins.data() + cornerIndex(field, place), row, layer);
-    if (std::all_of(skins.begin(), skins.end(), [&](std::uint16_t skin) { return skin == skins[0]; }))
-        return {palette_[skins[0]], false};
+    bool same = true;
+    for (const std::uint16_t skin : skins) same = same && skin == skins[0];
+    if (same) {
+        const BonePose& inverse = inverse_[usable_.size() + skins[0]];
+        return {palette_[skins[0]], inverse == kNothing ? nullptr : &inverse};
+    }
     const auto weights = place.in.weights();
-    Map map{kNothing, false};
+    Map map{kNothing, nullptr};
     for (std::size_t i = 0; i < kCellCorners; ++i)
         map.pose = blendOf(map.pose, palette_[skins[i]], weights[i]);
-    map.flat = isFlatPose(map.pose);
     return map;
 }
 
@@ -279,13 +303,10 @@ PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
     const Float3 rest = inverse_[0].apply(point_ws);
     const BodyField::Sample sample = field_->at(rest);
     if (!std::isfinite(sample.distance)) return nothing;
-    const BonePose& inverse = inverse_[0];
-    const Float3 g = sample.gradient;
-    // The transposed inverse.
-    const Float3 gradient{dot(inverse.x, g), dot(inverse.y, g), dot(inverse.z, g)};
+    const Float3 gradient = gradientBack(inverse_[0], sample.gradient);
     const float slope = length(gradient);
     if (!(slope > kFlatSlope)) return nothing;
-    return {sample.distance * (length(g) / slope), gradient * (1 / slope), rest};
+    return {sample.distance * (length(sample.gradient) / slope), gradient * (1 / slope), rest};
 }
 
 float PosedBody::freeAround(Float3 point_ws) const {
@@ -294,9 +315,7 @@ float PosedBody::freeAround(Float3 point_ws) const {
         if (usable_[b] == 0) continue;
         const Float3 rest = inverse_[b].apply(point_ws);
         if (isWhole()) return least_ * field_->freeAround(rest);
-        const float beside = field_->boxes.empty() ? 0.0f : distanceTo(field_->boxes[b], rest);
-        // Skin between two bones may be closer than it was at rest, but hardly by half.
-        least = std::min(least, least_ * std::max(beside, 0.5f * field_->freeAround(rest)));
+        least = std::min(least, least_ * freeOfBone(*field_, b, rest));
     }
     return least;
 }
@@ -311,20 +330,24 @@ PosedBody::Contact PosedBody::at(Float3 point_ws) const {
         if (usable_[b] == 0) continue;
         Float3 rest = inverse_[b].apply(point_ws);
         if (!field.boxes.empty() && !isIn(field.boxes[b], rest)) continue;
+        // What one bone has shown is nearer than anything that another carries.
+        if (std::isfinite(nearest.distance) && least_ * freeOfBone(field, b, rest) > nearest.distance)
+            continue;
         // Where skin of several bones takes a place from (inverse skinning, by repeated substitution).
         Map map{};
         float off = kInfinite;
         for (int round = 0; round < kRounds && off > kSettled; ++round) {
             map = mapAt(rest);
-            if (map.flat) break;
-            const Float3 next = Undone(map.pose).apply(point_ws - map.pose.origin);
+            const Float3 next = map.inverse ? map.inverse->apply(point_ws)
+                                            : Undone(map.pose).apply(point_ws - map.pose.origin);
             off = length(next - rest);
             rest = next;
         }
-        if (map.flat || !(off < kLost)) continue;
+        if (!(off < kLost) || (!map.inverse && isFlatPose(map.pose))) continue;
         const BodyField::Sample sample = field.at(rest);
         if (!std::isfinite(sample.distance)) continue;
-        const Float3 gradient = Undone(map.pose).transposed(sample.gradient);
+        const Float3 gradient = map.inverse ? gradientBack(*map.inverse, sample.gradient)
+                                            : Undone(map.pose).transposed(sample.gradient);
         const float slope = length(gradient);
         // On the ridge between two sides the slope vanishes: there is no way out that is the nearest.
         if (!(slope > kFlatSlope)) continue;

@@ -44,6 +44,7 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
     constexpr float kFarStrayed = 0.5f;
     lostTrack_ = strayed_ > kFarStrayed || !std::isfinite(strayed_);
     if (lostTrack_) strayed_ = 0.0f;
+    moves_ = !std::equal(from.begin(), from.end(), to.begin(), to.end());
     const auto mix = [](Float3 a, Float3 b, float t) { return a + (b - a) * t; };
     for (std::uint32_t i = 0; i <= substeps; ++i) {
         const float t = static_cast<float>(i) / static_cast<float>(substeps);
@@ -55,19 +56,25 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
         }
         at_[i].take(field, between_);
         if (i == 0) continue;
-        const bool flat = isFlatPose(between_[0]) || isFlatPose(before_[0]);
-        if (!flat) {
+        Carrier& carrier = carriers_[i - 1];
+        carrier = {};
+        if (isFlatPose(between_[0]) || isFlatPose(before_[0])) {
+            strayed_ = carrier.apart = std::numeric_limits<float>::infinity();
+        } else {
             const BonePose own = wayOf(before_[0], between_[0]);
-            float farthest = 0.0f;
             for (std::size_t b = 1; b < to.size(); ++b) {
                 if (isFlatPose(before_[b]) || isFlatPose(between_[b])) continue;
-                farthest = std::max(farthest, apart(wayOf(before_[b], between_[b]), own, around_ws, reach));
+                carrier.apart =
+                    std::max(carrier.apart, apart(wayOf(before_[b], between_[b]), own, around_ws, reach));
             }
-            strayed_ += farthest;
-        } else {
-            strayed_ = std::numeric_limits<float>::infinity();
+            strayed_ += carrier.apart;
+            carrier.inverse = inverseOf(between_[0]);
+            carrier.step = {own.x - Float3{1, 0, 0}, own.y - Float3{0, 1, 0}, own.z - Float3{0, 0, 1},
+                            own.origin};
         }
-        carriers_[i - 1] = {flat ? BonePose{} : inverseOf(between_[0]), stretchOf(between_[0]), strayed_};
+        carrier.largest = stretchOf(between_[0]);
+        carrier.least = 1.0f / std::max(carrier.largest * stretchOf(carrier.inverse), 1.0f);
+        carrier.strayed = strayed_;
         before_.swap(between_);
         between_.resize(to.size());
     }
@@ -78,16 +85,17 @@ bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch&
     away = now.freeAround(visit.point_ws);
     if (away > visit.reach) return false;
     const PosedBody::Contact contact = now.at(visit.point_ws);
-    if (!(contact.distance <= visit.reach)) {
-        // What is interpolated, and posed, may be closer than it seems.
-        constexpr float kSure = 0.9f, kUnsure = 0.2f;
-        if (std::isfinite(contact.distance))
-            away = std::max(away, kSure * contact.distance - kUnsure * now.cell());
-        return false;
+    // What is interpolated, and posed, may be closer than it seems: where cells are small, by less.
+    if (std::isfinite(contact.distance)) {
+        constexpr float kSure = 0.9f, kUnsure = 0.2f, kUnsureFine = 0.05f;
+        const float unsure = contact.distance < BodyField::kFineReach ? kUnsureFine : kUnsure;
+        away = std::max(away, kSure * contact.distance - unsure * now.cell());
     }
+    if (!(contact.distance <= visit.reach)) return false;
     touch.normal = contact.normal_ws;
     touch.distance = contact.distance;
-    touch.way = now.place(contact.point_ss) - at_[substep].place(contact.point_ss);
+    touch.way = moves_ ? now.place(contact.point_ss) - at_[substep].place(contact.point_ss)
+                       : Float3{0.0f, 0.0f, 0.0f};
     // By the plane that is there at the end; skin curves away from it.
     touch.before = contact.distance - dot(touch.normal, visit.displacement - touch.way);
     if (touch.before < visit.radius - static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP))

@@ -38,15 +38,19 @@ class MovingBody {
     bool empty() const { return at_.empty(); }
 
     /// Nothing and false where the body is farther away than the reach at the end of the substep. `away` is
-    /// set then, to metres that the body is away at least. What came in in the substep meets the plane where
-    /// it did, however fast it is and however thin what it came into.
+    /// set to metres that the body is away at least. What came in in the substep meets the plane where it
+    /// did, however fast it is and however thin what it came into.
     bool touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch, float& away) const;
 
     /// How far nodes are from where they were looked at is measured in the space of one of its bones.
     struct Carrier {
         BonePose inverse;      ///< from the world at the end of the substep
         float largest = 1;     ///< metres in the world of one there, at most
+        float least = 1;       ///< share of that, at least
         float strayed = 0.0f;  ///< metres that another bone has gone against this one, ever
+        /// What it adds, in this substep, to a place in the world at its start.
+        BonePose step{{}, {}, {}, {}};
+        float apart = 0.0f;  ///< metres that another bone goes against this one in this substep
     };
     const Carrier& carrier(std::uint32_t substep) const { return carriers_[substep]; }
     /// What was looked at before is void.
@@ -58,6 +62,7 @@ class MovingBody {
     std::vector<PosedBody> at_;  ///< at the start of the frame, and at the end of each substep
     std::vector<BonePose> between_, before_;
     std::vector<Carrier> carriers_;  ///< at the end of each substep
+    bool moves_ = false;
     float strayed_ = 0.0f;
     bool lostTrack_ = true;
 };

@@ -128,6 +128,37 @@ TEST(BodyField, IsPosedByBones) {
     }
 }
 
+TEST(BodyField, BonesThatMoveAlikeAreAWhole) {
+    const BakedBody& body = neck().skinned;
+    const BonePose turned{{0, 2, 0}, {-2, 0, 0}, {0, 0, 2}, {0.1f, -0.2f, 0.3f}};
+    const std::vector<BonePose> both(body.field->bones.size(), turned);
+    auto almost = both;
+    almost[1].origin.x += 1e-7f;
+    const PosedBody alike(*body.field, both), single(*body.field, {both.data(), 1}),
+        apart(*body.field, almost);
+    Random random(6);
+    int near = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Float3 rest = toEngine(test::randomPoint(random, 0.2f));
+        const float distance = body.field->at(rest).distance;
+        if (!(std::abs(distance) < 0.005f)) continue;
+        ++near;
+        const Float3 at = turned.apply(rest);
+        const auto contact = alike.at(at);
+        EXPECT_EQ(contact.distance, single.at(at).distance);
+        EXPECT_NEAR(contact.distance, 2 * distance, 1e-5f) << "twice as large";
+        EXPECT_NEAR(contact.distance, apart.at(at).distance, 1e-4f);
+        EXPECT_LT(length(alike.place(contact.point_ss) - at), 1e-6f);
+        EXPECT_LE(alike.freeAround(at), std::max(contact.distance, 0.0f) + 2e-3f);
+    }
+    EXPECT_GT(near, 50);
+    const std::vector<BonePose> flat(body.field->bones.size(), BonePose{{}, {}, {}, {}});
+    const PosedBody gone(*body.field, flat);
+    EXPECT_EQ(gone.flattened(), flat.size());
+    EXPECT_TRUE(std::isinf(gone.at({0, 0, 0}).distance));
+    EXPECT_TRUE(std::isinf(gone.freeAround({0, 0, 0})));
+}
+
 TEST(BodyField, ABoneWithoutSizeCarriesNoSkin) {
     const auto& [mesh, rig, body, whole] = neck();
     HeadPose pose = rig.pose(mesh, 10);

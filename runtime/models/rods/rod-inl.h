@@ -51,6 +51,7 @@ class RodStrip {
           numbers_(context.numbers.as<RodNumbers>()),
           lane_(lane),
           points_(reinterpret_cast<RodPoint*>(lanes.solver)),
+          planes_(reinterpret_cast<BodyPlane*>(points_ + block.points)),
           first_(block.firstFree - 1),
           segments_(block.points - 1) {
         openStep();
@@ -58,6 +59,11 @@ class RodStrip {
 
     void run() {
         kept_ = hn::Not(noLane());
+        if constexpr (kContacts) {
+            if (context_.body) {
+                for (std::uint32_t j = first_; j < segments_; ++j) forgetPlane(planes_[j]);
+            }
+        }
         predict();
         const auto worse =
             objective_ > hn::MulAdd(startObjective_, all(static_cast<float>(HAIRLOOM_ROD_PREDICTION_SHARE)),
@@ -307,7 +313,7 @@ class RodStrip {
         const RodNode node = nodeOf(point, point.displacement, tangent, position, p);
         point.contact = noContact();
         auto near = noLane();
-        forEachShape(rootPosition(), node, at(p), [&](const RodTouch& touch, RodMask here) {
+        forEachShape(rootPosition(), node, p, hn::Not(noLane()), [&](const RodTouch& touch, RodMask here) {
             near = either(near, here);
             press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, point.contact);
         });
@@ -316,72 +322,20 @@ class RodStrip {
         point.near = hn::IfThenElseZero(near, all(1.0f));
     }
 
-    /// As forEachTouch(), of spheres and the body; `i` is where the node stands in planes.
+    /// As forEachTouch(), of spheres for lanes that are `near` some, and of the body; `p`: the node's number.
     template <class Visit>
-    void forEachShape(V3 root, const RodNode& node, std::size_t i, Visit&& visit) const {
-        forEachTouch(lanes_, root, node, context_, visit);
-        if (context_.body) touchBody(*context_.body, root, node, block_, i, context_.index, visit);
+    void forEachShape(V3 root, const RodNode& node, std::uint32_t p, RodMask near, Visit&& visit) {
+        if (!hn::AllFalse(D(), near)) forEachTouch(lanes_, root, node, context_, visit);
+        if (context_.body)
+            touchBody(*context_.body, root, node, block_, at(p), context_.index, planes_[p - 1], visit);
     }
 
-    /// Calls visit(point, node, i, near) for the outer node of each segment where the step has led.
+    // models/rods/rod_look-inl.h
+    RodMask mayTouch(std::uint32_t j) const;
+    bool anyMayTouch() const;
     template <class Visit>
-    void forEachNode(Visit&& visit) const {
-        V3 position = zero3();
-        if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
-        for (std::uint32_t j = first_; j < segments_; ++j) {
-            RodPoint& point = points_[j];
-            const V3 tangent = rodRotate(loadRotation(rod_.rotation, at(j)), restTangent(j));
-            position = mad3(tangent, lengthOf(j), position);
-            const auto near = point.near > hn::Zero(D());
-            if (!hn::AllFalse(D(), near))
-                visit(point, nodeOf(point, point.newDisplacement, tangent, position, j + 1), at(j + 1), near);
-        }
-    }
-
-    /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
-    /// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
-    /// false: nowhere.
-    bool lookAgain() {
-        if (HWY_LIKELY(hn::AllFalse(D(), near_))) return false;
-        const V3 root = rootPosition();
-        const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
-        auto wrong = noLane();
-        forEachNode([&](const RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
-            const auto held = point.contact.touching > hn::Zero(D());
-            const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
-            auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
-            forEachShape(root, node, i, [&](const RodTouch& touch, RodMask) {
-                inside = either(inside, touch.depth > reach);
-                lifted = hn::AndNot(rodHolds(touch, reach), lifted);
-            });
-            wrong = either(wrong, both(near, either(lifted, hn::AndNot(held, inside))));
-        });
-        if (hn::AllFalse(D(), wrong)) return false;
-        forEachNode([&](RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
-            const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
-            RodContact found = noContact();
-            forEachShape(root, node, i, [&](const RodTouch& touch, RodMask) {
-                press(touch, both(near, rodHolds(touch, slack)), node, found);
-            });
-            point.contact = rodChosen(wrong, found, point.contact);
-        });
-        // Other lanes take the same step again.
-        objective_ = touched_ = hn::Zero(D());
-        for (std::uint32_t j = first_; j < segments_; ++j) {
-            RodPoint& point = points_[j];
-            const std::size_t i = at(j);
-            point.rotation = chosen(wrong, loadRotation(rod_.rotation, i), point.rotation);
-            if constexpr (kBends) point.relative = chosen(wrong, point.newRelative, point.relative);
-            point.displacement = select(wrong, point.newDisplacement, point.displacement);
-            point.increment = select(wrong, load3(rod_.increment, i), point.increment);
-            touched_ = hn::Max(touched_, point.contact.touching);
-            const V3 off = point.displacement - point.target;
-            objective_ = objective_ + point.contact.twiceEnergy + point.weight * dot(off, off);
-            if constexpr (kBends) objective_ = objective_ + strainEnergy(point.relative, point.wanted, i);
-        }
-        objective_ = objective_ * all(0.5f);
-        return true;
-    }
+    void forEachNode(Visit&& visit);
+    bool lookAgain();
     static V4 chosen(RodMask which, V4 yes, V4 no) {
         return {choose(which, yes.x, no.x), choose(which, yes.y, no.y), choose(which, yes.z, no.z),
                 choose(which, yes.w, no.w)};
@@ -444,99 +398,8 @@ class RodStrip {
         return sum * all(0.5f);
     }
 
-    /// Takes the step: places, velocities, and what the next one starts from.
-    void finish() {
-        V3 position = zero3();
-        if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
-        V turn = hn::Zero(D()), energy = hn::Zero(D()), kinetic = hn::Zero(D()), size = hn::Zero(D()),
-          masses = hn::Zero(D());
-        V stiffness = hn::Zero(D());
-        // The least that the normal part of a contact's force can be of it.
-        const V normalShare = all(1.0f / std::sqrt(1.0f + context_.friction * context_.friction));
-        // A bounce is no smooth motion: speeds behind it are those of the mean way.
-        const auto bounces = touched_ > all(2.0f);
-        const V blend = hn::IfThenZeroElse(bounces, blend_);
-        const V inverseStep = hn::IfThenElse(bounces, all(1.0f / context_.h), inverseStep_);
-        for (std::uint32_t j = first_; j < segments_; ++j) {
-            const RodPoint& point = points_[j];
-            const std::size_t i = at(j), node = at(j + 1);
-            position = mad3(rodRotate(loadRotation(rod_.rotation, i), restTangent(j)), lengthOf(j), position);
-            const V3 moved = point.newDisplacement;
-            const V3 velocity = negMad3(load3(rod_.displacement, node), blend, moved) * inverseStep;
-            store3(load3(rod_.velocity, node), rod_.velocityBefore, node);
-            store3(velocity, rod_.velocity, node);
-            store3(moved, rod_.displacement, node);
-            store3(position, block_.position, node);
-            store3(position - moved, block_.previous, node);
-            const V3 increment = load3(rod_.increment, i);
-            turn = hn::Max(turn, dot(increment, increment));
-            const V mass = hn::Load(D(), rod_.mass + node);
-            V elastic = hn::Zero(D());
-            if constexpr (kBends) {
-                // Strains are those of quaternions with w ≥ 0; the one before goes with the new one.
-                const V3 strain = withSignOf(twice(point.newRelative), point.newRelative.w);
-                store3(withSignOf(load3(rod_.strain, i), point.newRelative.w), rod_.strainBefore, i);
-                store3(strain, rod_.strain, i);
-                const V bend = hn::Load(D(), rod_.bend + i);
-                stiffness = stiffness + bend;
-                elastic = rodTwiceEnergy(strain, bend, sectionOf(i, bend)) * all(0.5f);
-            }
-            const V weight = mass * dot(all3(context_.gravity), position);
-            energy = energy + (elastic - weight);
-            size = size + (elastic + hn::Abs(weight));
-            kinetic = mad(mass * all(0.5f), dot(velocity, velocity), kinetic);
-            masses = masses + mass;
-            if constexpr (kContacts) {
-                const V3 force = rodContactForce(point.contact, moved - point.displacement);
-                V load = hn::Sqrt(dot(force, force)) * normalShare;
-                load = hn::IfThenElse(point.contact.touching > all(1.0f), hn::Neg(load), load);
-                load = hn::IfThenElseZero(dot(force, point.contact.normal) > hn::Zero(D()), load);
-                hn::Store(load, D(), rod_.load + node);
-            } else if (rod_.load) {
-                hn::Store(hn::Zero(D()), D(), rod_.load + node);
-            }
-        }
-        turn = hn::IfThenElse(bounces, all(kRodNoStep), hn::Sqrt(turn));
-        // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time
-        // scheme add is taken back.
-        const V last = hn::Load(D(), rod_.energy + lane_);
-        V noise = all(30.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * (size + kinetic) +
-                  all(4.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * hn::Sqrt((size + size) * stiffness);
-        // Where spheres press, what is as slow as this is rounding.
-        constexpr float kSlow = static_cast<float>(HAIRLOOM_ROD_CONTACT_SPEED);
-        if constexpr (kContacts)
-            noise = hn::IfThenElse(touched_ > hn::Zero(D()), mad(masses, all(0.5f * kSlow * kSlow), noise),
-                                   noise);
-        const auto rose = hn::And(still_, hn::And(energy + kinetic > last + noise, kinetic > hn::Zero(D())));
-        V after = energy + kinetic;
-        if (!hn::AllFalse(D(), rose)) {
-            const V share = hn::IfThenElse(
-                rose,
-                hn::Sqrt(hn::Min(hn::Max((last - energy) / hn::Max(kinetic, all(1e-30f)), hn::Zero(D())),
-                                 all(1.0f))),
-                all(1.0f));
-            slow(share);
-            after = mad(kinetic, share * share, energy);
-            const auto guarded = share < all(0.9f);
-            turn = hn::IfThenElse(guarded, all(kRodNoStep), turn);
-            lanes_.guarded |= bitsOf(guarded) << lane_;
-        }
-        // What contacts with spheres that move do is work that is not counted here. Those that rest can only
-        // take: what they push out comes to rest outside.
-        if constexpr (kContacts) {
-            if (!context_.spheresRest)
-                after = hn::IfThenElse(touched_ > hn::Zero(D()), all(kRodNoEnergy), after);
-        }
-        hn::Store(after, D(), rod_.energy + lane_);
-        hn::Store(turn, D(), rod_.turn + lane_);
-    }
-
-    void slow(V share) {
-        for (std::uint32_t j = first_; j < segments_; ++j) {
-            store3(load3(rod_.velocity, at(j + 1)) * share, rod_.velocity, at(j + 1));
-            store3(load3(rod_.increment, at(j)) * share, rod_.increment, at(j));
-        }
-    }
+    void finish();  // models/rods/rod_finish-inl.h
+    void slow(V share);
 
     const RodBlock& block_;
     const RodView& rod_;
@@ -545,6 +408,7 @@ class RodStrip {
     RodNumbers numbers_;
     std::uint32_t lane_;
     RodPoint* points_;
+    BodyPlane* planes_;  ///< of outer nodes
     std::uint32_t first_, segments_;
     V blend_, step_, inverseStep_;
     V velocityAhead_;          ///< share of the last change of velocity that is expected again

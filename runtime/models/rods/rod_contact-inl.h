@@ -57,70 +57,121 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
     }
 }
 
-/// The same for a body. A node keeps its radius from it, but no more than its clearance. Nodes that were far
-/// off when they were last looked at, and have not come far since, are not looked at.
+/// The plane that stands for a body in a substep, for a node of each lane, and where it was looked at.
+struct BodyPlane {
+    V3 at;  ///< the node, relative to its root
+    V3 normal;
+    V distance;  ///< metres, there
+    V before;
+    V3 way;
+    V known;   ///< 1 where it is of this substep
+    V room;    ///< metres that the node may go and touch nothing, beyond the displacement
+    V3 moved;  ///< that it had when it was last seen in this substep
+};
+
+/// Nothing is known of it yet.
+HWY_INLINE void forgetPlane(BodyPlane& plane) {
+    plane.at = plane.normal = plane.way = plane.moved = zero3();
+    plane.distance = plane.before = plane.known = plane.room = hn::Zero(D());
+}
+
+/// The same for a body. A node keeps its radius from it, but no more than its clearance.
+/// Nodes that were far off when they were last looked at, and have not come far since, are not looked at. In
+/// a substep the plane that was found holds for all guesses that are close to where it was found, and for
+/// those that are outside for certain.
 template <class Visit>
 HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, const BlockView& block,
-                          std::size_t i, std::uint32_t substep, Visit&& visit) {
+                          std::size_t i, std::uint32_t substep, BodyPlane& plane, Visit&& visit) {
+    constexpr float kClose = 1e-4f, kClearly = 1e-4f;  // metres
     const V3 position_ws = node.position + root;
     const V reach = hn::Min(node.radius, hn::Load(D(), block.clearance + i));
-    const V near = reach + hn::Sqrt(dot(node.displacement, node.displacement)) +
-                   all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
+    const V3 from = node.position - plane.at;
+    const V gone = hn::Sqrt(dot(from, from));
+    const auto outside = negMad(gone, all(1.25f), plane.distance) > reach + all(kClearly);
+    const auto kept = both(plane.known > hn::Zero(D()), either(gone <= all(kClose), outside));
+    auto meets = kept;
+    const MovingBody::Carrier& carrier = body.carrier(substep);
+    // How far it comes against the body in this substep.
+    const V3 start_ws = position_ws - node.displacement;
+    const BonePose& step = carrier.step;
+    const V3 against = node.displacement - mad3(all3(step.x), start_ws.x,
+                                                mad3(all3(step.y), start_ws.y,
+                                                     mad3(all3(step.z), start_ws.z, all3(step.origin))));
+    const V near = reach + hn::Sqrt(dot(against, against)) +
+                   all(carrier.apart + static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
     const std::size_t pitch = block.pitch;
     float* const seen = block.bodySeen + i;
-    const MovingBody::Carrier& carrier = body.carrier(substep);
     const V3 carried = mad3(all3(carrier.inverse.x), position_ws.x,
                             mad3(all3(carrier.inverse.y), position_ws.y,
                                  mad3(all3(carrier.inverse.z), position_ws.z, all3(carrier.inverse.origin))));
-    const V3 since =
-        carried - V3{hn::Load(D(), seen), hn::Load(D(), seen + pitch), hn::Load(D(), seen + 2 * pitch)};
-    const V used = hn::MulAdd(hn::Sqrt(dot(since, since)), all(carrier.largest), all(carrier.strayed));
-    const auto far = used + near < hn::Load(D(), seen + 3 * pitch);
-    if (HWY_LIKELY(hn::AllTrue(D(), far))) return;
-    alignas(64) float at[3][kWidth], gone[3][kWidth], keeps[kWidth], farthest[kWidth], normal[3][kWidth],
-        way[3][kWidth], distance[kWidth], before[kWidth], known[kWidth], place[3][kWidth];
-    hn::Store(position_ws.x, D(), at[0]);
-    hn::Store(position_ws.y, D(), at[1]);
-    hn::Store(position_ws.z, D(), at[2]);
-    hn::Store(carried.x, D(), place[0]);
-    hn::Store(carried.y, D(), place[1]);
-    hn::Store(carried.z, D(), place[2]);
-    hn::Store(node.displacement.x, D(), gone[0]);
-    hn::Store(node.displacement.y, D(), gone[1]);
-    hn::Store(node.displacement.z, D(), gone[2]);
-    hn::Store(reach, D(), keeps);
-    hn::Store(near, D(), farthest);
-    hn::Store(hn::IfThenElseZero(far, all(1.0f)), D(), known);
-    std::uint32_t touched = 0;
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {
-        BodyTouch touch{{0.0f, 1.0f, 0.0f}, 1e3f, 1e3f, {}};
-        if (known[lane] == 0.0f) {
+    const auto roomLeft = [&] {
+        const V3 since =
+            carried - V3{hn::Load(D(), seen), hn::Load(D(), seen + pitch), hn::Load(D(), seen + 2 * pitch)};
+        const V used = mad(hn::Sqrt(dot(since, since)), all(carrier.largest), all(carrier.strayed));
+        return hn::Load(D(), seen + 3 * pitch) - used;
+    };
+    V room = roomLeft();
+    const auto far = room > near;
+    const std::uint32_t looked = bitsOf(hn::Not(either(kept, far)));
+    if (looked != 0) {
+        alignas(64) float at[3][kWidth], moved[3][kWidth], keeps[kWidth], farthest[kWidth], place[3][kWidth],
+            normal[3][kWidth], way[3][kWidth], distance[kWidth], before[kWidth];
+        const auto put = [](V3 v, float(*to)[kWidth]) {
+            hn::Store(v.x, D(), to[0]);
+            hn::Store(v.y, D(), to[1]);
+            hn::Store(v.z, D(), to[2]);
+        };
+        const auto get = [](const float(*from_)[kWidth]) {
+            return V3{hn::Load(D(), from_[0]), hn::Load(D(), from_[1]), hn::Load(D(), from_[2])};
+        };
+        put(position_ws, at);
+        put(node.displacement, moved);
+        put(carried, place);
+        put(plane.normal, normal);
+        put(plane.way, way);
+        hn::Store(reach, D(), keeps);
+        hn::Store(near, D(), farthest);
+        hn::Store(plane.distance, D(), distance);
+        hn::Store(plane.before, D(), before);
+        std::uint32_t met = 0;
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            if ((looked >> lane & 1u) == 0) continue;
+            BodyTouch touch{{0.0f, 1.0f, 0.0f}, 0.0f, 0.0f, {}};
             float away = 0.0f;
             const BodyVisit how{{at[0][lane], at[1][lane], at[2][lane]},
-                                {gone[0][lane], gone[1][lane], gone[2][lane]},
+                                {moved[0][lane], moved[1][lane], moved[2][lane]},
                                 keeps[lane],
                                 farthest[lane]};
-            if (body.touch(substep, how, touch, away)) {
-                touched |= 1u << lane;
-                away = 0.0f;
-            }
+            if (body.touch(substep, how, touch, away)) met |= 1u << lane;
             for (std::size_t axis = 0; axis < 3; ++axis) seen[axis * pitch + lane] = place[axis][lane];
             seen[3 * pitch + lane] = away + carrier.strayed;
+            distance[lane] = touch.distance;
+            before[lane] = touch.before;
+            normal[0][lane] = touch.normal.x;
+            normal[1][lane] = touch.normal.y;
+            normal[2][lane] = touch.normal.z;
+            way[0][lane] = touch.way.x;
+            way[1][lane] = touch.way.y;
+            way[2][lane] = touch.way.z;
         }
-        distance[lane] = touch.distance;
-        before[lane] = touch.before;
-        normal[0][lane] = touch.normal.x;
-        normal[1][lane] = touch.normal.y;
-        normal[2][lane] = touch.normal.z;
-        way[0][lane] = touch.way.x;
-        way[1][lane] = touch.way.y;
-        way[2][lane] = touch.way.z;
+        const auto fresh = maskOf(looked);
+        plane.at = select(fresh, node.position, plane.at);
+        plane.normal = get(normal);
+        plane.way = get(way);
+        plane.distance = hn::Load(D(), distance);
+        plane.before = hn::Load(D(), before);
+        plane.known = choose(fresh, hn::IfThenElseZero(maskOf(met), all(1.0f)), plane.known);
+        meets = either(meets, maskOf(met));
+        room = roomLeft();
     }
-    if (HWY_LIKELY(touched == 0)) return;
-    const V3 n{hn::Load(D(), normal[0]), hn::Load(D(), normal[1]), hn::Load(D(), normal[2])};
-    const V3 moved{hn::Load(D(), way[0]), hn::Load(D(), way[1]), hn::Load(D(), way[2])};
-    visit(RodTouch{n, reach - hn::Load(D(), distance), reach - hn::Load(D(), before), moved},
-          maskOf(touched));
+    plane.room = (room - reach) * all(carrier.least);
+    plane.moved = node.displacement;
+    if (HWY_LIKELY(hn::AllFalse(D(), meets))) return;
+    const V farOutside = all(-1e3f);
+    const V distance = plane.distance + dot(node.position - plane.at, plane.normal);
+    visit(RodTouch{plane.normal, choose(meets, reach - distance, farOutside),
+                   choose(meets, reach - plane.before, farOutside), plane.way},
+          meets);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -10,13 +10,15 @@
 // After foreach_target.h, as Highway asks.
 #include "hwy/highway.h"
 #include "models/rods/rod-inl.h"
+#include "models/rods/rod_finish-inl.h"
+#include "models/rods/rod_look-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 RodKernel rodKernelOfTarget() {
-    return {stepRods, sizeof(RodPoint) / sizeof(float)};
+    return {stepRods, (sizeof(RodPoint) + sizeof(BodyPlane)) / sizeof(float)};
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Contacts of rods where a step has led, which its prediction did not have.
+#if defined(HAIRLOOM_RUNTIME_ROD_LOOK_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_ROD_LOOK_INL_H
+#undef HAIRLOOM_RUNTIME_ROD_LOOK_INL_H
+#else
+#define HAIRLOOM_RUNTIME_ROD_LOOK_INL_H
+#endif
+
+#include "engine/lanes-inl.h"
+#include "hwy/highway.h"
+#include "models/rods/rod-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hairloom::runtime {
+namespace HWY_NAMESPACE {
+
+/// Lanes whose outer node of segment j is near a shape, or has come there since it was last seen.
+template <bool kBends, bool kTwists, bool kContacts>
+RodMask RodStrip<kBends, kTwists, kContacts>::mayTouch(std::uint32_t j) const {
+    const RodPoint& point = points_[j];
+    const auto near = point.near > hn::Zero(D());
+    if (!context_.body) return near;
+    const V3 x = point.newDisplacement - planes_[j].moved;
+    const V room = hn::IfThenElseZero(planes_[j].room > hn::Zero(D()), planes_[j].room);
+    return either(near, dot(x, x) > room * room);
+}
+
+template <bool kBends, bool kTwists, bool kContacts>
+bool RodStrip<kBends, kTwists, kContacts>::anyMayTouch() const {
+    if (!hn::AllFalse(D(), near_)) return true;
+    if (!context_.body) return false;
+    auto any = noLane();
+    for (std::uint32_t j = first_; j < segments_; ++j) any = either(any, mayTouch(j));
+    return !hn::AllFalse(D(), any);
+}
+
+/// Calls visit(point, node, p, lanes) for the outer node of each segment where the step has led, for
+/// lanes that may touch there.
+template <bool kBends, bool kTwists, bool kContacts>
+template <class Visit>
+void RodStrip<kBends, kTwists, kContacts>::forEachNode(Visit&& visit) {
+    V3 position = zero3();
+    if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
+    for (std::uint32_t j = first_; j < segments_; ++j) {
+        RodPoint& point = points_[j];
+        const V3 tangent = rodRotate(loadRotation(rod_.rotation, at(j)), restTangent(j));
+        position = mad3(tangent, lengthOf(j), position);
+        const auto lanes = mayTouch(j);
+        if (!hn::AllFalse(D(), lanes))
+            visit(point, nodeOf(point, point.newDisplacement, tangent, position, j + 1), j + 1, lanes);
+    }
+}
+
+/// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
+/// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
+/// false: nowhere.
+template <bool kBends, bool kTwists, bool kContacts>
+bool RodStrip<kBends, kTwists, kContacts>::lookAgain() {
+    if (HWY_LIKELY(!anyMayTouch())) return false;
+    const V3 root = rootPosition();
+    const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
+    auto wrong = noLane();
+    forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
+        point.near = choose(lanes, all(1.0f), point.near);
+        const auto held = point.contact.touching > hn::Zero(D());
+        const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
+        auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
+        forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
+            inside = either(inside, touch.depth > reach);
+            lifted = hn::AndNot(rodHolds(touch, reach), lifted);
+        });
+        wrong = either(wrong, both(lanes, either(lifted, hn::AndNot(held, inside))));
+    });
+    if (hn::AllFalse(D(), wrong)) return false;
+    forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
+        const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
+        RodContact found = noContact();
+        forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
+            press(touch, both(lanes, rodHolds(touch, slack)), node, found);
+        });
+        point.contact = rodChosen(wrong, found, point.contact);
+    });
+    // Other lanes take the same step again.
+    objective_ = touched_ = hn::Zero(D());
+    for (std::uint32_t j = first_; j < segments_; ++j) {
+        RodPoint& point = points_[j];
+        const std::size_t i = at(j);
+        point.rotation = chosen(wrong, loadRotation(rod_.rotation, i), point.rotation);
+        if constexpr (kBends) point.relative = chosen(wrong, point.newRelative, point.relative);
+        point.displacement = select(wrong, point.newDisplacement, point.displacement);
+        point.increment = select(wrong, load3(rod_.increment, i), point.increment);
+        touched_ = hn::Max(touched_, point.contact.touching);
+        const V3 off = point.displacement - point.target;
+        objective_ = objective_ + point.contact.twiceEnergy + point.weight * dot(off, off);
+        if constexpr (kBends) objective_ = objective_ + strainEnergy(point.relative, point.wanted, i);
+    }
+    objective_ = objective_ * all(0.5f);
+    return true;
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace hairloom::runtime
+HWY_AFTER_NAMESPACE();
+#endif
