@@ -68,16 +68,12 @@ class RodStrip {
         }
         descend();
         if constexpr (kContacts) {
-            // Skin has more curves than spheres have.
-            const int looks = context_.body ? kBodyLooks : 1;
-            for (int look = 0; look < looks && lookAgain(); ++look) descend();
+            for (int look = 0; look < HAIRLOOM_ROD_CONTACT_LOOKS && lookAgain(look); ++look) descend();
         }
         finish();
     }
 
   private:
-    static constexpr int kBodyLooks = 3;
-
     /// One step of Gauss-Newton from the guess.
     void descend() {
         eliminate();
@@ -339,23 +335,27 @@ class RodStrip {
     }
 
     /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
-    /// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
-    /// false: nowhere.
-    bool lookAgain() {
+    /// prediction had outside, or past the plane that held it, or holds one that it has lifted off, what it
+    /// has found is the next guess; false: nowhere.
+    bool lookAgain(int look) {
         if (HWY_LIKELY(hn::AllFalse(D(), near_))) return false;
         const V3 root = rootPosition();
         const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
+        const V sunk = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_SUNK));
         auto wrong = noLane();
         forEachNode([&](const RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
             const auto held = point.contact.touching > hn::Zero(D());
             const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
             auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
             forEachShape(root, node, i, [&](const RodTouch& touch, RodMask) {
-                inside = either(inside, touch.depth > reach);
+                const V deepest = hn::Max(touch.before, hn::Zero(D())) + sunk;
+                inside = either(inside, touch.depth > choose(held, deepest, reach));
                 lifted = hn::AndNot(rodHolds(touch, reach), lifted);
             });
-            wrong = either(wrong, both(near, either(lifted, hn::AndNot(held, inside))));
+            wrong = either(wrong, both(near, either(lifted, inside)));
         });
+        // What bounces is led off the surface, which no look may take for lifted.
+        if (look > 0) wrong = hn::AndNot(touched_ > all(2.0f), wrong);
         if (hn::AllFalse(D(), wrong)) return false;
         forEachNode([&](RodPoint& point, const RodNode& node, std::size_t i, RodMask near) {
             const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
