@@ -137,6 +137,7 @@ Report certificateReport(const Certificate& certificate) {
     report["storms"] = certificate.storms;
     report["storms_within"] = certificate.within;
     report["calm"] = certificate.calm;
+    report["calm_after_15_s"] = certificate.calmLate;
     report["failed"] = certificate.failed.size();
     report["failures"] = Report::array();
     for (std::size_t i = 0; i < std::min(kListed, certificate.failed.size()); ++i) {

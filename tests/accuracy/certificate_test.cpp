@@ -38,6 +38,7 @@ TEST(Certificate, RodsWithstandAllThatIsTried) {
     EXPECT_TRUE(certificate->failed.empty()) << inWords(*certificate);
     EXPECT_EQ(certificate->within, 60u);
     EXPECT_GE(certificate->calm, 55u);
+    EXPECT_EQ(certificate->calmLate, 60u);
     EXPECT_NEAR(certificate->limits.step, 0.08, 1e-9);
     EXPECT_NEAR(certificate->limits.turn, 144, 1e-9);
     EXPECT_GE(certificate->limits.rootSpeed, 200);
