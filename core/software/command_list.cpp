@@ -92,7 +92,9 @@ Result<gpu::Binding> HostCommandList::stageConstants(std::uint32_t slot, std::sp
 Registers HostCommandList::registersOf(std::span<const gpu::ShaderRegister> used) const {
     Registers registers;
     for (const gpu::ShaderRegister& at : used) {
-        const gpu::Binding& binding = bound(at);
+        const gpu::Binding* found = boundIfAny(at);
+        if (found == nullptr) continue;
+        const gpu::Binding& binding = *found;
         switch (at.kind) {
             case gpu::Binding::Kind::ConstantBuffer:
                 registers.constants[at.slot] = bytesOfBinding(binding).data();
@@ -130,7 +132,7 @@ void HostCommandList::drawMeshDepth(std::uint32_t vertices) {
 }
 
 void HostCommandList::drawFullscreen(const KernelEntry& kernel) {
-    const Registers registers = registersOf(graphics().registers());
+    const Registers registers = registersOf(static_cast<const HostGraphicsPipeline&>(graphics()).declared);
     HostTexture& target = of(passDesc().colour.front().texture);
     const std::uint32_t columns = target.desc().width;
     parallelFor(target.desc().height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -158,7 +160,7 @@ void HostCommandList::recordDispatch(const gpu::DispatchArguments& arguments) {
     const auto* counts = std::get_if<gpu::GroupCounts>(&arguments);
     if (counts == nullptr) return wrong("the software renderer dispatches nothing indirectly");
     const auto& pipeline = static_cast<const HostComputePipeline&>(compute());
-    const Registers registers = registersOf(pipeline.registers());
+    const Registers registers = registersOf(pipeline.declared);
     const std::array<std::uint32_t, 3> groups{counts->x, counts->y, counts->z};
     const std::size_t all = std::size_t{groups[0]} * groups[1] * groups[2];
     parallelFor(all, kGroupsAtOnce, [&](std::size_t begin, std::size_t end) {

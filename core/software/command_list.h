@@ -17,6 +17,7 @@ class HostShader : public gpu::CheckedShader {
 class HostComputePipeline : public gpu::CheckedComputePipeline {
   public:
     const KernelEntry* kernel = nullptr;
+    std::vector<gpu::ShaderRegister> declared;
 };
 
 /// What a graphics pipeline does.
@@ -27,7 +28,8 @@ enum class HostDraw {
 class HostGraphicsPipeline : public gpu::CheckedGraphicsPipeline {
   public:
     HostDraw draw = HostDraw::fullscreen;
-    const KernelEntry* kernel = nullptr;  ///< of HostDraw::fullscreen
+    const KernelEntry* kernel = nullptr;  ///< of HostDraw::fullscreen, with what it declares
+    std::vector<gpu::ShaderRegister> declared;
 };
 
 class HostSubmission : public gpu::Submission {

@@ -28,19 +28,18 @@ gpu::DeviceInfo infoOfHost() {
     return info;
 }
 
-/// What the kernel's source declares.
-std::vector<gpu::RegisterUse> usesOf(const KernelEntry& kernel) {
-    std::vector<gpu::RegisterUse> uses;
+/// What the kernel's source declares, used or not.
+std::vector<gpu::ShaderRegister> registersOf(const KernelEntry& kernel) {
+    std::vector<gpu::ShaderRegister> registers;
     const RegisterNames names = kernel.names();
-    const auto add = [&](const std::vector<std::uint32_t>& slots, gpu::Binding::Kind kind,
-                         gpu::RegisterShape shape) {
-        for (const std::uint32_t slot : slots) uses.push_back({{kind, slot}, shape, 0});
+    const auto add = [&](const std::vector<std::uint32_t>& slots, gpu::Binding::Kind kind) {
+        for (const std::uint32_t slot : slots) registers.push_back({kind, slot});
     };
-    add(names.constants, gpu::Binding::Kind::ConstantBuffer, gpu::RegisterShape::Constants);
-    add(names.read, gpu::Binding::Kind::ShaderResource, gpu::RegisterShape::Buffer);
-    add(names.textures, gpu::Binding::Kind::ShaderResource, gpu::RegisterShape::Texture);
-    add(names.written, gpu::Binding::Kind::UnorderedAccess, gpu::RegisterShape::Buffer);
-    return uses;
+    add(names.constants, gpu::Binding::Kind::ConstantBuffer);
+    add(names.read, gpu::Binding::Kind::ShaderResource);
+    add(names.textures, gpu::Binding::Kind::ShaderResource);
+    add(names.written, gpu::Binding::Kind::UnorderedAccess);
+    return registers;
 }
 
 class HostDevice : public gpu::BackendDevice {
@@ -60,7 +59,6 @@ class HostDevice : public gpu::BackendDevice {
         shader->stage = desc.stage;
         shader->name = desc.name;
         shader->kernel = findKernel(desc.name);
-        if (shader->kernel != nullptr) shader->uses = usesOf(*shader->kernel);
         return shader;
     }
 
@@ -83,8 +81,7 @@ class HostDevice : public gpu::BackendDevice {
         }
         if (vertex.name == "fullscreen.vert" && pixel != nullptr && pixel->kernel != nullptr) {
             pipeline->kernel = pixel->kernel;
-            if (auto status = pipeline->uses.add(pixel->uses, desc.name); !status)
-                return tl::unexpected(status.error());
+            pipeline->declared = registersOf(*pixel->kernel);
             return pipeline;
         }
         return fail("the software renderer does not draw '" + desc.name + "'",
@@ -99,8 +96,7 @@ class HostDevice : public gpu::BackendDevice {
         auto pipeline = std::make_shared<HostComputePipeline>();
         pipeline->desc = desc;
         pipeline->kernel = shader.kernel;
-        if (auto status = pipeline->uses.add(shader.uses, desc.name); !status)
-            return tl::unexpected(status.error());
+        pipeline->declared = registersOf(*shader.kernel);
         return pipeline;
     }
 
