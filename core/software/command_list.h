@@ -6,6 +6,9 @@
 
 #include "core/gpu/checked_list.h"
 #include "core/software/kernel.h"
+#include "core/software/lazy_shading.h"
+#include "core/software/light_maps.h"
+#include "core/software/sorted_hair.h"
 
 namespace hairloom::software {
 
@@ -18,6 +21,20 @@ class HostComputePipeline : public gpu::CheckedComputePipeline {
   public:
     const KernelEntry* kernel = nullptr;
     std::vector<gpu::ShaderRegister> declared;
+};
+
+/// Hair of a frame between its fragments and its light.
+struct HairOfFrame {
+    std::unique_ptr<SortedHair> sorted;
+    gpu::BufferPtr nearest, cover;
+    std::vector<gpu::BufferPtr> curves;   ///< that it reads
+    std::vector<gpu::BufferPtr> colours;  ///< of its batches, as their light is asked for
+};
+
+/// What a device keeps between commands.
+struct HostState {
+    HairOfFrame hair;
+    LightMaps maps;
 };
 
 /// What a graphics pipeline does.
@@ -45,7 +62,9 @@ class HostSubmission : public gpu::Submission {
 
 class HostCommandList : public gpu::CheckedList {
   public:
-    explicit HostCommandList(std::function<void()> whenClosed) : whenClosed_(std::move(whenClosed)) {}
+    /// `state` outlives it.
+    HostCommandList(HostState& state, std::function<void()> whenClosed)
+        : hair_(state.hair), maps_(state.maps), whenClosed_(std::move(whenClosed)) {}
     ~HostCommandList() override;
     HostCommandList(const HostCommandList&) = delete;
     HostCommandList& operator=(const HostCommandList&) = delete;
@@ -67,11 +86,26 @@ class HostCommandList : public gpu::CheckedList {
     void recordTextureCopy(const gpu::TexturePtr& source, const gpu::BufferPlace& target) override;
 
   private:
-    Registers registersOf(std::span<const gpu::ShaderRegister> used) const;
+    /// `settles`: what is put off of the buffers that are read is done first.
+    Registers registersOf(std::span<const gpu::ShaderRegister> used, bool settles) const;
     void drawMeshDepth(std::uint32_t vertices);
     void drawFullscreen(const KernelEntry& kernel);
     void close();
+    const gpu::BufferPtr& read(std::uint32_t slot) const;
+    const gpu::BufferPtr& written(std::uint32_t slot) const;
+    template <class T>
+    const T& constantsAt(std::uint32_t slot) const;
+    RibbonBatch batchOf() const;
+    /// True where the dispatch has a form of its own, and is done.
+    bool dispatchApart(const KernelEntry& kernel);
+    void dispatchSorted();
+    void resolveSorted();
+    bool deferShading(const KernelEntry& kernel);
+    bool deferSky(const KernelEntry& kernel);
+    DeferredDispatch deferred(const KernelEntry& kernel) const;
 
+    HairOfFrame& hair_;
+    LightMaps& maps_;
     std::function<void()> whenClosed_;
     std::vector<gpu::PassTime> times_;
     double passBegan_ = 0;  ///< seconds

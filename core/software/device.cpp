@@ -115,7 +115,7 @@ class HostDevice : public gpu::BackendDevice {
         return fail("the software renderer has no swap chain", "pictures that are read back");
     }
     Result<std::unique_ptr<gpu::CommandList>> makeCommandList(std::function<void()> whenClosed) override {
-        return std::make_unique<HostCommandList>(std::move(whenClosed));
+        return std::make_unique<HostCommandList>(state_, std::move(whenClosed));
     }
     Result<gpu::SubmissionPtr> start(gpu::CommandList& list) override {
         return static_cast<HostCommandList&>(list).finish();
@@ -129,6 +129,7 @@ class HostDevice : public gpu::BackendDevice {
 
   private:
     gpu::DeviceInfo info_;
+    HostState state_;
 };
 
 }  // namespace

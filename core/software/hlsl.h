@@ -176,11 +176,15 @@ inline uint max(uint a, uint b) {
 inline float abs(float v) {
     return std::fabs(v);
 }
+/// Without the function that processors need who have no instruction for it; beyond 2^23 all numbers are
+/// whole.
 inline float floor(float v) {
-    return std::floor(v);
+    if (!(std::fabs(v) < 8388608.0f)) return v;
+    const auto whole = static_cast<float>(static_cast<int>(v));
+    return whole > v ? whole - 1.0f : whole;
 }
 inline float ceil(float v) {
-    return std::ceil(v);
+    return -floor(-v);
 }
 inline float round(float v) {
     return std::nearbyint(v);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -91,6 +92,8 @@ struct KernelEntry {
     /// for a pixel shader.
     void (*run)(const Registers& registers, const std::array<std::uint32_t, 3>& groups, std::size_t begin,
                 std::size_t end) = nullptr;
+    /// Runs those threads; null for a pixel shader and where a thread is not named by one number alone.
+    void (*runThreads)(const Registers& registers, std::span<const uint3> threads) = nullptr;
     /// Of a pixel shader over a whole target: `count` pixels of a row from its left edge on.
     void (*fillRow)(const Registers& registers, std::uint32_t row, std::uint32_t count,
                     float4* pixels) = nullptr;
@@ -127,6 +130,12 @@ void runKernel(const Registers& registers, const std::array<std::uint32_t, 3>& g
 }
 
 template <class Kernel>
+void runThreads(const Registers& registers, std::span<const uint3> threads) {
+    Kernel kernel(registers);
+    for (const uint3& thread : threads) kernel.main(thread);
+}
+
+template <class Kernel>
 void fillRow(const Registers& registers, std::uint32_t row, std::uint32_t count, float4* pixels) {
     Kernel kernel(registers);
     for (std::uint32_t x = 0; x < count; ++x)
@@ -143,11 +152,13 @@ RegisterNames registerNames() {
 
 template <class Kernel>
 constexpr KernelEntry computeKernel(std::string_view name) {
-    return {name, &registerNames<Kernel>, &runKernel<Kernel>, nullptr};
+    KernelEntry entry{name, &registerNames<Kernel>, &runKernel<Kernel>, nullptr, nullptr};
+    if constexpr (!TakesGroups<Kernel>) entry.runThreads = &runThreads<Kernel>;
+    return entry;
 }
 template <class Kernel>
 constexpr KernelEntry pixelKernel(std::string_view name) {
-    return {name, &registerNames<Kernel>, nullptr, &fillRow<Kernel>};
+    return {name, &registerNames<Kernel>, nullptr, nullptr, &fillRow<Kernel>};
 }
 
 }  // namespace hairloom::software

@@ -8,6 +8,9 @@
 
 namespace hairloom::software {
 
+class LazyShading;
+class LazySky;
+
 class HostBuffer : public gpu::Buffer {
   public:
     /// Errors: no memory for so many bytes.
@@ -16,6 +19,10 @@ class HostBuffer : public gpu::Buffer {
 
     std::span<std::byte> bytes() { return {bytes_.get(), static_cast<std::size_t>(desc().size)}; }
     std::span<const std::byte> bytes() const { return {bytes_.get(), static_cast<std::size_t>(desc().size)}; }
+
+    // What is still to be written here, when somebody reads it.
+    std::shared_ptr<LazyShading> shading;
+    std::shared_ptr<LazySky> sky;
 
   private:
     explicit HostBuffer(const gpu::BufferDesc& desc) : gpu::Buffer(desc) {}

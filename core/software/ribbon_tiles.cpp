@@ -12,7 +12,9 @@ constexpr std::size_t kPointsAtOnce = 1u << 14u;
 constexpr float kFarthest = 1e6f;  // pixels
 
 float3 tangentOf(std::uint32_t packed) {
-    const auto part = [](std::uint32_t bits) { return static_cast<float>(static_cast<std::int16_t>(bits & 0xffffu)) / 32767.0f; };
+    const auto part = [](std::uint32_t bits) {
+        return static_cast<float>(static_cast<std::int16_t>(bits & 0xffffu)) / 32767.0f;
+    };
     const float2 p(part(packed), part(packed >> 16u));
     float3 n(p.x, p.y, 1.0f - abs(p.x) - abs(p.y));
     const float t = saturate(-n.z);
@@ -22,7 +24,7 @@ float3 tangentOf(std::uint32_t packed) {
 }
 
 /// Positive to the right of the way from a to b, y down.
-float3 lineThrough(float2 a, float2 b) {
+std::array<float, 3> lineThrough(float2 a, float2 b) {
     const float2 d = b - a;
     const float2 n = float2(-d.y, d.x) * rsqrt(max(dot(d, d), 1e-20f));
     return {n.x, n.y, -dot(n, a)};
@@ -75,17 +77,23 @@ void RibbonTiles::project() {
                 const float pixelSize = view.pixelSize * (view.eye_ws.w > 0 ? length(toEye) : 1.0f);
                 const float radius = max(p.position_ws.w, 0.5f * view.minWidth * pixelSize);
                 const auto onto = [&](const float3& at, float& x, float& y) {
-                    const auto row = [&](int r) { return m[r] * at.x + m[4 + r] * at.y + m[8 + r] * at.z + m[12 + r]; };
+                    const auto row = [&](int r) {
+                        return m[r] * at.x + m[4 + r] * at.y + m[8 + r] * at.z + m[12 + r];
+                    };
                     const float w = row(3);
                     const float safe = max(w, 1e-6f);
-                    x = static_cast<float>(window_.left) + (0.5f + 0.5f * row(0) / safe) * static_cast<float>(window_.columns);
-                    y = static_cast<float>(window_.top) + (0.5f - 0.5f * row(1) / safe) * static_cast<float>(window_.rows);
+                    x = static_cast<float>(window_.left) +
+                        (0.5f + 0.5f * row(0) / safe) * static_cast<float>(window_.columns);
+                    y = static_cast<float>(window_.top) +
+                        (0.5f - 0.5f * row(1) / safe) * static_cast<float>(window_.rows);
                     result.depth = row(2) / safe;
                     return w > 1e-6f;
                 };
                 const bool second = onto(centre + side * radius, result.x1, result.y1);
                 const bool first = onto(centre - side * radius, result.x0, result.y0);
-                result.coverage = !first || !second ? -1.0f : radius > 0 ? p.opacity * p.position_ws.w / radius : 0.0f;
+                result.coverage = !first || !second ? -1.0f
+                                  : radius > 0      ? p.opacity * p.position_ws.w / radius
+                                                    : 0.0f;
             }
         });
     }
@@ -114,10 +122,14 @@ void RibbonTiles::bin() {
             const float middleX = 0.25f * (a.x0 + a.x1 + b.x0 + b.x1);
             const float middleY = 0.25f * (a.y0 + a.y1 + b.y0 + b.y1);
             if (!(abs(middleX) <= kFarthest && abs(middleY) <= kFarthest)) continue;
-            const float lowX = min(min(a.x0, a.x1), min(b.x0, b.x1)) - reach - static_cast<float>(window_.left);
-            const float lowY = min(min(a.y0, a.y1), min(b.y0, b.y1)) - reach - static_cast<float>(window_.top);
-            const float highX = max(max(a.x0, a.x1), max(b.x0, b.x1)) + reach - static_cast<float>(window_.left);
-            const float highY = max(max(a.y0, a.y1), max(b.y0, b.y1)) + reach - static_cast<float>(window_.top);
+            const float lowX =
+                min(min(a.x0, a.x1), min(b.x0, b.x1)) - reach - static_cast<float>(window_.left);
+            const float lowY =
+                min(min(a.y0, a.y1), min(b.y0, b.y1)) - reach - static_cast<float>(window_.top);
+            const float highX =
+                max(max(a.x0, a.x1), max(b.x0, b.x1)) + reach - static_cast<float>(window_.left);
+            const float highY =
+                max(max(a.y0, a.y1), max(b.y0, b.y1)) + reach - static_cast<float>(window_.top);
             if (highX < 0 || highY < 0 || lowX >= static_cast<float>(window_.columns) ||
                 lowY >= static_cast<float>(window_.rows))
                 continue;
@@ -158,18 +170,23 @@ RibbonPiece RibbonTiles::pieceOf(std::uint32_t item) const {
     piece.ends = lineThrough(b0, b1);
     piece.left = lineThrough(a0, b0);
     piece.right = lineThrough(b1, a1);
-    piece.depth = float2(a.depth, b.depth);
-    piece.coverage = float2(a.coverage, b.coverage);
+    piece.depthBegin = a.depth;
+    piece.depthEnd = b.depth;
+    piece.coverageBegin = a.coverage;
+    piece.coverageEnd = b.coverage;
     const float2 start = (a0 + a1) * 0.5f;
     const float2 d = (b0 + b1) * 0.5f - start;
+    const float2 minimum = min(min(a0, a1), min(b0, b1));
+    const float2 maximum = max(max(a0, a1), max(b0, b1));
     piece.steep = abs(d.y) > abs(d.x);
-    piece.minimum = min(min(a0, a1), min(b0, b1));
-    piece.maximum = max(max(a0, a1), max(b0, b1));
     const float run = piece.steep ? d.y : d.x;
     piece.slope = abs(run) > 1e-6f ? (piece.steep ? d.x : d.y) / run : 0.0f;
     const float halfWidth = 0.5f * max(length(a1 - a0), length(b1 - b0));
     piece.across = halfWidth * sqrt(1.0f + piece.slope * piece.slope) + window_.reach * abs(piece.slope);
-    piece.start = piece.steep ? start.yx() : start;
+    piece.startU = piece.steep ? start.y : start.x;
+    piece.startV = piece.steep ? start.x : start.y;
+    piece.lowU = piece.steep ? minimum.y : minimum.x;
+    piece.highU = piece.steep ? maximum.y : maximum.x;
     return piece;
 }
 
