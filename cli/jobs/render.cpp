@@ -290,8 +290,12 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     const auto wish = options.engine == "gpu"   ? EngineWish::gpu
                       : options.engine == "cpu" ? EngineWish::cpu
                                                 : EngineWish::automatic;
-    playing.engine = chooseEngine(wish, &gpu.device(), gpu.kernels(), groom, EngineMemory::ofUser());
-    if (software::isSoftware(gpu.device())) playing.engine = {EngineKind::cpu, "the software renderer draws"};
+    if (software::isSoftware(gpu.device())) {
+        const bool asked = wish == EngineWish::cpu;
+        playing.engine = {EngineKind::cpu, asked ? "you asked for it" : "the software renderer draws"};
+    } else {
+        playing.engine = chooseEngine(wish, &gpu.device(), gpu.kernels(), groom, EngineMemory::ofUser());
+    }
     if (wish == EngineWish::gpu && playing.engine.kind != EngineKind::gpu) return fail(playing.engine.why);
     auto scene = GroomScene::make(groom, view, options.hiddenGroups);
     if (!scene) return tl::unexpected(scene.error());
@@ -301,6 +305,8 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     playing.shots = std::move(*made);
     return playing;
 }
+
+constexpr std::uint32_t kSkyStrandsInSoftware = 2048;
 
 bool hasTubes(const Groom& groom) {
     const auto tubes = [](const HairMaterial& material) { return material.tubes; };
@@ -331,6 +337,7 @@ render::RenderOptions forSoftware(render::RenderOptions how) {
     if (how.transparency == render::Transparency::automatic) how.transparency = render::Transparency::sorted;
     if (how.ribbons == render::Ribbons::automatic) how.ribbons = render::Ribbons::compute;
     if (how.samples == 0) how.samples = 4;
+    how.skyStrands = std::min(how.skyStrands, kSkyStrandsInSoftware);
     return how;
 }
 
@@ -519,8 +526,8 @@ JobRun declare(CLI::App& job) {
             if (option->count() > 0 && !moves)
                 throw CLI::RequiresError(option->get_name(), "--record or --motion");
         }
-        if (options->engine == "cpu" && options->motion.empty())
-            throw CLI::RequiresError("--engine cpu", "--motion");
+        if ((options->engine == "cpu" || options->engine == "gpu") && options->motion.empty())
+            throw CLI::RequiresError("--engine " + options->engine, "--motion");
         if (options->engine == "software" && (options->chooseDevice || options->backend != "any"))
             throw CLI::ExcludesError("--engine software", options->chooseDevice ? "--device" : "--backend");
     });

@@ -241,7 +241,7 @@ void HostCommandList::resolveSorted() {
 }
 
 bool HostCommandList::dispatchApart(const KernelEntry& kernel) {
-    if (kernel.name.starts_with("shade")) maps_.forget();
+    if (kernel.name.starts_with("shade") || kernel.name == "curve.comp") maps_.forget();
     if (kernel.name == "strand_sorted.comp") return dispatchSorted(), true;
     if (hair_.sorted != nullptr && !hair_.sorted->found())
         hair_.sorted->find(elementsOf<const std::uint32_t>(hair_.nearest),

@@ -107,9 +107,16 @@ concept TakesGroups = requires(Kernel kernel) {
     kernel.main(uint3(0u), uint{0});
 };
 
+#ifdef __GNUC__
+// Shaders are written for compilers that know no calls.
+#define HAIRLOOM_FLATTEN [[gnu::flatten]]
+#else
+#define HAIRLOOM_FLATTEN
+#endif
+
 template <class Kernel>
-void runKernel(const Registers& registers, const std::array<std::uint32_t, 3>& groups, std::size_t begin,
-               std::size_t end) {
+HAIRLOOM_FLATTEN void runKernel(const Registers& registers, const std::array<std::uint32_t, 3>& groups,
+                                std::size_t begin, std::size_t end) {
     Kernel kernel(registers);
     constexpr auto& size = Kernel::kGroup;
     for (std::size_t g = begin; g < end; ++g) {
@@ -130,13 +137,14 @@ void runKernel(const Registers& registers, const std::array<std::uint32_t, 3>& g
 }
 
 template <class Kernel>
-void runThreads(const Registers& registers, std::span<const uint3> threads) {
+HAIRLOOM_FLATTEN void runThreads(const Registers& registers, std::span<const uint3> threads) {
     Kernel kernel(registers);
     for (const uint3& thread : threads) kernel.main(thread);
 }
 
 template <class Kernel>
-void fillRow(const Registers& registers, std::uint32_t row, std::uint32_t count, float4* pixels) {
+HAIRLOOM_FLATTEN void fillRow(const Registers& registers, std::uint32_t row, std::uint32_t count,
+                              float4* pixels) {
     Kernel kernel(registers);
     for (std::uint32_t x = 0; x < count; ++x)
         pixels[x] = kernel.main(float4(static_cast<float>(x) + 0.5f, static_cast<float>(row) + 0.5f, 0, 1));

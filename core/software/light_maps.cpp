@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kFibreCount = 65536;  // one whole fibre, as opacity.hlsli counts it
 
+constexpr std::uint32_t kMostStrands = 16384;               // that a map counts
 constexpr std::size_t kMostKept = std::size_t{256} << 20u;  // bytes
 
 std::unique_ptr<RibbonTiles> tilesOf(const RibbonBatch& batch, const shaders::RasterConstants& raster) {
@@ -35,6 +36,43 @@ float metresBehind(const shaders::ViewConstants& view, float depth) {
 
 }  // namespace
 
+void LightMaps::forget() {
+    kept_.clear();
+    coarse_.clear();
+}
+
+RibbonBatch LightMaps::thinned(const RibbonBatch& batch) {
+    RibbonBatch result = batch;
+    if (batch.curve.empty()) return result;
+    const std::uint32_t strands = batch.curve.back().strand + 1;
+    if (strands > kMostStrands) {
+        // Strands stand in an order of chance.
+        const auto end =
+            std::ranges::lower_bound(batch.curve, kMostStrands, {}, &shaders::CurvePoint::strand);
+        result.curve = batch.curve.first(static_cast<std::size_t>(end - batch.curve.begin()));
+        result.view.fibresForEach *= static_cast<float>(strands) / static_cast<float>(kMostStrands);
+    }
+    const auto found = std::ranges::find_if(coarse_, [&](const Coarse& coarse) {
+        return coarse.fine.data() == result.curve.data() && coarse.fine.size() == result.curve.size();
+    });
+    if (found != coarse_.end()) {
+        result.curve = found->points;
+        return result;
+    }
+    Coarse& coarse = coarse_.emplace_back(Coarse{result.curve, {}});
+    coarse.points.reserve(result.curve.size() / 2 + strands);
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < result.curve.size(); ++i) {
+        const bool first = i == 0 || result.curve[i - 1].strand != result.curve[i].strand;
+        const bool last =
+            i + 1 == result.curve.size() || result.curve[i + 1].strand != result.curve[i].strand;
+        if (first) begin = i;
+        if (last || (i - begin) % 2 == 0) coarse.points.push_back(result.curve[i]);
+    }
+    result.curve = coarse.points;
+    return result;
+}
+
 std::unique_ptr<RibbonTiles> LightMaps::takeTiles(const RibbonBatch& batch,
                                                   const shaders::RasterConstants& raster) {
     const auto found = std::ranges::find_if(kept_, [&](const Kept& kept) {
@@ -46,8 +84,9 @@ std::unique_ptr<RibbonTiles> LightMaps::takeTiles(const RibbonBatch& batch,
     return tiles;
 }
 
-void LightMaps::drawFirstHair(const RibbonBatch& batch, const shaders::RasterConstants& raster,
+void LightMaps::drawFirstHair(const RibbonBatch& all, const shaders::RasterConstants& raster,
                               std::span<std::uint32_t> first) {
+    const RibbonBatch batch = thinned(all);
     std::unique_ptr<RibbonTiles> tiles = tilesOf(batch, raster);
     parallelFor(tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
@@ -68,8 +107,9 @@ void LightMaps::drawFirstHair(const RibbonBatch& batch, const shaders::RasterCon
     if (bytes <= kMostKept) kept_.push_back({batch, raster.window, std::move(tiles)});
 }
 
-void LightMaps::countLayers(const RibbonBatch& batch, const shaders::RasterConstants& raster,
+void LightMaps::countLayers(const RibbonBatch& all, const shaders::RasterConstants& raster,
                             std::span<const std::uint32_t> first, std::span<std::uint32_t> counts) {
+    const RibbonBatch batch = thinned(all);
     const std::unique_ptr<RibbonTiles> tiles = takeTiles(batch, raster);
     const shaders::ViewConstants& view = batch.view;
     const bool fixedLayers = view.shadows == HAIRLOOM_SHADOWS_OPACITY_MAPS;

@@ -3,6 +3,7 @@
 // Opacity maps of hair as a light or the sky sees it: what light_first.comp.hlsl and light_layers.comp.hlsl
 // do on a GPU, tile by tile.
 
+#include <list>
 #include <memory>
 
 #include "core/software/ribbon_tiles.h"
@@ -17,8 +18,8 @@ class LightMaps {
     /// Adds the hair's coverage, in counts, to the layers of the window's pixels.
     void countLayers(const RibbonBatch& batch, const shaders::RasterConstants& raster,
                      std::span<const std::uint32_t> first, std::span<std::uint32_t> counts);
-    /// What was sorted for drawFirstHair() and not asked for since.
-    void forget() { kept_.clear(); }
+    /// Curves are about to change, or all maps are drawn.
+    void forget();
 
   private:
     /// What the first of both has sorted serves the second.
@@ -27,9 +28,16 @@ class LightMaps {
         shaders::float4 window;
         std::unique_ptr<RibbonTiles> tiles;
     };
+    /// A curve with every other point.
+    struct Coarse {
+        std::span<const shaders::CurvePoint> fine;
+        std::vector<shaders::CurvePoint> points;
+    };
+    RibbonBatch thinned(const RibbonBatch& batch);
     std::unique_ptr<RibbonTiles> takeTiles(const RibbonBatch& batch, const shaders::RasterConstants& raster);
 
     std::vector<Kept> kept_;
+    std::list<Coarse> coarse_;
 };
 
 }  // namespace hairloom::software

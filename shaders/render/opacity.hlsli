@@ -15,7 +15,7 @@ uint2 packShares(float4 share) {
 }
 
 float4 unpackShares(uint2 packed) {
-    return float4(packed.x & 0xffffu, packed.x >> 16u, packed.y & 0xffffu, packed.y >> 16u) / 65535.0;
+    return float4(packed.x & 0xffffu, packed.x >> 16u, packed.y & 0xffffu, packed.y >> 16u) * (1.0 / 65535.0);
 }
 
 // Fibres in front of a depth, as a texel of a deep opacity map tells; metres behind the near plane. The layers begin with the first
