@@ -317,7 +317,16 @@ bool hasTubes(const Groom& groom) {
 
 /// What was asked for, else the best GPU, else the software renderer.
 Result<DrawingDevice> deviceOf(const RenderJobOptions& options, const Groom& groom) {
-    if (options.engine == "software") return DrawingDevice{GpuBackend::makeSoftware(), {}};
+    const bool byPasses = options.ribbons == "strip" || options.ribbons == "tess" ||
+                          options.transparency == "weighted" || hasTubes(groom);
+    if (options.engine == "software") {
+        if (byPasses)
+            return fail(
+                "the software renderer draws neither strips, tessellated ribbons, weighted transparency nor "
+                "tubes",
+                "--engine auto, which draws them with a graphics API");
+        return DrawingDevice{GpuBackend::makeSoftware(), {}};
+    }
     if (options.chooseDevice || options.backend != "any" || options.engine == "gpu") {
         std::optional<gpu::Backend> backend;
         if (options.backend != "any") backend = kGpuBackends.at(options.backend);
@@ -326,8 +335,6 @@ Result<DrawingDevice> deviceOf(const RenderJobOptions& options, const Groom& gro
         if (!made) return tl::unexpected(made.error());
         return DrawingDevice{std::move(*made), {}};
     }
-    const bool byPasses = options.ribbons == "strip" || options.ribbons == "tess" ||
-                          options.transparency == "weighted" || hasTubes(groom);
     return chooseDrawingDevice(byPasses);
 }
 

@@ -206,7 +206,7 @@ TEST_F(RenderJob, LayersOfAPictureAreInItsExr) {
 
     // Hair in wind moves in a record as in a simulation, and other places give other layers.
     runJson("simulate hair.hairloom --frames 4 --wind 3,0,0 --record wind.frames");
-    picture("--record wind.frames --frame 0 --exr still.exr --aov velocity");
+    picture("--record wind.frames --frame 0 --exr still.exr --aov velocity --device 0");
     picture("--record wind.frames --frame 3 --exr moving.exr --aov velocity");
     picture("--motion none --wind 3,0,0 --engine gpu --frame 4 --exr live.exr --aov velocity");
     EXPECT_NE(readText(folder / "still.exr"), readText(folder / "moving.exr"));

@@ -53,9 +53,11 @@ double coverage(const LinearImage& image) {
 TEST_F(SoftwareTest, PicturesAreThoseOfAGraphicsApi) {
     auto api = gpu::createDevice(gpu::testDevice());
     ASSERT_TRUE(api) << api.error().message();
-    const TestHead head(1500);
-    const RenderOptions how = options(160);
-    for (const ShadingModel model : {ShadingModel::kajiya, ShadingModel::marschner, ShadingModel::sadeghi}) {
+    const TestHead head(400);
+    RenderOptions how = options(96);
+    how.shadowResolution = 128;
+    how.skyStrands = 64;
+    for (const ShadingModel model : {ShadingModel::kajiya, ShadingModel::marschner}) {
         const RenderScene scene = withModel(head, model);
         const auto theirs = renderPicture(**api, scene, how);
         ASSERT_TRUE(theirs) << theirs.error().message();
@@ -166,7 +168,7 @@ TEST_F(SoftwareTest, HairThatCannotBeSeenIsNotDrawn) {
         all[3].first.add({Vec3f(-1, 0, 0), Vec3f(1, 0, 0)}, 0.0f);
         all[4].first.add({Vec3f(0, 0, 0), Vec3f(0, 0, 0), Vec3f(0, 0, 0)}, 0.001f);
         all[4].second = true;
-        all[5].first.add({Vec3f(-1000, 0, 0), Vec3f(1000, 0, 0)}, 10.0f);
+        all[5].first.add({Vec3f(-1000, 0, 0), Vec3f(1000, 0, 0)}, 1.0f);
         all[5].second = true;
         return all;
     }();
@@ -175,7 +177,9 @@ TEST_F(SoftwareTest, HairThatCannotBeSeenIsNotDrawn) {
         scene.lights = studioLights(scene.camera);
         const Picture picture = draw(scene, how);
         expectFinite(picture);
-        if (!cases[i].second) EXPECT_EQ(coverage(picture.linear), 0) << i;
+        if (!cases[i].second) {
+            EXPECT_EQ(coverage(picture.linear), 0) << i;
+        }
     }
 }
 
