@@ -168,7 +168,7 @@ TEST_F(SoftwareTest, HairThatCannotBeSeenIsNotDrawn) {
         all[3].first.add({Vec3f(-1, 0, 0), Vec3f(1, 0, 0)}, 0.0f);
         all[4].first.add({Vec3f(0, 0, 0), Vec3f(0, 0, 0), Vec3f(0, 0, 0)}, 0.001f);
         all[4].second = true;
-        all[5].first.add({Vec3f(-1000, 0, 0), Vec3f(1000, 0, 0)}, 1.0f);
+        all[5].first.add({Vec3f(-1000, 0, 0), Vec3f(1000, 0, 0)}, 0.9f);
         all[5].second = true;
         return all;
     }();
