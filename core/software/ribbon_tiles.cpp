@@ -154,6 +154,18 @@ void RibbonTiles::bin() {
     }
 }
 
+std::vector<std::uint64_t> RibbonTiles::nearestFirst(std::size_t index) const {
+    std::vector<std::uint64_t> order;
+    order.reserve(starts_[index + 1] - starts_[index]);
+    for (std::uint32_t k = starts_[index]; k < starts_[index + 1]; ++k) {
+        const std::uint32_t item = items_[k];
+        const float depth = max(min(projected_[item].depth, projected_[item + 1].depth), 0.0f);
+        order.push_back((std::uint64_t{asuint(depth)} << 32u) | item);
+    }
+    std::ranges::sort(order);
+    return order;
+}
+
 RibbonPiece RibbonTiles::pieceOf(std::uint32_t item) const {
     const Projected& a = projected_[item];
     const Projected& b = projected_[item + 1];

@@ -56,6 +56,21 @@ class RibbonTiles {
             if (hits.count > 0) visit(piece, items_[k], hits);
         }
     }
+    /// The same from the nearest piece on, up to those that lie behind `farthest`, bits of a depth that
+    /// `visit` may lessen.
+    template <class Visit>
+    void visitInOrder(std::size_t index, const std::uint32_t& farthest, Visit&& visit) const {
+        const Tile box = tile(index);
+        const PixelBox pixels{box.left, box.top, box.right - 1, box.bottom - 1};
+        RibbonHits hits;
+        for (const std::uint64_t next : nearestFirst(index)) {
+            if (static_cast<std::uint32_t>(next >> 32u) > farthest) break;
+            const auto item = static_cast<std::uint32_t>(next);
+            const RibbonPiece piece = pieceOf(item);
+            findHits_(piece, pixels, window_.reach, hits);
+            if (hits.count > 0) visit(piece, item, hits);
+        }
+    }
     std::size_t bytes() const {
         return projected_.size() * sizeof(Projected) +
                (items_.size() + starts_.size()) * sizeof(std::uint32_t);
@@ -69,6 +84,8 @@ class RibbonTiles {
         float coverage = -1;  ///< below 0: not before the eye
     };
 
+    /// Least depth as bits, then item, of a tile's pieces.
+    std::vector<std::uint64_t> nearestFirst(std::size_t index) const;
     void project();
     void bin();
     RibbonPiece pieceOf(std::uint32_t item) const;

@@ -56,6 +56,9 @@ void SortedHair::findIn(std::size_t tile, std::span<const std::uint32_t> nearest
     const auto bufferAt = [&](int x, int y) {
         return static_cast<std::size_t>(y) * raster_.bufferWidth + static_cast<std::size_t>(x);
     };
+    std::size_t open = pixels;  // that let light through, or have room for fragments
+    bool bounded = false;
+    std::vector<std::uint8_t> closed(pixels, 0);
     const auto visitPixel = [&](const RibbonPiece& piece, std::uint32_t item, const RibbonHits& hits,
                                 std::size_t h) {
         const float depth = hits.depth[h];
@@ -79,17 +82,40 @@ void SortedHair::findIn(std::size_t tile, std::span<const std::uint32_t> nearest
                              lerp(piece.coverageBegin, piece.coverageEnd, along);
         if (covers < kLeastCover) return;
         through *= 1.0f - min(covers, 0.9999f);
-        if (!keeps) return;
+        if (!keeps) {
+            if (closed[pixel] == 0 && through < kLeastThrough) {
+                closed[pixel] = 1;
+                --open;
+            }
+            return;
+        }
         std::size_t place = full ? kFragments - 1 : count++;
         while (place > 0 && kept[place - 1].depth > bits) {
             kept[place] = kept[place - 1];
             --place;
         }
         kept[place] = {bits, item, along, covers};
+        if (closed[pixel] == 0 && count == kFragments && through < kLeastThrough) {
+            closed[pixel] = 1;
+            --open;
+        }
     };
-    tiles_->visit(tile, [&](const RibbonPiece& piece, std::uint32_t item, const RibbonHits& hits) {
-        for (std::size_t h = 0; h < hits.count; ++h) visitPixel(piece, item, hits, h);
-    });
+    // Nothing shows behind the head, nor behind the last fragments where no pixel lets light through.
+    std::uint32_t farthest = 0;
+    for (int y = box.top; y < box.bottom; ++y) {
+        const auto row = nearest.subspan(bufferAt(box.left, y) * samples, columns * samples);
+        farthest = max(farthest, *std::ranges::max_element(row));
+    }
+    tiles_->visitInOrder(tile, farthest,
+                         [&](const RibbonPiece& piece, std::uint32_t item, const RibbonHits& hits) {
+                             for (std::size_t h = 0; h < hits.count; ++h) visitPixel(piece, item, hits, h);
+                             if (open > 0 || bounded) return;
+                             bounded = true;
+                             std::uint32_t last = 0;
+                             for (std::size_t p = 0; p < pixels; ++p)
+                                 last = max(last, fragments[p * kFragments + kFragments - 1].depth);
+                             farthest = min(farthest, last);
+                         });
     result.starts.assign(pixels + 1, 0);
     std::size_t all = 0;
     for (std::size_t p = 0; p < pixels; ++p) {
