@@ -2,7 +2,7 @@
 #include "core/software/lazy_shading.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 #include "core/base/parallel.h"
 

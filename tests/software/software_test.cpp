@@ -4,8 +4,6 @@
 
 #include "core/software/device.h"
 
-#include <numeric>
-
 #include "core/base/parallel.h"
 #include "core/render/flip.h"
 #include "core/render/renderer.h"
