@@ -17,6 +17,7 @@
 #include "core/gpu/device.h"
 #include "core/live/groom_scene.h"
 #include "core/render/renderer.h"
+#include "core/software/device.h"
 
 namespace hairloom::benchmarks {
 namespace {
@@ -38,12 +39,13 @@ struct RenderCase {
     Measurement wall;   ///< from recording to the end on the device, ms, with the upload of positions
     std::vector<Measurement> passes;  ///< ms
     std::uint64_t targetBytes = 0;
+    bool software = false;        ///< by the software renderer
     std::optional<double> limit;  ///< ms that the frame may take, where that is laid down for this device
 
     /// What is measured is the same, whatever its name.
     bool isLike(const RenderCase& other) const {
         return sample == other.sample && hairs == other.hairs && shading == other.shading &&
-               options == other.options && sky == other.sky;
+               options == other.options && sky == other.sky && software == other.software;
     }
     void takeTimes(const RenderCase& other) {
         frame = other.frame, wall = other.wall, passes = other.passes;
@@ -174,7 +176,8 @@ class RenderMeasuring {
         if (auto status = renderer.setScene(scene); !status) return status;
         which.frame = {"frame", "ms", {}};
         which.wall = {"wall", "ms", {}};
-        const double warmUp = device_.info().type == gpu::DeviceType::Cpu ? 0 : kWarmUpOnGpu;
+        const bool warms = device_.info().type != gpu::DeviceType::Cpu && !software::isSoftware(device_);
+        const double warmUp = warms ? kWarmUpOnGpu : 0;
         const Stopwatch watch;
         for (int i = 0; i < kWarmUp || watch.seconds() < warmUp; ++i) {
             if (auto status = frame(which, renderer, *target, i, false); !status) return status;
@@ -285,6 +288,10 @@ class CaseList {
             add(fmt::format("{} hairs, light from around", hairs), hairs, size_, [](auto&) {});
             bench_.cases.back().sky = true;
         }
+        // The same size as the row of so many hairs, and blended as it does by default.
+        add(fmt::format("{} hairs, software renderer", counts_.front()), counts_.front(), size_,
+            [](auto& o) { o.transparency = render::Transparency::sorted; });
+        bench_.cases.back().software = true;
     }
 
   private:
@@ -375,7 +382,10 @@ Result<RenderBench> measureAll(const Options& options) {
         bench.notes.emplace_back("the device has no clock: frames are wall times, passes are 0");
     }
     CaseList(options, *hairstyles, bench.device, bench).add();
-    RenderMeasuring measuring(**device, options.repetitions.value_or(kUsualRepetitions));
+    const int repetitions = options.repetitions.value_or(kUsualRepetitions);
+    RenderMeasuring measuring(**device, repetitions);
+    const std::unique_ptr<gpu::Device> processor = software::makeDevice();
+    RenderMeasuring inSoftware(*processor, repetitions);
     for (std::size_t i = 0; i < bench.cases.size(); ++i) {
         RenderCase& which = bench.cases[i];
         const auto done = bench.cases.begin() + static_cast<std::ptrdiff_t>(i);
@@ -384,7 +394,7 @@ Result<RenderBench> measureAll(const Options& options) {
             std::find_if(bench.cases.begin(), done, [&](const RenderCase& c) { return c.isLike(which); });
         if (like != done) {
             which.takeTimes(*like);
-        } else if (auto status = measuring.run(which); !status) {
+        } else if (auto status = (which.software ? inSoftware : measuring).run(which); !status) {
             return tl::unexpected(status.error());
         }
         if (options.progress) options.progress("drawing", i + 1, bench.cases.size());

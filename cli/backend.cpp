@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/backend.h"
 
+#include "core/software/device.h"
+
 namespace hairloom::cli {
 
 GpuBackend::GpuBackend(std::unique_ptr<gpu::Device> device)
@@ -16,6 +18,19 @@ Result<std::unique_ptr<GpuBackend>> GpuBackend::make(std::optional<gpu::Backend>
     auto device = gpu::createDevice(options);
     if (!device) return tl::unexpected(device.error());
     return std::unique_ptr<GpuBackend>(new GpuBackend(std::move(*device)));
+}
+
+std::unique_ptr<GpuBackend> GpuBackend::makeSoftware() {
+    return std::unique_ptr<GpuBackend>(new GpuBackend(software::makeDevice()));
+}
+
+Result<DrawingDevice> chooseDrawingDevice(bool byPasses) {
+    auto made = GpuBackend::make({}, {});
+    if (made && ((*made)->device().info().type != gpu::DeviceType::Cpu || byPasses))
+        return DrawingDevice{std::move(*made), {}};
+    if (byPasses) return tl::unexpected(made.error());
+    const std::string why = made ? "there is no GPU, only " + (*made)->deviceName() : made.error().message();
+    return DrawingDevice{GpuBackend::makeSoftware(), "the software renderer draws: " + why};
 }
 
 Result<JobEngine> chooseJobEngine(const std::string& wish, std::optional<gpu::Backend> backend,

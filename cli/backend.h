@@ -39,6 +39,9 @@ class GpuBackend {
     static Result<std::unique_ptr<GpuBackend>> make(std::optional<gpu::Backend> backend,
                                                     std::optional<std::uint32_t> index);
 
+    /// One that draws without a GPU; simulates nothing.
+    static std::unique_ptr<GpuBackend> makeSoftware();
+
     gpu::Device& device() { return *device_; }
     const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels() const { return kernels_; }
     MethodMaker engine() { return gpu_simulation::engineOn(*device_, kernels_); }
@@ -50,6 +53,15 @@ class GpuBackend {
     std::unique_ptr<gpu::Device> device_;
     std::shared_ptr<gpu_simulation::KernelLibrary> kernels_;
 };
+
+/// A device that draws, and what is to be said of how it was chosen.
+struct DrawingDevice {
+    std::unique_ptr<GpuBackend> backend;
+    std::string note;  ///< empty where it is as was asked for
+};
+/// The best GPU, or the software renderer where there is none. `byPasses`: what is drawn needs passes that
+/// only a graphics API has, as its rasteriser on the processor. Errors: there is nothing that draws it.
+Result<DrawingDevice> chooseDrawingDevice(bool byPasses);
 
 /// What moves the hair of a job.
 struct JobEngine {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -25,6 +26,7 @@
 #include "core/render/png.h"
 #include "core/render/webp.h"
 #include "core/simulation/frame_record.h"
+#include "core/software/device.h"
 #include "importers/child_process.h"
 
 namespace hairloom::cli {
@@ -288,7 +290,12 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     const auto wish = options.engine == "gpu"   ? EngineWish::gpu
                       : options.engine == "cpu" ? EngineWish::cpu
                                                 : EngineWish::automatic;
-    playing.engine = chooseEngine(wish, &gpu.device(), gpu.kernels(), groom, EngineMemory::ofUser());
+    if (software::isSoftware(gpu.device())) {
+        const bool asked = wish == EngineWish::cpu;
+        playing.engine = {EngineKind::cpu, asked ? "you asked for it" : "the software renderer draws"};
+    } else {
+        playing.engine = chooseEngine(wish, &gpu.device(), gpu.kernels(), groom, EngineMemory::ofUser());
+    }
     if (wish == EngineWish::gpu && playing.engine.kind != EngineKind::gpu) return fail(playing.engine.why);
     auto scene = GroomScene::make(groom, view, options.hiddenGroups);
     if (!scene) return tl::unexpected(scene.error());
@@ -297,6 +304,48 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     if (!made) return tl::unexpected(made.error());
     playing.shots = std::move(*made);
     return playing;
+}
+
+constexpr std::uint32_t kSkyStrandsInSoftware = 2048;
+
+bool hasTubes(const Groom& groom) {
+    const auto tubes = [](const HairMaterial& material) { return material.tubes; };
+    return tubes(groom.material) || std::ranges::any_of(groom.layers, [&](const Layer& layer) {
+               return layer.material && tubes(*layer.material);
+           });
+}
+
+/// What was asked for, else the best GPU, else the software renderer.
+Result<DrawingDevice> deviceOf(const RenderJobOptions& options, const Groom& groom) {
+    const bool byPasses = options.ribbons == "strip" || options.ribbons == "tess" ||
+                          options.transparency == "weighted" || hasTubes(groom);
+    if (options.engine == "software") {
+        if (byPasses)
+            return fail(
+                "the software renderer draws neither strips, tessellated ribbons, weighted transparency nor "
+                "tubes",
+                "--engine auto, which draws them with a graphics API");
+        return DrawingDevice{GpuBackend::makeSoftware(), {}};
+    }
+    if (options.chooseDevice || options.backend != "any" || options.engine == "gpu") {
+        std::optional<gpu::Backend> backend;
+        if (options.backend != "any") backend = kGpuBackends.at(options.backend);
+        auto made =
+            GpuBackend::make(backend, options.chooseDevice ? std::optional(options.device) : std::nullopt);
+        if (!made) return tl::unexpected(made.error());
+        return DrawingDevice{std::move(*made), {}};
+    }
+    return chooseDrawingDevice(byPasses);
+}
+
+/// Where nothing else was asked for hair is blended in its order: that has its cover in closed form, and no
+/// noise to average.
+render::RenderOptions forSoftware(render::RenderOptions how) {
+    if (how.transparency == render::Transparency::automatic) how.transparency = render::Transparency::sorted;
+    if (how.ribbons == render::Ribbons::automatic) how.ribbons = render::Ribbons::compute;
+    if (how.samples == 0) how.samples = 4;
+    how.skyStrands = std::min(how.skyStrands, kSkyStrandsInSoftware);
+    return how;
 }
 
 Result<Report> renderToFile(const RenderJobOptions& options) {
@@ -308,7 +357,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     }
     if (!options.shading.empty()) view.fibre.model = kShadingModels.at(options.shading);
     view.fibre.scattering = options.scatter == "dual" ? render::Scattering::dual : render::Scattering::single;
-    const auto how = pictureOptions(options, view);
+    auto how = pictureOptions(options, view);
     if (!how) return tl::unexpected(how.error());
     const auto shots = shotsOf(options);
     if (!shots) return tl::unexpected(shots.error());
@@ -318,15 +367,14 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         const auto status = applyMaterial(findSamples(programFolder()), options.material, *groom);
         if (!status) return tl::unexpected(status.error());
     }
-    std::optional<gpu::Backend> backend;
-    if (options.backend != "any") backend = kGpuBackends.at(options.backend);
-    const auto device =
-        GpuBackend::make(backend, options.chooseDevice ? std::optional(options.device) : std::nullopt);
+    const auto device = deviceOf(options, *groom);
     if (!device) return tl::unexpected(device.error());
+    gpu::Device& draws = device->backend->device();
+    if (software::isSoftware(draws)) *how = forSoftware(*how);
 
-    const auto playing = play(options, **device, *groom, view);
+    const auto playing = play(options, *device->backend, *groom, view);
     if (!playing) return tl::unexpected(playing.error());
-    Photographer photographer(options, (*device)->device(), *groom, view, *how, playing->shots.get());
+    Photographer photographer(options, draws, *groom, view, *how, playing->shots.get());
     std::vector<std::string> notes;
     if (playing->shots) notes = bodyNotes(*groom, playing->motion->poseAt(0), true);
     if (!options.record.empty()) {
@@ -334,6 +382,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (!first) return tl::unexpected(first.error());
         notes = recordNotes(*groom, first->pose);
     }
+    if (!device->note.empty()) notes.push_back(device->note);
     std::vector<render::Image> images;
     Report report;
     std::optional<Progress> progress;
@@ -444,9 +493,11 @@ JobRun declare(CLI::App& job) {
         ->needs(motion);
     job.add_option(
            "--engine", options->engine,
-           "Device that simulates: the CPU, the GPU that renders, or the one that was measured to be faster")
-        ->check(CLI::IsMember({"auto", "cpu", "gpu"}))
-        ->needs(motion);
+           "Device that simulates and draws. auto draws on the best GPU, or with the software renderer if "
+           "there "
+           "is none, and simulates where it was measured to be faster. cpu and gpu simulate there. gpu draws "
+           "with the graphics API only. software draws and simulates without a graphics API")
+        ->check(CLI::IsMember({"auto", "cpu", "gpu", "software"}));
     auto* frame = job.add_option("--frame", options->frame,
                                  "Frame of the record, counted from 0, or of the simulation in 1/60 s");
     auto* frames =
@@ -482,6 +533,10 @@ JobRun declare(CLI::App& job) {
             if (option->count() > 0 && !moves)
                 throw CLI::RequiresError(option->get_name(), "--record or --motion");
         }
+        if ((options->engine == "cpu" || options->engine == "gpu") && options->motion.empty())
+            throw CLI::RequiresError("--engine " + options->engine, "--motion");
+        if (options->engine == "software" && (options->chooseDevice || options->backend != "any"))
+            throw CLI::ExcludesError("--engine software", options->chooseDevice ? "--device" : "--backend");
     });
     return [options](const std::string&) {
         if (!options->motion.empty()) checkMotion(options->motion);

@@ -117,6 +117,11 @@ class CheckedList : public CommandList {
     const Viewport& viewport() const { return viewport_; }
     const ScissorRect& scissor() const { return scissor_; }
     const Binding& bound(const ShaderRegister& at) const { return bound_.at(at); }
+    /// Null where nothing is bound there; for registers that a shader declares and may not use.
+    const Binding* boundIfAny(const ShaderRegister& at) const {
+        const auto found = bound_.find(at);
+        return found == bound_.end() ? nullptr : &found->second;
+    }
 
   private:
     bool requirePass(PassKind kind, const char* call);

@@ -29,6 +29,9 @@ struct LayerLight {
     float3 onward;   // of the beam
 };
 
+// The beam must not fade exactly as diffuse light does.
+float turnedOf(float lost, float wanted) { return abs(lost * wanted - 1.0) < 0.01 ? 1.01 / lost : wanted; }
+
 // `before` fibres between the point and the lit side, `all` from side to side, on a ground of this albedo; lit straight with
 // the irradiance 1.
 LayerLight lightInLayer(FibreMoments m, float before, float all, float3 ground) {
@@ -38,9 +41,9 @@ LayerLight lightInLayer(FibreMoments m, float before, float all, float3 ground) 
     const float3 lost = stopped.lost;
     const float3 asymmetric = (m.first - stopped.forward) / scale;
     const float3 omega = 1.0 - lost;
-    // The beam must not fade exactly as diffuse light does.
     const float3 wanted = 2.0 * (1.0 - asymmetric);
-    const float3 turned = abs(lost * wanted - 1.0) < 0.01 ? 1.01 / lost : wanted;
+    const float3 turned =
+        float3(turnedOf(lost.x, wanted.x), turnedOf(lost.y, wanted.y), turnedOf(lost.z, wanted.z));
     const float3 rate = sqrt(lost * turned);
     const float3 slope = sqrt(lost / turned);
     const float3 at = scale * before;

@@ -15,7 +15,7 @@ uint2 packShares(float4 share) {
 }
 
 float4 unpackShares(uint2 packed) {
-    return float4(packed.x & 0xffffu, packed.x >> 16u, packed.y & 0xffffu, packed.y >> 16u) / 65535.0;
+    return float4(packed.x & 0xffffu, packed.x >> 16u, packed.y & 0xffffu, packed.y >> 16u) * (1.0 / 65535.0);
 }
 
 // Fibres in front of a depth, as a texel of a deep opacity map tells; metres behind the near plane. The layers begin with the first
@@ -41,6 +41,7 @@ float metresBehindNear(float depthRange, float nearPlane, float depth) {
 // By how many metres the depth of what runs along `along_ws` changes from texel to texel of a map, where it is at `uv` and `depth`:
 // texels beside it are compared with that, or a fibre that leans towards the light would shade itself. 0 where it has no direction.
 float2 depthSlope(LightConstants map, float3 position_ws, float3 along_ws, float2 uv, float depth) {
+    if (dot(along_ws, along_ws) == 0.0) return float2(0, 0);
     const float kStep = 0.001;     // metres
     const float kSteepest = 4.0;  // metres a metre
     const float4 clip = mul(map.clipFromWorld, float4(position_ws + kStep * along_ws, 1));

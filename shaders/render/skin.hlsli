@@ -63,6 +63,8 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         const LightConstants light = shade.lights[k];
         const float3 toLight = directionToLight(light, position_ws);
         const float nl = dot(normal, toLight);
+        const float reached = saturate(nl * 8.0 + 0.6);
+        if (reached == 0.0) continue;
         // Lifted, so that the head does not shadow itself; hair counts down to the skin.
         const float lift = 0.002;
         const Occlusion shadow =
@@ -75,7 +77,7 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         const float m = mesh.specularExponent;
         const float specular = mesh.specular * fresnel * (m + 8.0) / (8.0 * kPi) *
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
-        const float lit = lerp(0.0, shadow.visibility, saturate(nl * 8.0 + 0.6));
+        const float lit = reached * shadow.visibility;
         colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *
                   (lit * throughHair(shade, shadow, albedo));
     }

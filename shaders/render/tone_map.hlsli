@@ -27,6 +27,6 @@ float3 decodeSrgb(float3 encoded) {
 // Half on the channels, which bleaches colours, half on luminance, which keeps all of them; 0…1, not yet encoded.
 float3 toneCurve(float3 exposed) {
     const float luminance = dot(exposed, float3(0.2126, 0.7152, 0.0722));
-    const float scale = luminance > 1e-6 ? filmic(luminance.xxx).x / luminance : 0.0;
+    const float scale = luminance > 1e-6 ? filmic(float3(luminance, luminance, luminance)).x / luminance : 0.0;
     return saturate(0.5 * (filmic(exposed) + scale * exposed));
 }

@@ -2,7 +2,9 @@
 // Pictures from the command line: what views may say, sequences, and the plan.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <set>
 
 #include "tests/cli/command.h"
@@ -80,6 +82,49 @@ TEST_F(RenderJob, EachWayOfDrawingGivesItsOwnPicture) {
     std::filesystem::copy_file(folder / "hair.png", folder / "sky.png");
     picture(view("image.json", R"({"lights": [{"type": "environment", "image": "sky.png", "scale": 2}]})"));
 }
+
+TEST_F(RenderJob, TheSoftwareRendererDrawsWhereThereIsNoGpu) {
+    const auto asked = picture("--engine software");
+    EXPECT_EQ(asked["device"], "software renderer");
+    EXPECT_FALSE(asked.contains("notes"));
+    const std::string drawn = readText(folder / "hair.png");
+    const auto moving = picture("--engine software --motion nod --frame 3");
+    EXPECT_EQ(moving["engine"], "cpu");
+    EXPECT_NE(drawn, readText(folder / "hair.png"));
+    for (const char* const wrong : {"--engine software --device 0", "--engine software --backend vulkan",
+                                    "--engine cpu", "--engine gpu", "--engine fast"}) {
+        EXPECT_EQ(run(std::string("render hair.hairloom -o x.png ") + wrong).exitCode, 2) << wrong;
+    }
+    const auto strips = run("render hair.hairloom -o x.png --engine software --ribbons strip");
+    EXPECT_EQ(strips.exitCode, 1);
+    EXPECT_THAT(strips.errors, HasSubstr("software renderer"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.png"));
+}
+
+#ifndef _WIN32
+TEST_F(RenderJob, ItDrawsWithoutADriverAndSaysSo) {
+    const char* const names[] = {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"};
+    std::vector<std::optional<std::string>> before;
+    for (const char* const name : names) {
+        const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
+        before.push_back(value == nullptr ? std::nullopt : std::optional<std::string>(value));
+        setenv(name, "/nonexistent.json", 1);  // NOLINT(concurrency-mt-unsafe)
+    }
+    const auto drawn = picture("");
+    const auto strips = run("render hair.hairloom -o x.png --ribbons strip");
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (before[i]) {
+            setenv(names[i], before[i]->c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
+        } else {
+            unsetenv(names[i]);  // NOLINT(concurrency-mt-unsafe)
+        }
+    }
+    EXPECT_EQ(drawn["device"], "software renderer");
+    ASSERT_EQ(drawn["notes"].size(), 1);
+    EXPECT_THAT(drawn["notes"][0].get<std::string>(), HasSubstr("software renderer draws"));
+    EXPECT_EQ(strips.exitCode, 1);
+}
+#endif
 
 TEST_F(RenderJob, BrokenViewsAreErrorsThatNameThem) {
     const auto refuses = [&](const std::string& content, const std::string& part) {
@@ -161,7 +206,7 @@ TEST_F(RenderJob, LayersOfAPictureAreInItsExr) {
 
     // Hair in wind moves in a record as in a simulation, and other places give other layers.
     runJson("simulate hair.hairloom --frames 4 --wind 3,0,0 --record wind.frames");
-    picture("--record wind.frames --frame 0 --exr still.exr --aov velocity");
+    picture("--record wind.frames --frame 0 --exr still.exr --aov velocity --device 0");
     picture("--record wind.frames --frame 3 --exr moving.exr --aov velocity");
     picture("--motion none --wind 3,0,0 --engine gpu --frame 4 --exr live.exr --aov velocity");
     EXPECT_NE(readText(folder / "still.exr"), readText(folder / "moving.exr"));
@@ -194,8 +239,9 @@ TEST_F(RenderJob, BenchMeasuresEachPass) {
         EXPECT_EQ(row["n"], 2);
         EXPECT_LE(row["min"], row["median"]);
     }
-    for (const char* name : {"40 hairs", "40 hairs, wall", "40 hairs, opacity layers",
-                             "anti-aliasing: FXAA, filter", "transparency: weighted, blend"}) {
+    for (const char* name :
+         {"40 hairs", "40 hairs, wall", "40 hairs, opacity layers", "anti-aliasing: FXAA, filter",
+          "transparency: weighted, blend", "40 hairs, software renderer"}) {
         EXPECT_TRUE(names.contains(name)) << name;
     }
     EXPECT_THAT(readText(folder / "table.md"), HasSubstr("| shadows: none |"));

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/software/light_maps.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/base/parallel.h"
+
+namespace hairloom::software {
+namespace {
+
+constexpr float kFibreCount = 65536;  // one whole fibre, as opacity.hlsli counts it
+
+constexpr std::uint32_t kMostStrands = 16384;               // that a map counts
+constexpr std::size_t kMostKept = std::size_t{256} << 20u;  // bytes
+
+std::unique_ptr<RibbonTiles> tilesOf(const RibbonBatch& batch, const shaders::RasterConstants& raster) {
+    const RibbonWindow window{static_cast<int>(raster.window.x), static_cast<int>(raster.window.y),
+                              static_cast<int>(raster.window.z), static_cast<int>(raster.window.w),
+                              raster.sampleReach};
+    return std::make_unique<RibbonTiles>(std::span(&batch, 1), window);
+}
+
+bool same(const RibbonBatch& a, const RibbonBatch& b) {
+    return a.curve.data() == b.curve.data() && a.curve.size() == b.curve.size() &&
+           std::memcmp(&a.view, &b.view, sizeof(a.view)) == 0;
+}
+
+/// As opacity.hlsli has it.
+float metresBehind(const shaders::ViewConstants& view, float depth) {
+    const float farPlane = view.nearPlane + view.depthRange;
+    return view.nearPlane > 0
+               ? view.nearPlane * farPlane / (farPlane - depth * view.depthRange) - view.nearPlane
+               : depth * view.depthRange;
+}
+
+}  // namespace
+
+void LightMaps::forget() {
+    kept_.clear();
+    coarse_.clear();
+}
+
+RibbonBatch LightMaps::thinned(const RibbonBatch& batch) {
+    RibbonBatch result = batch;
+    if (batch.curve.empty()) return result;
+    const std::uint32_t strands = batch.curve.back().strand + 1;
+    if (strands > kMostStrands) {
+        // Strands stand in an order of chance.
+        const auto end =
+            std::ranges::lower_bound(batch.curve, kMostStrands, {}, &shaders::CurvePoint::strand);
+        result.curve = batch.curve.first(static_cast<std::size_t>(end - batch.curve.begin()));
+        result.view.fibresForEach *= static_cast<float>(strands) / static_cast<float>(kMostStrands);
+    }
+    const auto found = std::ranges::find_if(coarse_, [&](const Coarse& coarse) {
+        return coarse.fine.data() == result.curve.data() && coarse.fine.size() == result.curve.size();
+    });
+    if (found != coarse_.end()) {
+        result.curve = found->points;
+        return result;
+    }
+    Coarse& coarse = coarse_.emplace_back(Coarse{result.curve, {}});
+    coarse.points.reserve(result.curve.size() / 2 + strands);
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < result.curve.size(); ++i) {
+        const bool first = i == 0 || result.curve[i - 1].strand != result.curve[i].strand;
+        const bool last =
+            i + 1 == result.curve.size() || result.curve[i + 1].strand != result.curve[i].strand;
+        if (first) begin = i;
+        if (last || (i - begin) % 2 == 0) coarse.points.push_back(result.curve[i]);
+    }
+    result.curve = coarse.points;
+    return result;
+}
+
+std::unique_ptr<RibbonTiles> LightMaps::takeTiles(const RibbonBatch& batch,
+                                                  const shaders::RasterConstants& raster) {
+    const auto found = std::ranges::find_if(kept_, [&](const Kept& kept) {
+        return same(kept.batch, batch) && std::memcmp(&kept.window, &raster.window, sizeof(kept.window)) == 0;
+    });
+    if (found == kept_.end()) return tilesOf(batch, raster);
+    std::unique_ptr<RibbonTiles> tiles = std::move(found->tiles);
+    kept_.erase(found);
+    return tiles;
+}
+
+void LightMaps::drawFirstHair(const RibbonBatch& all, const shaders::RasterConstants& raster,
+                              std::span<std::uint32_t> first) {
+    const RibbonBatch batch = thinned(all);
+    std::unique_ptr<RibbonTiles> tiles = tilesOf(batch, raster);
+    parallelFor(tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            tiles->visit(t, [&](const RibbonPiece& piece, std::uint32_t /*item*/, const RibbonHits& hits) {
+                for (std::size_t h = 0; h < hits.count; ++h) {
+                    const float depth = hits.depth[h];
+                    if (!(depth >= 0)) continue;
+                    const auto x = static_cast<std::size_t>(piece.originX + static_cast<int>(hits.x[h]));
+                    const auto y = static_cast<std::size_t>(piece.originY + static_cast<int>(hits.y[h]));
+                    std::uint32_t& least = first[y * raster.bufferWidth + x];
+                    least = min(least, asuint(depth));
+                }
+            });
+        }
+    });
+    std::size_t bytes = tiles->bytes();
+    for (const Kept& kept : kept_) bytes += kept.tiles->bytes();
+    if (bytes <= kMostKept) kept_.push_back({batch, raster.window, std::move(tiles)});
+}
+
+void LightMaps::countLayers(const RibbonBatch& all, const shaders::RasterConstants& raster,
+                            std::span<const std::uint32_t> first, std::span<std::uint32_t> counts) {
+    const RibbonBatch batch = thinned(all);
+    const std::unique_ptr<RibbonTiles> tiles = takeTiles(batch, raster);
+    const shaders::ViewConstants& view = batch.view;
+    const bool fixedLayers = view.shadows == HAIRLOOM_SHADOWS_OPACITY_MAPS;
+    const auto left = static_cast<std::size_t>(raster.window.x);
+    const auto top = static_cast<std::size_t>(raster.window.y);
+    const auto columns = static_cast<std::size_t>(raster.window.z);
+    const auto countOne = [&](const RibbonPiece& piece, const RibbonHits& hits, std::size_t h) {
+        const float depth = hits.depth[h];
+        if (!(depth >= 0 && depth <= 1)) return;
+        const float cover = saturate(lerp(piece.coverageBegin, piece.coverageEnd, hits.along[h]));
+        const auto amount = static_cast<std::uint32_t>(cover * view.fibresForEach * kFibreCount + 0.5f);
+        const auto x = static_cast<std::size_t>(piece.originX + static_cast<int>(hits.x[h]));
+        const auto y = static_cast<std::size_t>(piece.originY + static_cast<int>(hits.y[h]));
+        const float begins =
+            fixedLayers ? view.hairBegins : metresBehind(view, asfloat(first[y * raster.bufferWidth + x]));
+        const float behind = metresBehind(view, depth) - begins;
+        const std::uint32_t layer = (behind >= view.layers.x ? 1u : 0u) +
+                                    (behind >= view.layers.y ? 1u : 0u) + (behind >= view.layers.z ? 1u : 0u);
+        const std::size_t texel = (y - top) * columns + (x - left);
+        counts[texel * raster.layers + min(layer, raster.layers - 1)] += amount;
+    };
+    parallelFor(tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            tiles->visit(t, [&](const RibbonPiece& piece, std::uint32_t /*item*/, const RibbonHits& hits) {
+                for (std::size_t h = 0; h < hits.count; ++h) countOne(piece, hits, h);
+            });
+        }
+    });
+}
+
+}  // namespace hairloom::software

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Hair as the nearest fragments of each pixel in their order: what strand_sorted.comp.hlsl and
+// resolve_sorted.comp.hlsl do on a GPU, tile by tile. Between the two it is known which points of the hair
+// show at all.
+
+#include <memory>
+
+#include "core/software/ribbon_tiles.h"
+
+namespace hairloom::software {
+
+class SortedHair {
+  public:
+    explicit SortedHair(const shaders::RasterConstants& raster) : raster_(raster) {}
+
+    void add(const RibbonBatch& batch) { batches_.push_back(batch); }
+    std::size_t batchCount() const { return batches_.size(); }
+    bool found() const { return tiles_ != nullptr; }
+
+    /// Looks for the fragments. `nearest`: depths of what hides hair as bits, `samples` a pixel. Writes into
+    /// `cover` of each pixel how much all its hair lets through, where the shader has it.
+    void find(std::span<const std::uint32_t> nearest, std::span<std::uint32_t> cover);
+
+    /// 1 for each point of a batch whose light some pixel shows; as many as its curve has.
+    std::vector<std::uint8_t> shownPoints(std::size_t batch) const;
+
+    /// Hair over the mean of the samples, added to the sum of frames, four floats a pixel. `light`: of
+    /// samples, packed; `colours`: of the points of each batch.
+    void resolve(const shaders::ResolveConstants& how, std::span<const std::uint32_t> nearest,
+                 std::span<const std::uint32_t> light, std::span<const std::span<const float4>> colours,
+                 std::span<float4> sum) const;
+
+  private:
+    struct Fragment {
+        std::uint32_t depth;  ///< bits
+        std::uint32_t item;   ///< of RibbonTiles
+        float along;          ///< 0...1 between the item's point and the next
+        float cover;
+    };
+    /// Of the pixels of a tile, row after row.
+    struct Found {
+        std::vector<std::uint16_t> starts;  ///< of each pixel's fragments, then of all
+        std::vector<float> through;         ///< what all hair of the pixel lets through
+        std::vector<Fragment> fragments;
+    };
+    void findIn(std::size_t tile, std::span<const std::uint32_t> nearest, std::span<std::uint32_t> cover);
+    float4 hairOver(const float4& behind, const Found& found, std::size_t pixel,
+                    std::span<const std::span<const float4>> colours) const;
+
+    shaders::RasterConstants raster_;
+    std::vector<RibbonBatch> batches_;
+    std::unique_ptr<RibbonTiles> tiles_;
+    std::vector<Found> found_;  ///< one a tile; empty where no hair is
+};
+
+}  // namespace hairloom::software
