@@ -132,16 +132,18 @@ findsAnyName() {
         cli import "$folder/髪.hair" -o "$folder/zurück.hairloom" && [ -s "$folder/zurück.hairloom" ]
 }
 
-# guardsForeignFiles: the process that reads them is in a job that limits its memory and denies it others, and what Wine knows of
-# integrity is set or said to be missing.
+# guardsForeignFiles: of each layer of the process that reads them it is said whether it is set, and none could not be set. One that is
+# set refuses what it is for. Wine 8 tells no limits of jobs and knows no integrity: they are missing there.
 guardsForeignFiles() {
     local told
     told=$(cli devices --security --json) || return
     printf '%s\n' "$told"
     measured "$(printf '%s\n' "$told" | sed -n 's/.*"layer_\([a-z]*\)": *"\([a-z]*\)".*/\1 \2/p' | paste -sd ,)"
-    printf '%s\n' "$told" | awk '/"layer_(memory|programs)": *"set"/ { set++ } /"layer_.*": *"failed"/ { failed++ }
-                                 /"refuses_(memory|programs)": *true/ { refused++ }
-                                 END { exit !(set == 2 && refused == 2 && !failed) }'
+    printf '%s\n' "$told" | awk -F '"' '/"layer_/ { layers++; state[substr($2, 7)] = $4 }
+                                      /"refuses_/ { refuses[substr($2, 9)] = $3 ~ /true/ }
+                                      END { for (l in state) bad += state[l] == "failed"
+                                            for (l in refuses) bad += state[l] == "set" && !refuses[l]
+                                            exit !(layers == 3 && !bad) }'
 }
 
 # readsPictures STYLE: a picture of each kind goes through that process.
