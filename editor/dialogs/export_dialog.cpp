@@ -24,6 +24,7 @@
 #include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
 #include "editor/fields/number_spin.h"
+#include "exporters/usd_scene.h"
 #include "importers/child_process.h"
 #include "importers/length_unit.h"
 
@@ -108,6 +109,14 @@ double bytesOfPoint(const HairWriter& writer) {
         {"ply", 20}, {"runtime", 11},    {"tfx", 16},  {"usda", 55},    {"usdc", 17}};
     const auto found = bytes.find(writer.name);
     return found == bytes.end() ? 16 : found->second;
+}
+
+/// What USD has of hair at rest beside the curves: the scalp, and where operators start from.
+double bytesBeside(const HairWriter& writer, const Groom& groom, std::size_t pointsOfOperators) {
+    const bool isText = writer.name == "usda";
+    if (!isText && writer.name != "usdc") return 0;
+    return static_cast<double>(groom.scalpSelection.size()) * (isText ? 137 : 52) +
+           static_cast<double>(pointsOfOperators) * (isText ? 39 : 12);
 }
 
 /// More than a game moves each by itself.
@@ -327,7 +336,9 @@ void ExportDialog::showWhatWillBeWritten() {
     }
     if (points_->value() > 0) points = count * static_cast<std::size_t>(points_->value());
     const auto frames = static_cast<double>(std::max(1, frames_->value()));
-    const double bytes = static_cast<double>(points) * bytesOfPoint(*choice.writer) * frames;
+    double bytes = static_cast<double>(points) * bytesOfPoint(*choice.writer) * frames;
+    const bool hasOperators = !isBaked && usdHasOperators(groom, optionsAsked());
+    if (frames_->value() == 0) bytes += bytesBeside(*choice.writer, groom, hasOperators ? points : 0);
     summary_->setText(
         tr("Will write %L1 strands with %L2 points, about %3. The file is read back and compared with the "
            "hair.")
@@ -373,14 +384,19 @@ void ExportDialog::choosePath() {
     if (!path.isEmpty()) exportTo(path);
 }
 
-void ExportDialog::exportTo(const QString& path) {
-    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
-    const HairWriter& writer = *choice.writer;
+StrandExportOptions ExportDialog::optionsAsked() const {
     StrandExportOptions options;
-    options.limits = choice.target->options.limits;
+    options.limits = choiceAt(target_->currentIndex(), format_->currentIndex()).target->options.limits;
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
+    return options;
+}
+
+void ExportDialog::exportTo(const QString& path) {
+    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
+    const HairWriter& writer = *choice.writer;
+    const StrandExportOptions options = optionsAsked();
     HairToExport wanted;
     wanted.hair = static_cast<ExportedHair>(what_->currentData().toInt());
     if (certify_->isChecked()) wanted.storms = CertificateOptions{}.storms;

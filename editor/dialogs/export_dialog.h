@@ -17,6 +17,7 @@
 #include "editor/document/tasks.h"
 #include "editor/simulation/player.h"
 #include "exporters/report.h"
+#include "exporters/strands.h"
 
 namespace hairloom::editor {
 
@@ -40,6 +41,7 @@ class ExportDialog : public QDialog {
     bool canWrite() const;
     /// Names of those that are chosen; none for all.
     std::vector<std::string> layersToWrite() const;
+    StrandExportOptions optionsAsked() const;
     void showWhatWillBeWritten();
     void showReport();
     QString summary() const;
