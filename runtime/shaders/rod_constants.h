@@ -32,11 +32,8 @@
 #define HAIRLOOM_ROD_CONTACT_DEEP 1e-4
 /// Metres by which a step may take a node nearer to a shape than was predicted for the shape to be looked at.
 #define HAIRLOOM_ROD_CONTACT_NEAR 1e-3
-/// Metres of penetration or lift at the end of a step that another look mends; metres that a node which is held already
-/// has sunk in the step; how often it looks at most. What a step leaves inside the next one pushes out, which is motion.
+/// Metres of penetration or lift that a second look at the end of a step mends.
 #define HAIRLOOM_ROD_CONTACT_LOOK 1e-5
-#define HAIRLOOM_ROD_CONTACT_SUNK 5e-5
-#define HAIRLOOM_ROD_CONTACT_LOOKS 3
 /// Share of the way along a shape that its surface may have turned away by.
 #define HAIRLOOM_ROD_CONTACT_CURVED 0.25
 /// Metres per second: below, contact is rest. Of a strand's points in the root mean square, below which contacts

@@ -246,8 +246,7 @@ void descend() {
 
 #if HAIR_SPHERES
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the prediction had outside,
-/// or past the plane that held it, or holds one that it has lifted off, what it has found is the next guess; false:
-/// nowhere.
+/// or holds one that it has lifted off, what it has found is the next guess; false: nowhere.
 bool lookAgain() {
     if (!gNear) return false;
     bool wrong = false;
@@ -264,12 +263,11 @@ bool lookAgain() {
             EACH_SPHERE(k) {
                 RodTouch touch;
                 if (touchSphere(k, rootAtEnd(), node, touch)) {
-                    const float deepest = held ? max(touch.before, 0.0) + HAIRLOOM_ROD_CONTACT_SUNK : HAIRLOOM_ROD_CONTACT_LOOK;
-                    inside = inside || touch.depth > deepest;
+                    inside = inside || touch.depth > HAIRLOOM_ROD_CONTACT_LOOK;
                     lifted = lifted && !rodHolds(touch, HAIRLOOM_ROD_CONTACT_LOOK);
                 }
             }
-            wrong = wrong || lifted || inside;
+            wrong = wrong || lifted || (inside && !held);
         }
     }
     if (!wrong) return false;
@@ -318,13 +316,7 @@ void stageRod() {
     }
     descend();
 #if HAIR_SPHERES
-    if (gReachable != 0u) {
-        [loop] for (uint look = 0; look < HAIRLOOM_ROD_CONTACT_LOOKS; ++look) {
-            // What bounces is led off the surface, which no look may take for lifted.
-            if ((look > 0 && gTouched > 2.0) || !lookAgain()) break;
-            descend();
-        }
-    }
+    if (gReachable != 0u && lookAgain()) descend();
 #endif
     finishRodStep();
 }

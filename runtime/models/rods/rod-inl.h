@@ -74,12 +74,16 @@ class RodStrip {
         }
         descend();
         if constexpr (kContacts) {
-            for (int look = 0; look < HAIRLOOM_ROD_CONTACT_LOOKS && lookAgain(look); ++look) descend();
+            // Skin has more curves than spheres have.
+            const int looks = context_.body ? kBodyLooks : 1;
+            for (int look = 0; look < looks && lookAgain(); ++look) descend();
         }
         finish();
     }
 
   private:
+    static constexpr int kBodyLooks = 3;
+
     /// One step of Gauss-Newton from the guess.
     void descend() {
         eliminate();
@@ -331,7 +335,7 @@ class RodStrip {
     bool anyMayTouch() const;
     template <class Visit>
     void forEachNode(Visit&& visit);
-    bool lookAgain(int look);
+    bool lookAgain();
     static V4 chosen(RodMask which, V4 yes, V4 no) {
         return {choose(which, yes.x, no.x), choose(which, yes.y, no.y), choose(which, yes.z, no.z),
                 choose(which, yes.w, no.w)};

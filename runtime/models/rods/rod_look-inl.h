@@ -53,14 +53,13 @@ void RodStrip<kBends, kTwists, kContacts>::forEachNode(Visit&& visit) {
 }
 
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
-/// prediction had outside, or past the plane that held it, or holds one that it has lifted off, what it
-/// has found is the next guess; false: nowhere. `look`: how often it has looked before.
+/// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
+/// false: nowhere.
 template <bool kBends, bool kTwists, bool kContacts>
-bool RodStrip<kBends, kTwists, kContacts>::lookAgain(int look) {
+bool RodStrip<kBends, kTwists, kContacts>::lookAgain() {
     if (HWY_LIKELY(!anyMayTouch())) return false;
     const V3 root = rootPosition();
     const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
-    const V sunk = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_SUNK));
     auto wrong = noLane();
     forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
         point.near = choose(lanes, all(1.0f), point.near);
@@ -68,14 +67,11 @@ bool RodStrip<kBends, kTwists, kContacts>::lookAgain(int look) {
         const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
         auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
         forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
-            const V deepest = hn::Max(touch.before, hn::Zero(D())) + sunk;
-            inside = either(inside, touch.depth > choose(held, deepest, reach));
+            inside = either(inside, touch.depth > reach);
             lifted = hn::AndNot(rodHolds(touch, reach), lifted);
         });
-        wrong = either(wrong, both(lanes, either(lifted, inside)));
+        wrong = either(wrong, both(lanes, either(lifted, hn::AndNot(held, inside))));
     });
-    // What bounces is led off the surface, which no look may take for lifted.
-    if (look > 0) wrong = hn::AndNot(touched_ > all(2.0f), wrong);
     if (hn::AllFalse(D(), wrong)) return false;
     forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
         const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
