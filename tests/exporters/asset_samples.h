@@ -17,18 +17,23 @@
 
 namespace hairloom::test {
 
-/// A folder of the running test's own.
-class AssetTest : public testing::Test {
+/// Has a folder of the running test's own.
+class ExportTest : public testing::Test {
   protected:
     void SetUp() override {
         const auto* info = testing::UnitTest::GetInstance()->current_test_info();
         folder = std::filesystem::path(testing::TempDir()) /
-                 (std::string("hairloom-asset-") + info->test_suite_name() + "-" + info->name());
+                 (std::string("hairloom-export-") + info->test_suite_name() + "-" + info->name());
         std::filesystem::remove_all(folder);
         std::filesystem::create_directories(folder);
     }
     void TearDown() override { std::filesystem::remove_all(folder); }
 
+    std::filesystem::path folder;
+};
+
+class AssetTest : public ExportTest {
+  protected:
     /// The file of that groom; the test fails where it cannot be written.
     std::vector<std::byte> written(const Groom& groom, ExportReport* report = nullptr) const {
         const auto path = folder / "a.hairrt";
@@ -38,8 +43,6 @@ class AssetTest : public testing::Test {
         if (report) *report = *made;
         return readFile(path).value();
     }
-
-    std::filesystem::path folder;
 };
 
 /// Strand s has counts[s] points on a helix that hangs from (1 cm · s, 1.7 m, 0).

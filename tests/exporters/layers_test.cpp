@@ -29,17 +29,8 @@ using test::helices;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class LayersOut : public testing::Test {
+class LayersOut : public test::ExportTest {
   protected:
-    void SetUp() override {
-        folder =
-            fs::path(testing::TempDir()) /
-            (std::string("hairloom-layers-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-    }
-    void TearDown() override { fs::remove_all(folder); }
-
     fs::path write(const Groom& groom, const std::string& format, const StrandExportOptions& options = {}) {
         const HairWriter& writer = strandWriter(format);
         const fs::path path = folder / ("a-" + format + "." + writer.suffix());
@@ -48,7 +39,6 @@ class LayersOut : public testing::Test {
         if (report) last = *report;
         return path;
     }
-    fs::path folder;
     ExportReport last;
 };
 

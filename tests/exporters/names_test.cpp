@@ -22,17 +22,8 @@ using test::helices;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class Names : public testing::Test {
+class Names : public test::ExportTest {
   protected:
-    void SetUp() override {
-        folder =
-            fs::path(testing::TempDir()) /
-            (std::string("hairloom-names-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-    }
-    void TearDown() override { fs::remove_all(folder); }
-
     UsdStage written(const Groom& groom, const std::string& format, const StrandExportOptions& options = {}) {
         const fs::path path = folder / ("a." + format);
         const auto report = strandWriter(format).write(groom, path, options);
@@ -47,7 +38,6 @@ class Names : public testing::Test {
             EXPECT_TRUE(names.insert(attribute.name).second) << attribute.name;
         return names;
     }
-    fs::path folder;
 };
 
 TEST_F(Names, BecomeLegalAndStayDifferent) {

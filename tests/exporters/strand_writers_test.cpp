@@ -21,18 +21,7 @@ namespace fs = std::filesystem;
 using test::helices;
 using testing::HasSubstr;
 
-class StrandWriters : public testing::Test {
-  protected:
-    void SetUp() override {
-        folder =
-            fs::path(testing::TempDir()) /
-            (std::string("hairloom-export-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-    }
-    void TearDown() override { fs::remove_all(folder); }
-    fs::path folder;
-};
+class StrandWriters : public test::ExportTest {};
 
 Result<ExportReport> writeHair(const Groom& groom, const fs::path& path,
                                const StrandExportOptions& options = {}) {
