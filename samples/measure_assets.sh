@@ -49,9 +49,4 @@ sed 's/"settings": {"count": 3000,/"settings": {"count": 300,/' samples/hairstyl
 "$HAIRLOOM_CLI" set "$out/few.hairloom" interpolation.followPerGuide=100 -o "$out/few.hairloom" --force > /dev/null
 row few "long sample's script on 300 guides" >> "$table"
 cat "$table"
-[ -n "$page" ] || exit 0
-awk -v table="$table" '
-    /^<!-- measured -->$/ { print; print ""; while ((getline line < table) > 0) print line; print ""; skip = 1; next }
-    /^<!-- end -->$/ { skip = 0 }
-    !skip { print }' "$page" > "$out/page.md"
-cat "$out/page.md" > "$page"
+[ -z "$page" ] || samples/put_table.sh "$table" "$page"

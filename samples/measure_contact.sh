@@ -38,9 +38,4 @@ for style in styles:
           f"{fit['bytes'] / 1000:.0f} |")
 PY
 cat "$table"
-[ -n "$page" ] || exit 0
-awk -v table="$table" '
-    /^<!-- measured -->$/ { print; print ""; while ((getline line < table) > 0) print line; print ""; skip = 1; next }
-    /^<!-- end -->$/ { skip = 0 }
-    !skip { print }' "$page" > "$out/page.md"
-cat "$out/page.md" > "$page"
+[ -z "$page" ] || samples/put_table.sh "$table" "$page"
