@@ -48,6 +48,16 @@ std::string companionOf(const std::string& output) {
     return file ? output + ".report.json" : std::string();
 }
 
+/// "abc, usda": names of the formats that are `wanted`.
+template <class Wanted>
+std::string formatsWhere(Wanted&& wanted) {
+    std::string formats;
+    for (const HairWriter& writer : hairWriters()) {
+        if (wanted(writer)) formats += (formats.empty() ? "" : ", ") + writer.name;
+    }
+    return formats;
+}
+
 /// Format and target as they were asked for; where one is not said, as the other has it best.
 struct Asked {
     const HairWriter* writer;
@@ -61,13 +71,10 @@ Result<Asked> findAsked(const ExportOptions& options) {
     if (options.target.empty()) return Asked{&writer, &writer.targets.front()};
     const ExportTarget* const target = findTarget(writer, options.target);
     if (target != nullptr) return Asked{&writer, target};
-    std::string formats;
-    for (const HairWriter& other : hairWriters()) {
-        if (findTarget(other, options.target) != nullptr)
-            formats += (formats.empty() ? "" : ", ") + other.name;
-    }
     throw WrongUsage(fmt::format("{} does not read {}", options.target, options.format),
-                     "expected " + formats);
+                     "expected " + formatsWhere([&](const HairWriter& other) {
+                         return findTarget(other, options.target) != nullptr;
+                     }));
 }
 
 /// Throws WrongUsage where one of the options is given with a format that has no cards.
@@ -76,12 +83,9 @@ void checkCardOptions(const ExportOptions& options, const std::vector<const CLI:
     if (given == ofCards.end()) return;
     const bool isPage = options.format == kWebFormat;
     if (!isPage && findAsked(options)->writer->holdsCards()) return;
-    std::string formats;
-    for (const HairWriter& writer : hairWriters()) {
-        if (writer.holdsCards()) formats += (formats.empty() ? "" : ", ") + writer.name;
-    }
-    throw WrongUsage(fmt::format("{} applies to cards alone", (*given)->get_name()),
-                     "expected it with --format " + formats);
+    throw WrongUsage(
+        fmt::format("{} applies to cards alone", (*given)->get_name()),
+        "expected it with --format " + formatsWhere([](const HairWriter& w) { return w.holdsCards(); }));
 }
 
 /// Throws WrongUsage where options ask for what a format does not have.
@@ -93,12 +97,9 @@ void checkFormat(const HairWriter& writer, const ExportOptions& options,
             "--unit, --up and --points do not apply to cards",
             "leave them out: glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
     if (options.frames.size() != 2 || options.frames[1] <= options.frames[0] || writer.animates) return;
-    std::string formats;
-    for (const HairWriter& other : strandWriters()) {
-        if (other.animates) formats += (formats.empty() ? "" : ", ") + other.name;
-    }
-    throw WrongUsage(fmt::format("{} holds a single pose, and --frames asks for several", writer.name),
-                     "expected one frame, or --format " + formats);
+    throw WrongUsage(
+        fmt::format("{} holds a single pose, and --frames asks for several", writer.name),
+        "expected one frame, or --format " + formatsWhere([](const HairWriter& w) { return w.animates; }));
 }
 
 /// Writes the report beside the file, if that is one.
