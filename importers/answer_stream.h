@@ -70,7 +70,10 @@ class AnswerWriter {
 
   private:
     void count(std::size_t size) { (*this)(std::uint64_t{size}); }
-    void put(const void* data, std::size_t size) { sink_({static_cast<const std::byte*>(data), size}); }
+    /// An empty list may have no memory, which std::fwrite must not be given.
+    void put(const void* data, std::size_t size) {
+        if (size > 0) sink_({static_cast<const std::byte*>(data), size});
+    }
 
     Sink sink_;
 };
