@@ -34,6 +34,11 @@
 #define HAIRLOOM_ROD_CONTACT_NEAR 1e-3
 /// Metres of penetration or lift that a second look at the end of a step mends.
 #define HAIRLOOM_ROD_CONTACT_LOOK 1e-5
+/// Times that a substep looks again at most, and for what from the second time on: metres that a held node is
+/// inside a shape, of strands no node of which passes a shape at more than so many metres per second.
+#define HAIRLOOM_ROD_CONTACT_LOOKS 3
+#define HAIRLOOM_ROD_CONTACT_SUNK 5e-5
+#define HAIRLOOM_ROD_CONTACT_SLOW 0.2
 /// Share of the way along a shape that its surface may have turned away by.
 #define HAIRLOOM_ROD_CONTACT_CURVED 0.25
 /// Metres per second: below, contact is rest. Of a strand's points in the root mean square, below which contacts

@@ -246,10 +246,13 @@ void descend() {
 
 #if HAIR_SPHERES
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the prediction had outside,
-/// or holds one that it has lifted off, what it has found is the next guess; false: nowhere.
-bool lookAgain() {
+/// or holds one that it has lifted off, what it has found is the next guess; false: nowhere. Looks after the first are
+/// for hair that comes to rest (models/rods/rod_look-inl.h).
+bool lookAgain(bool isFirst) {
     if (!gNear) return false;
     bool wrong = false;
+    const float deepest = isFirst ? 1e9 : HAIRLOOM_ROD_CONTACT_SUNK;
+    float farthest = 0.0;
     float3 position = firstPosition();
     EACH_SEGMENT(j) {
         const float3 tangent = rodRotate(rotation(j), restTangent(j));
@@ -263,14 +266,17 @@ bool lookAgain() {
             EACH_SPHERE(k) {
                 RodTouch touch;
                 if (touchSphere(k, rootAtEnd(), node, touch)) {
-                    inside = inside || touch.depth > HAIRLOOM_ROD_CONTACT_LOOK;
+                    inside = inside || touch.depth > (held ? deepest : HAIRLOOM_ROD_CONTACT_LOOK);
                     lifted = lifted && !rodHolds(touch, HAIRLOOM_ROD_CONTACT_LOOK);
                 }
             }
-            wrong = wrong || lifted || (inside && !held);
+            wrong = wrong || lifted || inside;
+            farthest = max(farthest, dot(node.displacement, node.displacement));
         }
     }
-    if (!wrong) return false;
+    const float slow = HAIRLOOM_ROD_CONTACT_SLOW * gFrame.h;
+    const bool moves = gTouched > 2.0 || farthest > slow * slow;
+    if (!wrong || (!isFirst && moves)) return false;
     position = firstPosition();
     gObjective = gTouched = 0.0;
     EACH_SEGMENT(i) {
@@ -316,7 +322,10 @@ void stageRod() {
     }
     descend();
 #if HAIR_SPHERES
-    if (gReachable != 0u && lookAgain()) descend();
+    [loop] for (int look = 0; look < HAIRLOOM_ROD_CONTACT_LOOKS; ++look) {
+        if (gReachable == 0u || !lookAgain(look == 0)) break;
+        descend();
+    }
 #endif
     finishRodStep();
 }

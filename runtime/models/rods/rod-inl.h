@@ -74,16 +74,12 @@ class RodStrip {
         }
         descend();
         if constexpr (kContacts) {
-            // Skin has more curves than spheres have.
-            const int looks = context_.body ? kBodyLooks : 1;
-            for (int look = 0; look < looks && lookAgain(); ++look) descend();
+            for (int look = 0; look < HAIRLOOM_ROD_CONTACT_LOOKS && lookAgain(look == 0); ++look) descend();
         }
         finish();
     }
 
   private:
-    static constexpr int kBodyLooks = 3;
-
     /// One step of Gauss-Newton from the guess.
     void descend() {
         eliminate();
@@ -335,7 +331,7 @@ class RodStrip {
     bool anyMayTouch() const;
     template <class Visit>
     void forEachNode(Visit&& visit);
-    bool lookAgain();
+    bool lookAgain(bool isFirst);
     static V4 chosen(RodMask which, V4 yes, V4 no) {
         return {choose(which, yes.x, no.x), choose(which, yes.y, no.y), choose(which, yes.z, no.z),
                 choose(which, yes.w, no.w)};
@@ -419,6 +415,7 @@ class RodStrip {
     V objective_, startObjective_, stiffnessSum_;
     V touched_;         ///< most of RodContact::touching
     hn::Mask<D> near_;  ///< a shape is near some node
+    RodMask wrong_;     ///< the last look has found something
 };
 
 template <bool kBends, bool kTwists, bool kContacts>

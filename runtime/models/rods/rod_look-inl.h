@@ -15,6 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
+constexpr float kAnyDepth = 1e9f;  ///< metres
+
 /// Lanes whose outer node of segment j is near a shape, or has come there since it was last seen.
 template <bool kBends, bool kTwists, bool kContacts>
 RodMask RodStrip<kBends, kTwists, kContacts>::mayTouch(std::uint32_t j) const {
@@ -54,24 +56,38 @@ void RodStrip<kBends, kTwists, kContacts>::forEachNode(Visit&& visit) {
 
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
 /// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
-/// false: nowhere.
+/// false: nowhere. Looks after the first are for hair that comes to rest: one step leaves what it has
+/// turned far a little inside, the next pushes it out, and what that takes for motion lifts it off after that.
 template <bool kBends, bool kTwists, bool kContacts>
-bool RodStrip<kBends, kTwists, kContacts>::lookAgain() {
+bool RodStrip<kBends, kTwists, kContacts>::lookAgain(bool isFirst) {
     if (HWY_LIKELY(!anyMayTouch())) return false;
     const V3 root = rootPosition();
     const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
+    // The skin has more curves than spheres have: all looks are for whatever they find.
+    const bool restsOnly = !isFirst && !context_.body;
+    const V deepest = all(restsOnly ? static_cast<float>(HAIRLOOM_ROD_CONTACT_SUNK) : kAnyDepth);
     auto wrong = noLane();
+    V farthest = hn::Zero(D());  // squared, of where a node has gone
     forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
         point.near = choose(lanes, all(1.0f), point.near);
         const auto held = point.contact.touching > hn::Zero(D());
         const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
         auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
         forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
-            inside = either(inside, touch.depth > reach);
+            inside = either(inside, touch.depth > choose(held, deepest, reach));
             lifted = hn::AndNot(rodHolds(touch, reach), lifted);
         });
-        wrong = either(wrong, both(lanes, either(lifted, hn::AndNot(held, inside))));
+        wrong = either(wrong, both(lanes, either(lifted, inside)));
+        farthest = hn::Max(farthest, hn::IfThenElseZero(lanes, dot(node.displacement, node.displacement)));
     });
+    if (restsOnly) {
+        // What bounces is led off the surface, and what is fast has no end in sight.
+        const V slow = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_SLOW) * context_.h);
+        wrong = hn::AndNot(either(touched_ > all(2.0f), farthest > slow * slow), wrong);
+    }
+    // A strand's looks end with the first that finds nothing, whatever strands lie beside it.
+    wrong = isFirst ? wrong : both(wrong, wrong_);
+    wrong_ = wrong;
     if (hn::AllFalse(D(), wrong)) return false;
     forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
         const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
