@@ -2,6 +2,7 @@
 #include "hairloom/body_field.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -80,6 +81,33 @@ std::size_t cornerIndex(const BodyField& field, const CellPlace& place) {
     return (std::size_t{place.z} * (field.size[1] + 1) + place.y) * (field.size[0] + 1) + place.x;
 }
 
+/// A corner of a table, and how many cells it is away.
+struct Corner {
+    std::size_t index;
+    float away;
+};
+
+/// `cells` from the first corner of the table; the nearest of its corners also from beyond it.
+Corner nearestCorner(const BodyField& field, Float3 cells) {
+    const auto nearest = [](float at, std::uint32_t most) {
+        return std::min(static_cast<std::uint32_t>(static_cast<std::int32_t>(std::max(at, 0.0f) + 0.5f)),
+                        most);
+    };
+    const std::uint32_t x = nearest(cells.x, field.size[0]), y = nearest(cells.y, field.size[1]),
+                        z = nearest(cells.z, field.size[2]);
+    const Float3 at{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    return {(std::size_t{z} * (field.size[1] + 1) + y) * (field.size[0] + 1) + x, length(cells - at)};
+}
+
+/// Of 255, how much a bone moves what is near a place at rest.
+unsigned shareOf(const BodyField& field, std::size_t bone, Float3 point_ss) {
+    const Corner corner = nearestCorner(field, (point_ss - field.low_ss) * (1 / field.cell));
+    const BodyField::Skin& skin = field.palette[field.skins[corner.index]];
+    unsigned share = 0;
+    for (std::size_t i = 0; i < skin.bones.size(); ++i) share += skin.bones[i] == bone ? skin.weights[i] : 0u;
+    return share;
+}
+
 BonePose blendOf(const BonePose& a, const BonePose& b, float weight) {
     return {a.x + b.x * weight, a.y + b.y * weight, a.z + b.z * weight, a.origin + b.origin * weight};
 }
@@ -109,22 +137,49 @@ struct Undone {
     Float3 transposed(Float3 g) const { return x * g.x + y * g.y + z * g.z; }
 };
 
+/// Metres from a box at least: the longest way along an axis.
 float distanceTo(const BodyField::Box& box, Float3 p) {
-    const auto beside = [](float at, float low, float high) { return std::max({low - at, at - high, 0.0f}); };
-    return length(Float3{beside(p.x, box.low.x, box.high.x), beside(p.y, box.low.y, box.high.y),
-                         beside(p.z, box.low.z, box.high.z)});
-}
-
-/// Metres at rest that what a bone carries is away at least. Skin between two bones may be closer than it was
-/// at rest, but hardly by half.
-float freeOfBone(const BodyField& field, std::size_t bone, Float3 point_ss) {
-    const float beside = field.boxes.empty() ? 0.0f : distanceTo(field.boxes[bone], point_ss);
-    return std::max(beside, 0.5f * field.freeAround(point_ss));
+    const auto beside = [](float at, float low, float high) { return std::max(low - at, at - high); };
+    return std::max({beside(p.x, box.low.x, box.high.x), beside(p.y, box.low.y, box.high.y),
+                     beside(p.z, box.low.z, box.high.z), 0.0f});
 }
 
 bool isIn(const BodyField::Box& box, Float3 p) {
     return p.x >= box.low.x && p.y >= box.low.y && p.z >= box.low.z && p.x <= box.high.x &&
            p.y <= box.high.y && p.z <= box.high.z;
+}
+
+/// Metres at rest that what a bone carries is away at least, `most` where that is more. Skin between two
+/// bones may be closer than it was at rest, but hardly by half.
+float freeOfBone(const BodyField& field, std::size_t bone, Float3 point_ss, float most) {
+    const float beside = field.boxes.empty() ? 0.0f : distanceTo(field.boxes[bone], point_ss);
+    return beside >= most ? most : std::min(std::max(beside, 0.5f * field.freeAround(point_ss)), most);
+}
+
+/// Where skin takes a place in the world from, by repeated substitution from `rest` on. `mapAt` tells what
+/// takes places near one at rest to the world. Skin between two bones turns along one line, on which two
+/// steps tell where all others lead (Anderson's mixing of two). False where it does not settle.
+template <class Map, class MapAt>
+bool follow(Float3 point_ws, Float3& rest, Map& map, MapAt&& mapAt) {
+    constexpr int kRounds = 12;
+    constexpr float kSettled = 1e-5f, kLost = 2e-3f;  // metres
+    constexpr float kMostMixed = 2;
+    Float3 stepBefore{}, nextBefore{};
+    float off = kInfinite;
+    for (int round = 0; round < kRounds; ++round) {
+        map = mapAt(rest);
+        const Float3 next =
+            map.inverse ? map.inverse->apply(point_ws) : Undone(map.pose).apply(point_ws - map.pose.origin);
+        const Float3 step = next - rest, turned = step - stepBefore;
+        off = length(step);
+        rest = next;
+        if (!(off > kSettled)) break;
+        const float share = dot(step, turned) / dot(turned, turned);
+        if (round > 0 && std::abs(share) <= kMostMixed) rest = next - (next - nextBefore) * share;
+        stepBefore = step;
+        nextBefore = next;
+    }
+    return off < kLost && (map.inverse || !isFlatPose(map.pose));
 }
 
 }  // namespace
@@ -223,11 +278,9 @@ float BodyField::freeAround(Float3 point_ss) const {
                                          cell;
         return distanceTo({low_ss, high}, point_ss);
     }
-    const auto nearest = [](float at) { return static_cast<std::size_t>(at + 0.5f); };
-    const std::size_t x = nearest(cells.x), y = nearest(cells.y), z = nearest(cells.z);
-    const std::int16_t there = distances[(z * (size[1] + 1) + y) * (size[0] + 1) + x];
-    constexpr float kFarthest = 0.8661f;  // cells from the nearest corner
-    return std::max(unit * static_cast<float>(there) - kFarthest * cell, 0.0f);
+    const Corner corner = nearestCorner(*this, cells);
+    const float there = static_cast<float>(distances[corner.index]) - 0.5f;  // as it is rounded
+    return std::max(unit * there - 1.0001f * cell * corner.away, 0.0f);
 }
 
 /// What takes places near one at rest to the world.
@@ -290,11 +343,15 @@ PosedBody::Map PosedBody::mapAt(Float3 point_ss) const {
         const BonePose& inverse = inverse_[usable_.size() + skins[0]];
         return {palette_[skins[0]], inverse == kNothing ? nullptr : &inverse};
     }
+    // Twelve numbers at once.
+    using Numbers = std::array<float, sizeof(BonePose) / sizeof(float)>;
     const auto weights = place.in.weights();
-    Map map{kNothing, nullptr};
-    for (std::size_t i = 0; i < kCellCorners; ++i)
-        map.pose = blendOf(map.pose, palette_[skins[i]], weights[i]);
-    return map;
+    Numbers sum{};
+    for (std::size_t i = 0; i < kCellCorners; ++i) {
+        const auto of = std::bit_cast<Numbers>(palette_[skins[i]]);
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weights[i] * of[k];
+    }
+    return {std::bit_cast<BonePose>(sum), nullptr};
 }
 
 PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
@@ -311,49 +368,55 @@ PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
 
 float PosedBody::freeAround(Float3 point_ws) const {
     float least = kInfinite;
-    for (std::size_t b = 0; b < usable_.size(); ++b) {
+    for (std::size_t b = 0; b < usable_.size() && least > 0; ++b) {
         if (usable_[b] == 0) continue;
         const Float3 rest = inverse_[b].apply(point_ws);
         if (isWhole()) return least_ * field_->freeAround(rest);
-        least = std::min(least, least_ * freeOfBone(*field_, b, rest));
+        least = least_ * freeOfBone(*field_, b, rest, least / least_);
     }
     return least;
 }
 
 PosedBody::Contact PosedBody::at(Float3 point_ws) const {
     if (isWhole()) return ofWhole(point_ws);
-    constexpr int kRounds = 12;
-    constexpr float kSettled = 1e-5f, kLost = 2e-3f;  // metres
+    constexpr unsigned kMuch = 64;  // of 255
     const BodyField& field = *field_;
     Contact nearest{kInfinite, {0, 1, 0}, {}};
-    for (std::size_t b = 0; b < usable_.size(); ++b) {
-        if (usable_[b] == 0) continue;
-        Float3 rest = inverse_[b].apply(point_ws);
-        if (!field.boxes.empty() && !isIn(field.boxes[b], rest)) continue;
-        // What one bone has shown is nearer than anything that another carries.
-        if (std::isfinite(nearest.distance) && least_ * freeOfBone(field, b, rest) > nearest.distance)
-            continue;
-        // Where skin of several bones takes a place from (inverse skinning, by repeated substitution).
-        Map map{};
-        float off = kInfinite;
-        for (int round = 0; round < kRounds && off > kSettled; ++round) {
-            map = mapAt(rest);
-            const Float3 next = map.inverse ? map.inverse->apply(point_ws)
-                                            : Undone(map.pose).apply(point_ws - map.pose.origin);
-            off = length(next - rest);
-            rest = next;
+    std::array<Float3, 4> found;
+    std::size_t foundCount = 0;
+    // What a bone moves much of is found from where the bone has it; what another bone has been found to
+    // share, or to be beside, is the same place. Where no bone has anything, all are tried.
+    const auto isFound = [&](std::size_t bone, Float3 rest) {
+        return std::any_of(found.begin(), found.begin() + foundCount, [&](Float3 place) {
+            const unsigned share = shareOf(field, bone, place);
+            return share >= kMuch || (share > 0 && length(rest - place) < field.cell);
+        });
+    };
+    for (const bool all : {false, true}) {
+        if (all && foundCount > 0) break;
+        for (std::size_t b = 0; b < usable_.size(); ++b) {
+            if (usable_[b] == 0) continue;
+            Float3 rest = inverse_[b].apply(point_ws);
+            if (!field.boxes.empty() && !isIn(field.boxes[b], rest)) continue;
+            if (!all && (shareOf(field, b, rest) == 0 || isFound(b, rest))) continue;
+            // What one bone has shown is nearer than anything that another carries.
+            if (std::isfinite(nearest.distance) &&
+                least_ * freeOfBone(field, b, rest, kInfinite) > nearest.distance)
+                continue;
+            Map map{};
+            if (!follow(point_ws, rest, map, [&](Float3 at) { return mapAt(at); })) continue;
+            if (foundCount < found.size()) found[foundCount++] = rest;
+            const BodyField::Sample sample = field.at(rest);
+            if (!std::isfinite(sample.distance)) continue;
+            const Float3 gradient = map.inverse ? gradientBack(*map.inverse, sample.gradient)
+                                                : Undone(map.pose).transposed(sample.gradient);
+            const float slope = length(gradient);
+            // On the ridge between two sides the slope vanishes: there is no way out that is the nearest.
+            if (!(slope > kFlatSlope)) continue;
+            // Bones that stretch the skin stretch what is before it.
+            const float distance = sample.distance * (length(sample.gradient) / slope);
+            if (distance < nearest.distance) nearest = {distance, gradient * (1 / slope), rest};
         }
-        if (!(off < kLost) || (!map.inverse && isFlatPose(map.pose))) continue;
-        const BodyField::Sample sample = field.at(rest);
-        if (!std::isfinite(sample.distance)) continue;
-        const Float3 gradient = map.inverse ? gradientBack(*map.inverse, sample.gradient)
-                                            : Undone(map.pose).transposed(sample.gradient);
-        const float slope = length(gradient);
-        // On the ridge between two sides the slope vanishes: there is no way out that is the nearest.
-        if (!(slope > kFlatSlope)) continue;
-        // Bones that stretch the skin stretch what is before it.
-        const float distance = sample.distance * (length(sample.gradient) / slope);
-        if (distance < nearest.distance) nearest = {distance, gradient * (1 / slope), rest};
     }
     return nearest;
 }

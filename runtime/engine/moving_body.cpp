@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/body_free.h"
 #include "shaders/rod_constants.h"
 
 namespace hairloom::runtime {
@@ -85,12 +86,7 @@ bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch&
     away = now.freeAround(visit.point_ws);
     if (away > visit.reach) return false;
     const PosedBody::Contact contact = now.at(visit.point_ws);
-    // What is interpolated, and posed, may be closer than it seems: where cells are small, by less.
-    if (std::isfinite(contact.distance)) {
-        constexpr float kSure = 0.9f, kUnsure = 0.2f, kUnsureFine = 0.05f;
-        const float unsure = contact.distance < BodyField::kFineReach ? kUnsureFine : kUnsure;
-        away = std::max(away, kSure * contact.distance - unsure * now.cell());
-    }
+    if (std::isfinite(contact.distance)) away = std::max(away, surelyFree(contact.distance, now.cell()));
     if (!(contact.distance <= visit.reach)) return false;
     touch.normal = contact.normal_ws;
     touch.distance = contact.distance;
