@@ -2,10 +2,12 @@
 #include "hairloom/body_field.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
+
+#include "hwy/base.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -45,7 +47,7 @@ struct CellPlace {
 };
 
 /// `cells` from the first corner of the table; within its size.
-inline CellPlace placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
+HWY_INLINE CellPlace placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
     const auto along = [](float at, std::uint32_t size) {
         return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), size - 1);
     };
@@ -70,7 +72,7 @@ std::array<float, kCellCorners> scaled(const auto& values, float unit) {
     return result;
 }
 
-bool isInside(const BodyField& field, Float3 cells) {
+HWY_INLINE bool isInside(const BodyField& field, Float3 cells) {
     const auto within = [](float at, std::uint32_t size) {
         return at >= 0 && at <= static_cast<float>(size);
     };
@@ -88,7 +90,7 @@ struct Corner {
 };
 
 /// `cells` from the first corner of the table; the nearest of its corners also from beyond it.
-Corner nearestCorner(const BodyField& field, Float3 cells) {
+HWY_INLINE Corner nearestCorner(const BodyField& field, Float3 cells) {
     const auto nearest = [](float at, std::uint32_t most) {
         return std::min(static_cast<std::uint32_t>(static_cast<std::int32_t>(std::max(at, 0.0f) + 0.5f)),
                         most);
@@ -100,7 +102,7 @@ Corner nearestCorner(const BodyField& field, Float3 cells) {
 }
 
 /// Of 255, how much a bone moves what is near a place at rest.
-unsigned shareOf(const BodyField& field, std::size_t bone, Float3 point_ss) {
+HWY_INLINE unsigned shareOf(const BodyField& field, std::size_t bone, Float3 point_ss) {
     const Corner corner = nearestCorner(field, (point_ss - field.low_ss) * (1 / field.cell));
     const BodyField::Skin& skin = field.palette[field.skins[corner.index]];
     unsigned share = 0;
@@ -138,22 +140,35 @@ struct Undone {
 };
 
 /// Metres from a box at least: the longest way along an axis.
-float distanceTo(const BodyField::Box& box, Float3 p) {
+HWY_INLINE float distanceTo(const BodyField::Box& box, Float3 p) {
     const auto beside = [](float at, float low, float high) { return std::max(low - at, at - high); };
     return std::max({beside(p.x, box.low.x, box.high.x), beside(p.y, box.low.y, box.high.y),
                      beside(p.z, box.low.z, box.high.z), 0.0f});
 }
 
-bool isIn(const BodyField::Box& box, Float3 p) {
+HWY_INLINE bool isIn(const BodyField::Box& box, Float3 p) {
     return p.x >= box.low.x && p.y >= box.low.y && p.z >= box.low.z && p.x <= box.high.x &&
            p.y <= box.high.y && p.z <= box.high.z;
 }
 
+HWY_INLINE float freeIn(const BodyField& field, Float3 point_ss) {
+    const Float3 cells = (point_ss - field.low_ss) * (1 / field.cell);
+    // Beyond the table there is no skin that hair could meet.
+    if (!isInside(field, cells)) {
+        const Float3 size{static_cast<float>(field.size[0]), static_cast<float>(field.size[1]),
+                          static_cast<float>(field.size[2])};
+        return distanceTo({field.low_ss, field.low_ss + size * field.cell}, point_ss);
+    }
+    const Corner corner = nearestCorner(field, cells);
+    const float there = static_cast<float>(field.distances[corner.index]) - 0.5f;  // as it is rounded
+    return std::max(field.unit * there - 1.0001f * field.cell * corner.away, 0.0f);
+}
+
 /// Metres at rest that what a bone carries is away at least, `most` where that is more. Skin between two
 /// bones may be closer than it was at rest, but hardly by half.
-float freeOfBone(const BodyField& field, std::size_t bone, Float3 point_ss, float most) {
+HWY_INLINE float freeOfBone(const BodyField& field, std::size_t bone, Float3 point_ss, float most) {
     const float beside = field.boxes.empty() ? 0.0f : distanceTo(field.boxes[bone], point_ss);
-    return beside >= most ? most : std::min(std::max(beside, 0.5f * field.freeAround(point_ss)), most);
+    return beside >= most ? most : std::min(std::max(beside, 0.5f * freeIn(field, point_ss)), most);
 }
 
 /// Where skin takes a place in the world from, by repeated substitution from `rest` on. `mapAt` tells what
@@ -270,17 +285,7 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
 }
 
 float BodyField::freeAround(Float3 point_ss) const {
-    const Float3 cells = (point_ss - low_ss) * (1 / cell);
-    // Beyond the table there is no skin that hair could meet.
-    if (!isInside(*this, cells)) {
-        const Float3 high = low_ss + Float3{static_cast<float>(size[0]), static_cast<float>(size[1]),
-                                            static_cast<float>(size[2])} *
-                                         cell;
-        return distanceTo({low_ss, high}, point_ss);
-    }
-    const Corner corner = nearestCorner(*this, cells);
-    const float there = static_cast<float>(distances[corner.index]) - 0.5f;  // as it is rounded
-    return std::max(unit * there - 1.0001f * cell * corner.away, 0.0f);
+    return freeIn(*this, point_ss);
 }
 
 /// What takes places near one at rest to the world.
@@ -343,15 +348,17 @@ PosedBody::Map PosedBody::mapAt(Float3 point_ss) const {
         const BonePose& inverse = inverse_[usable_.size() + skins[0]];
         return {palette_[skins[0]], inverse == kNothing ? nullptr : &inverse};
     }
-    // Twelve numbers at once.
-    using Numbers = std::array<float, sizeof(BonePose) / sizeof(float)>;
     const auto weights = place.in.weights();
-    Numbers sum{};
+    // As rows of numbers, four of which are reckoned at once.
+    constexpr std::size_t kNumbers = sizeof(BonePose) / sizeof(float);
+    float sum[kNumbers] = {};
     for (std::size_t i = 0; i < kCellCorners; ++i) {
-        const auto of = std::bit_cast<Numbers>(palette_[skins[i]]);
-        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weights[i] * of[k];
+        const float* const numbers = &palette_[skins[i]].x.x;
+        for (std::size_t k = 0; k < kNumbers; ++k) sum[k] += weights[i] * numbers[k];
     }
-    return {std::bit_cast<BonePose>(sum), nullptr};
+    Map map{kNothing, nullptr};
+    std::memcpy(&map.pose, sum, sizeof(sum));
+    return map;
 }
 
 PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
@@ -371,7 +378,7 @@ float PosedBody::freeAround(Float3 point_ws) const {
     for (std::size_t b = 0; b < usable_.size() && least > 0; ++b) {
         if (usable_[b] == 0) continue;
         const Float3 rest = inverse_[b].apply(point_ws);
-        if (isWhole()) return least_ * field_->freeAround(rest);
+        if (isWhole()) return least_ * freeIn(*field_, rest);
         least = least_ * freeOfBone(*field_, b, rest, least / least_);
     }
     return least;

@@ -90,8 +90,7 @@ bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch&
     if (!(contact.distance <= visit.reach)) return false;
     touch.normal = contact.normal_ws;
     touch.distance = contact.distance;
-    touch.way = moves_ ? now.place(contact.point_ss) - at_[substep].place(contact.point_ss)
-                       : Float3{0.0f, 0.0f, 0.0f};
+    touch.way = moves_ ? visit.point_ws - at_[substep].place(contact.point_ss) : Float3{0.0f, 0.0f, 0.0f};
     // By the plane that is there at the end; skin curves away from it.
     touch.before = contact.distance - dot(touch.normal, visit.displacement - touch.way);
     if (touch.before < visit.radius - static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP))
