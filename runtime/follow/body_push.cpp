@@ -31,6 +31,9 @@ constexpr std::array<CubicPlace, 3> kPlaces{{{-9.0f / 128, 111.0f / 128, 29.0f /
                                              {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16},
                                              {-3.0f / 128, 29.0f / 128, 111.0f / 128, -9.0f / 128}}};
 
+/// How much farther from both ends together a place is than these from each other, of the lengths beside.
+constexpr float kBow = 2 * 9.0f / 128;
+
 /// Missing neighbours repeat the end points.
 Float3 placeOf(std::span<const Float3> hair, std::size_t p, const CubicPlace& place) {
     const Float3 a = hair[p], b = hair[p + 1];
@@ -45,7 +48,6 @@ struct BodyPush::Hair {
     std::span<const float> least, leastBetween;
     /// What is known of a hair's points, in memory that hairs share.
     struct Known {
-        std::vector<float> away;  ///< metres that each point is outside, as it was last seen
         std::vector<float> free;  ///< metres that the body is away from each for certain
         std::vector<float> near;  ///< and at most
         /// Moments: when each point has moved, when it was looked at, and when the way to the next one was.
@@ -53,10 +55,8 @@ struct BodyPush::Hair {
     };
     Known& known;
     std::uint32_t moment = 1;
-    bool isNear = false;
 
     void start() {
-        known.away.assign(points.size(), 0.0f);
         known.free.assign(points.size(), 0.0f);
         known.near.assign(points.size(), kUnknown);
         known.moved.assign(points.size(), moment);
@@ -66,7 +66,6 @@ struct BodyPush::Hair {
     void move(std::size_t p, Float3 way) {
         points[p] = points[p] + way;
         const float size = length(way);
-        known.away[p] -= size;
         known.free[p] -= size;
         known.near[p] += size;
         known.moved[p] = ++moment;
@@ -98,9 +97,9 @@ BodyPush::BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint3
     }
 }
 
-/// False where all of the hair is far from the body. Points that have not moved since they were looked at are
+/// Points that have not moved since they were looked at are
 /// as they were, and what is surely free around one is free for the next.
-bool BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
+void BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
     Hair::Known& known = hair.known;
     Float3 last{};
     float free = 0.0f, near = kUnknown;
@@ -111,13 +110,12 @@ bool BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
         if (!isFinite(point)) continue;
         known.free[p] = free - length(point - last);
         known.near[p] = kUnknown;
-        known.away[p] = known.free[p];
         if (known.free[p] > kKept) continue;
         const bool isBeside = near + length(point - last) < kBeside;
         last = point;
         near = kUnknown;
         if (!isBeside) {
-            known.away[p] = known.free[p] = free = body.freeAround(point);
+            known.free[p] = free = body.freeAround(point);
             if (free > kKept) continue;
         }
         // What is deep is led out along the way that leads out there, which is another one higher up.
@@ -125,18 +123,14 @@ bool BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
         for (int round = 0; round < kRounds; ++round) {
             const PosedBody::Contact contact = body.at(hair.points[p]);
             if (!std::isfinite(contact.distance)) break;
-            hair.isNear = true;
             known.looked[p] = hair.moment;
             last = hair.points[p];
-            known.away[p] = contact.distance;
             known.near[p] = near = std::abs(contact.distance);
             known.free[p] = free = std::max(surelyFree(contact.distance, body.cell()), 0.0f);
             if (!(contact.distance < hair.least[p] - kPushSlack)) break;
             hair.move(p, contact.normal_ws * (hair.least[p] - contact.distance));
-            known.away[p] = hair.least[p];
         }
     }
-    return hair.isNear;
 }
 
 /// False where nothing was to be moved.
@@ -148,8 +142,10 @@ bool BodyPush::liftCurve(const PosedBody& body, Hair& hair) const {
         known.checked[p] = hair.moment;
         Float3 &a = hair.points[p], &b = hair.points[p + 1];
         const float length = runtime::length(b - a);
-        // No place is farther from its ends than the ends from each other.
-        if (!(std::min(p == 0 ? 0.0f : known.away[p], known.away[p + 1]) < length)) continue;
+        // No place of the curve is farther from both ends together.
+        const float beside = (p > 0 ? runtime::length(a - hair.points[p - 1]) : 0.0f) +
+                             (p + 2 < hair.points.size() ? runtime::length(b - hair.points[p + 2]) : 0.0f);
+        if (known.free[p] + known.free[p + 1] > 1.001f * (length + kBow * beside) + 2 * kKept) continue;
         for (std::size_t i = 0; i < kPlaces.size(); ++i) {
             const CubicPlace& place = kPlaces[i];
             // Roots stay, and what is next to them.
@@ -190,7 +186,9 @@ void BodyPush::apply(std::span<const BonePose> pose, std::span<Float3> points_ws
             hair.start();
             // What was led out may have drawn what is beside it in.
             constexpr int kRounds = 6;
-            for (int round = 0; round < kRounds && liftPoints(body, hair) && liftCurve(body, hair); ++round) {
+            for (int round = 0; round < kRounds; ++round) {
+                liftPoints(body, hair);
+                if (!liftCurve(body, hair)) break;
             }
         }
     };
