@@ -227,7 +227,9 @@ TEST(BodyContact, SkinThatIsNotLookedAtAgainIsAsItWas) {
             input.time = static_cast<double>(time);
             input.roots_ws = roots;
             input.body_ws = bones;
-            if (forgets) EXPECT_TRUE(made.engine->setState(*made.engine->state()));
+            if (forgets) {
+                EXPECT_TRUE(made.engine->setState(*made.engine->state()));
+            }
             made.engine->step(input);
         }
         return made.engine->stateHash();
