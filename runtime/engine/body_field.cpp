@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
+
+#include "engine/body_free.h"
+#include "hwy/base.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -44,7 +48,7 @@ struct CellPlace {
 };
 
 /// `cells` from the first corner of the table; within its size.
-inline CellPlace placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
+HWY_INLINE CellPlace placeAt(Float3 cells, std::uint32_t sizeX, std::uint32_t sizeY, std::uint32_t sizeZ) {
     const auto along = [](float at, std::uint32_t size) {
         return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), size - 1);
     };
@@ -69,7 +73,7 @@ std::array<float, kCellCorners> scaled(const auto& values, float unit) {
     return result;
 }
 
-bool isInside(const BodyField& field, Float3 cells) {
+HWY_INLINE bool isInside(const BodyField& field, Float3 cells) {
     const auto within = [](float at, std::uint32_t size) {
         return at >= 0 && at <= static_cast<float>(size);
     };
@@ -109,22 +113,55 @@ struct Undone {
     Float3 transposed(Float3 g) const { return x * g.x + y * g.y + z * g.z; }
 };
 
-float distanceTo(const BodyField::Box& box, Float3 p) {
-    const auto beside = [](float at, float low, float high) { return std::max({low - at, at - high, 0.0f}); };
-    return length(Float3{beside(p.x, box.low.x, box.high.x), beside(p.y, box.low.y, box.high.y),
-                         beside(p.z, box.low.z, box.high.z)});
-}
-
-/// Metres at rest that what a bone carries is away at least. Skin between two bones may be closer than it was
-/// at rest, but hardly by half.
-float freeOfBone(const BodyField& field, std::size_t bone, Float3 point_ss) {
-    const float beside = field.boxes.empty() ? 0.0f : distanceTo(field.boxes[bone], point_ss);
-    return std::max(beside, 0.5f * field.freeAround(point_ss));
-}
-
-bool isIn(const BodyField::Box& box, Float3 p) {
+HWY_INLINE bool isIn(const BodyField::Box& box, Float3 p) {
     return p.x >= box.low.x && p.y >= box.low.y && p.z >= box.low.z && p.x <= box.high.x &&
            p.y <= box.high.y && p.z <= box.high.z;
+}
+
+HWY_INLINE float freeIn(const BodyField& field, Float3 point_ss) {
+    const Float3 cells = (point_ss - field.low_ss) * (1 / field.cell);
+    // Beyond the table there is no skin that hair could meet.
+    if (!isInside(field, cells)) {
+        const Float3 size{static_cast<float>(field.size[0]), static_cast<float>(field.size[1]),
+                          static_cast<float>(field.size[2])};
+        return distanceTo({field.low_ss, field.low_ss + size * field.cell}, point_ss);
+    }
+    const Corner corner = nearestCorner(field, cells);
+    const float there = static_cast<float>(field.distances[corner.index]) - 0.5f;  // as it is rounded
+    return std::max(field.unit * there - 1.0001f * field.cell * corner.away, 0.0f);
+}
+
+/// Metres at rest that what a bone carries is away at least, `most` where that is more. Skin between two
+/// bones may be closer than it was at rest, but hardly by half.
+HWY_INLINE float freeOfBone(const BodyField& field, std::size_t bone, Float3 point_ss, float most) {
+    const float beside = field.boxes.empty() ? 0.0f : distanceTo(field.boxes[bone], point_ss);
+    return beside >= most ? most : std::min(std::max(beside, 0.5f * freeIn(field, point_ss)), most);
+}
+
+/// Where skin takes a place in the world from, by repeated substitution from `rest` on. `mapAt` tells what
+/// takes places near one at rest to the world. Skin between two bones turns along one line, on which two
+/// steps tell where all others lead (Anderson's mixing of two). False where it does not settle.
+template <class Map, class MapAt>
+bool follow(Float3 point_ws, Float3& rest, Map& map, MapAt&& mapAt) {
+    constexpr int kRounds = 12;
+    constexpr float kSettled = 1e-5f, kLost = 2e-3f;  // metres
+    constexpr float kMostMixed = 2;
+    Float3 stepBefore{}, nextBefore{};
+    float off = kInfinite;
+    for (int round = 0; round < kRounds; ++round) {
+        map = mapAt(rest);
+        const Float3 next =
+            map.inverse ? map.inverse->apply(point_ws) : Undone(map.pose).apply(point_ws - map.pose.origin);
+        const Float3 step = next - rest, turned = step - stepBefore;
+        off = length(step);
+        rest = next;
+        if (!(off > kSettled)) break;
+        const float share = dot(step, turned) / dot(turned, turned);
+        if (round > 0 && std::abs(share) <= kMostMixed) rest = next - (next - nextBefore) * share;
+        stepBefore = step;
+        nextBefore = next;
+    }
+    return off < kLost && (map.inverse || !isFlatPose(map.pose));
 }
 
 }  // namespace
@@ -215,19 +252,7 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
 }
 
 float BodyField::freeAround(Float3 point_ss) const {
-    const Float3 cells = (point_ss - low_ss) * (1 / cell);
-    // Beyond the table there is no skin that hair could meet.
-    if (!isInside(*this, cells)) {
-        const Float3 high = low_ss + Float3{static_cast<float>(size[0]), static_cast<float>(size[1]),
-                                            static_cast<float>(size[2])} *
-                                         cell;
-        return distanceTo({low_ss, high}, point_ss);
-    }
-    const auto nearest = [](float at) { return static_cast<std::size_t>(at + 0.5f); };
-    const std::size_t x = nearest(cells.x), y = nearest(cells.y), z = nearest(cells.z);
-    const std::int16_t there = distances[(z * (size[1] + 1) + y) * (size[0] + 1) + x];
-    constexpr float kFarthest = 0.8661f;  // cells from the nearest corner
-    return std::max(unit * static_cast<float>(there) - kFarthest * cell, 0.0f);
+    return freeIn(*this, point_ss);
 }
 
 /// What takes places near one at rest to the world.
@@ -291,9 +316,15 @@ PosedBody::Map PosedBody::mapAt(Float3 point_ss) const {
         return {palette_[skins[0]], inverse == kNothing ? nullptr : &inverse};
     }
     const auto weights = place.in.weights();
+    // As rows of numbers, four of which are reckoned at once.
+    constexpr std::size_t kNumbers = sizeof(BonePose) / sizeof(float);
+    float sum[kNumbers] = {};
+    for (std::size_t i = 0; i < kCellCorners; ++i) {
+        const float* const numbers = &palette_[skins[i]].x.x;
+        for (std::size_t k = 0; k < kNumbers; ++k) sum[k] += weights[i] * numbers[k];
+    }
     Map map{kNothing, nullptr};
-    for (std::size_t i = 0; i < kCellCorners; ++i)
-        map.pose = blendOf(map.pose, palette_[skins[i]], weights[i]);
+    std::memcpy(&map.pose, sum, sizeof(sum));
     return map;
 }
 
@@ -311,49 +342,55 @@ PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
 
 float PosedBody::freeAround(Float3 point_ws) const {
     float least = kInfinite;
-    for (std::size_t b = 0; b < usable_.size(); ++b) {
+    for (std::size_t b = 0; b < usable_.size() && least > 0; ++b) {
         if (usable_[b] == 0) continue;
         const Float3 rest = inverse_[b].apply(point_ws);
-        if (isWhole()) return least_ * field_->freeAround(rest);
-        least = std::min(least, least_ * freeOfBone(*field_, b, rest));
+        if (isWhole()) return least_ * freeIn(*field_, rest);
+        least = least_ * freeOfBone(*field_, b, rest, least / least_);
     }
     return least;
 }
 
 PosedBody::Contact PosedBody::at(Float3 point_ws) const {
     if (isWhole()) return ofWhole(point_ws);
-    constexpr int kRounds = 12;
-    constexpr float kSettled = 1e-5f, kLost = 2e-3f;  // metres
+    constexpr unsigned kMuch = 64;  // of 255
     const BodyField& field = *field_;
     Contact nearest{kInfinite, {0, 1, 0}, {}};
-    for (std::size_t b = 0; b < usable_.size(); ++b) {
-        if (usable_[b] == 0) continue;
-        Float3 rest = inverse_[b].apply(point_ws);
-        if (!field.boxes.empty() && !isIn(field.boxes[b], rest)) continue;
-        // What one bone has shown is nearer than anything that another carries.
-        if (std::isfinite(nearest.distance) && least_ * freeOfBone(field, b, rest) > nearest.distance)
-            continue;
-        // Where skin of several bones takes a place from (inverse skinning, by repeated substitution).
-        Map map{};
-        float off = kInfinite;
-        for (int round = 0; round < kRounds && off > kSettled; ++round) {
-            map = mapAt(rest);
-            const Float3 next = map.inverse ? map.inverse->apply(point_ws)
-                                            : Undone(map.pose).apply(point_ws - map.pose.origin);
-            off = length(next - rest);
-            rest = next;
+    std::array<Float3, 4> found;
+    std::size_t foundCount = 0;
+    // What a bone moves much of is found from where the bone has it; what another bone has been found to
+    // share, or to be beside, is the same place. Where no bone has anything, all are tried.
+    const auto isFound = [&](std::size_t bone, Float3 rest) {
+        return std::any_of(found.begin(), found.begin() + foundCount, [&](Float3 place) {
+            const unsigned share = shareOf(field, bone, place);
+            return share >= kMuch || (share > 0 && length(rest - place) < field.cell);
+        });
+    };
+    for (const bool all : {false, true}) {
+        if (all && foundCount > 0) break;
+        for (std::size_t b = 0; b < usable_.size(); ++b) {
+            if (usable_[b] == 0) continue;
+            Float3 rest = inverse_[b].apply(point_ws);
+            if (!field.boxes.empty() && !isIn(field.boxes[b], rest)) continue;
+            if (!all && (shareOf(field, b, rest) == 0 || isFound(b, rest))) continue;
+            // What one bone has shown is nearer than anything that another carries.
+            if (std::isfinite(nearest.distance) &&
+                least_ * freeOfBone(field, b, rest, kInfinite) > nearest.distance)
+                continue;
+            Map map{};
+            if (!follow(point_ws, rest, map, [&](Float3 at) { return mapAt(at); })) continue;
+            if (foundCount < found.size()) found[foundCount++] = rest;
+            const BodyField::Sample sample = field.at(rest);
+            if (!std::isfinite(sample.distance)) continue;
+            const Float3 gradient = map.inverse ? gradientBack(*map.inverse, sample.gradient)
+                                                : Undone(map.pose).transposed(sample.gradient);
+            const float slope = length(gradient);
+            // On the ridge between two sides the slope vanishes: there is no way out that is the nearest.
+            if (!(slope > kFlatSlope)) continue;
+            // Bones that stretch the skin stretch what is before it.
+            const float distance = sample.distance * (length(sample.gradient) / slope);
+            if (distance < nearest.distance) nearest = {distance, gradient * (1 / slope), rest};
         }
-        if (!(off < kLost) || (!map.inverse && isFlatPose(map.pose))) continue;
-        const BodyField::Sample sample = field.at(rest);
-        if (!std::isfinite(sample.distance)) continue;
-        const Float3 gradient = map.inverse ? gradientBack(*map.inverse, sample.gradient)
-                                            : Undone(map.pose).transposed(sample.gradient);
-        const float slope = length(gradient);
-        // On the ridge between two sides the slope vanishes: there is no way out that is the nearest.
-        if (!(slope > kFlatSlope)) continue;
-        // Bones that stretch the skin stretch what is before it.
-        const float distance = sample.distance * (length(sample.gradient) / slope);
-        if (distance < nearest.distance) nearest = {distance, gradient * (1 / slope), rest};
     }
     return nearest;
 }

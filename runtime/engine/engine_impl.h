@@ -76,10 +76,11 @@ struct Engine::Impl {
     Host host_;
     std::shared_ptr<const RestShape> shape_;
     std::shared_ptr<const BodyField> body_;
-    Floats clearances_;     // of the body; empty without one
-    Floats bodySeen_;       // kBodyPlanes, per block
-    bool bodyLost_ = true;  // what they say is void
-    OwnedStrands strands_;  // as their model has them
+    Floats clearances_;            // of the body; empty without one
+    Floats bodySeen_;              // kBodyPlanes, per block
+    bool bodyLost_ = true;         // what they say is void
+    std::size_t bodyCarrier_ = 0;  // the bone that moves most roots
+    OwnedStrands strands_;         // as their model has them
     EffectPlan plan_;
     FrameWind wind_;
     State state_;

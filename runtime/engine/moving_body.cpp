@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/body_free.h"
 #include "shaders/rod_constants.h"
 
 namespace hairloom::runtime {
@@ -35,7 +36,12 @@ float apart(const BonePose& a, const BonePose& b, Float3 around_ws, float reach)
 }  // namespace
 
 void MovingBody::take(const BodyField& field, std::span<const BonePose> from, std::span<const BonePose> to,
-                      std::uint32_t substeps, Float3 around_ws, float reach) {
+                      std::size_t carrierBone, std::uint32_t substeps, Float3 around_ws, float reach) {
+    field_ = &field;
+    bones_ = to.size();
+    const std::size_t c = carrier_ = std::min(carrierBone, bones_ - 1);
+    inverses_.resize(substeps * bones_);
+    leasts_.resize(substeps * bones_);
     at_.resize(std::size_t{substeps} + 1);
     carriers_.resize(substeps);
     between_.resize(to.size());
@@ -56,23 +62,30 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
         }
         at_[i].take(field, between_);
         if (i == 0) continue;
+        for (std::size_t b = 0; b < bones_; ++b) {
+            const BonePose& pose = between_[b];
+            const bool flat = isFlatPose(pose);
+            leasts_[(i - 1) * bones_ + b] =
+                flat ? 0.0f : std::min({length(pose.x), length(pose.y), length(pose.z)});
+            inverses_[(i - 1) * bones_ + b] = flat ? BonePose{} : inverseOf(pose);
+        }
         Carrier& carrier = carriers_[i - 1];
         carrier = {};
-        if (isFlatPose(between_[0]) || isFlatPose(before_[0])) {
+        if (isFlatPose(between_[c]) || isFlatPose(before_[c])) {
             strayed_ = carrier.apart = std::numeric_limits<float>::infinity();
         } else {
-            const BonePose own = wayOf(before_[0], between_[0]);
-            for (std::size_t b = 1; b < to.size(); ++b) {
-                if (isFlatPose(before_[b]) || isFlatPose(between_[b])) continue;
+            const BonePose own = wayOf(before_[c], between_[c]);
+            for (std::size_t b = 0; b < to.size(); ++b) {
+                if (b == c || isFlatPose(before_[b]) || isFlatPose(between_[b])) continue;
                 carrier.apart =
                     std::max(carrier.apart, apart(wayOf(before_[b], between_[b]), own, around_ws, reach));
             }
             strayed_ += carrier.apart;
-            carrier.inverse = inverseOf(between_[0]);
+            carrier.inverse = inverses_[(i - 1) * bones_ + c];
             carrier.step = {own.x - Float3{1, 0, 0}, own.y - Float3{0, 1, 0}, own.z - Float3{0, 0, 1},
                             own.origin};
         }
-        carrier.largest = stretchOf(between_[0]);
+        carrier.largest = stretchOf(between_[c]);
         carrier.least = 1.0f / std::max(carrier.largest * stretchOf(carrier.inverse), 1.0f);
         carrier.strayed = strayed_;
         before_.swap(between_);
@@ -80,22 +93,43 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
     }
 }
 
-bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch, float& away) const {
-    const PosedBody& now = at_[substep + 1];
-    away = now.freeAround(visit.point_ws);
-    if (away > visit.reach) return false;
-    const PosedBody::Contact contact = now.at(visit.point_ws);
-    // What is interpolated, and posed, may be closer than it seems: where cells are small, by less.
-    if (std::isfinite(contact.distance)) {
-        constexpr float kSure = 0.9f, kUnsure = 0.2f, kUnsureFine = 0.05f;
-        const float unsure = contact.distance < BodyField::kFineReach ? kUnsureFine : kUnsure;
-        away = std::max(away, kSure * contact.distance - unsure * now.cell());
+/// Of the end of a substep. What hangs on the carrier alone is as far as it is at rest; what hangs on other
+/// bones, too, lies in the boxes of those, and skin between two bones may be closer than it was at rest, but
+/// hardly by half.
+BodyRoom MovingBody::roomAround(std::uint32_t substep, Float3 point_ws) const {
+    const BonePose* const inverses = inverses_.data() + substep * bones_;
+    const float* const leasts = leasts_.data() + substep * bones_;
+    constexpr float kFar = 1e6f;
+    if (bones_ == 1 || !(leasts[carrier_] > 0.0f)) {
+        const float away = std::min(at_[substep + 1].freeAround(point_ws), kFar);
+        return {away, bones_ == 1 ? kFar : away};
     }
-    if (!(contact.distance <= visit.reach)) return false;
+    BodyRoom room{leasts[carrier_] * field_->freeAround(inverses[carrier_].apply(point_ws)), kFar};
+    for (std::size_t b = 0; b < bones_; ++b) {
+        if (b == carrier_ || !(leasts[b] > 0.0f)) continue;
+        const Float3 rest = inverses[b].apply(point_ws);
+        const float beside = leasts[b] * distanceTo(field_->boxes[b], rest);
+        if (beside >= room.other) continue;
+        room.other = std::min(room.other, std::max(beside, 0.5f * leasts[b] * field_->freeAround(rest)));
+    }
+    return room;
+}
+
+bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch,
+                       BodyRoom& room) const {
+    const PosedBody& now = at_[substep + 1];
+    const float farthest = visit.reach + visit.apart;
+    room = roomAround(substep, visit.point_ws);
+    if (room.carried > visit.reach && room.other > farthest) return false;
+    const PosedBody::Contact contact = now.at(visit.point_ws);
+    if (std::isfinite(contact.distance)) {
+        const float free = surelyFree(contact.distance, now.cell());
+        room = {std::max(room.carried, free), std::max(room.other, free)};
+    }
+    if (!(contact.distance <= farthest)) return false;
     touch.normal = contact.normal_ws;
     touch.distance = contact.distance;
-    touch.way = moves_ ? now.place(contact.point_ss) - at_[substep].place(contact.point_ss)
-                       : Float3{0.0f, 0.0f, 0.0f};
+    touch.way = moves_ ? visit.point_ws - at_[substep].place(contact.point_ss) : Float3{0.0f, 0.0f, 0.0f};
     // By the plane that is there at the end; skin curves away from it.
     touch.before = contact.distance - dot(touch.normal, visit.displacement - touch.way);
     if (touch.before < visit.radius - static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP))
@@ -107,7 +141,7 @@ bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch&
 void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch) const {
     const Float3 moved = visit.displacement - touch.way;
     const PosedBody::Contact start = at_[substep].at(visit.point_ws - visit.displacement);
-    touch.before = std::min(start.distance, visit.reach);
+    touch.before = std::min(start.distance, visit.reach + visit.apart);
     const float whole = length(moved);
     if (touch.before < visit.radius || !(touch.distance < visit.radius) || !(whole > 0.0f)) return;
     // From place to place, as far as nothing is, along its way by the body as it is at the end.
@@ -130,6 +164,17 @@ void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch&
         gone += room;
         if (gone >= whole) return;
     }
+}
+
+std::size_t carrierOf(const RestShape& shape, const BodyField& body) {
+    std::vector<std::size_t> roots(std::max<std::size_t>(body.bones.size(), 1), 0);
+    for (const RootFrame& root : shape.restRoots) {
+        const Corner corner = nearestCorner(body, (root.position - body.low_ss) * (1 / body.cell));
+        const BodyField::Skin& skin = body.palette[body.skins[corner.index]];
+        const auto most = std::max_element(skin.weights.begin(), skin.weights.end());
+        if (*most > 0) ++roots[skin.bones[static_cast<std::size_t>(most - skin.weights.begin())]];
+    }
+    return static_cast<std::size_t>(std::max_element(roots.begin(), roots.end()) - roots.begin());
 }
 
 Floats bodyClearances(const RestShape& shape, const BodyField& body) {

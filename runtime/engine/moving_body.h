@@ -24,25 +24,34 @@ struct BodyTouch {
 struct BodyVisit {
     Float3 point_ws, displacement;
     float radius;  ///< metres that it keeps from the body
-    float reach;   ///< metres: what is farther away is none of its business
+    float reach;   ///< metres: skin of the carrier that is farther away is none of its business
+    float apart;   ///< metres more for other skin
+};
+
+/// Metres that a body is away from a place at least.
+struct BodyRoom {
+    float carried = 0.0f;  ///< skin that moves with the carrier alone
+    float other = 0.0f;    ///< all other
 };
 
 /// Poses of a body at the ends of a frame's substeps. Its bones go straight on from pose to pose, as roots
 /// do.
 class MovingBody {
   public:
-    /// `poses` are of as many bones. `around_ws`: where nodes may be, all within `reach` metres of it.
+    /// `from` and `to` are of as many bones; `carrier` is the one that moves most hair. `around_ws`: where
+    /// nodes may be, all within `reach` metres of it.
     void take(const BodyField& field, std::span<const BonePose> from, std::span<const BonePose> to,
-              std::uint32_t substeps, Float3 around_ws, float reach);
+              std::size_t carrier, std::uint32_t substeps, Float3 around_ws, float reach);
     void clear() { at_.clear(); }
     bool empty() const { return at_.empty(); }
 
-    /// Nothing and false where the body is farther away than the reach at the end of the substep. `away` is
-    /// set to metres that the body is away at least. What came in in the substep meets the plane where it
+    /// Nothing and false where the body is farther away than the reach at the end of the substep. `room` is
+    /// how far the body is away then. What came in in the substep meets the plane where it
     /// did, however fast it is and however thin what it came into.
-    bool touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch, float& away) const;
+    bool touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch, BodyRoom& room) const;
 
-    /// How far nodes are from where they were looked at is measured in the space of one of its bones.
+    /// How far nodes are from where they were looked at is measured in the space of one of its bones. Skin
+    /// that hangs on it alone stands still there.
     struct Carrier {
         BonePose inverse;      ///< from the world at the end of the substep
         float largest = 1;     ///< metres in the world of one there, at most
@@ -57,10 +66,15 @@ class MovingBody {
     bool lostTrack() const { return lostTrack_; }
 
   private:
+    BodyRoom roomAround(std::uint32_t substep, Float3 point_ws) const;
     void sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch) const;
 
     std::vector<PosedBody> at_;  ///< at the start of the frame, and at the end of each substep
     std::vector<BonePose> between_, before_;
+    std::vector<BonePose> inverses_;  ///< of each bone at the end of each substep
+    std::vector<float> leasts_;       ///< metres in the world of one that it carries, at least; 0: it is flat
+    const BodyField* field_ = nullptr;
+    std::size_t bones_ = 0, carrier_ = 0;
     std::vector<Carrier> carriers_;  ///< at the end of each substep
     bool moves_ = false;
     float strayed_ = 0.0f;
@@ -71,8 +85,11 @@ class MovingBody {
 /// (it is pushed no farther out than it was authored). Large where the body is not near.
 Floats bodyClearances(const RestShape& shape, const BodyField& body);
 
+/// The bone of the body that moves most roots.
+std::size_t carrierOf(const RestShape& shape, const BodyField& body);
+
 /// Planes of what is known of each point and the body: where it was looked at, in the carrier's space, and
-/// metres that it may go from there.
-inline constexpr std::size_t kBodyPlanes = 4;
+/// metres that it may go from there to skin of the carrier and to other skin, which has strayed.
+inline constexpr std::size_t kBodyPlanes = 5;
 
 }  // namespace hairloom::runtime

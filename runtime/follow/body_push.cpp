@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <limits>
+
+#include "engine/body_free.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -14,6 +18,9 @@ constexpr std::size_t kPushedPerJob = 256;
 constexpr float kKept = 0.0005f;
 /// Metres of what a field that is interpolated is wrong at most: hair that rests is not moved.
 constexpr float kPushSlack = 1e-5f;
+/// Metres within which a body is looked up at once: there is no free space around.
+constexpr float kBeside = 0.006f;
+constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
 /// Places of a uniform Catmull-Rom curve between p and p + 1: shares of the points p − 1 to p + 2, at ¼, ½
 /// and ¾.
@@ -23,6 +30,9 @@ struct CubicPlace {
 constexpr std::array<CubicPlace, 3> kPlaces{{{-9.0f / 128, 111.0f / 128, 29.0f / 128, -3.0f / 128},
                                              {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16},
                                              {-3.0f / 128, 29.0f / 128, 111.0f / 128, -9.0f / 128}}};
+
+/// How much farther from both ends together a place is than these from each other, of the lengths beside.
+constexpr float kBow = 2 * 9.0f / 128;
 
 /// Missing neighbours repeat the end points.
 Float3 placeOf(std::span<const Float3> hair, std::size_t p, const CubicPlace& place) {
@@ -36,8 +46,36 @@ Float3 placeOf(std::span<const Float3> hair, std::size_t p, const CubicPlace& pl
 struct BodyPush::Hair {
     std::span<Float3> points;
     std::span<const float> least, leastBetween;
-    /// Metres that each point is outside at least, as it was last seen.
-    std::vector<float>& away;
+    /// What is known of a hair's points, in memory that hairs share.
+    struct Known {
+        std::vector<float> free;  ///< metres that the body is away from each for certain
+        std::vector<float> near;  ///< and at most
+        /// Moments: when each point has moved, when it was looked at, and when the way to the next one was.
+        std::vector<std::uint32_t> moved, looked, checked;
+    };
+    Known& known;
+    std::uint32_t moment = 1;
+
+    void start() {
+        known.free.assign(points.size(), 0.0f);
+        known.near.assign(points.size(), kUnknown);
+        known.moved.assign(points.size(), moment);
+        known.looked.assign(points.size(), 0);
+        known.checked.assign(points.size(), 0);
+    }
+    void move(std::size_t p, Float3 way) {
+        points[p] = points[p] + way;
+        const float size = length(way);
+        known.free[p] -= size;
+        known.near[p] += size;
+        known.moved[p] = ++moment;
+    }
+    /// Whether the curve from p on is another one than when it was last looked at.
+    bool isNew(std::size_t p) const {
+        const std::size_t last = std::min(p + 3, points.size());
+        return *std::max_element(known.moved.begin() + static_cast<std::ptrdiff_t>(p > 0 ? p - 1 : 0),
+                                 known.moved.begin() + static_cast<std::ptrdiff_t>(last)) > known.checked[p];
+    }
 };
 
 BodyPush::BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint32_t> offsets,
@@ -59,44 +97,65 @@ BodyPush::BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint3
     }
 }
 
-/// False where all of the hair is far from the body.
-bool BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
-    bool isNear = false;
-    hair.away.assign(hair.points.size(), 0.0f);
+/// Points that have not moved since they were looked at are
+/// as they were, and what is surely free around one is free for the next.
+void BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
+    Hair::Known& known = hair.known;
+    Float3 last{};
+    float free = 0.0f, near = kUnknown;
     for (std::size_t p = 1; p < hair.points.size(); ++p) {
-        Float3& point = hair.points[p];
+        if (known.moved[p] <= known.looked[p]) continue;
+        known.looked[p] = hair.moment;
+        const Float3 point = hair.points[p];
         if (!isFinite(point)) continue;
-        hair.away[p] = body.freeAround(point);
-        if (hair.away[p] > kKept) continue;
+        known.free[p] = free - length(point - last);
+        known.near[p] = kUnknown;
+        if (known.free[p] > kKept) continue;
+        const bool isBeside = near + length(point - last) < kBeside;
+        last = point;
+        near = kUnknown;
+        if (!isBeside) {
+            known.free[p] = free = body.freeAround(point);
+            if (free > kKept) continue;
+        }
         // What is deep is led out along the way that leads out there, which is another one higher up.
         constexpr int kRounds = 3;
         for (int round = 0; round < kRounds; ++round) {
-            const PosedBody::Contact contact = body.at(point);
+            const PosedBody::Contact contact = body.at(hair.points[p]);
             if (!std::isfinite(contact.distance)) break;
-            hair.away[p] = contact.distance;
-            isNear = true;
+            known.looked[p] = hair.moment;
+            last = hair.points[p];
+            known.near[p] = near = std::abs(contact.distance);
+            known.free[p] = free = std::max(surelyFree(contact.distance, body.cell()), 0.0f);
             if (!(contact.distance < hair.least[p] - kPushSlack)) break;
-            point = point + contact.normal_ws * (hair.least[p] - contact.distance);
-            hair.away[p] = hair.least[p];
+            hair.move(p, contact.normal_ws * (hair.least[p] - contact.distance));
         }
     }
-    return isNear;
 }
 
 /// False where nothing was to be moved.
 bool BodyPush::liftCurve(const PosedBody& body, Hair& hair) const {
+    Hair::Known& known = hair.known;
     bool lifted = false;
     for (std::size_t p = 0; p + 1 < hair.points.size(); ++p) {
+        if (!hair.isNew(p)) continue;
+        known.checked[p] = hair.moment;
         Float3 &a = hair.points[p], &b = hair.points[p + 1];
         const float length = runtime::length(b - a);
-        // No place is farther from its ends than the ends from each other.
-        if (!(std::min(p == 0 ? 0.0f : hair.away[p], hair.away[p + 1]) < length)) continue;
+        // No place of the curve is farther from both ends together.
+        const float beside = (p > 0 ? runtime::length(a - hair.points[p - 1]) : 0.0f) +
+                             (p + 2 < hair.points.size() ? runtime::length(b - hair.points[p + 2]) : 0.0f);
+        if (known.free[p] + known.free[p + 1] > 1.001f * (length + kBow * beside) + 2 * kKept) continue;
         for (std::size_t i = 0; i < kPlaces.size(); ++i) {
             const CubicPlace& place = kPlaces[i];
             // Roots stay, and what is next to them.
             if (p == 0 && place.b < place.a) continue;
             const Float3 at = placeOf(hair.points, p, place);
-            if (!isFinite(at) || body.freeAround(at) > kKept) continue;
+            if (!isFinite(at)) continue;
+            const float fromA = runtime::length(at - a), fromB = runtime::length(at - b);
+            if (std::max(known.free[p] - fromA, known.free[p + 1] - fromB) > kKept) continue;
+            const bool isBeside = std::min(known.near[p] + fromA, known.near[p + 1] + fromB) < kBeside;
+            if (!isBeside && body.freeAround(at) > kKept) continue;
             const PosedBody::Contact contact = body.at(at);
             const float least = hair.leastBetween[kPlaces.size() * p + i];
             if (!(contact.distance < least - kPushSlack)) continue;
@@ -105,8 +164,8 @@ bool BodyPush::liftCurve(const PosedBody& body, Hair& hair) const {
             // Never farther than the points are from each other.
             const float size = runtime::length(lift);
             const Float3 moved = size > length ? lift * (length / size) : lift;
-            if (p > 0) a = a + moved;
-            b = b + moved;
+            if (p > 0) hair.move(p, moved);
+            hair.move(p + 1, moved);
             lifted = true;
         }
     }
@@ -118,14 +177,18 @@ void BodyPush::apply(std::span<const BonePose> pose, std::span<Float3> points_ws
     if (pose.size() != 1 && pose.size() != body_->bones.size()) return;
     const PosedBody body(*body_, pose);
     const auto push = [&](std::size_t begin, std::size_t end) {
-        std::vector<float> away;
+        Hair::Known known;
         for (std::size_t h = begin; h < end; ++h) {
             const std::size_t first = offsets_[h], count = offsets_[h + 1] - first;
             Hair hair{points_ws.subspan(first, count), std::span(least_).subspan(first, count),
-                      std::span(leastBetween_).subspan(kPlaces.size() * first, kPlaces.size() * count), away};
+                      std::span(leastBetween_).subspan(kPlaces.size() * first, kPlaces.size() * count),
+                      known};
+            hair.start();
             // What was led out may have drawn what is beside it in.
             constexpr int kRounds = 6;
-            for (int round = 0; round < kRounds && liftPoints(body, hair) && liftCurve(body, hair); ++round) {
+            for (int round = 0; round < kRounds; ++round) {
+                liftPoints(body, hair);
+                if (!liftCurve(body, hair)) break;
             }
         }
     };

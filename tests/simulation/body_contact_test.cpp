@@ -2,6 +2,9 @@
 // Rods and drawn hair against the baked skin of a body, measured against its mesh.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "core/base/parallel.h"
@@ -163,6 +166,76 @@ TEST(BodyContact, AFarBodyChangesNothing) {
     const std::uint64_t springs = run(groom, 20, noddingAt).stats.stateHash;
     groom.body.reset();
     EXPECT_EQ(run(groom, 20, noddingAt).stats.stateHash, springs) << "springs pass through it";
+}
+
+/// The ball with two bones, the upper of which moves its upper half and most roots.
+std::shared_ptr<const runtime::BodyField> bentBall() {
+    constexpr unsigned kSteps = 16;
+    auto field = std::make_shared<runtime::BodyField>(*hairyBody().body);
+    field->bones = {"base", "top"};
+    field->palette.clear();
+    for (unsigned step = 0; step < kSteps; ++step) {
+        const auto upper = static_cast<std::uint8_t>(255 * step / (kSteps - 1));
+        field->palette.push_back({{0, 1, 0, 0}, {static_cast<std::uint8_t>(255 - upper), upper, 0, 0}});
+    }
+    const std::size_t row = field->size[0] + 1, layer = row * (field->size[1] + 1);
+    std::array<Box3f, 2> boxes;
+    for (std::size_t i = 0; i < field->skins.size(); ++i) {
+        const Vec3f at = Vec3f(field->low_ss.x, field->low_ss.y, field->low_ss.z) +
+                         field->cell * Vec3f(static_cast<float>(i % row), static_cast<float>(i % layer / row),
+                                             static_cast<float>(i / layer));
+        const float upper = std::clamp((at.y() + 0.05f) / 0.06f, 0.0f, 1.0f);
+        field->skins[i] = static_cast<std::uint16_t>(std::lround(upper * (kSteps - 1)));
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            if (field->palette[field->skins[i]].weights[b] > 0) boxes[b].extend(at);
+        }
+    }
+    for (const Box3f& box : boxes) {
+        const Vec3f low = box.min() - Vec3f::Constant(field->cell),
+                    high = box.max() + Vec3f::Constant(field->cell);
+        field->boxes.push_back({{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}});
+    }
+    return field;
+}
+
+TEST(BodyContact, SkinThatIsNotLookedAtAgainIsAsItWas) {
+    const Groom& groom = hairyBody();
+    const auto body = bentBall();
+    ASSERT_EQ(body->problem(), "");
+    const auto scene = SceneInput::make(groom);
+    ASSERT_TRUE(scene);
+    const auto boneOf = [](const Eigen::Isometry3f& pose) {
+        const auto column = [&](int i) {
+            const Vec3f v = pose.matrix().col(i).head<3>();
+            return runtime::Float3{v.x(), v.y(), v.z()};
+        };
+        return runtime::BonePose{column(0), column(1), column(2), column(3)};
+    };
+    const auto runWith = [&](bool forgets, std::shared_ptr<const runtime::BodyField> with) {
+        auto made = runtime::Engine::make(scene->strands(), groom.simulation);
+        EXPECT_EQ(made.engine->setBody(std::move(with)), "");
+        made.engine->reset(scene->rootsAt({}));
+        for (int f = 1; f <= 60; ++f) {
+            const float time = kFrame * static_cast<float>(f);
+            HeadPose base, top;
+            base.head_ws = Eigen::Translation3f(0.05f * std::sin(4 * time), 0, 0);
+            top.head_ws = base.head_ws * Eigen::AngleAxisf(0.6f * std::sin(6 * time), Vec3f::UnitX());
+            const auto roots = scene->rootsAt(top);
+            const std::vector<runtime::BonePose> bones{boneOf(base.head_ws), boneOf(top.head_ws)};
+            runtime::FrameInput input;
+            input.dt = kFrame;
+            input.time = static_cast<double>(time);
+            input.roots_ws = roots;
+            input.body_ws = bones;
+            if (forgets) {
+                EXPECT_TRUE(made.engine->setState(*made.engine->state()));
+            }
+            made.engine->step(input);
+        }
+        return made.engine->stateHash();
+    };
+    EXPECT_EQ(runWith(false, body), runWith(true, body));
+    EXPECT_NE(runWith(false, body), runWith(false, nullptr)) << "hair touches it";
 }
 
 TEST(BodyContact, PosesThatAreNoneLeaveItWhereItWas) {

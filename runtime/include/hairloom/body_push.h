@@ -33,7 +33,7 @@ class BodyPush {
 
   private:
     struct Hair;
-    bool liftPoints(const PosedBody& body, Hair& hair) const;
+    void liftPoints(const PosedBody& body, Hair& hair) const;
     bool liftCurve(const PosedBody& body, Hair& hair) const;
 
     std::shared_ptr<const BodyField> body_;

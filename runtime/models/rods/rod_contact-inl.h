@@ -97,21 +97,25 @@ HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, 
     const V3 against = node.displacement - mad3(all3(step.x), start_ws.x,
                                                 mad3(all3(step.y), start_ws.y,
                                                      mad3(all3(step.z), start_ws.z, all3(step.origin))));
-    const V near = reach + hn::Sqrt(dot(against, against)) +
-                   all(carrier.apart + static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
+    const V near =
+        reach + hn::Sqrt(dot(against, against)) + all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
     const std::size_t pitch = block.pitch;
     float* const seen = block.bodySeen + i;
     const V3 carried = mad3(all3(carrier.inverse.x), position_ws.x,
                             mad3(all3(carrier.inverse.y), position_ws.y,
                                  mad3(all3(carrier.inverse.z), position_ws.z, all3(carrier.inverse.origin))));
+    struct Rooms {
+        V carried, other;
+    };
     const auto roomLeft = [&] {
         const V3 since =
             carried - V3{hn::Load(D(), seen), hn::Load(D(), seen + pitch), hn::Load(D(), seen + 2 * pitch)};
-        const V used = mad(hn::Sqrt(dot(since, since)), all(carrier.largest), all(carrier.strayed));
-        return hn::Load(D(), seen + 3 * pitch) - used;
+        const V used = hn::Sqrt(dot(since, since)) * all(carrier.largest);
+        return Rooms{hn::Load(D(), seen + 3 * pitch) - used,
+                     hn::Load(D(), seen + 4 * pitch) - (used + all(carrier.strayed))};
     };
-    V room = roomLeft();
-    const auto far = room > near;
+    Rooms room = roomLeft();
+    const auto far = both(room.carried > near, room.other > near + all(carrier.apart));
     const std::uint32_t looked = bitsOf(hn::Not(either(kept, far)));
     if (looked != 0) {
         alignas(64) float at[3][kWidth], moved[3][kWidth], keeps[kWidth], farthest[kWidth], place[3][kWidth],
@@ -137,14 +141,16 @@ HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, 
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
             if ((looked >> lane & 1u) == 0) continue;
             BodyTouch touch{{0.0f, 1.0f, 0.0f}, 0.0f, 0.0f, {}};
-            float away = 0.0f;
+            BodyRoom around;
             const BodyVisit how{{at[0][lane], at[1][lane], at[2][lane]},
                                 {moved[0][lane], moved[1][lane], moved[2][lane]},
                                 keeps[lane],
-                                farthest[lane]};
-            if (body.touch(substep, how, touch, away)) met |= 1u << lane;
+                                farthest[lane],
+                                carrier.apart};
+            if (body.touch(substep, how, touch, around)) met |= 1u << lane;
             for (std::size_t axis = 0; axis < 3; ++axis) seen[axis * pitch + lane] = place[axis][lane];
-            seen[3 * pitch + lane] = away + carrier.strayed;
+            seen[3 * pitch + lane] = around.carried;
+            seen[4 * pitch + lane] = around.other + carrier.strayed;
             distance[lane] = touch.distance;
             before[lane] = touch.before;
             normal[0][lane] = touch.normal.x;
@@ -164,7 +170,7 @@ HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, 
         meets = either(meets, maskOf(met));
         room = roomLeft();
     }
-    plane.room = (room - reach) * all(carrier.least);
+    plane.room = (hn::Min(room.carried, room.other) - reach) * all(carrier.least);
     plane.moved = node.displacement;
     if (HWY_LIKELY(hn::AllFalse(D(), meets))) return;
     const V farOutside = all(-1e3f);
