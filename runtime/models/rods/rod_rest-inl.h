@@ -10,7 +10,6 @@
 #endif
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "hairloom/presets.h"
@@ -125,6 +124,8 @@ class RestRods {
     static constexpr double kNoLength = 1e-9;   // metres
     static constexpr double kTurnShare = 50.0;  // a turn of 1/50 counts as much as what is carried on
     static constexpr int kHalvings = 8;         // of what is held
+    static constexpr double kSettled =
+        1e-10;  // a step of v that is the last: each is a fraction of the one before
     static constexpr int kMostSteps = 48;       // of a vertex
     static constexpr double kLeastHeld = -9.0;  // log2 of radians
 
@@ -333,37 +334,47 @@ class RestRods {
     static Turn turnOf(const RestPoint& at, R3 v) {
         return at.loaded * Turn{v * num(-1.0), root(num(1.0) - dot(v, v))};
     }
+    static R3 limited(R3 v) {
+        const R square = dot(v, v);
+        const Mask over = above(square, num(kLargest * kLargest));
+        return any(over) ? choose(over, v * (num(kLargest) / root(square)), v) : v;
+    }
+    /// The axis of twist in the outer segment's frame, of the length that both tangents make.
+    static R3 longAxisOf(const Turn& turn) { return along() + alongOf(inverse(turn)); }
     static R3 axisOf(const Turn& turn) {
-        const R3 both = along() + alongOf(inverse(turn));
+        const R3 both = longAxisOf(turn);
         return both * (num(1.0) / greater(lengthOf(both), num(1e-9)));
     }
 
     /// Turns the vertex where its stiffness is another than the last time: Newton's steps with the derivative
     /// of a small strain, on the axis of twist that the last one gives, for the moment
-    /// 2b (v w + (a w + a × v) α (v·a) + (n w + n × v) β (v·n)).
+    /// 2b (v w + (a w + a × v) α (v·a) + (n w + n × v) β (v·n)). They start from the last strain, which goes
+    /// about with the inverse of stiffness.
     void turnWithoutLoad(RestPoint& at, R b, Mask which) const {
         which = butNot(which, equal(b, at.turnedAt));
         if (!any(which)) return;
         Mask open = both(both(which, above(b, num(0.0))), above(at.weight, num(0.0)));
         const R3 wanted = at.moment * (num(0.5) / choose(open, b, num(1.0)));
-        R3 v = at.strain;
+        R3 v = at.strain *
+               choose(above(at.turnedAt, num(0.0)), at.turnedAt / choose(open, b, num(1.0)), num(1.0));
+        v = limited(v);
         for (int step = 0; step < kMostSteps && any(open); ++step) {
-            const R3 a = axisOf(turnOf(at, v));
             const R w = root(num(1.0) - dot(v, v));
-            R3 moment = v * w + (a * w + cross(a, v)) * (num(section_.twist) * dot(v, a));
+            const R3 a = longAxisOf(at.loaded * Turn{v * num(-1.0), w});
+            const R scale = num(1.0) / greater(dot(a, a), num(1e-18));
+            R3 moment = v * w + (a * w + cross(a, v)) * (num(section_.twist) * dot(v, a) * scale);
             R3 n = zero3();
             if (isFlat()) {
-                n = across(at.flat, a);
+                n = across(at.flat, a * root(scale));
                 moment = moment + (n * w + cross(n, v)) * (num(section_.flat) * dot(v, n));
             }
             const R3 left = (wanted - moment) * (num(1.0) / w);
-            R3 next = v + left + a * (dot(left, a) * num(1.0 / (1.0 + section_.twist) - 1.0));
+            R3 next = v + left + a * (dot(left, a) * scale * num(1.0 / (1.0 + section_.twist) - 1.0));
             if (isFlat()) next = next + n * (dot(left, n) * num(1.0 / (1.0 + section_.flat) - 1.0));
-            const R size = lengthOf(next);
-            next = next * lesser(num(kLargest) / greater(size, num(1e-30)), num(1.0));
+            next = limited(next);
             const R3 moved = next - v;
             v = choose(open, next, v);
-            open = both(open, above(dot(moved, moved), num(1e-24)));
+            open = both(open, above(dot(moved, moved), num(kSettled * kSettled)));
         }
         const Turn turn = turnOf(at, v);
         const R3 axis = axisOf(turn);

@@ -45,7 +45,7 @@ RodParts rodPartsOf(const RestShape& shape, const SimulationSettings& settings) 
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings, const Host& host) {
     RodRest rest;
     rest.parts = rodPartsOf(shape, settings);
-    rest.planes.assign(shape.planeFloats * rest.planeCount(), 0.0f);
+    rest.planes = zeroFloats(shape.planeFloats * rest.planeCount(), host);
     if (rest.parts >= RodParts::twist) rest.curved.assign(shape.blocks.size(), 0);
     const auto lay = HWY_DYNAMIC_DISPATCH(layRods);
     const auto fill = [&](std::size_t begin, std::size_t end) { lay(shape, settings, begin, end, rest); };
