@@ -23,7 +23,8 @@ Strands wanderingHair() {
     Strands strands;
     for (std::uint32_t s = 0; s < kWandering; ++s) {
         Float3 at = direction(), along = direction();
-        const float wander = 0.3f * static_cast<float>(s) / kWandering, step = 0.004f + 0.02f * (s % 3);
+        const float wander = 0.3f * static_cast<float>(s) / kWandering,
+                    step = 0.004f + 0.02f * static_cast<float>(s % 3);
         for (std::uint32_t p = 0; p < kWanderingPoints; ++p) {
             strands.points.push_back(at);
             along = along + direction() * wander;
