@@ -16,8 +16,9 @@ constexpr float kClear = 2;  ///< a step between strands is this many times as l
 /// Whether strands of `size` points are apart from each other as strands are.
 bool isApart(std::span<const Vec3f> points, std::size_t size) {
     const std::size_t strands = points.size() / size;
-    // Reconstructed hair has a few strands whose tip lies beside the next one's root.
-    const std::size_t allowed = (strands - 1) / 20;
+    // Reconstructed hair has a few strands that jump, and tips that lie beside the next root. Half and twice
+    // the number of points fail at every second strand.
+    const std::size_t allowed = (strands - 1) / 8;
     std::size_t touching = 0;
     float longestBefore = 0;
     for (std::size_t strand = 0; strand < strands; ++strand) {

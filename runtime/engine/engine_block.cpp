@@ -51,7 +51,7 @@ void Engine::Impl::restoreStrands(std::size_t block, const BlockView& blockView)
                     dot(moved, moved) < kFarthest * kFarthest;
         }
         if (sound) continue;
-        placeLaneAtRest(block, lane);
+        placeAtRest(block, lane);
         if (lane < shape_->blocks[block].strands) ++report.restored;
     }
     report.fastest = 0.0f;

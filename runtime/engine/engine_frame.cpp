@@ -34,15 +34,15 @@ float maximum(const float* row) {
 }  // namespace
 
 Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& settings, Host host)
-    : settings_(settings), host_(std::move(host)), shape_(makeRestShape(strands)) {
-    state_.planes.assign(shape_->planeFloats * kStatePlanes, 0.0f);
+    : settings_(settings), host_(std::move(host)), shape_(makeRestShape(strands, host_)) {
+    state_.planes = zeroFloats(shape_->planeFloats * kStatePlanes, host_);
     state_.roots.assign(shape_->blocks.size() * kRootRows * kBlockLanes, 0.0f);
     blockReports_.resize(shape_->blocks.size());
     nextRoots_.assign(state_.roots.size(), 0.0f);
     state_.model = settings.strandModel;
     strands_ = OwnedStrands(model().make());
     strands_->takeSettings(*shape_, settings_, nullptr, state_, host_);
-    strands_->takeState(*shape_, settings_, state_);
+    strands_->takeNewState(*shape_, settings_, state_, host_);
     wind_.wind = makeWind(settings);
     reset(shape_->restRoots);
     allocateForPlan();
@@ -51,7 +51,7 @@ Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& setting
 void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     report_ = {};
     state_.rests.assign(shape_->blocks.size(), {});
-    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+    forBlocks([&](std::size_t b) {
         float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::uint32_t strand = shape_->blocks[b].strandOfLane[lane];
@@ -61,9 +61,9 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
                                              root.rotation.x, root.rotation.y, root.rotation.z,
                                              root.rotation.w};
             for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = values[r];
-            placeLaneAtRest(b, lane);
         }
-    }
+        placeAtRest(b, kAllLanes);
+    });
     state_.spheres.clear();
     state_.body.clear();
     bodyLost_ = true;
@@ -78,9 +78,18 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     plan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
 }
 
-void Engine::Impl::placeLaneAtRest(std::size_t block, std::uint32_t lane) {
-    placeAtRest(*shape_, state_, block, lane);
-    strands_->placeAtRest(*shape_, state_, block, lane);
+void Engine::Impl::placeAtRest(std::size_t block, LaneRange lanes) {
+    runtime::placeAtRest(*shape_, state_, block, lanes);
+    strands_->placeAtRest(*shape_, state_, block, lanes);
+}
+
+/// In any order, on the host's threads.
+void Engine::Impl::forBlocks(const std::function<void(std::size_t)>& each) {
+    const auto run = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) each(b);
+    };
+    host_.parallelFor ? host_.parallelFor(shape_->blocks.size(), kBlocksPerJob, run)
+                      : run(0, shape_->blocks.size());
 }
 
 void Engine::Impl::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,

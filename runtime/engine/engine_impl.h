@@ -3,6 +3,7 @@
 // What is behind Engine, for its own sources.
 
 #include <array>
+#include <functional>
 
 #include "engine/frame_setup.h"
 #include "engine/moving_body.h"
@@ -50,7 +51,8 @@ struct Engine::Impl {
     void allocateForBody();
     bool meetsBody() const { return body_ && model().meetsBody; }
     const Model& model() const { return modelOf(settings_.strandModel); }
-    void placeLaneAtRest(std::size_t block, std::uint32_t lane);
+    void placeAtRest(std::size_t block, LaneRange lanes);
+    void forBlocks(const std::function<void(std::size_t)>& each);
     void takeRoots(const FrameInput& input);
     void repairRoots(std::size_t block);
     void takeBody(const FrameInput& input);

@@ -64,18 +64,27 @@ bool bends(std::span<const Float3> points) {
     return false;
 }
 
+/// On the host's threads, if it has any.
+void inPieces(const Host& host, std::size_t count, const Host::Body& body) {
+    constexpr std::size_t kPiece = 256;
+    host.parallelFor ? host.parallelFor(count, kPiece, body) : body(0, count);
+}
+
 /// In blocks of equal point counts; straight strands and others apart, so that each block pays for what it
 /// needs.
-std::vector<Block> groupStrands(const StrandsView& strands) {
+std::vector<Block> groupStrands(const StrandsView& strands, const Host& host, bool& straight) {
     const std::size_t count = strands.offsets.size() - 1;
     const auto pointsOf = [&](std::uint32_t s) { return strands.offsets[s + 1] - strands.offsets[s]; };
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     std::vector<std::uint32_t> kind(count);  // twice the points, and one more where the strand bends
-    for (std::uint32_t s = 0; s < count; ++s) {
-        const bool curved = bends(strands.restPositions_ss.subspan(strands.offsets[s], pointsOf(s)));
-        kind[s] = 2 * pointsOf(s) + (curved ? 1 : 0);
-    }
+    inPieces(host, count, [&](std::size_t begin, std::size_t end) {
+        for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s) {
+            const bool curved = bends(strands.restPositions_ss.subspan(strands.offsets[s], pointsOf(s)));
+            kind[s] = 2 * pointsOf(s) + (curved ? 1 : 0);
+        }
+    });
+    straight = std::none_of(kind.begin(), kind.end(), [](std::uint32_t k) { return k % 2 == 1; });
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return kind[a] < kind[b]; });
     // Where strands touch things, rather than where they grow.
@@ -127,7 +136,9 @@ void fillInverseMasses(const StrandsView& strands, std::uint32_t strand, const B
     }
 }
 
-void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& shape) {
+/// Metres of the longest strand.
+float fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& shape) {
+    float longest = 0.0f;
     const std::size_t size = planeSize(block);
     float* const planes = shape.planes.data() + block.firstPlane * kRestPlanes;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
@@ -136,7 +147,6 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
         const Quat toRoot = conjugate(shape.restRoots[strand].rotation);
         fillInverseMasses(strands, strand, block, lane, planes + 5 * size);
         float total = 0.0f;
-        shape.straight = shape.straight && !bends({points, block.points});
         for (std::uint32_t s = 0; s + 1 < block.points; ++s) {
             const Float3 segment = rotate(toRoot, points[s + 1] - points[s]);
             const float l = length(segment);
@@ -148,9 +158,9 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
             planes[4 * size + i] = l > 1e-9f ? 1.0f / l : 0.0f;
             total += l;
         }
-        shape.longestStrand = std::max(shape.longestStrand, total);
+        longest = std::max(longest, total);
     }
-    shape.longestPointCount = std::max(shape.longestPointCount, block.points);
+    return longest;
 }
 
 std::uint64_t mix(std::uint64_t hash, const void* data, std::size_t bytes) {
@@ -174,7 +184,17 @@ std::size_t RestShape::bytes() const {
            planes.size() * sizeof(float) + restRoots.size() * sizeof(RootFrame);
 }
 
-std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands) {
+Floats zeroFloats(std::size_t count, const Host& host) {
+    constexpr std::size_t kPiece = std::size_t{1} << 20;
+    if (!host.parallelFor || count <= kPiece) return Floats(count, 0.0f);
+    Floats values(count);
+    host.parallelFor(count, kPiece, [&](std::size_t begin, std::size_t end) {
+        std::memset(values.data() + begin, 0, (end - begin) * sizeof(float));
+    });
+    return values;
+}
+
+std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const Host& host) {
     auto shape = std::make_shared<RestShape>();
     const std::size_t count = strands.offsets.size() - 1;
     shape->offsets.assign(strands.offsets.begin(), strands.offsets.end());
@@ -186,10 +206,17 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands) {
         shape->restRoots[s] = {strands.restPositions_ss[strands.offsets[s]], rotation};
     }
     if (count == 0) return shape;
-    shape->blocks = groupStrands(strands);
+    shape->blocks = groupStrands(strands, host, shape->straight);
     shape->planeFloats = shape->blocks.back().firstPlane + planeSize(shape->blocks.back());
-    shape->planes.assign(shape->planeFloats * kRestPlanes, 0.0f);
-    for (const Block& block : shape->blocks) fillRestPlanes(strands, block, *shape);
+    shape->planes = zeroFloats(shape->planeFloats * kRestPlanes, host);
+    std::vector<float> longest(shape->blocks.size());
+    inPieces(host, longest.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b)
+            longest[b] = fillRestPlanes(strands, shape->blocks[b], *shape);
+    });
+    shape->longestStrand = *std::max_element(longest.begin(), longest.end());
+    for (const Block& block : shape->blocks)
+        shape->longestPointCount = std::max(shape->longestPointCount, block.points);
     return shape;
 }
 
@@ -218,20 +245,23 @@ void fillView(const RestShape& shape, State& state, std::size_t index, std::uint
     view.inverseMass = rest + 5 * size;
 }
 
-void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::uint32_t lane) {
+void placeAtRest(const RestShape& shape, State& state, std::size_t index, LaneRange lanes) {
     const Block& block = shape.blocks[index];
     const std::size_t size = planeSize(block);
     const float* rest = shape.planes.data() + block.firstPlane * kRestPlanes;
     float* moving = state.planes.data() + block.firstPlane * kStatePlanes;
     const float* roots = state.roots.data() + index * kRootRows * kBlockLanes;
-    const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
-    const Quat rotation{row(3), row(4), row(5), row(6)};
-    Float3 at{};
+    Float3 at[kBlockLanes] = {};
     for (std::uint32_t p = 0; p < block.points; ++p) {
-        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-        const float values[] = {at.x, at.y, at.z, at.x, at.y, at.z};
-        for (std::size_t plane = 0; plane < kStatePlanes; ++plane) moving[plane * size + i] = values[plane];
-        at = at + rotate(rotation, Float3{rest[i], rest[size + i], rest[2 * size + i]});
+        for (std::uint32_t lane = lanes.begin; lane < lanes.end; ++lane) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const float values[] = {at[lane].x, at[lane].y, at[lane].z, at[lane].x, at[lane].y, at[lane].z};
+            for (std::size_t plane = 0; plane < kStatePlanes; ++plane)
+                moving[plane * size + i] = values[plane];
+            const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
+            const Quat rotation{row(3), row(4), row(5), row(6)};
+            at[lane] = at[lane] + rotate(rotation, Float3{rest[i], rest[size + i], rest[2 * size + i]});
+        }
     }
 }
 

@@ -8,10 +8,12 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/kernels.h"
 #include "hairloom/body_field.h"
+#include "hairloom/host.h"
 #include "hairloom/settings.h"
 
 namespace hairloom::runtime {
@@ -27,9 +29,28 @@ struct CacheLineAllocator {
         return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64}));
     }
     void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
+    /// What is given no value has none: a vector that is resized does not touch its memory.
+    template <class U>
+    void construct(U* p) {
+        ::new (static_cast<void*>(p)) U;
+    }
+    template <class U, class V>
+    void construct(U* p, V&& value) {
+        ::new (static_cast<void*>(p)) U(std::forward<V>(value));
+    }
     friend bool operator==(CacheLineAllocator, CacheLineAllocator) { return true; }
 };
 using Floats = std::vector<float, CacheLineAllocator<float>>;
+/// So many zeros, written on the host's threads.
+Floats zeroFloats(std::size_t count, const Host& host);
+
+/// Lanes of a block.
+struct LaneRange {
+    LaneRange(std::uint32_t lane) : begin(lane), end(lane + 1) {}  // NOLINT(google-explicit-constructor)
+    LaneRange(std::uint32_t first, std::uint32_t last) : begin(first), end(last) {}
+    std::uint32_t begin, end;
+};
+inline const LaneRange kAllLanes{0, kBlockLanes};
 
 /// Up to kBlockLanes strands of one point count. Lanes past `strands` repeat the last strand and are never
 /// read.
@@ -60,7 +81,7 @@ inline std::size_t planeSize(const Block& block) {
 }
 
 /// `strands` must be sound (Engine::make checks it).
-std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands);
+std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const Host& host = {});
 
 /// How long a block has been at rest.
 struct Rest {
@@ -97,7 +118,7 @@ inline constexpr std::size_t kStatePlanes = 6;
 void fillView(const RestShape& shape, State& state, std::size_t block, std::uint32_t clampedPoints,
               BlockView& view);
 
-/// Places the points of lane `lane` of block `b` at rest on its row of state.roots, without speed.
-void placeAtRest(const RestShape& shape, State& state, std::size_t block, std::uint32_t lane);
+/// Places the points of lanes of block `b` at rest on their rows of state.roots, without speed.
+void placeAtRest(const RestShape& shape, State& state, std::size_t block, LaneRange lanes);
 
 }  // namespace hairloom::runtime

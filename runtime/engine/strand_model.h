@@ -66,16 +66,21 @@ class ModelStrands {
     /// Makes any state one of this model and these settings: strands that were none of them go on from where
     /// their points are.
     virtual void takeState(const RestShape& shape, const SimulationSettings& settings, State& state) = 0;
+    /// The same of a state in which nothing is placed yet.
+    virtual void takeNewState(const RestShape& shape, const SimulationSettings& settings, State& state,
+                              const Host&) {
+        takeState(shape, settings, state);
+    }
     /// Has memory for what the plan runs, and none for what it does not. `touches`: there are spheres in
     /// reach or a body.
     virtual void allocate(const RestShape& shape, const SimulationSettings& settings, const EffectPlan& plan,
                           bool touches, State& state) = 0;
 
-    /// Puts lane `lane` of block `index` at rest on its row of state.roots, but for its points, which are
+    /// Puts lanes of block `index` at rest on their rows of state.roots, but for their points, which are
     /// there.
     virtual void placeAtRest(const RestShape& shape, State& state, std::size_t index,
-                             std::uint32_t lane) const = 0;
-    /// Lets it go on from the state's points.
+                             LaneRange lanes) const = 0;
+    /// Lets a lane go on from the state's points.
     virtual void placeOnPoints(const RestShape& shape, State& state, std::size_t index,
                                std::uint32_t lane) const = 0;
 
@@ -161,8 +166,8 @@ void listTouchable(const RestShape& shape, const SimulationSettings& settings, c
                    std::size_t block, LaneFrame& lanes);
 
 /// `floats` of them, which are 0 where they are new; as they are where there are so many.
-inline void keepFloats(Floats& values, std::size_t floats) {
-    if (values.size() != floats) values = Floats(floats, 0.0f);
+inline void keepFloats(Floats& values, std::size_t floats, const Host& host = {}) {
+    if (values.size() != floats) values = zeroFloats(floats, host);
 }
 
 }  // namespace hairloom::runtime

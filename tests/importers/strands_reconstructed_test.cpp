@@ -147,6 +147,17 @@ TEST(PointsPerStrand, AreFoundWhereDistancesTellThem) {
     EXPECT_EQ(guessPointsPerStrand({}), 0u);
 }
 
+/// As reconstructions leave them: each 24th strand jumps by more than it is away from others.
+TEST(PointsPerStrand, AreFoundAmongStrandsThatJump) {
+    for (const std::size_t size : {24u, 100u}) {
+        std::vector<Vec3f> points = runsOf(240, size);
+        for (std::size_t s = 0; s < 240; s += 24) {
+            for (std::size_t i = size / 2; i < size; ++i) points[s * size + i].z() += 0.3f;
+        }
+        EXPECT_EQ(guessPointsPerStrand(points), size);
+    }
+}
+
 std::string plyOf(std::span<const Vec3f> points, const std::string& more = {}, const std::string& rows = {}) {
     std::string text = fmt::format(
         "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float "

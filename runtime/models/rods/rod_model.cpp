@@ -79,14 +79,20 @@ class RodStrands final : public ModelStrands {
         completeRods(shape, rest_, !state.own[kOwnLoads].empty(), state);
     }
 
+    void takeNewState(const RestShape& shape, const SimulationSettings&, State& state,
+                      const Host& host) override {
+        state.model = StrandModel::rods;
+        allocateRods(shape, rest_.parts, false, state, host);
+    }
+
     void allocate(const RestShape& shape, const SimulationSettings&, const EffectPlan&, bool touches,
                   State& state) override {
         allocateRods(shape, rest_.parts, touches, state);
     }
 
     void placeAtRest(const RestShape& shape, State& state, std::size_t index,
-                     std::uint32_t lane) const override {
-        placeRodAtRest(shape, rest_, state, index, lane);
+                     LaneRange lanes) const override {
+        placeRodAtRest(shape, rest_, state, index, lanes);
     }
     void placeOnPoints(const RestShape& shape, State& state, std::size_t index,
                        std::uint32_t lane) const override {

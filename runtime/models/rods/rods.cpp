@@ -24,43 +24,49 @@ std::size_t RodRest::planeCount() const {
     return kRodRestPlanes[static_cast<std::size_t>(parts)];
 }
 
-void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state) {
-    keepFloats(state.own[kOwnMotion], shape.planeFloats * kRodMotionPlanes);
-    keepFloats(state.own[kOwnStrains], parts == RodParts::chain ? 0 : shape.planeFloats * kRodStrainPlanes);
-    keepFloats(state.own[kOwnLoads], loads ? shape.planeFloats : 0);
+void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state, const Host& host) {
+    keepFloats(state.own[kOwnMotion], shape.planeFloats * kRodMotionPlanes, host);
+    keepFloats(state.own[kOwnStrains], parts == RodParts::chain ? 0 : shape.planeFloats * kRodStrainPlanes,
+               host);
+    keepFloats(state.own[kOwnLoads], loads ? shape.planeFloats : 0, host);
     keepFloats(state.own[kOwnLanes], shape.blocks.size() * kRodLaneRows * kBlockLanes);
 }
 
 void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
-                    std::uint32_t lane) {
+                    LaneRange lanes) {
     const Block& block = shape.blocks[index];
     const float* const roots = state.roots.data() + index * kRootRows * kBlockLanes;
-    const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
-    const Quat root{row(3), row(4), row(5), row(6)};
     const RodView rod = rodViewOf(shape, rest, state, index);
     const std::size_t size = planeSize(block);
-    const auto rotationAt = [&](const float* planes, std::size_t i) {
-        return Quat{planes[i], planes[size + i], planes[2 * size + i], planes[3 * size + i]};
-    };
-    Quat inner = root;
-    for (std::uint32_t p = 0; p < block.points; ++p) {
-        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-        for (std::size_t plane = 0; plane < kRodMotionPlanes; ++plane) rod.rotation[plane * size + i] = 0.0f;
-        if (rod.load) rod.load[i] = 0.0f;
-        Quat q = root;
-        if (rod.restRotation && p + 1 < block.points) q = root * rotationAt(rod.restRotation, i);
-        normalize(q);
-        const float values[] = {q.x, q.y, q.z, q.w};
-        for (std::size_t plane = 0; plane < 4; ++plane) rod.rotation[plane * size + i] = values[plane];
-        if (p + 1 < block.points) {
-            setStrain(rod, i, conjugate(inner) * q);
-        } else {
-            setStrain(rod, i, Quat{});
-        }
-        inner = q;
+    Quat root[kBlockLanes], inner[kBlockLanes];
+    for (std::uint32_t lane = lanes.begin; lane < lanes.end; ++lane) {
+        const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
+        root[lane] = inner[lane] = {row(3), row(4), row(5), row(6)};
+        rod.turn[lane] = kRodNoStep;
+        rod.energy[lane] = kRodNoEnergy;
     }
-    rod.turn[lane] = kRodNoStep;
-    rod.energy[lane] = kRodNoEnergy;
+    // Point by point, since lanes share their lines of the cache.
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        const auto clear = [&](float* plane) {
+            float* const row = plane + std::size_t{p} * kBlockLanes;
+            std::fill(row + lanes.begin, row + lanes.end, 0.0f);
+        };
+        for (std::size_t plane = 4; plane < kRodMotionPlanes; ++plane) clear(rod.rotation + plane * size);
+        if (rod.load) clear(rod.load);
+        for (std::uint32_t lane = lanes.begin; lane < lanes.end; ++lane) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            Quat q = root[lane];
+            if (rod.restRotation && p + 1 < block.points) {
+                const float* const at = rod.restRotation + i;
+                q = q * Quat{at[0], at[size], at[2 * size], at[3 * size]};
+            }
+            normalize(q);
+            const float values[] = {q.x, q.y, q.z, q.w};
+            for (std::size_t plane = 0; plane < 4; ++plane) rod.rotation[plane * size + i] = values[plane];
+            setStrain(rod, i, p + 1 < block.points ? conjugate(inner[lane]) * q : Quat{});
+            inner[lane] = q;
+        }
+    }
 }
 
 void placeRodOnPoints(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,

@@ -64,16 +64,16 @@ RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings, 
 
 /// Gives a state the arrays of rods with these parts and, where asked for, loads; those that it has keep
 /// their values.
-void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state);
+void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state, const Host& host = {});
 
 /// Makes any state one of these rods: strands that were none go on as rods through their points, and chains
 /// that now bend back keep all that they have.
 void completeRods(const RestShape& shape, const RodRest& rest, bool loads, State& state);
 
-/// Puts lane `lane` of block `index` at rest on its row of state.roots, without a step before; its points
+/// Puts lanes of block `index` at rest on their rows of state.roots, without a step before; their points
 /// are there.
 void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
-                    std::uint32_t lane);
+                    LaneRange lanes);
 
 /// Makes lane `lane` of block `index` a rod that passes through its positions and moves as they do, without
 /// twist beyond that at rest.

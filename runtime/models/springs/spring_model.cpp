@@ -88,11 +88,14 @@ class SpringStrands final : public ModelStrands {
     }
 
     void placeAtRest(const RestShape& shape, State& state, std::size_t index,
-                     std::uint32_t lane) const override {
+                     LaneRange lanes) const override {
         if (state.own[kOwnTensions].empty()) return;
         const Block& block = shape.blocks[index];
         float* const tensions = state.own[kOwnTensions].data() + block.firstPlane;
-        for (std::uint32_t p = 0; p < block.points; ++p) tensions[std::size_t{p} * kBlockLanes + lane] = 0.0f;
+        for (std::uint32_t p = 0; p < block.points; ++p) {
+            float* const row = tensions + std::size_t{p} * kBlockLanes;
+            std::fill(row + lanes.begin, row + lanes.end, 0.0f);
+        }
     }
     void placeOnPoints(const RestShape&, State&, std::size_t, std::uint32_t) const override {}
 
