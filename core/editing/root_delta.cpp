@@ -78,7 +78,7 @@ void RootDelta::exchange(Groom& groom) {
 }
 
 std::size_t RootDelta::bytes() const {
-    return sizeof(*this) + strands_.capacity() * sizeof(std::uint32_t) + roots_.capacity() * sizeof(Root) +
+    return strands_.capacity() * sizeof(std::uint32_t) + roots_.capacity() * sizeof(Root) +
            base_.heapBytes() + triangulation_.triangles.capacity() * sizeof(Triangle);
 }
 

@@ -26,7 +26,7 @@ class WidthDelta {
     std::span<const std::uint32_t> strands() const {
         return values_.strands();
     }  ///< ascending after finish()
-    std::size_t bytes() const { return sizeof(*this) + values_.heapBytes(); }
+    std::size_t bytes() const { return values_.heapBytes(); }
 
   private:
     StrandValues<float> values_;

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/editing/settings_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack.h"
 #include "tests/editing/editing_samples.h"
@@ -32,11 +33,13 @@ float fromScalp(const Groom& groom, std::size_t s) {
 }
 
 TEST(Slide, TurnsHairAboutTheHeadAsOnASphere) {
-    TopStrand top;
-    const Groom before = top.document.groom();
+    const TopStrand top;
+    Groom before = hairOnHead();
+    before.strandAttributes.set(attribute::kRootUv, std::vector<Vec2f>(before.strandCount(), Vec2f::Zero()));
+    Document document(before);
     const Vec3f root = before.strand(top.strand)[0];
-    ASSERT_TRUE(top.document.replay(slideBy(40)));
-    const Groom& after = top.document.groom();
+    ASSERT_TRUE(document.replay(slideBy(40)));
+    const Groom& after = document.groom();
     // On a sphere a strand that slides by an angle turns by that about the centre.
     const Eigen::AngleAxisf turn(radians(-40.0f), Vec3f::UnitZ());
     const Vec3f expected = kHeadCentre + turn * (root - kHeadCentre);
@@ -56,8 +59,25 @@ TEST(Slide, TurnsHairAboutTheHeadAsOnASphere) {
         EXPECT_LT((uv - after.scalp->uvAt(at.triangle, at.barycentric)).norm(), 1e-6f);
     }
     EXPECT_GT(moved, 5u);
-    EXPECT_TRUE(after.triangulation.triangles.empty()) << "it is of where the roots were";
     EXPECT_FALSE(hasErrors(validate(after)));
+}
+
+TEST(Slide, TriangulationsBelongToWhereRootsAre) {
+    Document document(hairOnHead());
+    document.perform(triangulate(document.model()));
+    ASSERT_FALSE(document.groom().triangulation.triangles.empty());
+    const std::uint64_t before = contentHash(document.groom());
+    ASSERT_TRUE(document.replay(slideBy(20)));
+    EXPECT_TRUE(document.groom().triangulation.triangles.empty());
+    ASSERT_TRUE(document.undo());
+    EXPECT_FALSE(document.groom().triangulation.triangles.empty());
+    EXPECT_EQ(contentHash(document.groom()), before);
+    // Where nothing moves it stays.
+    Stroke still = slideBy(20);
+    for (Dab& dab : still.dabs) dab.position_ss = still.dabs[0].position_ss;
+    ASSERT_TRUE(document.replay(still));
+    EXPECT_EQ(document.history().doneCount(), 1u);
+    EXPECT_FALSE(document.groom().triangulation.triangles.empty());
 }
 
 TEST(Slide, StaysOnTheFacesThatCarryHair) {
