@@ -77,7 +77,7 @@ struct StrandGroup {
     std::size_t strandCount = 0;  ///< also those too short to be drawn
     std::size_t pointCount = 0;
     bool hasRadii = false, radiiOfAll = false;
-    bool hasRadiiOf(std::uint32_t material) const { return hasRadii && (radiiOfAll || material == 0); }
+    bool hasRadiiOf(std::size_t material) const { return hasRadii && (radiiOfAll || material == 0); }
     std::vector<float> radii;  ///< waiting for their upload
     bool hasPointDyes = false;
     std::vector<float> pointDyes;     ///< waiting for their upload

@@ -104,7 +104,7 @@ HairMeasure DeviceScene::measure() const {
     std::size_t segments = 0;
     for (const StrandGroup& group : groups) {
         length += group.length;
-        for (std::uint32_t m = 0; m < group.materials.size(); ++m) {
+        for (std::size_t m = 0; m < group.materials.size(); ++m) {
             const MaterialOnDevice& material = group.materials[m];
             // The profile of shaders/curve.comp.hlsl has this mean.
             const double authored =

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/base/temporary_folder.h"
 #include "core/documents/hair_import.h"
 #include "core/editing/document.h"
+#include "core/editing/stack_commands.h"
 #include "core/geometry/curve.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/groom_hash.h"
