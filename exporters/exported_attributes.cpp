@@ -8,6 +8,7 @@
 #include <charconv>
 #include <optional>
 
+#include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "importers/attribute_units.h"
 
@@ -32,7 +33,7 @@ std::int32_t groupNumber(const Groom& groom, std::uint32_t group) {
 bool isCarriedOtherwise(std::string_view name, bool perPoint) {
     if (perPoint)
         return name == attribute::kPosition || isOperatorAttribute(name) || name == attribute::kRadius ||
-               name == attribute::kPointColour;
+               name == attribute::kWidthChange || name == attribute::kPointColour;
     return name == attribute::kStrandId || name == attribute::kGroup || name == attribute::kGuide ||
            name == attribute::kRootUv || name == attribute::kRootTriangle ||
            name == attribute::kRootBarycentric || name == attribute::kSelected ||

@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
+#include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "exporters/compare_attributes.h"
 
@@ -81,6 +82,7 @@ class Preparer {
         result_.metresPerUnit = options.metresPerUnit;
         result_.up = options.up;
         radii_ = perPoint<float>(attribute::kRadius);
+        widthChanges_ = widthChanges(groom);
         transparency_ = perPoint<float>(attribute::kTransparency);
         colours_ = perPoint<Vec3f>(attribute::kPointColour);
     }
@@ -173,6 +175,10 @@ class Preparer {
         } else {
             append(result_.thickness, radii_, points, first, count);
         }
+        std::vector<float> changes;
+        append(changes, widthChanges_, points, first, count);
+        for (std::size_t i = 0; i < changes.size(); ++i)
+            result_.thickness[before + i] = widened(result_.thickness[before + i], changes[i]);
         for (std::size_t i = before; i < result_.thickness.size(); ++i) {
             result_.thickness[i] = 2.0f * result_.thickness[i] / options_.metresPerUnit;
         }
@@ -230,6 +236,7 @@ class Preparer {
     bool byLayer_;
     std::vector<std::uint32_t> layers_;
     std::span<const float> radii_;
+    std::span<const float> widthChanges_;
     std::span<const float> transparency_;
     std::span<const Vec3f> colours_;
     PreparedStrands result_;

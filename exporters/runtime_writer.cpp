@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/groom/file/fields.h"
+#include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 #include "exporters/asset_extras.h"
@@ -231,6 +232,12 @@ Status addFindings(const Groom& groom, const FollowSections& follow, const runti
                                            "{:.2g} mm from those of rendered images",
                                            asset.hairCount(), error->metres * 1e3),
                                "follow hairs", ""});
+    if (!widthChanges(groom).empty()) {
+        report.findings.push_back({Severity::Warning,
+                                   "painted widths are those of the guides: follow hairs that the runtime "
+                                   "generates have the material's",
+                                   "width", "export the follow hairs themselves"});
+    }
     return {};
 }
 

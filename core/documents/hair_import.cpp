@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/documents/hair_blend.h"
 #include "core/documents/head_transfer.h"
 #include "core/editing/replay.h"
 #include "core/groom/file/json_reader.h"
@@ -169,6 +170,7 @@ Result<Script> parseDocumentScript(const std::string& file, std::string_view tex
     std::vector<ScriptExtension> extensions = editing::scriptExtensions();
     extensions.push_back({"import", readImport});
     extensions.push_back(transferExtension());
+    extensions.push_back(blendExtension());
     return parseScript(file, text, extensions);
 }
 

@@ -22,7 +22,8 @@ class DeltaCommand final : public Command {
   public:
     DeltaCommand(std::string name, Deltas deltas) : name_(std::move(name)), deltas_(std::move(deltas)) {
         touched_ = unionOf({deltas_.points.strands(), deltas_.frozen.strands(), deltas_.hidden.strands(),
-                            deltas_.selected.strands(), deltas_.dye.strands(), deltas_.mask.strands()});
+                            deltas_.selected.strands(), deltas_.dye.strands(), deltas_.mask.strands(),
+                            deltas_.widths.strands(), deltas_.roots.strands()});
     }
     std::string name() const override { return name_; }
 
@@ -35,6 +36,8 @@ class DeltaCommand final : public Command {
         deltas_.density.exchange(model.groom);
         deltas_.dye.exchange(model.groom);
         deltas_.mask.exchange(model.groom);
+        deltas_.widths.exchange(model.groom);
+        deltas_.roots.exchange(model.groom);
         if (!isDone_) deltas_.strands.exchange(model.groom);
         isDone_ = !isDone_;
         return {parts(), deltas_.strands.empty() ? std::span<const std::uint32_t>(touched_)
@@ -45,7 +48,8 @@ class DeltaCommand final : public Command {
         return sizeof(*this) + name_.capacity() + touched_.capacity() * sizeof(std::uint32_t) +
                deltas_.points.bytes() + deltas_.frozen.bytes() + deltas_.hidden.bytes() +
                deltas_.selected.bytes() + deltas_.faces.bytes() + deltas_.density.bytes() +
-               deltas_.dye.bytes() + deltas_.mask.bytes() + deltas_.strands.bytes();
+               deltas_.dye.bytes() + deltas_.mask.bytes() + deltas_.widths.bytes() + deltas_.roots.bytes() +
+               deltas_.strands.bytes();
     }
 
   private:
@@ -58,6 +62,8 @@ class DeltaCommand final : public Command {
         if (!deltas_.density.empty()) parts = parts | Part::Density;
         if (!deltas_.dye.empty()) parts = parts | Part::Dye;
         if (!deltas_.mask.empty()) parts = parts | Part::Masks;
+        if (!deltas_.widths.empty()) parts = parts | Part::Widths;
+        if (!deltas_.roots.empty()) parts = parts | Part::Triangulation;
         if (deltas_.dye.changesStrength()) parts = parts | Part::Material;
         if (!deltas_.strands.empty()) parts = parts | Part::Strands | Part::Triangulation;
         return parts;

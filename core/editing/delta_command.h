@@ -9,8 +9,10 @@
 #include "core/editing/dye_delta.h"
 #include "core/editing/mask_delta.h"
 #include "core/editing/point_delta.h"
+#include "core/editing/root_delta.h"
 #include "core/editing/scalp_delta.h"
 #include "core/editing/strand_delta.h"
+#include "core/editing/width_delta.h"
 
 namespace hairloom::editing {
 
@@ -24,10 +26,13 @@ struct Deltas {
     DensityDelta density;
     DyeDelta dye;
     MaskDelta mask;
+    WidthDelta widths;
+    RootDelta roots;
     StrandDelta strands;  ///< last in doing, first in undoing
     bool empty() const {
         return points.empty() && frozen.empty() && hidden.empty() && selected.empty() && faces.empty() &&
-               density.empty() && dye.empty() && mask.empty() && strands.empty();
+               density.empty() && dye.empty() && mask.empty() && widths.empty() && roots.empty() &&
+               strands.empty();
     }
 };
 

@@ -164,7 +164,8 @@ Stroke Document::endStroke() {
     const bool comesOrGoes = model_.groom.strandCount() != strokeStrands_;
     stroke_.reset();
     if (!command) return drawn;
-    const bool runsAgain = comesOrGoes || maskChanged(strokeParts_);
+    const bool rootsMoved = contains(strokeParts_, Part::Triangulation);
+    const bool runsAgain = comesOrGoes || rootsMoved || maskChanged(strokeParts_);
     if (!model_.groom.operators.empty() && (movesHair || runsAgain)) {
         if (auto stack = runsAgain ? stackAfterStrands(model_) : stackAfterStroke(model_, strokeTouched())) {
             change.parts = change.parts | stack->exchange(model_).parts;

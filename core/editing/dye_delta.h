@@ -27,7 +27,7 @@ class DyeDelta {
     /// The material's strength of the dye is another on the other side.
     bool changesStrength() const { return turnsOn_; }
     std::span<const std::uint32_t> strands() const { return mask_.strands(); }  ///< ascending after finish()
-    std::size_t bytes() const { return sizeof(*this) + mask_.heapBytes(); }
+    std::size_t bytes() const { return mask_.heapBytes(); }
 
   private:
     StrandValues<float> mask_;

@@ -37,6 +37,7 @@ enum class Part : std::uint32_t {
     Operators = 1u << 15u,      ///< of the stack, or their settings
     Masks = 1u << 16u,          ///< as they were painted, for operators
     Cards = 1u << 17u,          ///< levels' cards shaped by hand
+    Widths = 1u << 18u,         ///< of hair, as they were painted
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {

@@ -31,7 +31,7 @@ class PointDelta {
     bool empty() const { return points_.empty(); }
     /// Ascending after finish().
     std::span<const std::uint32_t> strands() const { return points_.strands(); }
-    std::size_t bytes() const { return sizeof(*this) + points_.heapBytes(); }
+    std::size_t bytes() const { return points_.heapBytes(); }
 
   private:
     StrandValues<Vec3f> points_;
@@ -47,7 +47,7 @@ class FlagDelta {
     void exchange(Groom& groom);
     bool empty() const { return strands_.empty(); }
     std::span<const std::uint32_t> strands() const { return strands_; }  ///< ascending
-    std::size_t bytes() const { return sizeof(*this) + strands_.capacity() * 5; }
+    std::size_t bytes() const { return strands_.capacity() * 5; }
     const std::string& attribute() const { return attribute_; }
 
   private:

@@ -30,7 +30,7 @@ void FaceDelta::exchange(Groom& groom) {
 }
 
 std::size_t FaceDelta::bytes() const {
-    return sizeof(*this) + toggled_.capacity() * sizeof(std::uint32_t) + expression_.capacity();
+    return toggled_.capacity() * sizeof(std::uint32_t) + expression_.capacity();
 }
 
 void DensityDelta::set(Groom& groom, std::span<const std::uint32_t> vertices, std::span<const float> values) {
@@ -63,7 +63,7 @@ void DensityDelta::exchange(Groom& groom) {
 }
 
 std::size_t DensityDelta::bytes() const {
-    return sizeof(*this) + vertices_.capacity() * sizeof(std::uint32_t) + values_.capacity() * sizeof(float);
+    return vertices_.capacity() * sizeof(std::uint32_t) + values_.capacity() * sizeof(float);
 }
 
 }  // namespace hairloom::editing

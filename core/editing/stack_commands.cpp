@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -282,6 +283,26 @@ StackCommand setOperators(const Model& model, std::vector<Operator> operators, s
     }
     next.operators = std::move(operators);
     std::string record = recordOf("operators", {{"operators", hairloom::toJson(next.operators)}});
+    return restack(model, std::move(next), std::move(name), std::move(record));
+}
+
+StackCommand addShape(const Model& model, std::span<const Vec3f> shape, Operator sculpt, std::string name,
+                      std::string record) {
+    assert(shape.size() == model.groom.pointCount() && sculpt.op == kSculpt);
+    Groom next = model.groom;
+    sculpt.number = freeNumber(next.operators);
+    std::vector<Vec3f> offsets(shape.size(), Vec3f::Zero());
+    const auto positions = next.positions();
+    parallelFor(next.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const std::size_t first = next.offsets[s], count = next.offsets[s + 1] - first;
+            if (count < 2) continue;
+            measureSculpt(positions.subspan(first, count), shape.subspan(first, count),
+                          std::span(offsets).subspan(first, count));
+        }
+    });
+    next.pointAttributes.set(sculptAttribute(sculpt.number), std::move(offsets));
+    next.operators.push_back(std::move(sculpt));
     return restack(model, std::move(next), std::move(name), std::move(record));
 }
 

@@ -31,6 +31,10 @@ StackCommand addOperators(const Model& model, std::size_t index, std::vector<Ope
                           std::string name);
 /// All of them. A sculpt keeps the strokes that its number has; one without begins empty.
 StackCommand setOperators(const Model& model, std::vector<Operator> operators, std::string name);
+/// On top, a sculpt that makes the hair that shape where its weight is 1 and its mask whole. `shape` are the
+/// points of all strands, with the roots that they have.
+StackCommand addShape(const Model& model, std::span<const Vec3f> shape, Operator sculpt, std::string name,
+                      std::string record);
 /// The hair as it is becomes all there is.
 StackCommand bakeOperators(const Model& model);
 

@@ -230,7 +230,7 @@ void StrandDelta::exchange(Groom& groom) {
 }
 
 std::size_t StrandDelta::bytes() const {
-    return sizeof(*this) + indices_.capacity() * sizeof(std::uint32_t) + away_.bytes() +
+    return indices_.capacity() * sizeof(std::uint32_t) + away_.bytes() +
            triangulation_.triangles.capacity() * sizeof(Triangle) +
            triangulation_.coincident.capacity() * sizeof(RootTriangulation::Coincident) +
            triangulation_.alone.capacity() * sizeof(std::uint32_t);

@@ -133,6 +133,8 @@ std::unique_ptr<Command> StrokeSession::finish(Change& change) {
     target_.changes.points.finish(target_.groom());
     target_.changes.dye.finish(target_.groom());
     target_.changes.mask.finish(target_.groom());
+    target_.changes.widths.finish(target_.groom());
+    target_.changes.roots.finish(target_.groom());
     return commandOf(std::string(brush_->info().label), std::move(target_.changes));
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/groom/findings.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/point_width.h"
 
 namespace hairloom {
 namespace {
@@ -13,10 +14,11 @@ struct KnownAttribute {
     std::string_view name;
     std::string_view type;
 };
-constexpr std::array<KnownAttribute, 6> kPointTypes = {{{attribute::kPosition, "float3"},
+constexpr std::array<KnownAttribute, 7> kPointTypes = {{{attribute::kPosition, "float3"},
                                                         {attribute::kBasePosition, "float3"},
                                                         {attribute::kRadius, "float"},
                                                         {attribute::kPointDye, "float"},
+                                                        {attribute::kWidthChange, "float"},
                                                         {attribute::kPointColour, "float3"},
                                                         {attribute::kTransparency, "float"}}};
 constexpr std::array<KnownAttribute, 12> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},

@@ -5,6 +5,7 @@
 #include "core/geometry/curve.h"
 #include "core/groom/findings.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/point_width.h"
 
 namespace hairloom {
 namespace {
@@ -55,6 +56,14 @@ void findRadii(const Groom& groom, std::vector<Finding>& findings) {
     }
     negative.report(findings, Severity::Error, "a radius is negative", "set the radius to 0 or more");
     for (Finding& finding : findThickHair(groom)) findings.push_back(std::move(finding));
+    Places wrong;
+    const auto changes = groom.pointAttributes.view<float>(attribute::kWidthChange);
+    for (std::size_t p = 0; p < changes.size(); ++p) {
+        if (!(changes[p] >= -1 && changes[p] <= kMaxWidthChange)) wrong.other("point", p);
+    }
+    wrong.report(findings, Severity::Error,
+                 fmt::format("the painted width is not from -1 to {}", kMaxWidthChange),
+                 "paint the width again");
 }
 
 void findSize(const Groom& groom, std::vector<Finding>& findings) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cassert>
 
 #include "core/base/parallel.h"
+#include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 
@@ -18,6 +20,14 @@ std::span<const To> viewAs(std::span<const From> values) {
 template <class To, class From>
 std::span<const To> viewAs(const std::vector<From>& values) {
     return viewAs<To>(std::span(values));
+}
+
+/// Of a strand's points, at a share of its length in points.
+float valueAt(std::span<const float> values, float share) {
+    const float place = share * static_cast<float>(values.size() - 1);
+    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
+    const float t = place - static_cast<float>(before);
+    return values[before] + t * (values[before + 1] - values[before]);
 }
 
 }  // namespace
@@ -59,6 +69,36 @@ Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& sta
     return {};
 }
 
+std::vector<float> followHairValues(const Groom& groom, const FollowBindings& bindings,
+                                    std::span<const float> values) {
+    assert(values.size() == groom.pointCount());
+    const std::size_t perHair = bindings.pointsPerHair;
+    std::vector<float> guides(bindings.guideCount() * perHair);
+    for (std::size_t guide = 0; guide < bindings.guideCount(); ++guide) {
+        const std::size_t first = groom.offsets[bindings.guideStrands[guide]];
+        const std::size_t count = groom.offsets[bindings.guideStrands[guide] + 1] - first;
+        for (std::size_t i = 0; i < perHair; ++i) {
+            const float share = static_cast<float>(i) / static_cast<float>(perHair - 1);
+            guides[guide * perHair + i] = valueAt(values.subspan(first, count), share);
+        }
+    }
+    constexpr std::size_t kGrain = 256;
+    std::vector<float> result(bindings.hairCount() * perHair);
+    parallelFor(bindings.hairCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t hair = begin; hair < end; ++hair) {
+            for (std::size_t i = 0; i < perHair; ++i) {
+                float sum = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const float weight = bindings.rootWeights[hair][static_cast<int>(k)];
+                    sum += weight * guides[bindings.guides[hair][k] * perHair + i];
+                }
+                result[hair * perHair + i] = sum;
+            }
+        }
+    });
+    return result;
+}
+
 Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings) {
     const std::size_t hairs = bindings.hairCount();
     const auto guides = guidePositions(groom, bindings);
@@ -77,6 +117,8 @@ Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings
     baked.scalpExpression = groom.scalpExpression;
     baked.characterFile = groom.characterFile;
     if (!bindings.roots.empty()) baked.setRootBindings(bindings.roots);
+    if (const auto changes = widthChanges(groom); !changes.empty())
+        baked.pointAttributes.set(attribute::kWidthChange, followHairValues(groom, bindings, changes));
     baked.layers = groom.layers;
     if (groom.layers.size() > 1) {
         const std::vector<std::uint32_t> ofStrands = layersOfStrands(groom);

@@ -86,7 +86,13 @@ runtime::FollowView followView(const FollowBindings& bindings, std::span<const s
 Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state, const WispMotion& motion,
                            std::span<Vec3f> positions);
 
-/// The follow hairs at rest as a groom of its own, bound where the bindings are. Errors: as above.
+/// What the guides around each point of a hair have there, by the hair's root; hair after hair,
+/// `pointsPerHair` each. `values` are one a point of the groom.
+std::vector<float> followHairValues(const Groom& groom, const FollowBindings& bindings,
+                                    std::span<const float> values);
+
+/// The follow hairs at rest as a groom of its own, bound where the bindings are, with the widths that were
+/// painted. Errors: as above.
 Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings);
 
 }  // namespace hairloom

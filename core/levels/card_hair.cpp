@@ -18,13 +18,6 @@ double randomOf(std::size_t strand, std::uint64_t purpose) {
     return static_cast<double>(Random(purpose, strand).uniform());
 }
 
-/// Null where the strand is not drawn.
-const render::StrandShading* materialOf(const render::RenderStrands& strands, std::size_t strand) {
-    const std::uint32_t which = strands.materials.empty() ? 0 : strands.materials[strand];
-    if (which == render::kNotDrawn) return nullptr;
-    return which == 0 ? &strands.material : &strands.others[which - 1];
-}
-
 /// Colours along a strand of its material.
 class Painter {
   public:
@@ -60,14 +53,14 @@ void addStrand(const render::RenderStrands& strands, std::size_t s, cards::Hair&
     if (count < 2) return;
     const auto points = strands.positions_ws.subspan(first, count);
     if (!(polylineLength(points) > 0)) return;
-    const render::StrandShading* const material = materialOf(strands, s);
+    const render::StrandShading* const material = render::shadingOf(strands, s);
     if (!material) return;
     const Painter painter(strands, *material);
     const render::StrandShading& m = *material;
     for (std::size_t i = 0; i < count; ++i) {
         const float along = static_cast<float>(i) / static_cast<float>(count - 1);
         hair.positions_ws.push_back(points[i]);
-        const bool own = !strands.radii.empty() && material == &strands.material;
+        const bool own = !strands.radii.empty() && (strands.radiiOfAll || material == &strands.material);
         hair.radii.push_back(own ? strands.radii[first + i] : m.radius * (1 + along * (m.tipScale - 1)));
         hair.albedo.push_back(painter.at(s, first + i, along));
     }

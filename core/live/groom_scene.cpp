@@ -12,6 +12,7 @@
 #include "core/groom/file/json_reader.h"
 #include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/point_width.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/live/hair_look.h"
 #include "core/live/root_rotations.h"
@@ -249,6 +250,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         scene.push_ = makeBodyPush(groom, groom.offsets.view(), groom.positions());
         scene.materials_.ofStrands = materialsOfStrands(groom);
         if (scene.materials_.hasLook()) scene.weights_ = weightsOfStrands(groom);
+        scene.takeWidths();
         scene.clumping_ = render::measureClumping(scene.scene().strands);
         return scene;
     }
@@ -270,6 +272,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         scene.weights_ = std::move(*weights);
     }
     scene.makeFollowHairs({}, {});
+    scene.takeWidths();
     scene.push_ = makeBodyPush(groom, scene.hairOffsets_, scene.hairPositions_ws_);
     scene.clumping_ = render::measureClumping(scene.scene().strands);
     return scene;
@@ -304,6 +307,7 @@ bool GroomScene::setMaterials(const Groom& groom, const ViewFile& view) {
     StrandMaterials now = strandMaterials(rest_, view);
     now.ofStrands = std::move(materials_.ofStrands);
     materials_ = std::move(now);
+    makeRadii();
     return true;
 }
 
@@ -313,6 +317,28 @@ bool GroomScene::setDye(const Groom& groom) {
                               groom.pointAttributes.all().find(attribute::kPointDye)->second);
     weights_.pointDyes = bindings_ ? pointDyesOfFollowHairs(rest_, *bindings_) : pointDyes(rest_);
     return true;
+}
+
+bool GroomScene::setWidths(const Groom& groom) {
+    if (widthChanges_.empty() || !groom.pointAttributes.has(attribute::kWidthChange)) return false;
+    rest_.pointAttributes.set(attribute::kWidthChange,
+                              groom.pointAttributes.all().find(attribute::kWidthChange)->second);
+    takeWidths();
+    return hasPaintedWidths();
+}
+
+void GroomScene::takeWidths() {
+    const auto changes = widthChanges(rest_);
+    widthChanges_ = changes.empty() ? std::vector<float>()
+                    : bindings_     ? followHairValues(rest_, *bindings_, changes)
+                                    : std::vector<float>(changes.begin(), changes.end());
+    makeRadii();
+}
+
+void GroomScene::makeRadii() {
+    radii_.clear();
+    if (widthChanges_.empty() || posed_.strandCount() == 0) return;
+    radii_ = paintedRadii(scene().strands.front(), widthChanges_);
 }
 
 void GroomScene::makeFollowHairs(std::span<const Vec3f> velocities_ws, const HeadPose& pose) {
@@ -361,6 +387,7 @@ render::RenderScene GroomScene::scene() const {
         strands.offsets = hairOffsets_;
         strands.positions_ws = hairPositions_ws_;
     }
+    if (!radii_.empty()) strands.radii = radii_, strands.radiiOfAll = true;
     strands.streaks = weights_.streaks;
     strands.dyes = weights_.dyes;
     strands.pointDyes = weights_.pointDyes;

@@ -92,6 +92,12 @@ class GroomScene {
     /// painted before or is now.
     bool setDye(const Groom& groom);
 
+    /// The painted widths of another version of the same strands. False where it takes make() anew: nothing
+    /// was painted before or is now.
+    bool setWidths(const Groom& groom);
+    /// Radii follow from what was painted, and change with the material.
+    bool hasPaintedWidths() const { return !widthChanges_.empty(); }
+
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
     /// moved.
     render::RenderScene scene() const;
@@ -104,6 +110,9 @@ class GroomScene {
     Box3f subject() const;
 
   private:
+    /// What was painted of the groom at rest, and the radii that come of it.
+    void takeWidths();
+    void makeRadii();
     void makeFollowHairs(std::span<const Vec3f> velocities_ws, const HeadPose& pose);
 
     Groom rest_;
@@ -119,7 +128,9 @@ class GroomScene {
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;
     StrandMaterials materials_;
-    StreakAndDyeWeights weights_;  ///< of what is drawn, where the material has a look
+    StreakAndDyeWeights weights_;      ///< of what is drawn, where the material has a look
+    std::vector<float> widthChanges_;  ///< one a point of what is drawn; empty: none was painted
+    std::vector<float> radii_;         ///< of all that is drawn, where there are changes
     render::Clumping clumping_;
     bool matte_ = false;  ///< the head, where a view says what it is
 };

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "core/groom/streaks.h"
 
@@ -166,14 +167,6 @@ std::vector<Vec3f> rootsOf(const Groom& groom) {
 
 bool isPainted(const Groom& groom) {
     return groom.pointAttributes.has(attribute::kPointDye);
-}
-
-/// Of a strand's points, at a share of its length in points.
-float valueAt(std::span<const float> values, float share) {
-    const float place = share * static_cast<float>(values.size() - 1);
-    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
-    const float t = place - static_cast<float>(before);
-    return values[before] + t * (values[before + 1] - values[before]);
 }
 
 float maskOf(std::span<const float> mask, std::size_t strand) {
@@ -354,32 +347,25 @@ Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const Follo
 
 std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
     if (!isPainted(groom)) return {};
-    const std::size_t perHair = bindings.pointsPerHair;
-    const auto mask = groom.pointAttributes.view<float>(attribute::kPointDye);
-    std::vector<float> guides(bindings.guideCount() * perHair);
-    for (std::size_t guide = 0; guide < bindings.guideCount(); ++guide) {
-        const std::size_t first = groom.offsets[bindings.guideStrands[guide]];
-        const std::size_t count = groom.offsets[bindings.guideStrands[guide] + 1] - first;
-        for (std::size_t i = 0; i < perHair; ++i) {
-            const float share = static_cast<float>(i) / static_cast<float>(perHair - 1);
-            guides[guide * perHair + i] = valueAt(mask.subspan(first, count), share);
-        }
-    }
+    std::vector<float> dyes =
+        followHairValues(groom, bindings, groom.pointAttributes.view<float>(attribute::kPointDye));
+    for (float& dye : dyes) dye = std::clamp(dye, 0.0f, 1.0f);
+    return dyes;
+}
+
+std::vector<float> paintedRadii(const render::RenderStrands& strands, std::span<const float> changes) {
+    std::vector<float> radii(strands.positions_ws.size(), 0.0f);
+    if (changes.empty() || strands.offsets.empty()) return {};
     constexpr std::size_t kGrain = 256;
-    std::vector<float> dyes(bindings.hairCount() * perHair);
-    parallelFor(bindings.hairCount(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t hair = begin; hair < end; ++hair) {
-            for (std::size_t i = 0; i < perHair; ++i) {
-                float sum = 0;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const float weight = bindings.rootWeights[hair][static_cast<int>(k)];
-                    sum += weight * guides[bindings.guides[hair][k] * perHair + i];
-                }
-                dyes[hair * perHair + i] = std::clamp(sum, 0.0f, 1.0f);
-            }
+    parallelFor(strands.offsets.size() - 1, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const render::StrandShading* const shading = render::shadingOf(strands, s);
+            const std::uint32_t first = strands.offsets[s], last = strands.offsets[s + 1];
+            for (std::uint32_t p = first; shading && p < last; ++p)
+                radii[p] = widened(render::radiusAt(strands, *shading, first, last, p), changes[p]);
         }
     });
-    return dyes;
+    return radii;
 }
 
 }  // namespace hairloom

@@ -40,4 +40,8 @@ Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const Follo
 /// The painted dye of the guides around each point of a follow hair; empty where none was painted.
 std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 
+/// Radii of all that is drawn, for RenderStrands::radii: what `strands` has, changed by what was painted, one
+/// change a point (core/groom/point_width.h). Empty where nothing was.
+std::vector<float> paintedRadii(const render::RenderStrands& strands, std::span<const float> changes);
+
 }  // namespace hairloom

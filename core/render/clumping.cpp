@@ -55,20 +55,6 @@ std::array<Vec2f, kRays> raysOfBeam() {
     return rays;
 }
 
-/// Of strand `s`; null: it is not drawn.
-const StrandShading* shadingOf(const RenderStrands& strands, std::size_t s) {
-    const std::uint32_t material = strands.materials.empty() ? 0 : strands.materials[s];
-    if (material == kNotDrawn) return nullptr;
-    return material == 0 ? &strands.material : &strands.others[material - 1];
-}
-
-float radiusAt(const RenderStrands& strands, const StrandShading& material, std::uint32_t first,
-               std::uint32_t last, std::uint32_t p) {
-    if (!strands.radii.empty() && &material == &strands.material) return strands.radii[p];
-    const float along = static_cast<float>(p - first) / static_cast<float>(std::max(last - first - 1, 1u));
-    return material.radius * (1 + (material.tipScale - 1) * along * along);
-}
-
 /// Places along the hair at random, in the order of the first coordinate.
 std::vector<Beams> chooseBeams(std::span<const RenderStrands> strands, const Frame& frame, std::size_t count,
                                Random& random) {

@@ -270,6 +270,7 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
         group.strandCount = strands.offsets.empty() ? 0 : strands.offsets.size() - 1;
         group.pointCount = strands.positions_ws.size();
         group.hasRadii = !strands.radii.empty();
+        group.radiiOfAll = strands.radiiOfAll;
         group.hasPointDyes = !strands.pointDyes.empty();
         for (const Vec3f& p : strands.positions_ws) group.bounds_ws.extend(p);
         group.sampled = samplePoints(group.pointCount);
@@ -353,6 +354,21 @@ Status DeviceScene::replacePointDyes(std::size_t group, std::span<const float> d
     }
     g.pointDyes.assign(dyes.begin(), dyes.end());
     takeMeanDyes(g, dyes);
+    return {};
+}
+
+Status DeviceScene::replaceRadii(std::size_t group, std::span<const float> radii) {
+    if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
+    StrandGroup& g = groups[group];
+    if (!g.hasRadii || radii.size() != g.pointCount) {
+        return fail(fmt::format("{} radii for strands", radii.size()),
+                    fmt::format("{}, as they have points with radii", g.hasRadii ? g.pointCount : 0));
+    }
+    for (std::size_t p = 0; p < radii.size(); ++p) {
+        if (!(radii[p] >= 0 && radii[p] < 1))
+            return fail(fmt::format("the radius of point {} is {} m", p, radii[p]), "0 to 1 m");
+    }
+    g.radii.assign(radii.begin(), radii.end());
     return {};
 }
 
@@ -440,10 +456,12 @@ void DeviceScene::recordUploads(gpu::CommandList& list) {
             list.updateBuffer(buffer, 0, std::as_bytes(all.subspan(batch.firstPoint, batch.pointCount)));
         };
         update(batch.positions, std::span<const Vec3f>(group.positions_ws));
+        update(batch.radii, std::span<const float>(group.radii));
         update(batch.pointDyes, std::span<const float>(group.pointDyes));
     }
     for (StrandGroup& group : groups) {
         group.positions_ws.clear();
+        group.radii.clear();
         group.pointDyes.clear();
     }
 }

@@ -60,8 +60,9 @@ struct MaterialOnDevice {
     StrandShading shading;
     FibreTables fibre;  ///< once they were asked for
     bool hasFibre = false;
-    FibreBake bake;     ///< of tables that shall take their place
-    double length = 0;  ///< metres of its strands together, where they stood when they were set
+    FibreBake bake;        ///< of tables that shall take their place
+    double length = 0;     ///< metres of its strands together, where they stood when they were set
+    double ownRadius = 0;  ///< metres, mean along the strands, where their points have their own
     std::vector<shaders::StrandHeader>
         someStrands;              ///< by chance, for means of the look; points of the group
     std::vector<float> someDyes;  ///< of these, mean of what their points have of the dye
@@ -75,7 +76,9 @@ struct StrandGroup {
     std::vector<MaterialOnDevice> materials;
     std::size_t strandCount = 0;  ///< also those too short to be drawn
     std::size_t pointCount = 0;
-    bool hasRadii = false;
+    bool hasRadii = false, radiiOfAll = false;
+    bool hasRadiiOf(std::size_t material) const { return hasRadii && (radiiOfAll || material == 0); }
+    std::vector<float> radii;  ///< waiting for their upload
     bool hasPointDyes = false;
     std::vector<float> pointDyes;     ///< waiting for their upload
     std::vector<Vec3f> positions_ws;  ///< waiting for their upload
@@ -87,8 +90,6 @@ struct StrandGroup {
     Box3f bounds_ws;
     double length = 0;  ///< metres of all strands together, where they stood when they were set
     std::size_t segments = 0;
-    double ownRadius =
-        0;  ///< metres, mean along the strands of the first material, where points have their own
     std::vector<Vec3f> sample_ws;        ///< points that lights are fitted to
     std::vector<std::uint32_t> sampled;  ///< their places among the group's points
 };
@@ -129,6 +130,7 @@ class DeviceScene {
                        const Box3f& bounds_ws);
     Status replaceStrands(std::size_t group, std::span<const Vec3f> positions_ws);
     Status replacePointDyes(std::size_t group, std::span<const float> dyes);
+    Status replaceRadii(std::size_t group, std::span<const float> radii);
     Status replaceStrands(gpu::Device& device, std::size_t group, gpu::BufferPtr positions_ws,
                           std::uint32_t floatsPerPoint, const Box3f& bounds_ws,
                           std::span<const Vec3f> sample_ws);

@@ -73,14 +73,16 @@ void DeviceScene::measureSpace(const RenderScene& scene) {
                 group.length += step;
                 length += step;
                 ++group.segments;
-                if (group.hasRadii && material == 0) {
-                    group.ownRadius +=
+                if (group.hasRadiiOf(material)) {
+                    group.materials[material].ownRadius +=
                         step * static_cast<double>(0.5f * (strands.radii[p - 1] + strands.radii[p]));
                 }
                 cells.push_back(cellOf(0.5f * (a + b), kCell));
             }
         }
-        if (group.materials[0].length > 0) group.ownRadius /= group.materials[0].length;
+        for (MaterialOnDevice& material : group.materials) {
+            if (material.length > 0) material.ownRadius /= material.length;
+        }
     }
     const double cell = static_cast<double>(kCell);
     for (const unsigned axis : {0u, 21u, 42u}) {
@@ -102,12 +104,13 @@ HairMeasure DeviceScene::measure() const {
     std::size_t segments = 0;
     for (const StrandGroup& group : groups) {
         length += group.length;
-        for (const MaterialOnDevice& material : group.materials) {
+        for (std::size_t m = 0; m < group.materials.size(); ++m) {
+            const MaterialOnDevice& material = group.materials[m];
             // The profile of shaders/curve.comp.hlsl has this mean.
             const double authored =
                 static_cast<double>(material.shading.radius * (2 + material.shading.tipScale) / 3);
-            const bool own = group.hasRadii && &material == &group.materials[0];
-            surface += material.length * 2 * (own ? group.ownRadius : authored);
+            const double radius = group.hasRadiiOf(m) ? material.ownRadius : authored;
+            surface += material.length * 2 * radius;
         }
         segments += group.segments;
     }

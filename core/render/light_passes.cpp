@@ -25,7 +25,7 @@ shaders::CurveConstants curveConstants(const RendererState& state, const DrawBat
     c.rootRadius = material.radius;
     c.tipScale = material.tipScale;
     c.radiusVariation = material.radiusVariation;
-    c.hasRadii = group.hasRadii && batch.material == 0 ? 1 : 0;
+    c.hasRadii = group.hasRadiiOf(batch.material) ? 1 : 0;
     c.fullShare = 0.9f * state.detail.share;
     c.goneShare = 1.1f * state.detail.share;
     c.strandShare = 1 / static_cast<float>(batch.strandCount());

@@ -139,6 +139,12 @@ Status Renderer::setStrandPositions(std::size_t group, gpu::BufferPtr positions_
     return {};
 }
 
+Status Renderer::setRadii(std::size_t group, std::span<const float> radii) {
+    if (auto status = parts_->state.scene.replaceRadii(group, radii); !status) return status;
+    parts_->changes.add(Changes::geometry());
+    return {};
+}
+
 Status Renderer::setPointDyes(std::size_t group, std::span<const float> dyes) {
     if (auto status = parts_->state.scene.replacePointDyes(group, dyes); !status) return status;
     parts_->changes.add(Changes::looks());

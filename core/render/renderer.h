@@ -52,6 +52,9 @@ class Renderer {
     /// is empty.
     Status setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
                               const Box3f& bounds_ws, std::span<const Vec3f> sample_ws = {});
+    /// Metres, one a point, where RenderStrands::radii had some. Errors: another number, one that is not 0 to
+    /// 1 m.
+    Status setRadii(std::size_t group, std::span<const float> radii);
     /// One share of the dye a point, where RenderStrands::pointDyes had some.
     Status setPointDyes(std::size_t group, std::span<const float> dyes);
     /// `others`: as many as RenderStrands::others had.

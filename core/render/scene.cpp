@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace hairloom::render {
 namespace {
 
@@ -67,6 +69,20 @@ Status checkStrands(const RenderStrands& strands) {
 }
 
 }  // namespace
+
+const StrandShading* shadingOf(const RenderStrands& strands, std::size_t s) {
+    const std::uint32_t material = strands.materials.empty() ? 0 : strands.materials[s];
+    if (material == kNotDrawn) return nullptr;
+    return material == 0 ? &strands.material : &strands.others[material - 1];
+}
+
+float radiusAt(const RenderStrands& strands, const StrandShading& material, std::uint32_t first,
+               std::uint32_t last, std::uint32_t p) {
+    const bool own = strands.radiiOfAll || &material == &strands.material;
+    if (!strands.radii.empty() && own) return strands.radii[p];
+    const float along = static_cast<float>(p - first) / static_cast<float>(std::max(last - first - 1, 1u));
+    return material.radius * (1 + (material.tipScale - 1) * along * along);
+}
 
 Status check(const RenderScene& scene) {
     if (auto status = check(scene.camera); !status) return status;

@@ -67,6 +67,7 @@ struct RenderStrands {
         offsets;  ///< strands + 1, ascending; strands of fewer than 2 points are left out
     std::span<const Vec3f> positions_ws;
     std::span<const float> radii;      ///< metres, one a point, of strands with `material`; empty: from it
+    bool radiiOfAll = false;           ///< the radii are those of strands with `others`, too
     std::span<const Vec3f> colours;    ///< albedo, one a strand; empty: from the material
     std::span<const float> streaks;    ///< 0…1, one a strand, for the look; empty: none is in a streak
     std::span<const float> dyes;       ///< 0…1, one a strand, for the look; empty: none is dyed
@@ -76,6 +77,13 @@ struct RenderStrands {
     /// One a strand: 0 for `material`, n for the n-th of `others`, kNotDrawn; empty: all have `material`.
     std::span<const std::uint32_t> materials;
 };
+
+/// Of strand `s`; null: it is not drawn.
+const StrandShading* shadingOf(const RenderStrands& strands, std::size_t s);
+/// What shaders/render/curve.comp.hlsl draws, but for the random part of a strand: metres, at point `p` of a
+/// strand with this material and the points first … last - 1.
+float radiusAt(const RenderStrands& strands, const StrandShading& material, std::uint32_t first,
+               std::uint32_t last, std::uint32_t p);
 
 struct RenderScene {
     std::vector<RenderMesh> meshes;

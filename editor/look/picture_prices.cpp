@@ -38,7 +38,7 @@ class PicturePrices : public QWidget {
         connect(&viewport_, &Viewport::lookChanged, this, &PicturePrices::outdate);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
             if (contains(parts, editing::kHairParts | editing::Part::Material | editing::Part::Interpolation |
-                                    editing::Part::Dye))
+                                    editing::Part::Dye | editing::Part::Widths))
                 outdate();
         });
         connect(&document_, &QtDocument::replaced, this, [this] {

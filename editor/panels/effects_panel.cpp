@@ -163,7 +163,17 @@ class EffectsPanel : public QWidget {
     const EffectCost* costOf(const std::string& effect) const {
         if (!costs()) return nullptr;
         const auto found = std::ranges::find(costs()->effects, effect, &EffectCost::name);
-        return found != costs()->effects.end() && found->costMilliseconds ? &*found : nullptr;
+        return found != costs()->effects.end() ? &*found : nullptr;
+    }
+
+    /// Why a price is none, and what else turning the effect off changed.
+    static QString sentenceOf(const EffectCost& cost) {
+        QString note = QString::fromStdString(cost.note);
+        if (!note.isEmpty()) note[0] = note[0].toUpper();
+        return note;
+    }
+    static QString noteOf(const EffectCost& cost) {
+        return cost.note.empty() ? QString() : QStringLiteral(". ") + sentenceOf(cost);
     }
 
     /// What an effect adds to a frame; else, in a run, what its own stages take.
@@ -173,17 +183,23 @@ class EffectsPanel : public QWidget {
         item.setData(kMs, CostBars::kMilliseconds, {});
         if (!effect.on) return;
         const double live = live_.millisecondsOf(effect.name);
-        if (const EffectCost* cost = costOf(effect.name)) {
+        const EffectCost* const cost = costOf(effect.name);
+        if (cost && cost->costMilliseconds) {
             const Quartiles& ms = *cost->costMilliseconds;
-            item.setText(kMs, lostInSpread(ms) ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
+            item.setText(kMs, lostInSpread(ms) ? tr("≈ 0")
+                              : cost->price()  ? QString::number(ms.median, 'f', 3)
+                                               : tr("< 0"));
             item.setData(kMs, CostBars::kMilliseconds, std::max(ms.median, 0.0));
             item.setToolTip(
                 kMs,
                 tr("%1 ms per frame with it, %2 without. The middle half of the runs is between %3 and %4")
-                    .arg(costs_->milliseconds.median, 0, 'f', 2)
-                    .arg(cost->millisecondsOff->median, 0, 'f', 2)
-                    .arg(ms.q1, 0, 'f', 3)
-                    .arg(ms.q3, 0, 'f', 3));
+                        .arg(costs_->milliseconds.median, 0, 'f', 2)
+                        .arg(cost->millisecondsOff->median, 0, 'f', 2)
+                        .arg(ms.q1, 0, 'f', 3)
+                        .arg(ms.q3, 0, 'f', 3) +
+                    noteOf(*cost));
+        } else if (cost && !cost->note.empty()) {
+            item.setToolTip(kMs, sentenceOf(*cost));
         } else if (measured && live > 0) {
             item.setText(kMs, QString::number(live, 'f', 3));
             item.setData(kMs, CostBars::kMilliseconds, live);

@@ -21,7 +21,7 @@ enum Column { kName, kCards, kTriangles, kBytes, kFrom, kCoverage, kLight, kFlip
 /// All that a level is made from.
 constexpr editing::Part kShown = editing::kHairParts | editing::kScalpParts | editing::Part::Spheres |
                                  editing::Part::Material | editing::Part::Interpolation | editing::Part::Dye |
-                                 editing::Part::Operators | editing::Part::Cards;
+                                 editing::Part::Widths | editing::Part::Operators | editing::Part::Cards;
 
 /// The height of a head in pixels that is seen from so far, of those that levels can have.
 std::uint32_t headPxAt(double metres) {

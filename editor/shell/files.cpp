@@ -7,6 +7,7 @@
 
 #include "core/base/file.h"
 #include "core/base/write_rules.h"
+#include "core/documents/hair_blend.h"
 #include "core/documents/hair_import.h"
 #include "core/documents/head_import.h"
 #include "core/documents/head_transfer.h"
@@ -137,6 +138,10 @@ QString openFilter() {
 
 QString strandFilter() {
     return QObject::tr("Hair (%1);;All files (*)").arg(patternsOf(strandFormats()));
+}
+
+QString blendFilter() {
+    return QObject::tr("Hairstyles and hair (*.hairloom %1);;All files (*)").arg(patternsOf(strandFormats()));
 }
 
 QString headFilter() {
@@ -307,6 +312,36 @@ void DocumentFiles::transferTo(const QString& path) {
                 QObject::tr("On %1: the farthest root was %2 off the new head%3")
                     .arg(name, lengthText(static_cast<double>(opened.farthest), preferences_), opened.note));
             preferences_.addRecentFile(QString::fromStdString(file));
+        });
+}
+
+void DocumentFiles::blendWith(const QString& path) {
+    const QString name = QFileInfo(path).fileName();
+    const BlendSettings settings;
+    // The command is made for the hair as it is now.
+    tasks_.run<std::shared_ptr<HairBlend>>(
+        QObject::tr("Blending with %1").arg(name),
+        [file = path.toStdString(), settings,
+         groom = document_.groom()](TaskControl&) -> Result<std::shared_ptr<HairBlend>> {
+            auto blend = blendWithFile(editing::Model{groom, {}}, file, settings);
+            if (!blend) return tl::unexpected(blend.error());
+            return std::make_shared<HairBlend>(std::move(*blend));
+        },
+        [this, path, name, settings,
+         before = document_.editing().state()](const std::shared_ptr<HairBlend>& blend) {
+            if (document_.editing().state() != before)
+                return messages_.warn(QObject::tr("The hair has changed in the meantime: blend it again"));
+            const std::size_t strands = document_.groom().strandCount();
+            if (!blend->command)
+                return messages_.say(QObject::tr("%1 has the same shape, so nothing changed").arg(name));
+            document_.perform(std::move(blend->command));
+            messages_.say(QObject::tr("Blended with %1 by %2: %L3 of %L4 strands. The sculpt on top of the "
+                                      "operators has the weight and the mask")
+                              .arg(name)
+                              .arg(static_cast<double>(settings.weight))
+                              .arg(blend->shape.matched)
+                              .arg(strands));
+            preferences_.addRecentFile(path);
         });
 }
 

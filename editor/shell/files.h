@@ -34,9 +34,10 @@ enum class Opening {
     Not,
 };
 
-/// For file dialogs: all that opens, hair of other programs alone, and heads alone.
+/// For file dialogs: all that opens, hair of other programs alone, with projects, and heads alone.
 QString openFilter();
 QString strandFilter();
+QString blendFilter();
 QString headFilter();
 
 class DocumentFiles {
@@ -73,6 +74,8 @@ class DocumentFiles {
     void importStrands(const QString& path, const StrandImportOptions& options);
     /// The hair of the document onto the head of the file.
     void transferTo(const QString& path);
+    /// The hair of the document halfway to the shape of that of the file.
+    void blendWith(const QString& path);
     /// What a crash left.
     void openRecovered(const RecoveryCopy& copy);
     /// The document was saved: the copy that it came from has served.

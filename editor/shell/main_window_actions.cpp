@@ -104,6 +104,16 @@ void MainWindow::addFileActions() {
                 QFileDialog::getOpenFileName(this, tr("Transfer to a head"), {}, headFilter());
             if (!path.isEmpty()) files_.transferTo(path);
         });
+    add({"file.blend",
+         tr("&Blend with hair…"),
+         "",
+         tr("Lead the hair halfway to the shape of another hairstyle on the same head. A sculpt holds it, "
+            "whose weight and mask you can change"),
+         {}},
+        [this] {
+            const QString path = QFileDialog::getOpenFileName(this, tr("Blend with hair"), {}, blendFilter());
+            if (!path.isEmpty()) files_.blendWith(path);
+        });
     add({"file.export", tr("&Export hair…"), "export",
          tr("Export the hair for a game, then read it back and compare"), QKeySequence("Ctrl+E")},
         [this] {

@@ -10,6 +10,7 @@
 #include "core/groom/file/fields.h"
 #include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/point_width.h"
 #include "core/live/moving_picture.h"
 
 namespace hairloom::editor {
@@ -44,7 +45,8 @@ bool sameFields(const S& a, const S& b) {
     });
 }
 
-/// Same strands on the same head, of which at most points have moved, and dye and material have changed.
+/// Same strands on the same head, of which at most points have moved, and dye, widths and material have
+/// changed.
 bool sameStrands(const Groom& a, const Groom& b) {
     const auto same = [](const AttributeSet& x, const AttributeSet& y,
                          std::initializer_list<std::string_view> others) {
@@ -58,7 +60,8 @@ bool sameStrands(const Groom& a, const Groom& b) {
         return x.visible == y.visible && x.density == y.density;
     };
     return a.offsets.version() == b.offsets.version() &&
-           same(a.pointAttributes, b.pointAttributes, {attribute::kPosition, attribute::kPointDye}) &&
+           same(a.pointAttributes, b.pointAttributes,
+                {attribute::kPosition, attribute::kPointDye, attribute::kWidthChange}) &&
            same(a.strandAttributes, b.strandAttributes, {}) && a.scalp == b.scalp &&
            a.scalpSelection == b.scalpSelection && sameFields(a.interpolation, b.interpolation) &&
            std::ranges::equal(a.layers, b.layers, sameLayer);
@@ -197,6 +200,12 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         if (!scene_->setDye(now)) return replaceScene(request, draft);
         if (auto set = showDye(request); !set) return set;
     }
+    const bool sameWidths = now.pointAttributes.version(attribute::kWidthChange) ==
+                            before.pointAttributes.version(attribute::kWidthChange);
+    if (!sameWidths && !scene_->setWidths(now)) return replaceScene(request, draft);
+    if (scene_->hasPaintedWidths() && (!sameWidths || !sameGroom)) {
+        if (auto set = showWidths(request); !set) return set;
+    }
     const bool wasHanded = last_->groom == handed_ || last_->groom == moved_;
     if (request.moves && wasHanded && !request.pose && !last_->pose) {
         return moveStrands(request, *request.moves);
@@ -266,6 +275,12 @@ Status RenderWork::showMaterial(const PictureRequest& request) {
     if (!request.showHair || shown.strands.empty()) return {};
     const render::RenderStrands& strands = shown.strands.front();
     return renderer_.setMaterial(0, strands.material, strands.others);
+}
+
+Status RenderWork::showWidths(const PictureRequest& request) {
+    const render::RenderScene shown = scene_->scene();
+    if (!request.showHair || shown.strands.empty()) return {};
+    return renderer_.setRadii(0, shown.strands.front().radii);
 }
 
 Status RenderWork::showDye(const PictureRequest& request) {

@@ -42,6 +42,7 @@ class RenderWork {
     bool showsLive(const PictureRequest& request) const;
     Status moveStrands(const PictureRequest& request, const StrandMoves& moves);
     Status showMaterial(const PictureRequest& request);
+    Status showWidths(const PictureRequest& request);
     Status showDye(const PictureRequest& request);
     Status resize(std::uint32_t width, std::uint32_t height);
     void adapt(double milliseconds);

@@ -37,6 +37,7 @@ constexpr Writes kWrites[] = {
     {"create", "--output", "--mesh MESH --count 5000 -o OUT"},
     {"export", "--output", "g.hairloom --format hair --certify -o OUT"},
     {"groom", "--output", "g.hairloom --script s.json -o OUT"},
+    {"blend", "--output", "g.hairloom --with a.hair -o OUT"},
     {"guides", "--output", "g.hairloom --count 4 -o OUT"},
     {"import", "--output", "a.hair -o OUT"},
     {"import", "--record", "a.hair -o h.hairloom --record OUT"},

@@ -10,6 +10,7 @@
 #include "core/documents/dye_mask.h"
 #include "core/documents/sample.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/point_width.h"
 #include "core/render/png.h"
 #include "tests/support/source_dir.h"
 
@@ -51,6 +52,39 @@ TEST(HairLook, ClumpingIsMeasuredOfTheHairAtRest) {
     for (Vec3f& p : points) p *= 2;
     scene->pose(points, {}, {});
     EXPECT_EQ(scene->scene().clumping.values, rest.values);
+}
+
+TEST(HairLook, PaintedWidthsAreInAllRadii) {
+    Groom groom = plainGroom();
+    groom.material.rootRadius = 4e-5f;
+    groom.material.tipScale = 0.5f;
+    groom.layers = {{"Own", true, false, 1, {}}, {"Other", true, false, 1, {}}};
+    groom.layers[1].material = groom.material;
+    groom.layers[1].material->rootRadius = 1e-4f;
+    groom.strandAttributes.set(attribute::kLayer, std::vector<std::uint32_t>{0, 1});
+    const auto radii = [](const GroomScene& scene) {
+        const render::RenderStrands strands = scene.scene().strands.front();
+        EXPECT_TRUE(strands.radii.empty() || strands.radiiOfAll);
+        return std::vector<float>(strands.radii.begin(), strands.radii.end());
+    };
+    EXPECT_TRUE(radii(GroomScene::make(groom, kKajiya, {}).value()).empty());
+    groom.pointAttributes.set(attribute::kWidthChange, std::vector<float>{0, 1, -0.5f, 3});
+    auto scene = GroomScene::make(groom, kKajiya, {}).value();
+    EXPECT_EQ(radii(scene), (std::vector<float>{4e-5f, 4e-5f, 5e-5f, 2e-4f}));
+    // Another material, and other strokes, without a scene made anew.
+    groom.material.rootRadius = 8e-5f;
+    ASSERT_TRUE(scene.setMaterials(groom, kKajiya));
+    EXPECT_EQ(radii(scene), (std::vector<float>{8e-5f, 8e-5f, 5e-5f, 2e-4f}));
+    groom.pointAttributes.set(attribute::kWidthChange, std::vector<float>{1, 0, 0, 0});
+    ASSERT_TRUE(scene.setWidths(groom));
+    EXPECT_EQ(radii(scene), (std::vector<float>{1.6e-4f, 4e-5f, 1e-4f, 5e-5f}));
+    groom.pointAttributes.erase(attribute::kWidthChange);
+    EXPECT_FALSE(scene.setWidths(groom));
+    // Points' own radii are changed, too, but not those in a layer with a material.
+    groom.pointAttributes.set(attribute::kRadius, std::vector<float>(4, 1e-5f));
+    groom.pointAttributes.set(attribute::kWidthChange, std::vector<float>(4, 1));
+    EXPECT_EQ(radii(GroomScene::make(groom, kKajiya, {}).value()),
+              (std::vector<float>{2e-5f, 2e-5f, 2e-4f, 1e-4f}));
 }
 
 TEST(HairLook, EvenHairHasNone) {

@@ -38,7 +38,7 @@ inline Stroke strokeOverTop(std::string_view tool, float height = 0.05f) {
 /// The tools' strokes, each such that it finds something to do; with a view where the tool wants one.
 inline Stroke strokeFor(std::string_view tool) {
     const bool onSkin = tool == "delete" || tool == "add" || tool == "scalp_paint" ||
-                        tool == "density_paint" || tool == "part";
+                        tool == "density_paint" || tool == "part" || tool == "slide";
     Stroke stroke = strokeOverTop(tool, onSkin ? 0.0f : 0.05f);
     stroke.settings.invert = tool == "scalp_paint";  // all that it reaches is selected already
     if (tool == "cut_line") {

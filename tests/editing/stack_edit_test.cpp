@@ -204,7 +204,8 @@ TEST_F(StackEdit, SoloLetsOneActAndThenAllAgain) {
 }
 
 TEST_F(StackEdit, StrokesThatMoveNothingLeaveTheStackAlone) {
-    for (const char* tool : {"freeze", "dye_paint", "mask_paint", "scalp_paint", "density_paint"}) {
+    for (const char* tool :
+         {"freeze", "dye_paint", "mask_paint", "scalp_paint", "density_paint", "width_paint"}) {
         ASSERT_TRUE(document.replay(strokeFor(tool))) << tool;
         EXPECT_EQ(groom().operators.size(), 3u) << tool;
         expectEvaluated(groom());

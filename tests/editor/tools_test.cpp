@@ -85,7 +85,8 @@ TEST_P(BrushToolTest, EscapeCancelsTheStroke) {
 INSTANTIATE_TEST_SUITE_P(All, BrushToolTest,
                          testing::Values("comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut",
                                          "cut_line", "delete", "dye_paint", "mask_paint", "freeze",
-                                         "straighten", "curl", "noise", "twist", "clump", "mirror", "level"),
+                                         "straighten", "curl", "noise", "twist", "clump", "mirror", "level",
+                                         "width_paint", "slide"),
                          [](const auto& brush) { return std::string(brush.param); });
 
 TEST_F(ToolsTest, KeysChangeSizeAndStrength) {

@@ -340,6 +340,46 @@ TEST_F(PictureTest, DyeShowsWhileItIsPainted) {
     EXPECT_LT(redder(settled()), 5);
 }
 
+TEST_F(PictureTest, WidthShowsWhileItIsPainted) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    trigger("tool.width_paint");
+    dynamic_cast<BrushTool&>(*viewport().tool()).setParameter("width", 10);
+    const auto settled = [this] {
+        EXPECT_TRUE(viewport().waitForPicture(60'000));
+        return viewport().picture();
+    };
+    const QImage before = settled();
+    const auto changed = [&before](const QImage& picture) {
+        int count = 0;
+        for (int y = 0; y < picture.height(); ++y) {
+            for (int x = 0; x < picture.width(); ++x) {
+                const QColor now = picture.pixelColor(x, y), then = before.pixelColor(x, y);
+                count += std::abs(now.lightness() - then.lightness()) > 8 ? 1 : 0;
+            }
+        }
+        return count;
+    };
+    Box3f roots;
+    for (std::size_t s = 0; s < groom().strandCount(); ++s) roots.extend(groom().strand(s).front());
+    const QPoint crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
+    press(crown);
+    moveTo(crown + QPoint(20, 4));
+    const int during = changed(settled());
+    EXPECT_GT(during, 100) << "while the button is down";
+    moveTo(crown + QPoint(60, 10));
+    release(crown + QPoint(60, 10));
+    moveTo(QPoint(2, 2));
+    const QImage painted = settled();
+    EXPECT_GT(changed(painted), during);
+    QDir().mkpath(HAIRLOOM_SCREENSHOTS);
+    EXPECT_TRUE(painted.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/width.png")));
+    trigger("edit.undo");
+    EXPECT_LT(changed(settled()), 20);
+}
+
 TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {
     const QByteArray wish = qgetenv("HAIRLOOM_VIEWPORT");
     if (wish != "window" && wish != "apart") GTEST_SKIP() << "pictures are read back";

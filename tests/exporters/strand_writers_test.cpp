@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/base/file.h"
+#include "core/groom/point_width.h"
 #include "exporters/strands.h"
 #include "tests/exporters/asset_samples.h"
 #include "tests/support/source_dir.h"
@@ -82,6 +83,38 @@ TEST_F(StrandWriters, HairRoundTripIsExact) {
     expectSameValues<float>(groom.pointAttributes, back->groom.pointAttributes, attribute::kRadius);
     expectSameValues<float>(groom.pointAttributes, back->groom.pointAttributes, attribute::kTransparency);
     expectSameValues<Vec3f>(groom.pointAttributes, back->groom.pointAttributes, attribute::kPointColour);
+}
+
+TEST_F(StrandWriters, PaintedWidthsAreInTheThickness) {
+    Groom groom = decorated({2, 17, 5});
+    const auto before = groom.pointAttributes.view<float>(attribute::kRadius);
+    std::vector<float> changes;
+    for (std::size_t p = 0; p < groom.pointCount(); ++p) changes.push_back(0.25f * static_cast<float>(p % 5));
+    groom.pointAttributes.set(attribute::kWidthChange, changes);
+    for (const std::string format : {"hair", "usda", "abc"}) {
+        const fs::path name = "a." + format;
+        const auto written = strandWriter(format).write(groom, folder / name, {});
+        ASSERT_TRUE(written) << written.error().message();
+        const auto back = importStrands(folder / name);
+        ASSERT_TRUE(back) << back.error().message();
+        const auto radii = back->groom.pointAttributes.view<float>(attribute::kRadius);
+        ASSERT_EQ(radii.size(), before.size()) << name;
+        for (std::size_t p = 0; p < radii.size(); ++p)
+            EXPECT_FLOAT_EQ(radii[p], before[p] * (1 + changes[p])) << name;
+        // They are not painted once more.
+        EXPECT_FALSE(back->groom.pointAttributes.has(attribute::kWidthChange)) << name;
+    }
+    // Where the groom has no radii, those of its material are.
+    groom.pointAttributes.erase(attribute::kRadius);
+    ASSERT_TRUE(writeHair(groom, folder / "b.hair"));
+    const auto wide = importStrands(folder / "b.hair");
+    groom.pointAttributes.erase(attribute::kWidthChange);
+    ASSERT_TRUE(writeHair(groom, folder / "c.hair"));
+    const auto plain = importStrands(folder / "c.hair");
+    ASSERT_TRUE(wide && plain);
+    for (std::size_t p = 0; p < groom.pointCount(); ++p)
+        EXPECT_FLOAT_EQ(wide->groom.pointAttributes.view<float>(attribute::kRadius)[p],
+                        plain->groom.pointAttributes.view<float>(attribute::kRadius)[p] * (1 + changes[p]));
 }
 
 TEST_F(StrandWriters, TfxRoundTripIsExact) {

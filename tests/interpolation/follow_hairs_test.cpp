@@ -10,6 +10,7 @@
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/geometry/curve.h"
+#include "core/groom/point_width.h"
 #include "core/interpolation/follow_hairs.h"
 
 namespace hairloom {
@@ -435,6 +436,31 @@ TEST(FollowBindings, RefusesWhatIsOutOfRange) {
     const auto none = bindFollowHairs(groom, settingsWith(0.5f, 0));
     ASSERT_TRUE(none);
     EXPECT_EQ(none->hairCount(), 0u);
+}
+
+TEST(FollowHairs, TakeTheWidthsOfTheGuidesAroundThem) {
+    Groom groom = field(8, bent);
+    const auto bindings = bindFollowHairs(groom, settingsWith(1)).value();
+    EXPECT_FALSE(bakeFollowHairs(groom, bindings)->pointAttributes.has(attribute::kWidthChange));
+    // A value that is linear in the place of the root and along the strand comes out as that of the hair.
+    std::vector<float> changes;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        const Vec3f root = groom.strand(s)[0];
+        for (std::uint32_t p = 0; p < 8; ++p)
+            changes.push_back(20 * root.x() + 10 * root.z() + 0.1f * static_cast<float>(p));
+    }
+    groom.pointAttributes.set(attribute::kWidthChange, changes);
+    const auto baked = bakeFollowHairs(groom, bindings);
+    ASSERT_TRUE(baked);
+    const auto widths = widthChanges(*baked);
+    ASSERT_EQ(widths.size(), baked->pointCount());
+    for (std::size_t hair = 0; hair < baked->strandCount(); ++hair) {
+        if (bindings.blends[hair] < 1) continue;  // of a guide in no triangle
+        const Vec3f root = baked->strand(hair)[0];
+        for (std::uint32_t p = 0; p < 8; ++p)
+            ASSERT_NEAR(widths[8 * hair + p], 20 * root.x() + 10 * root.z() + 0.1f * static_cast<float>(p),
+                        1e-4f);
+    }
 }
 
 }  // namespace

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What must never surprise somebody who uses the window, of every control of a kind wherever it is.
+#include <QtTest/qtestspontaneevent.h>
+#include <QAbstractItemView>
+#include <QAbstractSlider>
+#include <QAccessible>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDir>
+#include <QDoubleSpinBox>
+#include <QHeaderView>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QSpinBox>
+#include <QTabBar>
+#include <QTreeWidget>
+#include <QWheelEvent>
+
+#include "core/editing/stack_commands.h"
+#include "core/operations/stack.h"
+#include "editor/dialogs/export_dialog.h"
+#include "editor/dialogs/import_dialog.h"
+#include "editor/dialogs/preferences_dialog.h"
+#include "editor/dialogs/shortcut_dialog.h"
+#include "tests/editor/nothing_clipped.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class SurprisesTest : public WindowTest {
+  protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        window->activateWindow();
+        ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
+    }
+    static void turnWheel(QWidget& over, int notches) {
+        const QPointF at(over.rect().center());
+        QWheelEvent event(at, over.mapToGlobal(at), {}, {0, -120 * notches}, Qt::NoButton, Qt::NoModifier,
+                          Qt::NoScrollPhase, false);
+        QSpontaneKeyEvent::setSpontaneous(&event);
+        qApp->notify(&over, &event);
+    }
+    /// What the controls within show.
+    static QStringList valuesIn(const QWidget& widget) {
+        QStringList values;
+        for (const auto* box : widget.findChildren<QComboBox*>()) values += box->currentText();
+        for (const auto* spin : widget.findChildren<QAbstractSpinBox*>()) values += spin->text();
+        for (const auto* slider : widget.findChildren<QAbstractSlider*>()) {
+            if (!qobject_cast<const QScrollBar*>(slider)) values += QString::number(slider->value());
+        }
+        for (const auto* button : widget.findChildren<QAbstractButton*>())
+            values += QString::number(button->isChecked());
+        for (const auto* list : widget.findChildren<QListWidget*>())
+            values += QString::number(list->currentRow());
+        return values;
+    }
+    static void expectWheelChangesNothingIn(QWidget& widget, const QString& name) {
+        const QStringList before = valuesIn(widget);
+        for (QWidget* child : widget.findChildren<QWidget*>()) {
+            if (!child->isVisible() || child->hasFocus() || qobject_cast<QScrollBar*>(child) ||
+                qobject_cast<QTabBar*>(child))
+                continue;
+            turnWheel(*child, 1);
+            turnWheel(*child, 1);
+        }
+        EXPECT_EQ(valuesIn(widget), before) << name.toStdString();
+    }
+    static bool isControl(const QWidget& widget) {
+        return qobject_cast<const QAbstractButton*>(&widget) ||
+               qobject_cast<const QAbstractSpinBox*>(&widget) || qobject_cast<const QComboBox*>(&widget) ||
+               (qobject_cast<const QAbstractItemView*>(&widget) &&
+                !qobject_cast<const QHeaderView*>(&widget));
+    }
+    /// That are there to be used now.
+    static std::vector<QWidget*> controlsOf(const QWidget& widget) {
+        std::vector<QWidget*> controls;
+        for (QWidget* child : widget.findChildren<QWidget*>()) {
+            if (isControl(*child) && child->isVisible() && !child->objectName().startsWith("qt_"))
+                controls.push_back(child);
+        }
+        return controls;
+    }
+    static std::string nameOf(const QString& place, const QWidget& control) {
+        return place.toStdString() + ": " + control.objectName().toStdString() + " " +
+               control.metaObject()->className();
+    }
+    /// Dialogs that have fields, one after the other, shown.
+    void inEachDialog(const std::function<void(QDialog&, const QString&)>& look) {
+        const auto show = [&](QDialog& dialog, const QString& name) {
+            dialog.show();
+            ASSERT_TRUE(QTest::qWaitForWindowExposed(&dialog));
+            look(dialog, name);
+        };
+        PreferencesDialog preferences(parts().preferences, window.get());
+        show(preferences, "preferences");
+        preferences.close();
+        ShortcutDialog shortcuts(window->actions(), window.get());
+        show(shortcuts, "shortcuts");
+        shortcuts.close();
+        ExportDialog exports(document(), parts().preferences, parts().tasks, parts().messages, parts().player,
+                             window.get());
+        show(exports, "export");
+    }
+    void inEachPanel(const std::function<void(QDockWidget&, const QString&)>& look) {
+        for (const PanelInfo& info : panels()) {
+            window->panel(info.id)->raise();
+            QCoreApplication::processEvents();
+            look(*window->panel(info.id), info.id);
+        }
+    }
+    void setOperators(std::vector<Operator> operators) {
+        auto step = editing::setOperators(document().editing().model(), std::move(operators), "Operators");
+        ASSERT_TRUE(step) << step.error().message();
+        document().perform(std::move(*step));
+        QCoreApplication::processEvents();
+    }
+};
+
+TEST_F(SurprisesTest, TheWheelOverWhateverLiesInAPanelOrDialogChangesNothing) {
+    openSampleHair("short");
+    Operator curl = newOperator("curl");
+    Mask mask = maskOf(curl);
+    mask.ramp = runtime::Ramp::straight(0, 1);
+    setMaskOf(curl, mask);
+    setOperators({newOperator("part"), curl});
+    const auto before = hash();
+    const int steps = document().stepCount();
+    inEachPanel([](QDockWidget& panel, const QString& name) { expectWheelChangesNothingIn(panel, name); });
+    EXPECT_EQ(hash(), before);
+    EXPECT_EQ(document().stepCount(), steps);
+    inEachDialog([](QDialog& dialog, const QString& name) { expectWheelChangesNothingIn(dialog, name); });
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(SurprisesTest, EveryNumberIsTakenWithPointAndComma) {
+    openSampleHair("short");
+    std::size_t numbers = 0;
+    const auto look = [&](const QWidget& place, const QString& name) {
+        for (auto* spin : place.findChildren<QDoubleSpinBox*>()) {
+            if (spin->decimals() == 0) continue;
+            const std::string what = nameOf(name, *spin);
+            // Between its limits, as it would be typed.
+            const double value = std::clamp(0.4, spin->minimum(), spin->maximum());
+            QString point = QString::number(value, 'f', spin->decimals()), comma = point;
+            comma.replace('.', ',');
+            int end = 0;
+            EXPECT_NE(spin->validate(comma, end), QValidator::Invalid) << what;
+            EXPECT_NEAR(spin->valueFromText(comma), value, 1e-6 + 1e-3 * std::abs(value)) << what;
+            EXPECT_EQ(spin->valueFromText(comma), spin->valueFromText(point)) << what;
+            EXPECT_FALSE(spin->text().contains(',')) << what << " shows " << spin->text().toStdString();
+            ++numbers;
+        }
+    };
+    const QLocale own;
+    QLocale::setDefault(QLocale(QLocale::German));
+    inEachPanel(look);
+    inEachDialog(look);
+    QLocale::setDefault(own);
+    EXPECT_GT(numbers, 60u);
+}
+
+TEST_F(SurprisesTest, FocusIsSeenOnEveryControl) {
+    openBust();
+    std::size_t seen = 0;
+    inEachPanel([&](QDockWidget& panel, const QString& name) {
+        for (QWidget* control : controlsOf(panel)) {
+            if (!control->isEnabled() || control->focusPolicy() == Qt::NoFocus) continue;
+            const QImage without = control->grab().toImage();
+            control->setFocus(Qt::TabFocusReason);
+            if (!control->hasFocus()) continue;
+            const QImage with = control->grab().toImage();
+            control->clearFocus();
+            EXPECT_NE(with, without) << nameOf(name, *control) << " looks the same with the focus";
+            ++seen;
+        }
+    });
+    EXPECT_GT(seen, 60u);
+}
+
+TEST_F(SurprisesTest, DialogsAreReachedByKeyboardAndSpoken) {
+    openSampleHair("short");
+    std::size_t named = 0;
+    inEachDialog([&](QDialog& dialog, const QString& name) {
+        for (QWidget* control : controlsOf(dialog)) {
+            const std::string what = nameOf(name, *control);
+            EXPECT_TRUE(control->focusPolicy() & Qt::TabFocus) << what;
+            QAccessibleInterface* spoken = QAccessible::queryAccessibleInterface(control);
+            ASSERT_TRUE(spoken) << what;
+            EXPECT_FALSE(spoken->text(QAccessible::Name).isEmpty()) << what;
+            ++named;
+        }
+        expectNothingClipped(dialog, name);
+        EXPECT_LE(dialog.width(), 1280) << name.toStdString();
+        EXPECT_LE(dialog.height(), 800) << name.toStdString();
+    });
+    EXPECT_GT(named, 15u);
+}
+
+TEST_F(SurprisesTest, SpacePressesButtonsAndReturnChoosesOnLists) {
+    openBust();
+    setOperators({newOperator("flow"), newOperator("noise")});
+    window->panel("operators")->raise();
+    QCoreApplication::processEvents();
+    auto* list = window->panel("operators")->findChild<QListWidget*>("operators");
+    list->setCurrentRow(0);
+    // A button, not the view's Play.
+    auto* copy = find<QPushButton>("operatorCopy");
+    copy->setFocus();
+    ASSERT_TRUE(copy->hasFocus());
+    QTest::keyClick(copy, Qt::Key_Space);
+    EXPECT_EQ(groom().operators.size(), 3u);
+    EXPECT_FALSE(parts().player.isPlaying());
+    // Return on a step of the history goes there.
+    window->panel("history")->raise();
+    QCoreApplication::processEvents();
+    auto* history = window->panel("history")->findChild<QListWidget*>();
+    ASSERT_TRUE(history);
+    history->setFocus();
+    history->setCurrentRow(0);
+    QTest::keyClick(history, Qt::Key_Return);
+    EXPECT_TRUE(groom().operators.empty());
+}
+
+TEST_F(SurprisesTest, ACancelledImportLeavesEverything) {
+    openSampleHair("short");
+    ExportDialog exports(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
+    exports.findChild<QComboBox*>("target")->setCurrentText("Yuksel .hair");
+    exports.exportTo(inFolder("a.hair"));
+    finishWork();
+    const auto before = hash();
+    const int steps = document().stepCount();
+    const QString title = document().title();
+    const QStringList recent = parts().preferences.recentFiles();
+    ImportDialog dialog(document(), parts().tasks, inFolder("a.hair"), window.get());
+    dialog.show();
+    finishWork();
+    for (auto* box : dialog.findChildren<QComboBox*>())
+        box->setCurrentIndex((box->currentIndex() + 1) % std::max(1, box->count()));
+    finishWork();
+    dialog.reject();
+    finishWork();
+    EXPECT_EQ(hash(), before);
+    EXPECT_EQ(document().stepCount(), steps);
+    EXPECT_EQ(document().title(), title);
+    EXPECT_EQ(parts().preferences.recentFiles(), recent);
+    // Nor does a dialog of exports that is closed write anything.
+    const QStringList files = QDir(folder.path()).entryList(QDir::Files);
+    exports.findChild<QComboBox*>("target")->setCurrentText("TressFX");
+    exports.reject();
+    finishWork();
+    EXPECT_EQ(QDir(folder.path()).entryList(QDir::Files), files);
+}
+
+TEST_F(SurprisesTest, PanelsWithNothingInThemSayWhatWouldFillThem) {
+    const auto look = [](QDockWidget& panel, const QString& name) {
+        int words = 0, usable = 0;
+        for (const auto* label : panel.findChildren<QLabel*>()) {
+            if (label->isVisible() && !label->objectName().startsWith("qt_"))
+                words = std::max(words, static_cast<int>(label->text().split(' ').size()));
+        }
+        for (const QWidget* control : controlsOf(panel)) {
+            const auto* view = qobject_cast<const QAbstractItemView*>(control);
+            usable += control->isEnabled() && (!view || view->model()->rowCount() > 0) ? 1 : 0;
+        }
+        EXPECT_TRUE(words >= 4 || usable > 0) << name.toStdString() << " says nothing and offers nothing";
+        // A list without a row has words beside it.
+        for (const auto* view : panel.findChildren<QAbstractItemView*>()) {
+            if (view->isVisible() && view->model() && view->model()->rowCount() == 0) {
+                EXPECT_GE(words, 4) << nameOf(name, *view) << " is empty";
+            }
+        }
+    };
+    openBust();
+    inEachPanel(look);
+}
+
+TEST_F(SurprisesTest, NoOperatorMakesItsPanelScrollSideways) {
+    openBust();
+    window->panel("operators")->raise();
+    for (const StackOperator& kind : stackOperators()) {
+        setOperators({newOperator(kind.name)});
+        window->panel("operators")->findChild<QListWidget*>("operators")->setCurrentRow(0);
+        QCoreApplication::processEvents();
+        for (QAbstractScrollArea* area : window->panel("operators")->findChildren<QAbstractScrollArea*>()) {
+            if (area->isVisible()) {
+                EXPECT_FALSE(area->horizontalScrollBar()->isVisible())
+                    << kind.name << ", " << area->objectName().toStdString();
+            }
+        }
+        expectNothingClipped(*window->panel("operators"), QString::fromUtf8(kind.name.data()));
+    }
+}
+
+TEST_F(SurprisesTest, WhyIsReadableAndPricesLostInNoiseSaySo) {
+    openSampleHair("short");
+    window->panel("effects")->raise();
+    auto* table = find<QTreeWidget>("effects");
+    ASSERT_TRUE(QTest::qWaitFor([&] { return table->topLevelItemCount() > 5; }, 20'000));
+    const int why = table->columnCount() - 1;
+    EXPECT_FALSE(table->horizontalScrollBar()->isVisible());
+    EXPECT_GE(table->columnWidth(why), 120);
+    const auto expectReadable = [&] {
+        for (int i = 0; i < table->topLevelItemCount(); ++i) {
+            const QTreeWidgetItem& item = *table->topLevelItem(i);
+            const QRect cell = table->visualItemRect(&item);
+            const int room = table->columnWidth(why) - 8;
+            const QRect needed = table->fontMetrics().boundingRect(QRect(0, 0, room, 10'000),
+                                                                   Qt::TextWordWrap, item.text(why));
+            EXPECT_LE(needed.width(), room + 8) << item.text(why).toStdString();
+            EXPECT_LE(needed.height(), cell.height() + 2) << item.text(why).toStdString();
+        }
+    };
+    expectReadable();
+    openFirstStrands(12);
+    QCoreApplication::processEvents();
+    find<QPushButton>("effectsMeasure")->click();
+    parts().tasks.finish();
+    QCoreApplication::processEvents();
+    int priced = 0;
+    for (int i = 1; i < table->topLevelItemCount(); ++i) {
+        const QTreeWidgetItem& item = *table->topLevelItem(i);
+        const QString price = item.text(1);
+        EXPECT_FALSE(price.startsWith('-') || price.startsWith(u'−')) << price.toStdString();
+        priced += item.toolTip(1).isEmpty() ? 0 : 1;
+        if (price == QString::fromUtf8("≈ 0")) {
+            EXPECT_TRUE(item.toolTip(1).contains("spread")) << item.toolTip(1).toStdString();
+        } else if (price == "< 0") {
+            EXPECT_TRUE(item.toolTip(1).contains("longer without")) << item.toolTip(1).toStdString();
+        }
+    }
+    EXPECT_GT(priced, 0);
+    expectReadable();
+}
+
+}  // namespace
+}  // namespace hairloom::editor
