@@ -14,7 +14,8 @@ software::DeviceChoice chosenDevice() {
     const QByteArray wish = qgetenv("HAIRLOOM_RENDERER");
     if (wish == "software")
         return {software::makeDevice(), "the software renderer draws: HAIRLOOM_RENDERER asks for it"};
-    if (wish == "device") {
+    const QByteArray surface = qgetenv("HAIRLOOM_VIEWPORT");
+    if (wish == "device" || surface == "window" || surface == "apart") {
         if (auto found = gpu::createDevice()) return {std::move(*found), {}};
     }
     return software::chooseDevice();

@@ -41,8 +41,8 @@ class Looks {
 class DeviceWork {
   public:
     /// The best device there is. `drop` stops stills of the software renderer. HAIRLOOM_RENDERER=software
-    /// takes that renderer in any case, and =device a graphics API's device even where that runs on the
-    /// processor.
+    /// takes that renderer in any case, and =device, or a window of the device's own, a graphics API's device
+    /// even where that runs on the processor.
     explicit DeviceWork(std::shared_ptr<const std::atomic<bool>> drop);
     /// The software renderer, because of `why`.
     DeviceWork(std::shared_ptr<const std::atomic<bool>> drop, std::string why);

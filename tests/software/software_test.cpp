@@ -325,7 +325,7 @@ TEST_F(SoftwareTest, WhatWasLeftIsDrawnTheNextTime) {
     const auto device = software::makeDevice(stop);
     Screen screen(*device, head.scene(), how);
     int left = 0;
-    for (int microseconds = 0; screen.renderer().accumulated() < 3; microseconds += 1700) {
+    for (int microseconds = 300; screen.renderer().accumulated() < 3; microseconds += microseconds / 2) {
         std::thread asks([&] {
             std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
             *stop = true;
