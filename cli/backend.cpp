@@ -17,20 +17,17 @@ Result<std::unique_ptr<GpuBackend>> GpuBackend::make(std::optional<gpu::Backend>
     options.index = index;
     auto device = gpu::createDevice(options);
     if (!device) return tl::unexpected(device.error());
-    return std::unique_ptr<GpuBackend>(new GpuBackend(std::move(*device)));
-}
-
-std::unique_ptr<GpuBackend> GpuBackend::makeSoftware() {
-    return std::unique_ptr<GpuBackend>(new GpuBackend(software::makeDevice()));
+    return std::make_unique<GpuBackend>(std::move(*device));
 }
 
 Result<DrawingDevice> chooseDrawingDevice(bool byPasses) {
-    auto made = GpuBackend::make({}, {});
-    if (made && ((*made)->device().info().type != gpu::DeviceType::Cpu || byPasses))
+    if (byPasses) {
+        auto made = GpuBackend::make({}, {});
+        if (!made) return tl::unexpected(made.error());
         return DrawingDevice{std::move(*made), {}};
-    if (byPasses) return tl::unexpected(made.error());
-    const std::string why = made ? "there is no GPU, only " + (*made)->deviceName() : made.error().message();
-    return DrawingDevice{GpuBackend::makeSoftware(), "the software renderer draws: " + why};
+    }
+    software::DeviceChoice chosen = software::chooseDevice();
+    return DrawingDevice{std::make_unique<GpuBackend>(std::move(chosen.device)), chosen.why};
 }
 
 Result<JobEngine> chooseJobEngine(const std::string& wish, std::optional<gpu::Backend> backend,

@@ -39,8 +39,8 @@ class GpuBackend {
     static Result<std::unique_ptr<GpuBackend>> make(std::optional<gpu::Backend> backend,
                                                     std::optional<std::uint32_t> index);
 
-    /// One that draws without a GPU; simulates nothing.
-    static std::unique_ptr<GpuBackend> makeSoftware();
+    /// The software renderer draws, and simulates nothing.
+    explicit GpuBackend(std::unique_ptr<gpu::Device> device);
 
     gpu::Device& device() { return *device_; }
     const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels() const { return kernels_; }
@@ -48,8 +48,6 @@ class GpuBackend {
     const std::string& deviceName() const { return device_->info().name; }
 
   private:
-    explicit GpuBackend(std::unique_ptr<gpu::Device> device);
-
     std::unique_ptr<gpu::Device> device_;
     std::shared_ptr<gpu_simulation::KernelLibrary> kernels_;
 };

@@ -22,6 +22,7 @@
 #include "core/documents/sample.h"
 #include "core/documents/sample_material.h"
 #include "core/live/groom_scene.h"
+#include "core/live/moving_picture.h"
 #include "core/render/aov.h"
 #include "core/render/png.h"
 #include "core/render/webp.h"
@@ -306,8 +307,6 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     return playing;
 }
 
-constexpr std::uint32_t kSkyStrandsInSoftware = 2048;
-
 bool hasTubes(const Groom& groom) {
     const auto tubes = [](const HairMaterial& material) { return material.tubes; };
     return tubes(groom.material) || std::ranges::any_of(groom.layers, [&](const Layer& layer) {
@@ -325,7 +324,7 @@ Result<DrawingDevice> deviceOf(const RenderJobOptions& options, const Groom& gro
                 "the software renderer draws neither strips, tessellated ribbons, weighted transparency nor "
                 "tubes",
                 "--engine auto, which draws them with a graphics API");
-        return DrawingDevice{GpuBackend::makeSoftware(), {}};
+        return DrawingDevice{std::make_unique<GpuBackend>(software::makeDevice()), {}};
     }
     if (options.chooseDevice || options.backend != "any" || options.engine == "gpu") {
         std::optional<gpu::Backend> backend;
@@ -336,16 +335,6 @@ Result<DrawingDevice> deviceOf(const RenderJobOptions& options, const Groom& gro
         return DrawingDevice{std::move(*made), {}};
     }
     return chooseDrawingDevice(byPasses);
-}
-
-/// Where nothing else was asked for hair is blended in its order: that has its cover in closed form, and no
-/// noise to average.
-render::RenderOptions forSoftware(render::RenderOptions how) {
-    if (how.transparency == render::Transparency::automatic) how.transparency = render::Transparency::sorted;
-    if (how.ribbons == render::Ribbons::automatic) how.ribbons = render::Ribbons::compute;
-    if (how.samples == 0) how.samples = 4;
-    how.skyStrands = std::min(how.skyStrands, kSkyStrandsInSoftware);
-    return how;
 }
 
 Result<Report> renderToFile(const RenderJobOptions& options) {
@@ -370,7 +359,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     const auto device = deviceOf(options, *groom);
     if (!device) return tl::unexpected(device.error());
     gpu::Device& draws = device->backend->device();
-    if (software::isSoftware(draws)) *how = forSoftware(*how);
+    if (software::isSoftware(draws)) takeWaysOfSoftware(*how);
 
     const auto playing = play(options, *device->backend, *groom, view);
     if (!playing) return tl::unexpected(playing.error());

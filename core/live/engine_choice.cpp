@@ -14,6 +14,7 @@
 #include "core/live/device_hair.h"
 #include "core/live/groom_scene.h"
 #include "core/simulation/simulation.h"
+#include "core/software/device.h"
 
 namespace hairloom {
 namespace {
@@ -86,7 +87,7 @@ Result<EngineTimes> measure(gpu::Device& device,
 
 /// Why the device cannot run these settings; empty where it can.
 std::string obstacle(gpu::Device* device, const Groom& groom) {
-    if (device == nullptr) return "there is no GPU";
+    if (device == nullptr || software::isSoftware(*device)) return "there is no GPU";
     if (groom.body && groom.simulation.strandModel == runtime::StrandModel::rods)
         return "the GPU does not keep hair out of the skin of a body, which the CPU does. Remove the body to "
                "use the GPU: spheres alone then hold the hair";

@@ -25,6 +25,16 @@ void simplifyWhileMoving(render::RenderOptions& options) {
     options.bakeBehind = true;
 }
 
+void takeWaysOfSoftware(render::RenderOptions& options) {
+    constexpr std::uint32_t kMostSkyStrands = 2048;
+    using render::Transparency;
+    if (options.transparency == Transparency::automatic || options.transparency == Transparency::weighted)
+        options.transparency = Transparency::sorted;
+    options.ribbons = render::Ribbons::compute;
+    if (options.samples == 0) options.samples = 4;
+    options.skyStrands = std::min(options.skyStrands, kMostSkyStrands);
+}
+
 std::string_view frameCostName(FrameCost cost) {
     switch (cost) {
         case FrameCost::head:

@@ -12,6 +12,11 @@ namespace hairloom {
 /// What a picture leaves out while something moves; size, exposure and joined frames stay as they are.
 void simplifyWhileMoving(render::RenderOptions& options);
 
+/// Of the options, what the software renderer does otherwise: hair is rasterised by kernels and, where
+/// nothing else that it can was asked for, blended in its order, which has its cover in closed form and no
+/// noise to average.
+void takeWaysOfSoftware(render::RenderOptions& options);
+
 /// What a frame's time is spent on.
 enum class FrameCost { head, solve, hairHair, follow, measures, shadow, shade, draw };
 

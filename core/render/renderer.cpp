@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/profiler.h"
 #include "core/render/passes.h"
@@ -61,6 +62,14 @@ struct Renderer::Parts {
     Environment environment;
     bool newLights = true;
     std::uint32_t accumulated = 0;
+    bool holdsMaps = false, holdsAverage = false;
+    Changes heldBack = Changes::placeholderTexture();  ///< what waits for maps to be drawn anew
+    std::vector<bool> mapped;  ///< which lights the maps are of; empty: there are none
+    struct {
+        Changes changes = Changes::placeholderTexture();
+        std::uint32_t accumulated = 0;
+        std::vector<bool> mapped;
+    } before;             ///< the last record()
     float blurredBy = 0;  ///< what Pass::shadowBlur was last recorded for; 0: other frames
 
     // What the plan was made for.
@@ -76,6 +85,7 @@ struct Renderer::Parts {
     Status prepareHelpers();
     Status prepare(const RenderOptions& options, bool presents);
     void recordChanges(gpu::CommandList& list);
+    std::vector<bool> castingLights() const;
     template <class Record>
     void withoutShadows(Record record) {
         state.lit = true;
@@ -92,6 +102,7 @@ Renderer& Renderer::operator=(Renderer&& other) noexcept = default;
 Status Renderer::setScene(const RenderScene& scene) {
     RendererState& state = parts_->state;
     parts_->changes = Changes::geometry();
+    parts_->mapped.clear();
     state.scene = {};
     state.pastCamera.reset();
     state.temporal = {};
@@ -255,8 +266,12 @@ Status Renderer::Parts::prepareTargets(bool presents) {
     if (!isNew) return tl::unexpected(isNew.error());
     if (isNew->has(TargetId::headDepth) || isNew->has(BufferId::firstHair) || isNew->has(BufferId::opacity)) {
         changes.add(Changes::lights());
+        mapped.clear();
     }
-    if (isNew->has(TargetId::skyHead) || isNew->has(BufferId::skyLayers)) changes.add(Changes::head());
+    if (isNew->has(TargetId::skyHead) || isNew->has(BufferId::skyLayers)) {
+        changes.add(Changes::head());
+        mapped.clear();
+    }
     changes.picture |= isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) ||
                        isNew->has(BufferId::sum) || isNew->has(BufferId::surface);
     if (isNew->has(BufferId::history)) state.temporal = {};
@@ -305,16 +320,24 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     return status && state.plan.runs(Pass::surface) ? state.scene.prepareSurface(device) : status;
 }
 
+std::vector<bool> Renderer::Parts::castingLights() const {
+    std::vector<bool> casting(1, true);  // so that it is never empty
+    for (const Light& light : state.lights) casting.push_back(light.castsShadow);
+    return casting;
+}
+
 void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     state.scene.recordUploads(list);
-    if (changes.shadows) fitViews(state, changes.sky);
+    const bool holds = holdsMaps && mapped == castingLights();
+    const bool shadows = changes.shadows && !holds;
+    const bool sky = changes.sky && !holds;
+    if (shadows) fitViews(state, sky);
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
-    if (changes.shadows) recordMaps(list, state, lightAtlas(state));
-    if (changes.sky) {
-        recordMaps(list, state, skyAtlas(state));
-        if (state.plan.runs(Pass::skySeen)) recordSkySeen(list, state);
-    }
+    if (shadows) recordMaps(list, state, lightAtlas(state));
+    if (sky) recordMaps(list, state, skyAtlas(state));
+    if (changes.sky && state.plan.runs(Pass::skySeen)) recordSkySeen(list, state);
+    if (shadows) mapped = castingLights();
     if (changes.shading && state.plan.runs(Pass::shade)) {
         recordShading(list, state);
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
@@ -322,6 +345,7 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     if ((changes.picture || state.options.temporal) && state.plan.runs(Pass::surface))
         recordSurface(list, state);
     if (changes.picture) accumulated = 0;
+    if (holds && changes.shadows) heldBack.add(changes.sky ? Changes::head() : Changes::lights());
     changes = Changes::placeholderTexture();
 }
 
@@ -336,6 +360,8 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
     }
     if (auto status = p.prepare(options, target != nullptr); !status) return status;
     if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
+    if (!p.holdsMaps) p.changes.add(std::exchange(p.heldBack, Changes::placeholderTexture()));
+    p.before = {p.changes, p.accumulated, p.mapped};
     const bool moves = p.changes.curves || p.changes.shadows || p.changes.shading;
     p.recordChanges(list);
     const bool blurs = p.state.plan.runs(Pass::shadowBlur);
@@ -344,7 +370,7 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
         recordTemporal(list, p.state, moves);
         render::recordPast(list, p.state);
         p.accumulated = 1;
-    } else if (p.accumulated < options.frames) {
+    } else if (p.accumulated < options.frames && !(p.holdsAverage && p.accumulated > 0)) {
         recordFrame(list, p.state, p.accumulated);
         if (blurs) p.withoutShadows([&] { recordFrame(list, p.state, p.accumulated); });
         ++p.accumulated;
@@ -357,6 +383,25 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
         recordOverlay(list, p.state, target);
     }
     return p.state.pipelines.takeStatus();
+}
+
+void Renderer::takeBack() {
+    Parts& p = *parts_;
+    // Maps are then begun, and no longer what they were.
+    if (p.before.changes.shadows || p.before.changes.sky) p.before.mapped.clear();
+    p.changes.add(p.before.changes);
+    p.accumulated = p.before.accumulated;
+    p.mapped = p.before.mapped;
+    p.blurredBy = 0;
+    p.state.temporal = {};
+}
+
+void Renderer::holdMaps(bool on) {
+    parts_->holdsMaps = on;
+}
+
+void Renderer::holdAverage(bool on) {
+    parts_->holdsAverage = on;
 }
 
 Status Renderer::recordPast(gpu::CommandList& list, const RenderOptions& options) {

@@ -82,6 +82,14 @@ class Renderer {
 
     /// Forgets the average, as after a change.
     void restart();
+    /// What the last record() recorded was not done, but for its uploads, or not to the end: the next does
+    /// it.
+    void takeBack();
+    /// While true, maps of light that are there are not drawn anew for hair, head or lights that have moved:
+    /// lights stay where they were. Once it is false they are.
+    void holdMaps(bool on);
+    /// While true, no frame joins an average that has one: record() shows it with its marks.
+    void holdAverage(bool on);
     /// Frames in the average, 0 before the first.
     std::uint32_t accumulated() const;
     /// False while tables are baked behind (RenderOptions::bakeBehind): a later frame restarts the average.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/software/marks.h"
 #include "core/software/memory.h"
 #include "core/software/mesh_depth.h"
 
@@ -159,8 +160,24 @@ void HostCommandList::drawFullscreen(const KernelEntry& kernel) {
     });
 }
 
+void HostCommandList::drawMarks(std::uint32_t vertices) {
+    HostTexture& target = of(passDesc().colour.front().texture);
+    const gpu::TexturePtr& depth = passDesc().depth.texture;
+    const std::span<const float> hides =
+        depth ? std::span<const float>(of(depth).texels()) : std::span<const float>();
+    software::drawMarks(target, hides, constantsAt<shaders::OverlayConstants>(0),
+                        elementsOf<const shaders::OverlayVertex>(read(0)), vertices);
+}
+
+bool HostCommandList::leaves() {
+    if (!isAsked(stop_)) return false;
+    wrong(std::string(kDropped));
+    return true;
+}
+
 void HostCommandList::recordDraw(const gpu::DrawArguments& arguments) {
     const auto& pipeline = static_cast<const HostGraphicsPipeline&>(graphics());
+    if (leaves()) return;
     const auto* direct = std::get_if<gpu::DirectDraw>(&arguments);
     if (direct == nullptr) return wrong("the software renderer draws neither with indices nor indirectly");
     switch (pipeline.draw) {
@@ -168,6 +185,8 @@ void HostCommandList::recordDraw(const gpu::DrawArguments& arguments) {
             return drawMeshDepth(direct->vertices);
         case HostDraw::fullscreen:
             return drawFullscreen(*pipeline.kernel);
+        case HostDraw::marks:
+            return drawMarks(direct->vertices);
     }
 }
 
@@ -193,7 +212,7 @@ RibbonBatch HostCommandList::batchOf() const {
 
 DeferredDispatch HostCommandList::deferred(const KernelEntry& kernel) const {
     const auto& pipeline = static_cast<const HostComputePipeline&>(compute());
-    DeferredDispatch work{&kernel, registersOf(pipeline.declared, false), {}};
+    DeferredDispatch work{&kernel, registersOf(pipeline.declared, false), {}, stop_};
     for (const gpu::ShaderRegister& at : pipeline.declared) {
         // What it writes keeps the work, not the other way round.
         const gpu::Binding* found = boundIfAny(at);
@@ -221,7 +240,7 @@ void HostCommandList::dispatchSorted() {
     }
     if (hair_.sorted == nullptr || hair_.sorted->found()) {
         hair_ = {};
-        hair_.sorted = std::make_unique<SortedHair>(raster);
+        hair_.sorted = std::make_unique<SortedHair>(raster, stop_);
     }
     hair_.nearest = read(2);
     hair_.cover = written(2);
@@ -236,6 +255,8 @@ void HostCommandList::resolveSorted() {
         if (buffer.shading != nullptr) buffer.shading->ensure(hair_.sorted->shownPoints(i));
         colours.push_back(elementsOf<const float4>(hair_.colours[i]));
     }
+    // All of it or nothing joins the sum.
+    if (leaves()) return;
     hair_.sorted->resolve(constantsAt<shaders::ResolveConstants>(0), elementsOf<const std::uint32_t>(read(0)),
                           elementsOf<const std::uint32_t>(read(1)), colours, elementsOf<float4>(written(0)));
     hair_ = {};
@@ -269,6 +290,7 @@ bool HostCommandList::dispatchApart(const KernelEntry& kernel) {
 }
 
 void HostCommandList::recordDispatch(const gpu::DispatchArguments& arguments) {
+    if (leaves()) return;
     const auto* counts = std::get_if<gpu::GroupCounts>(&arguments);
     if (counts == nullptr) return wrong("the software renderer dispatches nothing indirectly");
     const auto& pipeline = static_cast<const HostComputePipeline&>(compute());
@@ -276,7 +298,9 @@ void HostCommandList::recordDispatch(const gpu::DispatchArguments& arguments) {
     const Registers registers = registersOf(pipeline.declared, true);
     const std::array<std::uint32_t, 3> groups{counts->x, counts->y, counts->z};
     const std::size_t all = std::size_t{groups[0]} * groups[1] * groups[2];
-    parallelFor(all, kGroupsAtOnce, [&](std::size_t begin, std::size_t end) {
+    // What adds to the sum of frames adds all of a frame.
+    const bool whole = pipeline.kernel->name.starts_with("resolve");
+    parallelUntil(whole ? Stop() : stop_, all, kGroupsAtOnce, [&](std::size_t begin, std::size_t end) {
         pipeline.kernel->run(registers, groups, begin, end);
     });
 }

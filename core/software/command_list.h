@@ -9,6 +9,7 @@
 #include "core/software/lazy_shading.h"
 #include "core/software/light_maps.h"
 #include "core/software/sorted_hair.h"
+#include "core/software/stop.h"
 
 namespace hairloom::software {
 
@@ -33,6 +34,9 @@ struct HairOfFrame {
 
 /// What a device keeps between commands.
 struct HostState {
+    explicit HostState(Stop asked) : stop(std::move(asked)), maps(stop) {}
+
+    Stop stop;
     HairOfFrame hair;
     LightMaps maps;
 };
@@ -41,6 +45,7 @@ struct HostState {
 enum class HostDraw {
     meshDepth,   ///< least depths of triangles
     fullscreen,  ///< a pixel shader over the whole target
+    marks,       ///< points, lines and triangles over a picture
 };
 class HostGraphicsPipeline : public gpu::CheckedGraphicsPipeline {
   public:
@@ -64,7 +69,11 @@ class HostCommandList : public gpu::CheckedList {
   public:
     /// `state` outlives it.
     HostCommandList(HostState& state, std::function<void()> whenClosed)
-        : hair_(state.hair), maps_(state.maps), whenClosed_(std::move(whenClosed)) {}
+        : hair_(state.hair), maps_(state.maps), stop_(state.stop), whenClosed_(std::move(whenClosed)) {
+        // What a list that was left has begun.
+        hair_ = {};
+        maps_.forget();
+    }
     ~HostCommandList() override;
     HostCommandList(const HostCommandList&) = delete;
     HostCommandList& operator=(const HostCommandList&) = delete;
@@ -90,6 +99,9 @@ class HostCommandList : public gpu::CheckedList {
     Registers registersOf(std::span<const gpu::ShaderRegister> used, bool settles) const;
     void drawMeshDepth(std::uint32_t vertices);
     void drawFullscreen(const KernelEntry& kernel);
+    void drawMarks(std::uint32_t vertices);
+    /// Nobody waits for it: nothing is recorded from here on.
+    bool leaves();
     void close();
     const gpu::BufferPtr& read(std::uint32_t slot) const;
     const gpu::BufferPtr& written(std::uint32_t slot) const;
@@ -106,6 +118,7 @@ class HostCommandList : public gpu::CheckedList {
 
     HairOfFrame& hair_;
     LightMaps& maps_;
+    const Stop& stop_;
     std::function<void()> whenClosed_;
     std::vector<gpu::PassTime> times_;
     double passBegan_ = 0;  ///< seconds

@@ -44,7 +44,7 @@ std::vector<gpu::ShaderRegister> registersOf(const KernelEntry& kernel) {
 
 class HostDevice : public gpu::BackendDevice {
   public:
-    HostDevice() : info_(infoOfHost()) {}
+    explicit HostDevice(Stop stop) : info_(infoOfHost()), state_(std::move(stop)) {}
 
     const gpu::DeviceInfo& info() const override { return info_; }
 
@@ -79,13 +79,22 @@ class HostDevice : public gpu::BackendDevice {
                 return tl::unexpected(status.error());
             return pipeline;
         }
+        if (vertex.name == "overlay.vert" && desc.blend.size() == 1 && desc.blend.front().enabled) {
+            pipeline->draw = HostDraw::marks;
+            using gpu::Binding;
+            const gpu::RegisterUse uses[] = {
+                {{Binding::Kind::ConstantBuffer, 0}, gpu::RegisterShape::Constants, 0},
+                {{Binding::Kind::ShaderResource, 0}, gpu::RegisterShape::Buffer, 0}};
+            if (auto status = pipeline->uses.add(uses, desc.name); !status)
+                return tl::unexpected(status.error());
+            return pipeline;
+        }
         if (vertex.name == "fullscreen.vert" && pixel != nullptr && pixel->kernel != nullptr) {
             pipeline->kernel = pixel->kernel;
             pipeline->declared = registersOf(*pixel->kernel);
             return pipeline;
         }
-        return fail("the software renderer does not draw '" + desc.name + "'",
-                    "hair that kernels rasterise, without marks");
+        return fail("the software renderer does not draw '" + desc.name + "'", "hair that kernels rasterise");
     }
 
     Result<gpu::ComputePipelinePtr> createComputePipeline(const gpu::ComputePipelineDesc& desc) override {
@@ -134,8 +143,16 @@ class HostDevice : public gpu::BackendDevice {
 
 }  // namespace
 
-std::unique_ptr<gpu::Device> makeDevice() {
-    return std::make_unique<HostDevice>();
+std::unique_ptr<gpu::Device> makeDevice(Stop stop) {
+    return std::make_unique<HostDevice>(std::move(stop));
+}
+
+DeviceChoice chooseDevice() {
+    auto found = gpu::createDevice();
+    if (found && (*found)->info().type != gpu::DeviceType::Cpu) return {std::move(*found), {}};
+    const std::string lacks =
+        found ? "there is no GPU, only " + (*found)->info().name : found.error().message();
+    return {makeDevice(), "the software renderer draws: " + lacks};
 }
 
 bool isSoftware(const gpu::Device& device) {

@@ -7,16 +7,28 @@
 // commands, same bits on any number of threads.
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "core/gpu/device.h"
+#include "core/software/stop.h"
 
 namespace hairloom::software {
 
 inline constexpr std::string_view kDeviceName = "software renderer";
 
-/// Draws hair and heads, not tubes, strips and tessellated ribbons: pipelines that it has no code for are
-/// errors.
-std::unique_ptr<gpu::Device> makeDevice();
+/// Draws hair, heads and marks, not tubes, strips and tessellated ribbons: pipelines that it has no code for
+/// are errors. Once `stop` is asked for, lists fail with kDropped within the time of a tile, and what a frame
+/// adds to a sum is not added.
+std::unique_ptr<gpu::Device> makeDevice(Stop stop = {});
+
+struct DeviceChoice {
+    std::unique_ptr<gpu::Device> device;
+    std::string why;  ///< the software renderer draws; empty: it does not
+};
+/// The best GPU, or the software renderer if there is none: no graphics API, no driver, or only one that runs
+/// on the processor.
+DeviceChoice chooseDevice();
 
 /// Whether `device` is such a one.
 bool isSoftware(const gpu::Device& device);

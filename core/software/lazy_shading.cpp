@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/parallel.h"
-
 namespace hairloom::software {
 namespace {
 
@@ -18,12 +16,14 @@ LazySky::LazySky(DeferredDispatch work, std::uint32_t strands)
     : work_(std::move(work)), done_(std::size_t{strands} * kSkyThreads, 0) {}
 
 void LazySky::run(std::span<const std::uint32_t> threads) {
-    parallelFor(threads.size(), kPointsShadedAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallelUntil(work_.stop, threads.size(), kPointsShadedAtOnce, [&](std::size_t begin, std::size_t end) {
         std::vector<uint3> ids;
         for (std::size_t i = begin; i < end; ++i)
             ids.emplace_back(threads[i] / kSkyThreads, threads[i] % kSkyThreads, 0u);
         work_.kernel->runThreads(work_.registers, ids);
     });
+    if (!isAsked(work_.stop)) return;
+    for (const std::uint32_t thread : threads) done_[thread] = 0;
 }
 
 void LazySky::ensure(std::span<const std::uint32_t> points, std::span<const shaders::CurvePoint> curve,
@@ -68,11 +68,13 @@ void LazyShading::run(std::span<const std::uint32_t> points) {
         sky_->ensure(points, curve, {strands, strandCount}, constants().subdivisions);
     }
     const std::uint32_t row = constants().rowThreads;
-    parallelFor(points.size(), kPointsShadedAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallelUntil(work_.stop, points.size(), kPointsShadedAtOnce, [&](std::size_t begin, std::size_t end) {
         std::vector<uint3> ids;
         for (std::size_t i = begin; i < end; ++i) ids.emplace_back(points[i] % row, points[i] / row, 0u);
         work_.kernel->runThreads(work_.registers, ids);
     });
+    if (!isAsked(work_.stop)) return;
+    for (const std::uint32_t point : points) done_[point] = 0;
 }
 
 void LazyShading::ensure(std::span<const std::uint8_t> wanted) {

@@ -7,6 +7,7 @@
 
 #include "core/gpu/device.h"
 #include "core/software/kernel.h"
+#include "core/software/stop.h"
 #include "shaders/shared/render_types.h"
 
 namespace hairloom::software {
@@ -16,6 +17,7 @@ struct DeferredDispatch {
     const KernelEntry* kernel = nullptr;
     Registers registers;
     std::vector<gpu::Binding> kept;
+    Stop stop;  ///< what is left out then is done when it is asked for again
 };
 
 /// A dispatch of sky_seen.comp: a thread for each point that a strand was given with.

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/base/parallel.h"
-
 namespace hairloom::software {
 namespace {
 
@@ -88,7 +86,7 @@ void LightMaps::drawFirstHair(const RibbonBatch& all, const shaders::RasterConst
                               std::span<std::uint32_t> first) {
     const RibbonBatch batch = thinned(all);
     std::unique_ptr<RibbonTiles> tiles = tilesOf(batch, raster);
-    parallelFor(tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
+    parallelUntil(stop_, tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             tiles->visit(t, [&](const RibbonPiece& piece, std::uint32_t /*item*/, const RibbonHits& hits) {
                 for (std::size_t h = 0; h < hits.count; ++h) {
@@ -131,7 +129,7 @@ void LightMaps::countLayers(const RibbonBatch& all, const shaders::RasterConstan
         const std::size_t texel = (y - top) * columns + (x - left);
         counts[texel * raster.layers + min(layer, raster.layers - 1)] += amount;
     };
-    parallelFor(tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
+    parallelUntil(stop_, tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             tiles->visit(t, [&](const RibbonPiece& piece, std::uint32_t /*item*/, const RibbonHits& hits) {
                 for (std::size_t h = 0; h < hits.count; ++h) countOne(piece, hits, h);

@@ -7,11 +7,14 @@
 #include <memory>
 
 #include "core/software/ribbon_tiles.h"
+#include "core/software/stop.h"
 
 namespace hairloom::software {
 
 class LightMaps {
   public:
+    explicit LightMaps(Stop stop = {}) : stop_(std::move(stop)) {}
+
     /// The least depth of hair in each pixel, as bits; `first` holds what other hair has there.
     void drawFirstHair(const RibbonBatch& batch, const shaders::RasterConstants& raster,
                        std::span<std::uint32_t> first);
@@ -36,6 +39,7 @@ class LightMaps {
     RibbonBatch thinned(const RibbonBatch& batch);
     std::unique_ptr<RibbonTiles> takeTiles(const RibbonBatch& batch, const shaders::RasterConstants& raster);
 
+    Stop stop_;
     std::vector<Kept> kept_;
     std::list<Coarse> coarse_;
 };

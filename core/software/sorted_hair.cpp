@@ -35,7 +35,7 @@ void SortedHair::find(std::span<const std::uint32_t> nearest, std::span<std::uin
                               raster_.sampleReach};
     tiles_ = std::make_unique<RibbonTiles>(batches_, window);
     found_.resize(tiles_->count());
-    parallelFor(tiles_->count(), 1, [&](std::size_t begin, std::size_t end) {
+    parallelUntil(stop_, tiles_->count(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             if (!tiles_->empty(t)) findIn(t, nearest, cover);
         }

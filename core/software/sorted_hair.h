@@ -7,12 +7,15 @@
 #include <memory>
 
 #include "core/software/ribbon_tiles.h"
+#include "core/software/stop.h"
 
 namespace hairloom::software {
 
 class SortedHair {
   public:
-    explicit SortedHair(const shaders::RasterConstants& raster) : raster_(raster) {}
+    /// `stop` leaves tiles of find() out; nothing of it may be shown then.
+    explicit SortedHair(const shaders::RasterConstants& raster, Stop stop = {})
+        : raster_(raster), stop_(std::move(stop)) {}
 
     void add(const RibbonBatch& batch) { batches_.push_back(batch); }
     std::size_t batchCount() const { return batches_.size(); }
@@ -49,6 +52,7 @@ class SortedHair {
                     std::span<const std::span<const float4>> colours) const;
 
     shaders::RasterConstants raster_;
+    Stop stop_;
     std::vector<RibbonBatch> batches_;
     std::unique_ptr<RibbonTiles> tiles_;
     std::vector<Found> found_;  ///< one a tile; empty where no hair is

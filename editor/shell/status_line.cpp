@@ -93,9 +93,10 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
         frameTime_->setText(frame ? tr("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1)
                                   : picture);
     });
-    connect(&viewport_, &Viewport::deviceReady, this, [this](const QString& name, const QString& problem) {
-        device_->setText(problem.isEmpty() ? name.section(" (", 0, 0) : tr("no graphics device"));
-        if (!problem.isEmpty()) say(problem, true);
+    connect(&viewport_, &Viewport::deviceReady, this, [this](const QString& name, const QString& note) {
+        device_->setText(name.section(" (", 0, 0));
+        device_->setToolTip(note.isEmpty() ? tr("Graphics device for rendering") : note);
+        if (!note.isEmpty()) say(note, false);
     });
     device_->setText(tr("looking for a device"));
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {

@@ -18,6 +18,8 @@
 
 namespace hairloom::editor {
 
+class DeviceWork;
+
 class RenderThread : public QObject {
     Q_OBJECT
 
@@ -32,7 +34,7 @@ class RenderThread : public QObject {
     void postSide(const QString& name, PictureRequest request);
     /// Nothing is being drawn or waits to be, the average is complete.
     bool isIdle() const;
-    /// There is no device, and no picture will come.
+    /// No picture will come any more.
     bool hasEnded() const;
 
     /// Pictures go to this window from now on; to no window where it is empty. Waits until that is so: a
@@ -43,19 +45,29 @@ class RenderThread : public QObject {
     const std::shared_ptr<LiveLink>& live() const { return live_; }
 
   Q_SIGNALS:
-    /// The device has been found, or `problem` says why there is none. `wantsWindow`: it can show pictures by
-    /// itself and is fast enough not to need them smaller.
-    void deviceReady(const QString& name, bool wantsWindow, const QString& problem);
+    /// The device has been found. `note` says why it is the software renderer; empty: it is not.
+    /// `wantsWindow`: it can show pictures by itself and is fast enough not to need them smaller.
+    void deviceReady(const QString& name, bool wantsWindow, const QString& note);
     void pictureReady(const QImage& picture, const hairloom::editor::PictureReport& report);
     void sidePictureReady(const QString& name, const QImage& picture);
     /// The window cannot be drawn to; pictures are read back instead.
     void windowRefused(const QString& problem);
     void failed(const QString& problem);
-    /// The device was lost, and there is another that has nothing yet: what was asked for has to be again.
-    void deviceReplaced();
+    /// The device was lost or could not draw, and there is another that has nothing yet: what was asked for
+    /// has to be again. `note` as above.
+    void deviceReplaced(const QString& name, const QString& note);
 
   private:
     void run();
+    void draw(std::unique_ptr<DeviceWork>& on, std::optional<PictureRequest> request);
+    void drawSide(DeviceWork& on, const QString& name, PictureRequest request);
+    void beginDroppable(bool can);
+    /// Whether it was dropped.
+    bool endDroppable();
+    /// With mutex_: something else waits, which a picture that takes long makes room for.
+    void dropStill() {
+        if (droppable_) *drop_ = true;
+    }
 
     mutable std::mutex mutex_;
     std::condition_variable wake_;
@@ -67,6 +79,8 @@ class RenderThread : public QObject {
     bool idle_ = true;
     bool stop_ = false;
     bool ended_ = false;
+    bool droppable_ = false;  ///< what is being drawn may be left
+    const std::shared_ptr<std::atomic<bool>> drop_ = std::make_shared<std::atomic<bool>>(false);
     std::shared_ptr<LiveLink> live_;
     std::thread thread_;
 };

@@ -12,6 +12,7 @@
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 #include "core/live/moving_picture.h"
+#include "core/software/device.h"
 
 namespace hairloom::editor {
 namespace {
@@ -92,6 +93,19 @@ void widenMaterials(Groom& groom) {
     }
 }
 
+/// Ribbons in their place.
+void leaveTubes(Groom& groom) {
+    groom.material.tubes = false;
+    for (Layer& layer : groom.layers) {
+        if (layer.material) layer.material->tubes = false;
+    }
+}
+
+bool sameCamera(const render::Camera& a, const render::Camera& b) {
+    return a.eye_ws == b.eye_ws && a.target_ws == b.target_ws && a.up_ws == b.up_ws &&
+           a.verticalFov == b.verticalFov && a.orthographicHeight == b.orthographicHeight;
+}
+
 /// Guides alone.
 Groom draftOf(Groom groom) {
     if (groom.pointAttributes.has(attribute::kRadius)) {
@@ -128,7 +142,13 @@ void straighten(QImage& image) {
 }  // namespace
 
 RenderWork::RenderWork(gpu::Device& device, const LiveWork* live)
-    : device_(device), live_(live), renderer_(device) {}
+    : device_(device), live_(live), software_(software::isSoftware(device)), renderer_(device) {}
+
+Groom RenderWork::shownOf(const Groom& groom, bool draft) const {
+    Groom shown = draft ? draftOf(groom) : groom;
+    if (software_) leaveTubes(shown);
+    return shown;
+}
 
 Status RenderWork::setWindow(const std::optional<gpu::NativeWindow>& window) {
     swapChain_.reset();
@@ -165,8 +185,13 @@ Status RenderWork::take(PictureRequest request) {
     const bool draft =
         request.moving && needsDraft_ && !onDevice && request.groom->interpolation.followPerGuide > 0;
     if (auto taken = takeScene(request, draft); !taken) return taken;
-    if (auto set = renderer_.setCamera(request.camera); !set) return set;
-    if (auto set = renderer_.setLights(lightsOf(request)); !set) return set;
+    const bool seenFromThere = last_ && sameCamera(last_->camera, request.camera);
+    if (!seenFromThere) {
+        if (auto set = renderer_.setCamera(request.camera); !set) return set;
+    }
+    if (!seenFromThere || last_->lightTurn != request.lightTurn || last_->lightScale != request.lightScale) {
+        if (auto set = renderer_.setLights(lightsOf(request)); !set) return set;
+    }
     if (!last_ || last_->environment != request.environment) {
         renderer_.setEnvironment(environmentOf(request));
     }
@@ -191,6 +216,7 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     if (!sameGroom || request.quality.scattering != last_->quality.scattering) {
         Groom looks = now;
         if (draft) widenMaterials(looks);
+        if (software_) leaveTubes(looks);
         if (!scene_->setMaterials(looks, viewOf(request))) return replaceScene(request, draft);
         if (auto set = showMaterial(request); !set) return set;
     }
@@ -215,7 +241,7 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
-    auto made = GroomScene::make(draft ? draftOf(*request.groom) : *request.groom, viewOf(request), {});
+    auto made = GroomScene::make(shownOf(*request.groom, draft), viewOf(request), {});
     if (!made) return tl::unexpected(made.error());
     scene_ = std::move(*made);
     draft_ = draft;
@@ -296,9 +322,11 @@ render::RenderOptions RenderWork::options() const {
     options.exposure = last_->exposure;
     options.bakeBehind = true;
     options.transparentBackground = last_->seeThrough && !swapChain_;
-    if (!last_->moving) return options;
-    simplifyWhileMoving(options);
-    options.temporal = last_->quality.joinsFrames;
+    if (last_->moving) {
+        simplifyWhileMoving(options);
+        options.temporal = last_->quality.joinsFrames && !software_;
+    }
+    if (software_) takeWaysOfSoftware(options);
     return options;
 }
 

@@ -26,6 +26,14 @@ class RenderWork {
     Result<std::pair<QImage, PictureReport>> draw();
     /// The average of the last request is complete, or nothing was asked for.
     bool isComplete() const;
+    /// Frames in the average that was shown last.
+    std::uint32_t frames() const { return renderer_.accumulated(); }
+    /// The last frame was left (software::kDropped): the next does it.
+    void takeBack() { renderer_.takeBack(); }
+    /// While true, draw() shows the average as it is, with the marks of now.
+    void holdAverage(bool on) { renderer_.holdAverage(on); }
+    /// While true, light and shadows stay as they were: Renderer::holdMaps().
+    void holdMaps(bool on) { renderer_.holdMaps(on); }
     /// Drops the last request: it could not be drawn.
     void forget() {
         handed_.reset();
@@ -37,6 +45,8 @@ class RenderWork {
   private:
     void takeMoves(PictureRequest& request);
     Status takeScene(const PictureRequest& request, bool draft);
+    /// As this device draws it.
+    Groom shownOf(const Groom& groom, bool draft) const;
     Status replaceScene(const PictureRequest& request, bool draft);
     Status movePoints(const PictureRequest& request);
     bool showsLive(const PictureRequest& request) const;
@@ -51,6 +61,7 @@ class RenderWork {
 
     gpu::Device& device_;
     const LiveWork* live_;
+    bool software_;  ///< the device is the software renderer
     render::Renderer renderer_;
     std::optional<gpu::NativeWindow> window_;
     std::unique_ptr<gpu::SwapChain> swapChain_;  ///< null: pictures are read back from target_

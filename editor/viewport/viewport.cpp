@@ -67,13 +67,12 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
         redraw(true);
     });
     connect(&renderer_, &RenderThread::deviceReady, this,
-            [this](const QString& name, bool wantsWindow, const QString& problem) {
+            [this](const QString& name, bool wantsWindow, const QString& note) {
                 const QByteArray wish = wishedSurface();
                 const bool byItself = (wantsWindow && wish.isEmpty()) || wish == "window" || wish == "apart";
-                presentsByItself_ = problem.isEmpty() && byItself;
-                headFirst_ = headFirst_ && problem.isEmpty();
+                presentsByItself_ = note.isEmpty() && byItself;
                 chooseSurface();
-                Q_EMIT deviceReady(name, problem);
+                Q_EMIT deviceReady(name, note);
             });
     connect(&renderer_, &RenderThread::pictureReady, this,
             [this](const QImage& picture, const PictureReport& report) {
@@ -96,10 +95,13 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
         handOverAll();
         Q_EMIT failed(problem);
     });
-    connect(&renderer_, &RenderThread::deviceReplaced, this, [this] {
-        handOverAll();
-        redraw();
-    });
+    connect(&renderer_, &RenderThread::deviceReplaced, this,
+            [this](const QString& name, const QString& note) {
+                presentsByItself_ = presentsByItself_ && note.isEmpty();
+                chooseSurface();
+                redraw();
+                Q_EMIT deviceReady(name, note);
+            });
     connect(&document_, &QtDocument::changed, this, &Viewport::documentChanged);
     connect(&document_, &QtDocument::replaced, this, [this] {
         pose_.reset();

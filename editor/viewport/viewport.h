@@ -101,7 +101,8 @@ class Viewport : public QWidget {
     const QImage& picture() const { return picture_; }
 
   Q_SIGNALS:
-    void deviceReady(const QString& name, const QString& problem);
+    /// `note`: why the software renderer draws; empty: it does not.
+    void deviceReady(const QString& name, const QString& note);
     void drawn(const hairloom::editor::PictureReport& report);
     void failed(const QString& problem);
     /// Quality or comparison.

@@ -4,6 +4,10 @@
 
 #include "core/software/device.h"
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "core/base/parallel.h"
 #include "core/render/flip.h"
 #include "core/render/renderer.h"
@@ -215,6 +219,149 @@ TEST_F(SoftwareTest, WhatItCannotDrawIsAnError) {
     how.ribbons = Ribbons::tessellated;
     EXPECT_FALSE(renderPicture(*device_, head.scene(), how));
     EXPECT_TRUE(software::isSoftware(*device_));
+}
+
+/// What a renderer shows on a device after so many frames; `draw` makes each.
+class Screen {
+  public:
+    Screen(gpu::Device& device, const RenderScene& scene, const RenderOptions& how)
+        : device_(device), renderer_(device), how_(how) {
+        EXPECT_TRUE(renderer_.setScene(scene));
+        gpu::TextureDesc desc;
+        desc.name = "screen";
+        desc.width = how.width;
+        desc.height = how.height;
+        desc.format = gpu::Format::Rgba8Unorm;
+        desc.usage = gpu::Usage::RenderTarget;
+        auto made = device.createTexture(desc);
+        EXPECT_TRUE(made);
+        if (made) target_ = std::move(*made);
+    }
+
+    Renderer& renderer() { return renderer_; }
+    Status draw() {
+        auto list = device_.createCommandList();
+        if (!list) return tl::unexpected(list.error());
+        if (auto recorded = renderer_.record(**list, how_, target_); !recorded) return recorded;
+        auto submitted = device_.submit(std::move(*list));
+        if (!submitted) return tl::unexpected(submitted.error());
+        return (*submitted)->wait();
+    }
+    std::vector<std::uint8_t> pixels() {
+        std::vector<std::uint8_t> bytes(std::size_t{4} * how_.width * how_.height);
+        EXPECT_TRUE(device_.readTexture(target_, std::as_writable_bytes(std::span(bytes))));
+        return bytes;
+    }
+
+  private:
+    gpu::Device& device_;
+    Renderer renderer_;
+    RenderOptions how_;
+    gpu::TexturePtr target_;
+};
+
+/// Marks of all kinds in and around the head, some of them behind the eye.
+Overlay scatteredMarks(const RenderScene& scene) {
+    const Vec3f eye = scene.camera.eye_ws;
+    std::uint32_t state = 7;
+    const auto next = [&] {
+        state = state * 1664525u + 1013904223u;
+        return static_cast<float>(state >> 8u) / static_cast<float>(1u << 24u);
+    };
+    Overlay overlay;
+    for (const bool onTop : {false, true}) {
+        for (const OverlayShape shape :
+             {OverlayShape::points, OverlayShape::lines, OverlayShape::triangles}) {
+            OverlayBatch batch{shape, shape == OverlayShape::points ? 7.0f : 2.5f, onTop, {}};
+            for (int i = 0; i < 12; ++i) {
+                const Vec3f at = Vec3f(next(), next(), next()) * 0.4f - Vec3f::Constant(0.2f);
+                const Vec3f place =
+                    i % 6 == 5 ? Vec3f(eye + (eye - at) * 0.3f) : Vec3f(at + scene.camera.target_ws);
+                batch.vertices.push_back({Vec4f(place.x(), place.y(), place.z(), 1),
+                                          Vec4f(next(), next(), next(), 0.3f + 0.7f * next())});
+            }
+            overlay.batches.push_back(batch);
+        }
+    }
+    return overlay;
+}
+
+TEST_F(SoftwareTest, MarksAreThoseOfAGraphicsApi) {
+    auto api = gpu::createDevice(gpu::testDevice());
+    ASSERT_TRUE(api) << api.error().message();
+    const TestHead head(40);
+    const RenderScene scene = head.scene();
+    const RenderOptions how = options(128);
+    std::vector<std::vector<std::uint8_t>> with, without;
+    for (gpu::Device* const device : {api->get(), device_.get()}) {
+        Screen screen(*device, scene, how);
+        ASSERT_TRUE(screen.draw());
+        without.push_back(screen.pixels());
+        ASSERT_TRUE(screen.renderer().setOverlay(scatteredMarks(scene)));
+        const auto drawn = screen.draw();
+        ASSERT_TRUE(drawn) << drawn.error().message();
+        with.push_back(screen.pixels());
+    }
+    std::size_t marked = 0, unlike = 0, wrong = 0;
+    for (std::size_t i = 0; i < with[0].size(); ++i) {
+        if (with[0][i] != without[0][i]) ++marked;
+        const bool same = std::abs(with[0][i] - with[1][i]) <= 3;
+        // Beside a mark's edge, and where it comes out of the head.
+        if (!same && std::abs(without[0][i] - without[1][i]) <= 3) ++unlike;
+        if (std::abs(with[0][i] - with[1][i]) > 3 + std::abs(without[0][i] - without[1][i])) ++wrong;
+    }
+    EXPECT_GT(marked, with[0].size() / 20);
+    EXPECT_LT(unlike, marked / 50);
+    EXPECT_LT(wrong, marked / 50);
+}
+
+TEST_F(SoftwareTest, WhatWasLeftIsDrawnTheNextTime) {
+    const TestHead head(800);
+    RenderOptions how = options(128);
+    how.frames = 3;
+    Screen whole(*device_, head.scene(), how);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(whole.draw());
+    auto stop = std::make_shared<std::atomic<bool>>(false);
+    const auto device = software::makeDevice(stop);
+    Screen screen(*device, head.scene(), how);
+    int left = 0;
+    for (int microseconds = 300; screen.renderer().accumulated() < 3; microseconds += microseconds / 2) {
+        std::thread asks([&] {
+            std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
+            *stop = true;
+        });
+        const Status drawn = screen.draw();
+        asks.join();
+        *stop = false;
+        if (drawn) continue;
+        EXPECT_NE(drawn.error().message().find(software::kDropped), std::string::npos);
+        screen.renderer().takeBack();
+        ++left;
+    }
+    EXPECT_GT(left, 2);
+    EXPECT_EQ(screen.pixels(), whole.pixels());
+}
+
+TEST_F(SoftwareTest, MapsThatAreHeldAreDrawnOnceTheyAreNot) {
+    const TestHead head(600);
+    RenderScene scene = head.scene();
+    const RenderOptions how = options(96);
+    Screen screen(*device_, scene, how);
+    screen.renderer().holdMaps(true);
+    ASSERT_TRUE(screen.draw()) << "there are none yet";
+    const auto first = screen.pixels();
+    for (Light& light : scene.lights)
+        light.toLight_ws = Eigen::AngleAxisf(1.2f, Vec3f::UnitY()) * light.toLight_ws;
+    ASSERT_TRUE(screen.renderer().setLights(scene.lights));
+    ASSERT_TRUE(screen.draw());
+    const auto held = screen.pixels();
+    EXPECT_EQ(held, first) << "light and shadows are those of before";
+    screen.renderer().holdMaps(false);
+    ASSERT_TRUE(screen.draw());
+    Screen fresh(*device_, scene, how);
+    ASSERT_TRUE(fresh.draw());
+    EXPECT_EQ(screen.pixels(), fresh.pixels());
+    EXPECT_NE(held, fresh.pixels());
 }
 
 }  // namespace

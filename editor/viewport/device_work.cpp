@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/viewport/device_work.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/groom/move_strands.h"
+
+namespace hairloom::editor {
+namespace {
+
+software::DeviceChoice chosenDevice() {
+    const QByteArray wish = qgetenv("HAIRLOOM_RENDERER");
+    if (wish == "software")
+        return {software::makeDevice(), "the software renderer draws: HAIRLOOM_RENDERER asks for it"};
+    const QByteArray surface = qgetenv("HAIRLOOM_VIEWPORT");
+    if (wish == "device" || surface == "window" || surface == "apart") {
+        if (auto found = gpu::createDevice()) return {std::move(*found), {}};
+    }
+    return software::chooseDevice();
+}
+
+/// They differ at most in their marks.
+bool sameButMarks(const PictureRequest& a, const PictureRequest& b) {
+    const render::Camera &c = a.camera, &d = b.camera;
+    return a.document == b.document && a.groom == b.groom && a.pose == b.pose && c.eye_ws == d.eye_ws &&
+           c.target_ws == d.target_ws && c.up_ws == d.up_ws && c.verticalFov == d.verticalFov &&
+           c.orthographicHeight == d.orthographicHeight && a.width == b.width && a.height == b.height &&
+           a.showHair == b.showHair && a.showHead == b.showHead && a.lightTurn == b.lightTurn &&
+           a.exposure == b.exposure && a.lightScale == b.lightScale && a.environment == b.environment &&
+           a.background == b.background && a.seeThrough == b.seeThrough && a.quality == b.quality &&
+           a.other == b.other && a.otherQuality == b.otherQuality;
+}
+
+}  // namespace
+
+Status Looks::take(PictureRequest request) {
+    split_ = request.split;
+    if (!request.other) {
+        other_.reset();
+        return work_.take(std::move(request));
+    }
+    PictureRequest left = request;
+    left.groom = std::exchange(request.other, nullptr);
+    left.other.reset();
+    left.quality = request.otherQuality;
+    if (!other_) other_.emplace(device_, live_);
+    if (auto taken = other_->take(std::move(left)); !taken) return taken;
+    return work_.take(std::move(request));
+}
+
+Result<std::pair<QImage, PictureReport>> Looks::draw() {
+    auto drawn = work_.draw();
+    if (drawn && drawn->first.isNull()) other_.reset();  // a window shows it
+    if (!drawn || !other_) return drawn;
+    auto left = other_->draw();
+    if (!left) return left;
+    QImage& picture = drawn->first;
+    const QImage beside =
+        left->first.size() == picture.size() ? left->first : left->first.scaled(picture.size());
+    const int columns = std::clamp(
+        static_cast<int>(std::lround(split_ * static_cast<float>(picture.width()))), 0, picture.width());
+    for (int y = 0; y < picture.height(); ++y) {
+        std::copy_n(reinterpret_cast<const QRgb*>(beside.constScanLine(y)), columns,
+                    reinterpret_cast<QRgb*>(picture.scanLine(y)));
+    }
+    drawn->second.milliseconds += left->second.milliseconds;
+    return drawn;
+}
+
+std::uint32_t Looks::frames() const {
+    return other_ ? std::min(work_.frames(), other_->frames()) : work_.frames();
+}
+
+void Looks::takeBack() {
+    work_.takeBack();
+    if (other_) other_->takeBack();
+}
+
+void Looks::holdAverage(bool on) {
+    work_.holdAverage(on);
+    if (other_) other_->holdAverage(on);
+}
+
+void Looks::holdMaps(bool on) {
+    work_.holdMaps(on);
+    if (other_) other_->holdMaps(on);
+}
+
+void Looks::forget() {
+    work_.forget();
+    other_.reset();
+}
+
+DeviceWork::DeviceWork(std::shared_ptr<const std::atomic<bool>> drop)
+    : DeviceWork(std::move(drop), chosenDevice()) {}
+
+DeviceWork::DeviceWork(std::shared_ptr<const std::atomic<bool>> drop, std::string why)
+    : DeviceWork(std::move(drop), software::DeviceChoice{software::makeDevice(), std::move(why)}) {}
+
+DeviceWork::DeviceWork(std::shared_ptr<const std::atomic<bool>> drop, software::DeviceChoice choice)
+    : note_(std::move(choice.why)),
+      device_(std::move(choice.device)),
+      live_(*device_),
+      shown_(*device_, &live_) {
+    if (!software::isSoftware(*device_)) return;
+    stillDevice_ = software::makeDevice(std::move(drop));
+    still_.emplace(*stillDevice_, nullptr);
+}
+
+void DeviceWork::joinMoves(PictureRequest& request) {
+    if (request.groom != handed_) handed_ = moved_ = request.groom;
+    if (request.moves) {
+        auto moved = std::make_shared<Groom>(*moved_);
+        moveStrands(*moved, request.moves->strands, request.moves->points_ws);
+        moved_ = std::move(moved);
+        request.moves.reset();
+    }
+    request.groom = moved_;
+}
+
+Status DeviceWork::take(PictureRequest request) {
+    if (!still_) return shown_.take(std::move(request));
+    joinMoves(request);
+    const bool showsMore = stillOf_ && !stillWaits_ && !quickWaits_ && still_->frames() > 0;
+    marksOnly_ = showsMore && !request.moving && sameButMarks(*stillOf_, request);
+    if (marksOnly_) return still_->take(std::move(request));
+    stillOf_.reset();
+    stillWaits_ = request.moving ? std::nullopt : std::optional(request);
+    quickWaits_ = true;
+    // Shadows take longer than all the rest.
+    const bool turnsLight = std::exchange(lightTurn_, request.lightTurn) != request.lightTurn;
+    const bool holds = request.moving && !turnsLight;
+    request.moving = true;
+    auto taken = shown_.take(std::move(request));
+    shown_.holdMaps(holds);
+    return taken;
+}
+
+Result<std::pair<QImage, PictureReport>> DeviceWork::draw() {
+    if (!still_) return shown_.draw();
+    if (std::exchange(quickWaits_, false)) {
+        auto drawn = shown_.draw();
+        if (drawn) drawn->second.moving = !stillWaits_;
+        return drawn;
+    }
+    if (stillWaits_) {
+        stillOf_ = std::exchange(stillWaits_, std::nullopt);
+        if (auto taken = still_->take(*stillOf_); !taken) return tl::unexpected(taken.error());
+    }
+    still_->holdAverage(std::exchange(marksOnly_, false));
+    auto drawn = still_->draw();
+    if (!drawn) still_->takeBack();
+    return drawn;
+}
+
+bool DeviceWork::isComplete() const {
+    if (!still_) return shown_.isComplete();
+    return !quickWaits_ && !marksOnly_ && !stillWaits_ && (!stillOf_ || still_->isComplete());
+}
+
+void DeviceWork::forget() {
+    shown_.forget();
+    if (still_) still_->forget();
+    stillWaits_.reset();
+    stillOf_.reset();
+    quickWaits_ = marksOnly_ = false;
+}
+
+Result<QImage> DeviceWork::drawAlone(PictureRequest request) {
+    RenderWork work(stillDevice_ ? *stillDevice_ : *device_, nullptr);
+    if (auto taken = work.take(std::move(request)); !taken) return tl::unexpected(taken.error());
+    QImage picture;
+    while (!work.isComplete()) {
+        auto drawn = work.draw();
+        if (!drawn) return tl::unexpected(drawn.error());
+        picture = std::move(drawn->first);
+    }
+    return picture;
+}
+
+}  // namespace hairloom::editor
