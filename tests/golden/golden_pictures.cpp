@@ -141,7 +141,7 @@ Result<render::Image> Painter::draw(const Case& which) {
     render::RenderScene shown = scene->scene();
     shown.camera = render::frame(render::View::ThreeQuarter, scene->subject(), 1);
     shown.lights = render::studioLights(shown.camera);
-    auto picture = render::renderPicture(device_, shown, which.options);
+    auto picture = render::renderPicture(*device_, shown, which.options);
     if (!picture) return tl::unexpected(picture.error());
     return std::move(picture->image);
 }

@@ -34,11 +34,13 @@ std::vector<Case> cases();
 /// Draws cases; keeps the sample that it drew last, for cases come sample by sample.
 class Painter {
   public:
-    explicit Painter(gpu::Device& device) : device_(device) {}
+    explicit Painter(gpu::Device& device) : device_(&device) {}
     Result<render::Image> draw(const Case& which);
+    /// From here on.
+    void use(gpu::Device& device) { device_ = &device; }
 
   private:
-    gpu::Device& device_;
+    gpu::Device* device_;
     std::string sample_;
     Groom groom_;
 };
