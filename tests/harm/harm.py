@@ -308,7 +308,9 @@ class Harm:
                 break
             self.count("window ends")
             window = subprocess.Popen([self.window, "w.hairloom"], cwd=self.folder, env=dict(self.environment, HAIRLOOM_VIEWPORT="none"),
-                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                      # below nohup it is ignored, and programs leave it so
+                                      preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL))
             time.sleep(self.random.uniform(0.05, 8))
             sent = self.random.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGHUP))
             window.send_signal(sent)
