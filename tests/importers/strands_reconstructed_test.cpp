@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <cstring>
 
 #include "importers/points_per_strand.h"
