@@ -15,6 +15,8 @@
 #include <unistd.h>
 #endif
 
+#include "core/base/utf8.h"
+
 namespace hairloom::cli {
 namespace {
 
@@ -34,7 +36,7 @@ Json placeOf(const Error& error) {
 
 void printError(const Error& error, bool json) {
     // Not fmt::print(), which throws where the stream takes nothing.
-    std::fputs(fmt::format("error: {}\n", error.message()).c_str(), stderr);
+    std::fputs(fmt::format("error: {}\n", cleanUtf8(error.message())).c_str(), stderr);
     if (json) printErrorObject(error);
 }
 

@@ -26,6 +26,7 @@
 #include "core/base/output_file.h"
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
+#include "core/base/utf8.h"
 #include "core/base/write_rules.h"
 #include "importers/reader_security.h"
 
@@ -55,8 +56,9 @@ Report rounded(const Report& value) {
 
 /// Names may quote bytes of damaged files, which need not be valid UTF-8.
 std::string textOf(const Report& value) {
-    return value.is_string() ? value.get<std::string>()
-                             : value.dump(-1, ' ', false, Report::error_handler_t::replace);
+    return hairloom::cleanUtf8(value.is_string()
+                                   ? value.get<std::string>()
+                                   : value.dump(-1, ' ', false, Report::error_handler_t::replace));
 }
 
 void printForPeople(std::FILE* stream, const Report& exact) {

@@ -11,6 +11,7 @@
 #include "cli/progress.h"
 #include "cli/vectors.h"
 #include "core/live/picture_cost_report.h"
+#include "core/live/view_file.h"
 
 namespace hairloom::cli {
 namespace {

@@ -100,7 +100,9 @@ std::string table() {
 Result<std::string> withLists(const std::string& readme) {
     const auto begin = readme.find(kBegin), end = readme.find(kEnd);
     if (begin == std::string::npos || end == std::string::npos || end < begin)
-        return fail("the markers of its lists are missing", fmt::format("{} … {}", kBegin, kEnd));
+        return fail("the markers of its lists are missing",
+                    fmt::format("expected {} and {}, each a line", kBegin.substr(0, kBegin.size() - 1),
+                                kEnd.substr(0, kEnd.size() - 1)));
     return readme.substr(0, begin + kBegin.size()) + table() + readme.substr(end);
 }
 

@@ -10,6 +10,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
@@ -217,7 +218,11 @@ ConfinementLayer limitFiles(const std::filesystem::path& folder, int version) {
 /// Sanitizers reserve terabytes of address space; there the parent's watch is the only limit.
 ConfinementLayer limitMemory(std::uint64_t bytes) {
     if (kSanitized) return {"memory", LayerState::Missing, "built with a sanitizer"};
-    const rlimit limit{bytes, bytes}, noCoreFile{0, 0};
+    // What limits the user already may be less, and cannot be raised.
+    rlimit before{};
+    const bool known = getrlimit(RLIMIT_AS, &before) == 0;
+    const rlim_t most = known ? std::min<rlim_t>(bytes, before.rlim_max) : bytes;
+    const rlimit limit{most, most}, noCoreFile{0, 0};
     setrlimit(RLIMIT_CORE, &noCoreFile);
     if (setrlimit(RLIMIT_AS, &limit) != 0) return {"memory", LayerState::Failed, reason()};
     return {"memory", LayerState::Set, {}};

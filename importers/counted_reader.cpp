@@ -105,7 +105,8 @@ std::optional<Layout> damagedLayoutOf(std::span<const std::byte> bytes) {
         std::uint64_t plain = 0;
         bool isPlain = true;
         walk(bytes, layout, [&](std::uint64_t at, std::uint32_t count) {
-            isPlain = isPlain && count >= 2 && count <= kMostOfPlain && isPlausible(bytes, at, numbers, count);
+            isPlain =
+                isPlain && count >= 2 && count <= kMostOfPlain && isPlausible(bytes, at, numbers, count);
             plain += isPlain ? 1 : 0;
         });
         if (plain >= kEnough) return layout;
@@ -128,6 +129,19 @@ std::string wordsFor(const Layout& layout) {
         default:
             return "position";
     }
+}
+
+std::string wordsFor(Counts counts) {
+    switch (counts) {
+        case Counts::BeforeEach:
+            return "counts before each strand";
+        case Counts::Together:
+        case Counts::TogetherWithTotal:
+            return "all counts first";
+        case Counts::OneForAll:
+            break;
+    }
+    return "one count for all strands";
 }
 
 RawAttribute numbersOfPoints(std::string name, std::uint32_t components, std::size_t points) {
@@ -179,8 +193,9 @@ Result<RawStrands> readCounted(const std::string& file, std::vector<std::byte>&&
     for (RawAttribute* attribute : {&directions, &values}) {
         if (!attribute->numbers.empty()) raw.attributes.push_back(std::move(*attribute));
     }
-    raw.warnings.push_back(fileNote(
-        fmt::format("the file names no format; its size fits {} a point", wordsFor(*layout)), "layout"));
+    raw.warnings.push_back(fileNote(fmt::format("the file names no format; its size fits {} a point, {}",
+                                                wordsFor(*layout), wordsFor(layout->counts)),
+                                    "layout"));
     std::vector<std::byte>().swap(bytes);
     return raw;
 }

@@ -10,6 +10,7 @@
 #include "core/base/log.h"
 #include "core/base/output_batch.h"
 #include "core/base/regular_file.h"
+#include "core/base/utf8.h"
 #include "core/base/write_rules.h"
 #include "importers/mesh_reader_program.h"
 #include "importers/picture_stream.h"
@@ -17,7 +18,6 @@
 #include "importers/reader_limits.h"
 #include "importers/reader_security.h"
 #include "importers/strand_file.h"
-#include "importers/utf8.h"
 
 namespace hairloom {
 namespace {

@@ -71,6 +71,7 @@ Result<RawStrands> readText(const std::string& file, std::string_view text, std:
     std::vector<float> widths;
     std::array<double, 4> numbers{};
     bool hasGaps = false;
+    const bool hasOpenEnd = !text.empty() && text.back() != '\n' && text.back() != '\r';
     for (std::uint64_t line = 1; !text.empty(); ++line) {
         const std::string_view words = takeLine(text);
         if (trimmed(words).starts_with('#')) continue;
@@ -96,6 +97,9 @@ Result<RawStrands> readText(const std::string& file, std::string_view text, std:
     if (raw.positions.size() > raw.offsets.back())
         raw.offsets.push_back(static_cast<std::uint32_t>(raw.positions.size()));
     raw.thickness = std::move(widths);
+    if (hasOpenEnd)
+        raw.warnings.push_back(fileNote("the last line has no end", "end of file",
+                                        "if the file was cut, its last strands are missing or too short"));
     const bool isOneRun = !hasGaps || raw.offsets.size() == 2;
     if (!isOneRun || (asked == 0 && guessPointsPerStrand(raw.positions) == 0)) return raw;
     auto runs = cutIntoStrands(file, raw.positions, asked);

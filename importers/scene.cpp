@@ -10,6 +10,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "core/base/utf8.h"
 #include "core/base/write_rules.h"
 #include "importers/child_process.h"
 #include "importers/foreign_reader.h"
@@ -19,7 +20,6 @@
 #include "importers/raw_scene.h"
 #include "importers/raw_scene_stream.h"
 #include "importers/reader_limits.h"
-#include "importers/utf8.h"
 
 namespace hairloom {
 namespace {

@@ -11,7 +11,7 @@
 #include <iterator>
 
 #include "core/base/file.h"
-#include "importers/utf8.h"
+#include "core/base/utf8.h"
 
 namespace hairloom {
 namespace {

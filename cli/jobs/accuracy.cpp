@@ -19,6 +19,7 @@
 #include "core/accuracy/work_precision_report.h"
 #include "core/base/file.h"
 #include "core/live/groom_scene.h"
+#include "core/live/view_file.h"
 
 namespace hairloom::cli {
 namespace {

@@ -23,6 +23,7 @@
 #include "core/documents/sample_material.h"
 #include "core/live/groom_scene.h"
 #include "core/live/moving_picture.h"
+#include "core/live/view_file.h"
 #include "core/render/aov.h"
 #include "core/render/png.h"
 #include "core/render/webp.h"

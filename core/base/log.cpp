@@ -7,6 +7,8 @@
 #include <atomic>
 #include <mutex>
 
+#include "core/base/utf8.h"
+
 namespace hairloom::log {
 namespace {
 
@@ -62,7 +64,7 @@ void write(Level level, std::string_view message) {
     if (state().sink) {
         state().sink(level, message);
     } else {
-        state().standardError->log(toSpdlog(level), "{}", message);
+        state().standardError->log(toSpdlog(level), "{}", cleanUtf8(message));
     }
 }
 

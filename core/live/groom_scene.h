@@ -2,54 +2,18 @@
 #pragma once
 // A groom as the renderer takes it.
 
-#include <array>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/groom/groom.h"
 #include "core/interpolation/strand_follow.h"
+#include "core/live/view_file.h"
 #include "core/render/picture.h"
-#include "core/shading/melanin.h"
 #include "core/simulation/motion.h"
 #include "hairloom/body_push.h"
 
 namespace hairloom {
-
-/// How a view sees light in fibres; what it does not say comes from the groom.
-struct FibreView {
-    std::optional<render::ShadingModel> model;
-    render::Scattering scattering = render::Scattering::dual;  ///< the caller's, not the groom's
-    std::optional<double> ior;
-    std::optional<Vec3d> absorption;  ///< RGB per fibre radius
-    std::optional<shading::Melanin> melanin;
-    std::optional<Vec3d> colour;                       ///< linear RGB of much hair
-    std::optional<std::array<double, 3>> width, tilt;  ///< of R, TT, TRT in radians of θ_h
-    std::optional<double> azimuthalRoughness;
-    std::optional<double> axisRatio;
-
-    bool saysColour() const { return absorption || melanin || colour; }
-};
-
-/// What a view file (--view) says; docs/cli.md lists its members.
-struct ViewFile {
-    std::optional<render::Camera> camera;
-    std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
-    bool hasLights = false;  ///< then there is no light besides what follows
-    std::vector<render::Light> lights;
-    render::Environment environment;
-    std::optional<Vec3f> background;  ///< linear RGB
-    std::optional<Vec3f> headAlbedo;
-    std::optional<float> rootRadius;  ///< metres
-    std::optional<float> tipScale;
-    std::optional<float> headAbsorption;  ///< 1/m, as render::RenderOptions
-    std::optional<float> shadowBlur;      ///< pixels, likewise
-    FibreView fibre;
-};
-/// A view names images in its own folder and below it, and in `imageFolders`.
-Result<ViewFile> readViewFile(const std::string& path,
-                              const std::vector<std::filesystem::path>& imageFolders = {});
 
 /// The hairstyle's material, and those of layers that have one of their own.
 struct StrandMaterials {

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/base/file.h"
+#include "core/render/exr_head.h"
 #include "core/render/picture_limits.h"
 
 namespace hairloom::render {
@@ -49,71 +50,52 @@ int channelNamed(const EXRHeader& header, const char* name) {
     return -1;
 }
 
-/// That the blocks of lines follow each other from their table to the end of the file: what is lost of them,
-/// or put between, is seen, which the library does not look at.
-Status checkBlocks(const std::string& file, std::span<const std::byte> content, const EXRHeader& header,
-                   std::int64_t height) {
-    constexpr std::uint64_t kPreamble = 8, kPlace = 8, kBlockHead = 8;
-    const bool isZip = header.compression_type == TINYEXR_COMPRESSIONTYPE_ZIP;
-    const std::int64_t lines = isZip ? 16 : header.compression_type == TINYEXR_COMPRESSIONTYPE_PIZ ? 32 : 1;
-    const auto blocks = static_cast<std::uint64_t>((height + lines - 1) / lines);
-    std::uint64_t at = kPreamble + header.header_len + kPlace * blocks;
-    for (std::uint64_t block = 0; block < blocks; ++block) {
-        std::uint32_t bytes = 0;
-        if (at > content.size() || content.size() - at < kBlockHead)
-            return failIn(file, Byte{content.size()}, "ends within its pixels");
-        std::memcpy(&bytes, content.data() + at + sizeof(std::int32_t), sizeof bytes);
-        if (bytes > content.size() - at - kBlockHead)
-            return failIn(file, Byte{at}, "is damaged: lines of pixels do not end where the next begin");
-        at += kBlockHead + bytes;
-    }
-    if (at == content.size()) return {};
-    return failIn(file, Byte{at}, "is damaged: it goes on after its lines of pixels");
-}
-
 }  // namespace
 
 Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte> content) {
     const auto failed = [&](const std::string& why) {
         return failIn(file, {}, why, "expected an OpenEXR of one part in lines of pixels");
     };
+    const auto head = readExrHead(file, content);
+    if (!head) return tl::unexpected(head.error());
+    if (head->width < 1 || head->height < 1) return failed("is a picture without pixels");
+    if (auto status = checkPictureSize(file, head->width, head->height,
+                                       (std::uint64_t{head->channels} + 4) * sizeof(float));
+        !status)
+        return tl::unexpected(status.error());
+    if (auto status = checkExrBlocks(file, content); !status) return tl::unexpected(status.error());
     const auto* const bytes = reinterpret_cast<const unsigned char*>(content.data());
     Loaded loaded;
     if (ParseEXRVersionFromMemory(&loaded.version, bytes, content.size()) != TINYEXR_SUCCESS)
         return failed("is not an OpenEXR file");
-    if (loaded.version.tiled != 0 || loaded.version.non_image != 0 || loaded.version.multipart != 0)
-        return failed("is tiled, deep or of several parts");
     if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, content.size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
         loaded.forgetHeader();
         return failed("cannot be read: " + loaded.why());
     }
-    const auto& window = loaded.header.data_window;
-    const std::int64_t width = std::int64_t{window.max_x} - window.min_x + 1;
-    const std::int64_t height = std::int64_t{window.max_y} - window.min_y + 1;
-    if (width < 1 || height < 1) return failed("is a picture without pixels");
-    const auto channels = static_cast<std::uint64_t>(loaded.header.num_channels);
-    if (auto status = checkPictureSize(file, static_cast<std::uint64_t>(width),
-                                       static_cast<std::uint64_t>(height), (channels + 4) * sizeof(float));
-        !status)
-        return tl::unexpected(status.error());
-    if (auto status = checkBlocks(file, content, loaded.header, height); !status)
-        return tl::unexpected(status.error());
     std::array<int, 4> places{channelNamed(loaded.header, "R"), channelNamed(loaded.header, "G"),
                               channelNamed(loaded.header, "B"), channelNamed(loaded.header, "A")};
     if (const int grey = channelNamed(loaded.header, "Y"); places[0] < 0 && grey >= 0)
         places[0] = places[1] = places[2] = grey;
     if (places[0] < 0 || places[1] < 0 || places[2] < 0) return failed("has no channels R, G and B, or Y");
-    for (int c = 0; c < loaded.header.num_channels; ++c)
-        loaded.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
+    for (const int place : places) {
+        if (place >= 0 && loaded.header.pixel_types[place] == TINYEXR_PIXELTYPE_UINT)
+            return failed("has whole numbers for colours");
+    }
+    for (int c = 0; c < loaded.header.num_channels; ++c) {
+        if (loaded.header.pixel_types[c] == TINYEXR_PIXELTYPE_HALF)
+            loaded.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
+    }
+    // Lines say which they are. The library turns pictures over whose lines come from the bottom up.
+    loaded.header.line_order = 0;
     if (LoadEXRImageFromMemory(&loaded.image, &loaded.header, bytes, content.size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
         loaded.forgetImage();
         return failed("cannot be read: " + loaded.why());
     }
     if (loaded.image.images == nullptr) return failed("has no pixels");
-    LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
-                      std::vector<float>(static_cast<std::size_t>(4 * width * height), 1.0f)};
+    LinearImage image{static_cast<std::uint32_t>(head->width), static_cast<std::uint32_t>(head->height),
+                      std::vector<float>(static_cast<std::size_t>(4 * head->width * head->height), 1.0f)};
     for (std::size_t c = 0; c < 4; ++c) {
         if (places[c] < 0) continue;
         const auto* const plane = reinterpret_cast<const float*>(loaded.image.images[places[c]]);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include <jerror.h>
 #include <jpeglib.h>
 
 #include "core/render/picture_limits.h"
@@ -21,6 +22,7 @@ struct Decoder {
     jpeg_error_mgr errors{};
     std::jmp_buf escape{};
     std::array<char, JMSG_LENGTH_MAX> why{};
+    int code = 0;  ///< of the error, one of jerror.h
 
     Decoder() {
         jpeg.err = jpeg_std_error(&errors);
@@ -28,6 +30,7 @@ struct Decoder {
         errors.error_exit = [](j_common_ptr common) {
             auto& self = *static_cast<Decoder*>(common->client_data);
             (*common->err->format_message)(common, self.why.data());
+            self.code = common->err->msg_code;
             std::longjmp(self.escape, 1);
         };
         errors.emit_message = [](j_common_ptr common, int level) {
@@ -62,13 +65,35 @@ struct Decoder {
     }
 };
 
+/// What a file that ends with this error should have been.
+const char* expectedInsteadOf(int code) {
+    switch (code) {
+        case JERR_CONVERSION_NOTIMPL:
+        case JERR_BAD_J_COLORSPACE:
+        case JERR_COMPONENT_COUNT:
+            return "expected grey or RGB: convert CMYK, which is for print, to RGB";
+        case JERR_BAD_PRECISION:
+            return "expected 8 bits a channel: use OpenEXR or a PNG of 16 bits for more";
+        case JERR_SOF_UNSUPPORTED:
+        case JERR_ARITH_NOTIMPL:
+        case JERR_NOT_COMPILED:
+            return "expected a baseline or progressive JPEG: save it as one, or as a PNG";
+        case JERR_IMAGE_TOO_BIG:
+        case JERR_WIDTH_OVERFLOW:
+            return "expected at most 32768 pixels along a side";
+        default:
+            return "expected a whole JPEG: it was cut, or changed";
+    }
+}
+static_assert(render::kMaxPictureSide == 32768);
+
 }  // namespace
 
 Result<render::LinearImage> decodeJpeg(const std::string& file, std::span<const std::byte> bytes) {
     Decoder decoder;
     const auto failed = [&] {
         return failIn(file, {}, std::string("cannot be read: ") + decoder.why.data(),
-                      "expected a whole JPEG");
+                      expectedInsteadOf(decoder.code));
     };
     if (!decoder.begin(reinterpret_cast<const unsigned char*>(bytes.data()),
                        static_cast<unsigned long>(bytes.size())))

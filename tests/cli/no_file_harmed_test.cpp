@@ -214,6 +214,36 @@ TEST_F(NoFileHarmed, AFullLimitOfFilesIsAnErrorWithWords) {
     EXPECT_FALSE(fs::exists(folder / "h.hairloom"));
 }
 
+#ifndef __SANITIZE_ADDRESS__  // which reserves more addresses than any limit
+
+TEST_F(NoFileHarmed, ForeignFilesAreReadBelowALimitOfTheUsersOwn) {
+    runJson("export g.hairloom --format hair -o a.hair");
+    // KiB of addresses: less than what the process that reads is limited to.
+    const std::string command = "cd '" + folder.string() +
+                                "' && ( ulimit -v 1500000; '" HAIRLOOM_CLI
+                                "' import a.hair -o i.hairloom ) > /dev/null 2> errors.txt";
+    EXPECT_EQ(std::system(command.c_str()), 0) << readText(folder / "errors.txt");
+    EXPECT_TRUE(fs::exists(folder / "i.hairloom"));
+}
+
+#endif
+
+TEST_F(NoFileHarmed, NamesDoNotCommandTheTerminal) {
+    for (const char* name : {"a\x1b[31mred.hair", "a\x7f.hair",
+                             "a\xc2\x9b"
+                             "31m.hair",
+                             "a\nerror: b.hair"}) {
+        const Outcome outcome = run("info '" + std::string(name) + "'");
+        EXPECT_EQ(outcome.exitCode, 1);
+        EXPECT_THAT(outcome.errors, testing::StartsWith("error: a?"));
+        EXPECT_EQ(outcome.errors.find('\n'), outcome.errors.size() - 1) << outcome.errors;
+        EXPECT_EQ(outcome.errors.find_first_of("\x1b\x7f\x9b"), std::string::npos);
+    }
+    runJson("export g.hairloom --format hair -o 'a\x1b[31m.hair'");
+    const Outcome read = run("import 'a\x1b[31m.hair' --unit m -o 'b\x1b[31m.hairloom'");
+    EXPECT_EQ((read.output + read.errors).find('\x1b'), std::string::npos) << read.output << read.errors;
+}
+
 TEST_F(NoFileHarmed, AFileGoesThroughAPipeWhereNothingIsReadBack) {
     const std::string cli = "'" HAIRLOOM_CLI "' ";
     const auto shell = [&](const std::string& command) {

@@ -86,5 +86,60 @@ TEST_F(ForeignPicture, DamageIsAnErrorThatNamesTheFile) {
     }
 }
 
+/// Eight by six pixels, grey.
+constexpr unsigned char kGreyJpeg[] = {
+    0xff, 0xd8, 0xff, 0xe0, 0x00, 0x10, 0x4a, 0x46, 0x49, 0x46, 0x00, 0x01, 0x01, 0x00, 0x00, 0x01,
+    0x00, 0x01, 0x00, 0x00, 0xff, 0xdb, 0x00, 0x43, 0x00, 0x03, 0x02, 0x02, 0x02, 0x02, 0x02, 0x03,
+    0x02, 0x02, 0x02, 0x03, 0x03, 0x03, 0x03, 0x04, 0x06, 0x04, 0x04, 0x04, 0x04, 0x04, 0x08, 0x06,
+    0x06, 0x05, 0x06, 0x09, 0x08, 0x0a, 0x0a, 0x09, 0x08, 0x09, 0x09, 0x0a, 0x0c, 0x0f, 0x0c, 0x0a,
+    0x0b, 0x0e, 0x0b, 0x09, 0x09, 0x0d, 0x11, 0x0d, 0x0e, 0x0f, 0x10, 0x10, 0x11, 0x10, 0x0a, 0x0c,
+    0x12, 0x13, 0x12, 0x10, 0x13, 0x0f, 0x10, 0x10, 0x10, 0xff, 0xc0, 0x00, 0x0b, 0x08, 0x00, 0x06,
+    0x00, 0x08, 0x01, 0x01, 0x11, 0x00, 0xff, 0xc4, 0x00, 0x14, 0x00, 0x01, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x07, 0xff, 0xc4, 0x00, 0x1b,
+    0x10, 0x00, 0x00, 0x07, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x01, 0x05, 0x07, 0x19, 0x53, 0x93, 0xd2, 0xff, 0xda, 0x00, 0x08, 0x01, 0x01, 0x00,
+    0x00, 0x3f, 0x00, 0x29, 0x96, 0xc7, 0x42, 0xb5, 0x1d, 0x4b, 0xa1, 0xff, 0xd9,
+};
+
+TEST_F(ForeignPicture, JpegsAreReadAndWhatIsRefusedSaysWhatWouldDo) {
+    const std::vector<unsigned char> whole(std::begin(kGreyJpeg), std::end(kGreyJpeg));
+    // The head of the frame: its kind, then two bytes of length, the bits, height and width, components.
+    constexpr std::size_t kKind = 0x5a, kBits = kKind + 3, kHeight = kBits + 1, kComponents = kBits + 5;
+    ASSERT_EQ(whole[kKind], 0xc0);
+    const auto failureOf = [&](const std::vector<unsigned char>& bytes) {
+        std::ofstream(folder / "a.jpg", std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return failure("a.jpg", {PictureKind::Jpeg});
+    };
+    const std::string first = failureOf(whole);
+    if (first.find("does not read") != std::string::npos) GTEST_SKIP() << "this build has no libjpeg";
+    EXPECT_EQ(first, "");
+    const auto read = readPicture(folder / "a.jpg", {PictureKind::Jpeg});
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->width, 8u);
+    EXPECT_EQ(read->height, 6u);
+    const auto changed = [&](std::initializer_list<std::pair<std::size_t, unsigned char>> changes) {
+        auto bytes = whole;
+        for (const auto& [at, value] : changes) bytes[at] = value;
+        return failureOf(bytes);
+    };
+    EXPECT_THAT(changed({{kBits, 12}}), HasSubstr("expected 8 bits a channel"));
+    EXPECT_THAT(changed({{kKind, 0xc3}}), HasSubstr("expected a baseline or progressive JPEG"));
+    EXPECT_THAT(changed({{kHeight, 0xff}, {kHeight + 1, 0xff}}), HasSubstr("expected at most 32768"));
+    EXPECT_THAT(changed({{kHeight, 0x9f}}), HasSubstr("32768 along a side"));
+    // The library makes pixels up for what is missing, which is no picture of what was painted.
+    for (const std::size_t length : {std::size_t{3}, kKind, kComponents, whole.size() - 9, whole.size() - 2})
+        EXPECT_THAT(failureOf({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)}),
+                    HasSubstr("expected"))
+            << length;
+    // Four components of print: their ids and samplings follow the count.
+    auto print = whole;
+    print[kComponents] = 4;
+    const std::vector<unsigned char> components{0x02, 0x11, 0, 0x03, 0x11, 0, 0x04, 0x11, 0};
+    print.insert(print.begin() + kComponents + 4, components.begin(), components.end());
+    print[kKind + 2] = static_cast<unsigned char>(print[kKind + 2] + components.size());
+    EXPECT_THAT(failureOf(print), HasSubstr("convert CMYK"));
+}
+
 }  // namespace
 }  // namespace hairloom

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "importers/points_per_strand.h"
@@ -57,12 +58,19 @@ void expectCurls(const Groom& groom) {
     }
 }
 
+bool says(const std::vector<Finding>& findings, std::string_view words) {
+    return std::ranges::any_of(findings,
+                               [&](const Finding& one) { return one.what.find(words) != one.what.npos; });
+}
+
 TEST(StrandsCounted, EveryLayoutIsFoundByTheSizeOfTheFile) {
     for (const Counts counts : {Counts::Each, Counts::Together, Counts::WithTotal}) {
         for (const std::uint32_t numbers : {3u, 4u, 6u, 7u}) {
             const auto imported = read(countedFile(counts, numbers));
             ASSERT_TRUE(imported) << numbers << ": " << imported.error().message();
             EXPECT_EQ(imported->format, "Counted strands");
+            EXPECT_TRUE(says(imported->warnings,
+                             counts == Counts::Each ? "counts before each strand" : "all counts first"));
             expectCurls(imported->groom);
             const AttributeSet& points = imported->groom.pointAttributes;
             EXPECT_EQ(points.has("direction"), numbers >= 6);
@@ -415,7 +423,11 @@ TEST(StrandsText, MitsubaPointsWithEmptyLinesBetweenStrands) {
     const auto radii = read("# curves\n0 0 0 0.001\n0 0.1 0 0.0005\n\n1 0 0 1e-3\n1 0.1 0 0\n");
     ASSERT_TRUE(radii) << radii.error().message();
     EXPECT_FLOAT_EQ(radii->groom.pointAttributes.view<float>(attribute::kRadius)[1], 0.0005f);
+    EXPECT_FALSE(says(radii->warnings, "no end"));
     EXPECT_FALSE(read("0 0 0 1\n0 0.1 0\n"));
+    const auto cut = read("0 0 0\n0 0.1 0\n\n1 0 0\n1 0.1 0.0");
+    ASSERT_TRUE(cut) << cut.error().message();
+    EXPECT_TRUE(says(cut->warnings, "the last line has no end"));
     EXPECT_FALSE(read("0 0\n0 0.1\n"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "importers/utf8.h"
+#include "core/base/utf8.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +14,8 @@ std::size_t sequenceLength(std::string_view text) {
     if (lead < 0x80) return lead >= 0x20 && lead != 0x7f ? 1 : 0;
     const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
     if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
+    // U+0080 … U+009F: terminals obey these, too.
+    if (lead == 0xc2 && byte(1) < 0xa0) return 0;
     for (std::size_t index = 1; index < length; ++index) {
         if ((byte(index) & 0xc0u) != 0x80) return 0;
     }
