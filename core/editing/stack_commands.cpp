@@ -41,7 +41,8 @@ class RestackCommand final : public Command {
         }
         for (const std::string& attribute : names) {
             if ((attribute != attribute::kPosition && !isOperatorAttribute(attribute)) ||
-                from.pointAttributes.version(attribute) == to.pointAttributes.version(attribute))
+                (from.pointAttributes.has(attribute) == to.pointAttributes.has(attribute) &&
+                 from.pointAttributes.version(attribute) == to.pointAttributes.version(attribute)))
                 continue;
             const AttributeData* data = find(to.pointAttributes, attribute);
             arrays_[attribute] = data ? std::optional(*data) : std::nullopt;

@@ -172,8 +172,10 @@ TakenStrands makeBelowStack(const Groom& groom, const RootGrid& grid, std::span<
                             float reach, const KeepOut& skin) {
     Groom base = groom;
     base.operators.clear();
-    base.pointAttributes.set(attribute::kPosition,
-                             groom.pointAttributes.all().find(attribute::kBasePosition)->second);
+    // Hair that was saved without a strand may have none.
+    const auto shape = groom.pointAttributes.all().find(attribute::kBasePosition);
+    if (shape != groom.pointAttributes.all().end())
+        base.pointAttributes.set(attribute::kPosition, shape->second);
     TakenStrands strands = makeStrands(base, grid, roots, reach, skin);
     strands.pointData.set(attribute::kBasePosition,
                           strands.pointData.all().find(attribute::kPosition)->second);

@@ -266,6 +266,8 @@ class StackRun {
     }
 
     Result<AttributeData> run(std::size_t count) {
+        // Operators may wait for hair that is still to be placed.
+        if (groom_.pointCount() == 0) return AttributeData(CowArray<Vec3f>());
         const auto base = groom_.pointAttributes.all().find(attribute::kBasePosition);
         if (base == groom_.pointAttributes.all().end())
             return fail("the operators have no base shape", "validate says what else is missing");

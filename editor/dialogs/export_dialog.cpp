@@ -234,6 +234,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     summary_->setWordWrap(true);
     layout->addWidget(summary_);
     findings_->setObjectName("findings");
+    findings_->setAccessibleName(tr("Findings"));
     findings_->setHeaderLabels({tr("Finding"), tr("Where"), tr("What to do")});
     findings_->setRootIsDecorated(false);
     findings_->setWordWrap(true);

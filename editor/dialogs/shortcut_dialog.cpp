@@ -29,6 +29,7 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     search->setToolTip(tr("Show only actions whose name contains this text"));
     layout->addWidget(search);
     list_->setHeaderLabels({tr("Action"), tr("Shortcut")});
+    list_->setAccessibleName(tr("Actions and their shortcuts"));
     list_->setRootIsDecorated(false);
     list_->header()->setStretchLastSection(false);
     list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);

@@ -75,6 +75,32 @@ struct StackEdit : testing::Test {
     Document document{hairOnHead()};
 };
 
+TEST(StackOfBaldHead, WaitsForHair) {
+    Groom bald;
+    bald.scalp = hairOnHead().scalp;
+    bald.scalpSelection = hairOnHead().scalpSelection;
+    for (const bool keepsBase : {true, false}) {
+        Document document(bald);
+        perform(document, addOperator(document.model(), 0, operatorWith("flow")));
+        perform(document, addOperator(document.model(), 1, operatorWith("noise")));
+        EXPECT_EQ(document.groom().operators.size(), 2u);
+        Groom saved = document.groom();
+        // As it came from a file of before.
+        if (!keepsBase) saved.pointAttributes.erase(attribute::kBasePosition);
+        Document opened(saved);
+        perform(opened, moveOperator(opened.model(), 1, 0));
+        ASSERT_TRUE(opened.replay(strokeFor("add")));
+        EXPECT_GT(opened.groom().strandCount(), 5u);
+        expectEvaluated(opened.groom());
+        while (opened.undo()) {
+        }
+        EXPECT_EQ(contentHash(opened.groom()), contentHash(saved));
+        while (document.undo()) {
+        }
+        EXPECT_EQ(contentHash(document.groom()), contentHash(bald));
+    }
+}
+
 TEST_F(StackEdit, KeepsTheBaseShapeAndIsUndone) {
     const Groom before = hairOnHead();
     EXPECT_TRUE(std::ranges::equal(groom().pointAttributes.view<Vec3f>(attribute::kBasePosition),
