@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
+#include "cli/progress.h"
 #include "core/base/content_kind.h"
 #include "core/base/stopwatch.h"
 #include "core/groom/file/project_file.h"
@@ -24,7 +27,10 @@ Result<Report> run(const GuidesOptions& options) {
     const Stopwatch watch;
     GuidesSettings settings = options.settings;
     settings.alone = !options.all;
-    const GuideClusters clusters = clusterGuides(*groom, strandsToEdit(*groom, {}), settings);
+    const std::vector<std::uint32_t> strands = strandsToEdit(*groom, {});
+    Progress bar("clustering", 1000);
+    const GuideClusters clusters = clusterGuides(
+        *groom, strands, settings, [&](double share) { bar.done(static_cast<std::size_t>(1000 * share)); });
     if (clusters.guides.empty())
         return failIn(options.input, {}, "no strand can be a guide",
                       "expected strands of at least two points that are not frozen or locked");
@@ -33,7 +39,7 @@ Result<Report> run(const GuidesOptions& options) {
                   {"mean_mm", clusters.meanMm},
                   {"max_mm", clusters.maxMm}};
     if (!options.output.empty()) {
-        if (auto chosen = chooseGuides(*groom, settings); !chosen) return tl::unexpected(chosen.error());
+        keepGuides(*groom, strands, clusters, settings.alone);
         if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
         report["output"] = options.output;
     }

@@ -56,25 +56,28 @@ void assign(const Rows& rows, const Rows& middles, std::vector<std::uint32_t>& n
 }
 
 /// k-means++: each next middle is a row, drawn by the squared distance from those that there are.
-Rows firstMiddles(const Rows& rows, std::size_t count, std::uint64_t seed) {
+template <class Told>
+Rows firstMiddles(const Rows& rows, std::size_t count, std::uint64_t seed, const Told& told) {
     Random random(seed, 0);
     Rows middles(static_cast<Eigen::Index>(count), kColumns);
     std::vector<float> squares(static_cast<std::size_t>(rows.rows()), std::numeric_limits<float>::max());
     std::size_t next = random.below(static_cast<std::uint32_t>(squares.size()));
     for (std::size_t k = 0; k < count; ++k) {
         middles.row(static_cast<Eigen::Index>(k)) = rows.row(static_cast<Eigen::Index>(next));
+        parallelFor(squares.size(), 16 * kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                squares[i] = std::min(squares[i], (rows.row(static_cast<Eigen::Index>(i)) -
+                                                   middles.row(static_cast<Eigen::Index>(k)))
+                                                      .squaredNorm());
+        });
         double sum = 0;
-        for (std::size_t i = 0; i < squares.size(); ++i) {
-            squares[i] = std::min(squares[i], (rows.row(static_cast<Eigen::Index>(i)) -
-                                               middles.row(static_cast<Eigen::Index>(k)))
-                                                  .squaredNorm());
-            sum += static_cast<double>(squares[i]);
-        }
+        for (const float square : squares) sum += static_cast<double>(square);
         double left = sum * static_cast<double>(random.uniform());
         for (next = 0; next + 1 < squares.size(); ++next) {
             left -= static_cast<double>(squares[next]);
             if (left < 0) break;
         }
+        told(static_cast<double>(k + 1) / static_cast<double>(count));
     }
     return middles;
 }
@@ -126,8 +129,11 @@ std::span<const Field<GuidesSettings>> fieldsOf(const GuidesSettings&) {
 }
 
 GuideClusters clusterGuides(const Groom& groom, std::span<const std::uint32_t> strands,
-                            const GuidesSettings& settings) {
+                            const GuidesSettings& settings, const std::function<void(double)>& progress) {
     GuideClusters clusters;
+    const auto tell = [&](double share) {
+        if (progress) progress(share);
+    };
     if (strands.size() <= settings.count) {
         clusters.guides.assign(strands.begin(), strands.end());
         clusters.guideOf = clusters.guides;
@@ -135,7 +141,8 @@ GuideClusters clusterGuides(const Groom& groom, std::span<const std::uint32_t> s
     }
     const std::size_t count = settings.count;
     const Rows rows = featuresOf(groom, strands, settings.rootWeight);
-    Rows middles = firstMiddles(rows, count, settings.seed);
+    constexpr double kBegun = 0.1;  // share of the work that the first middles are
+    Rows middles = firstMiddles(rows, count, settings.seed, [&](double share) { tell(kBegun * share); });
     std::vector<std::uint32_t> nearest, last;
     std::vector<float> squares;
     for (int step = 0; step < kMostSteps; ++step) {
@@ -143,6 +150,7 @@ GuideClusters clusterGuides(const Groom& groom, std::span<const std::uint32_t> s
         if (nearest == last) break;
         last = nearest;
         moveToMeans(rows, nearest, middles);
+        tell(kBegun + (1 - kBegun) * (step + 1) / (kMostSteps + 2));
     }
     assign(rows, middles, nearest, squares);
     const std::vector<std::uint32_t> chosen = medoids(nearest, squares, count);
@@ -163,6 +171,7 @@ GuideClusters clusterGuides(const Groom& groom, std::span<const std::uint32_t> s
         clusters.meanMm += mm / static_cast<double>(strands.size());
         clusters.maxMm = std::max(clusters.maxMm, mm);
     }
+    tell(1);
     return clusters;
 }
 

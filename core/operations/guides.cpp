@@ -17,18 +17,15 @@ std::uint32_t followersOf(std::size_t strands, std::size_t guides) {
 
 }  // namespace
 
-Result<std::size_t> chooseGuides(Groom& groom, const GuidesSettings& settings, const Region& region) {
-    if (auto status = checkFields("guides", settings); !status) return tl::unexpected(status.error());
-    const std::vector<std::uint32_t> strands = strandsToEdit(groom, region);
-    if (strands.empty()) return std::size_t{0};
-    const GuideClusters clusters = clusterGuides(groom, strands, settings);
+void keepGuides(Groom& groom, std::span<const std::uint32_t> strands, const GuideClusters& clusters,
+                bool alone) {
     const auto before = groom.strandAttributes.view<std::uint8_t>(attribute::kGuide);
     std::vector<std::uint8_t> flags(before.begin(), before.end());
     flags.resize(groom.strandCount(), 1);
     for (const std::uint32_t s : strands) flags[s] = 0;
     for (const std::uint32_t s : clusters.guides) flags[s] = 1;
     groom.strandAttributes.set(attribute::kGuide, std::move(flags));
-    if (!settings.alone) return clusters.guides.size();
+    if (!alone) return;
     std::vector<std::uint8_t> gone(groom.strandCount(), 0);
     for (const std::uint32_t s : strands) gone[s] = 1;
     for (const std::uint32_t s : clusters.guides) gone[s] = 0;
@@ -40,6 +37,14 @@ Result<std::size_t> chooseGuides(Groom& groom, const GuidesSettings& settings, c
     dropOperators(groom);
     groom = strandsOf(groom, kept);
     groom.interpolation.followPerGuide = followersOf(strands.size(), clusters.guides.size());
+}
+
+Result<std::size_t> chooseGuides(Groom& groom, const GuidesSettings& settings, const Region& region) {
+    if (auto status = checkFields("guides", settings); !status) return tl::unexpected(status.error());
+    const std::vector<std::uint32_t> strands = strandsToEdit(groom, region);
+    if (strands.empty()) return std::size_t{0};
+    const GuideClusters clusters = clusterGuides(groom, strands, settings);
+    keepGuides(groom, strands, clusters, settings.alone);
     return clusters.guides.size();
 }
 

@@ -42,10 +42,7 @@ void MainWindow::chooseGuidesByClustering() {
     if (!taken) return;
     const GuideClusters clusters = clusterGuides(groom, strands, settings);
     Groom guided = groom;
-    if (auto chosen = chooseGuides(guided, settings); !chosen) {
-        messages_.warn(errorText(chosen.error()));
-        return;
-    }
+    keepGuides(guided, strands, clusters, settings.alone);
     const std::string record = fmt::format(R"({{"op":"guides","count":{}}})", settings.count);
     document_.perform(editing::replaceGroom(document_.editing().model(), std::move(guided),
                                             tr("Cluster guides").toStdString(), record));
