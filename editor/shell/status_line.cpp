@@ -96,7 +96,9 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     connect(&viewport_, &Viewport::deviceReady, this, [this](const QString& name, const QString& note) {
         device_->setText(name.section(" (", 0, 0));
         device_->setToolTip(note.isEmpty() ? tr("Graphics device for rendering") : note);
-        if (!note.isEmpty()) say(note, false);
+        // A warning stays for its time; the tooltip has the note for longer.
+        const bool warns = warning_ && fade_.isActive();
+        if (!note.isEmpty() && !warns) say(note, false);
     });
     device_->setText(tr("looking for a device"));
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {

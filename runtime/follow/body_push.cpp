@@ -20,7 +20,7 @@ constexpr float kKept = 0.0005f;
 constexpr float kPushSlack = 1e-5f;
 /// Metres within which a body is looked up at once: there is no free space around.
 constexpr float kBeside = 0.006f;
-constexpr float kUnknown = std::numeric_limits<float>::infinity();
+constexpr float kNothingKnown = std::numeric_limits<float>::infinity();
 
 /// Places of a uniform Catmull-Rom curve between p and p + 1: shares of the points p − 1 to p + 2, at ¼, ½
 /// and ¾.
@@ -58,7 +58,7 @@ struct BodyPush::Hair {
 
     void start() {
         known.free.assign(points.size(), 0.0f);
-        known.near.assign(points.size(), kUnknown);
+        known.near.assign(points.size(), kNothingKnown);
         known.moved.assign(points.size(), moment);
         known.looked.assign(points.size(), 0);
         known.checked.assign(points.size(), 0);
@@ -102,18 +102,18 @@ BodyPush::BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint3
 void BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
     Hair::Known& known = hair.known;
     Float3 last{};
-    float free = 0.0f, near = kUnknown;
+    float free = 0.0f, near = kNothingKnown;
     for (std::size_t p = 1; p < hair.points.size(); ++p) {
         if (known.moved[p] <= known.looked[p]) continue;
         known.looked[p] = hair.moment;
         const Float3 point = hair.points[p];
         if (!isFinite(point)) continue;
         known.free[p] = free - length(point - last);
-        known.near[p] = kUnknown;
+        known.near[p] = kNothingKnown;
         if (known.free[p] > kKept) continue;
         const bool isBeside = near + length(point - last) < kBeside;
         last = point;
-        near = kUnknown;
+        near = kNothingKnown;
         if (!isBeside) {
             known.free[p] = free = body.freeAround(point);
             if (free > kKept) continue;
