@@ -331,6 +331,8 @@ TEST_F(PictureTest, DyeShowsWhileItIsPainted) {
     EXPECT_GT(during, 30) << "while the button is down";
     moveTo(crown + QPoint(60, 10));
     release(crown + QPoint(60, 10));
+    // The display's own pointer has stayed where it was, and only a way of its own is told.
+    moveTo(QPoint(30, 2));
     moveTo(QPoint(2, 2));
     const QImage painted = settled();
     EXPECT_GT(redder(painted), during);
@@ -372,6 +374,8 @@ TEST_F(PictureTest, WidthShowsWhileItIsPainted) {
     EXPECT_GT(during, 100) << "while the button is down";
     moveTo(crown + QPoint(60, 10));
     release(crown + QPoint(60, 10));
+    // The display's own pointer has stayed where it was, and only a way of its own is told.
+    moveTo(QPoint(30, 2));
     moveTo(QPoint(2, 2));
     const QImage painted = settled();
     EXPECT_GT(changed(painted), during);
