@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // No work is lost or overwritten: other programs and windows on the same project, crashes, ends of sessions,
 // folders that take no copy.
-#include <QAbstractButton>
-#include <QApplication>
 #include <QDir>
 #include <QElapsedTimer>
 #include <QLabel>
@@ -23,7 +21,7 @@
 #include "core/groom/file/project_file.h"
 #include "editor/document/end_signals.h"
 #include "editor/shell/start_page.h"
-#include "tests/editor/window_fixture.h"
+#include "tests/editor/saving_fixture.h"
 
 #ifndef _WIN32
 #include <sys/stat.h>
@@ -33,67 +31,6 @@ namespace hairloom::editor {
 namespace {
 
 namespace fs = std::filesystem;
-
-class SavingTest : public WindowTest {
-  protected:
-    void SetUp() override {
-        WindowTest::SetUp();
-        openSampleHair("short");
-        openFirstStrands(40);
-        for (const RecoveryCopy& copy : recoveryCopies()) ASSERT_TRUE(removeRecoveryCopy(copy));
-    }
-    fs::path file(const char* name) const { return inFolder(name).toStdString(); }
-    float drag() { return groom().simulation.airDrag; }
-    /// A step that is not saved.
-    void setDrag(float drag) {
-        Groom changed = groom();
-        changed.simulation.airDrag = drag;
-        change("Air drag", changed);
-    }
-    /// As another program saves: a new file takes the name.
-    void saveElsewhere(const fs::path& path, float drag) const {
-        auto theirs = loadProject(path);
-        ASSERT_TRUE(theirs) << theirs.error().message();
-        theirs->simulation.airDrag = drag;
-        const fs::path beside = path.parent_path() / "theirs.hairloom";
-        ASSERT_TRUE(saveProject(*theirs, beside));
-        fs::rename(beside, path);
-    }
-    static float dragIn(const fs::path& path) {
-        const auto saved = loadProject(path);
-        return saved ? saved->simulation.airDrag : -1;
-    }
-    /// Presses a button of the question that comes, and says whether one came.
-    void answer(const char* button) {
-        asked_ = false;
-        auto* timer = new QTimer(window.get());
-        QObject::connect(timer, &QTimer::timeout, window.get(), [this, timer, button] {
-            const QWidget* question = QApplication::activeModalWidget();
-            auto* found = question ? question->findChild<QAbstractButton*>(button) : nullptr;
-            if (!found) return;
-            asked_ = true;
-            timer->stop();
-            found->click();
-        });
-        timer->start(20);
-    }
-    /// A copy of a window that no longer runs.
-    static fs::path leaveCopy(const Groom& groom, const fs::path& project) {
-        auto place = RecoveryPlace::take();
-        EXPECT_TRUE(place);
-        EXPECT_TRUE(place->describe({project, "left", fileVersion(project), 0}));
-        EXPECT_TRUE(saveProject(groom, place->copy()));
-        place->keepCopy();
-        return place->copy();
-    }
-    bool isOffered() {
-        const StartPage page(files(), parts().preferences);
-        return page.findChild<QPushButton*>("recover") != nullptr;
-    }
-    std::string said() { return window->statusLine().message().toStdString(); }
-
-    bool asked_ = false;
-};
 
 TEST_F(SavingTest, WhatAnotherProgramSavedIsNotOverwrittenUnasked) {
     const fs::path path = file("a.hairloom");
