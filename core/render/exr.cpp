@@ -63,7 +63,7 @@ Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte
                                        (std::uint64_t{head->channels} + 4) * sizeof(float));
         !status)
         return tl::unexpected(status.error());
-    if (auto status = checkExrBlocks(file, content); !status) return tl::unexpected(status.error());
+    if (auto status = checkExrBlocks(file, content, *head); !status) return tl::unexpected(status.error());
     const auto* const bytes = reinterpret_cast<const unsigned char*>(content.data());
     Loaded loaded;
     if (ParseEXRVersionFromMemory(&loaded.version, bytes, content.size()) != TINYEXR_SUCCESS)

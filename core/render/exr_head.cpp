@@ -56,11 +56,21 @@ constexpr std::array<Required, 8> kRequired{{{"channels", "chlist", 0},
                                              {"screenWindowCenter", "v2f", 8},
                                              {"screenWindowWidth", "float", 4}}};
 
+tl::unexpected<Error> wrongAt(const std::string& file, std::uint64_t at, std::string problem) {
+    return failIn(file, Byte{at}, std::move(problem), "expected an OpenEXR of one part in lines of pixels");
+}
+
 class Head {
   public:
     Head(const std::string& file, std::span<const std::byte> bytes) : file_(file), bytes_(bytes) {}
 
-    Status read() {
+    Result<ExrHead> read() {
+        if (auto status = readAll(); !status) return tl::unexpected(status.error());
+        return head_;
+    }
+
+  private:
+    Status readAll() {
         if (bytes_.size() < 8 || valueAt<std::uint32_t>(bytes_, 0) != kMagic)
             return wrong(0, "is not an OpenEXR file");
         const auto version = valueAt<std::uint32_t>(bytes_, 4);
@@ -69,65 +79,15 @@ class Head {
         if ((version & ~(0xffu | kLongNames)) != 0) return wrong(4, "has flags that OpenEXR does not know");
         if (auto status = readAttributes(); !status) return status;
         if (auto status = checkRequired(); !status) return status;
+        head_.width = extent(0, 8);
+        head_.height = extent(4, 12);
+        head_.top = valueAt<std::int32_t>(bytes_, find("dataWindow")->at + 4);
+        head_.compression = valueAt<std::uint8_t>(bytes_, find("compression")->at);
         return readChannels();
     }
 
-    std::uint64_t width() const { return extent(0, 8); }
-    std::uint64_t height() const { return extent(4, 12); }
-    std::uint32_t channels() const { return channels_; }
-
-    Status checkBlocks() const {
-        const auto compression = valueAt<std::uint8_t>(bytes_, find("compression")->at);
-        const std::uint64_t lines = kLines.at(compression);
-        const std::uint64_t blocks = (height() + lines - 1) / lines;
-        if (blocks > (bytes_.size() - end_) / sizeof(std::uint64_t))
-            return wrong(bytes_.size(), "ends within the table of its lines of pixels");
-        std::vector<std::uint64_t> places(static_cast<std::size_t>(blocks));
-        std::memcpy(places.data(), bytes_.data() + end_, places.size() * sizeof(std::uint64_t));
-        const auto top = std::int64_t{valueAt<std::int32_t>(bytes_, find("dataWindow")->at + 4)};
-        std::vector<std::uint64_t> order(places.size());
-        for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-        std::ranges::sort(order, {}, [&](std::uint64_t i) { return places[static_cast<std::size_t>(i)]; });
-        std::uint64_t at = end_ + blocks * sizeof(std::uint64_t);
-        for (const std::uint64_t block : order) {
-            if (places[static_cast<std::size_t>(block)] != at)
-                return wrong(end_ + block * sizeof(std::uint64_t),
-                             at < bytes_.size() ? "is damaged: lines of pixels are not where the table says"
-                                                : "ends within its pixels");
-            if (bytes_.size() - at < 8) return wrong(bytes_.size(), "ends within its pixels");
-            if (valueAt<std::int32_t>(bytes_, at) != top + static_cast<std::int64_t>(block * lines))
-                return wrong(at, "is damaged: other lines of pixels than the table says");
-            const std::uint64_t packed = valueAt<std::uint32_t>(bytes_, at + 4);
-            if (packed > bytes_.size() - at - 8)
-                return wrong(at, "is damaged: lines of pixels do not end where the next begin");
-            const std::uint64_t raw = bytesPerLine_ * std::min(lines, height() - block * lines);
-            if (packed > raw || raw > packed * kBestRatio.at(compression) ||
-                (compression == None && packed != raw))
-                return wrong(at, fmt::format("is damaged: {} bytes hold {} of pixels", packed, raw));
-            if (compression == Piz && packed < raw && !isPiz(bytes_.subspan(at + 8, packed)))
-                return wrong(at, "is damaged: its wavelets are cut");
-            at += 8 + packed;
-        }
-        if (at == bytes_.size()) return {};
-        return wrong(at, "is damaged: it goes on after its lines of pixels");
-    }
-
-  private:
-    /// That its parts lie in the block: which values there are, two numbers and a bit for each from one to
-    /// the other; then the length of the codes, with a head of their own, to the end of the block.
-    static bool isPiz(std::span<const std::byte> block) {
-        constexpr std::size_t kRange = 4, kLength = 4, kCodesHead = 20;
-        if (block.size() < kRange + kLength + kCodesHead) return false;
-        const std::size_t first = valueAt<std::uint16_t>(block, 0), last = valueAt<std::uint16_t>(block, 2);
-        const std::size_t bits = first <= last ? last - first + 1 : 0;
-        if (bits > block.size() - kRange - kLength - kCodesHead) return false;
-        const std::size_t length = valueAt<std::uint32_t>(block, kRange + bits);
-        return length >= kCodesHead && length <= block.size() - kRange - bits - kLength;
-    }
-
     tl::unexpected<Error> wrong(std::uint64_t at, std::string problem) const {
-        return failIn(file_, Byte{at}, std::move(problem),
-                      "expected an OpenEXR of one part in lines of pixels");
+        return wrongAt(file_, at, std::move(problem));
     }
 
     /// Characters up to a zero, which is taken, too; nothing where it is too long or has none.
@@ -160,7 +120,7 @@ class Head {
             attributes_.push_back({*name, *type, at, size});
             at += size;
         }
-        end_ = at;
+        head_.end = at;
         return {};
     }
 
@@ -176,7 +136,7 @@ class Head {
     Status checkRequired() const {
         for (const Required& required : kRequired) {
             const Attribute* const found = find(required.name);
-            if (!found) return wrong(end_, fmt::format("has no attribute {}", required.name));
+            if (!found) return wrong(head_.end, fmt::format("has no attribute {}", required.name));
             if (found->type != required.type || (required.size != 0 && found->size != required.size))
                 return wrong(found->at, fmt::format("has another {} than each file has", required.name));
         }
@@ -207,11 +167,11 @@ class Head {
             if (valueAt<std::int32_t>(bytes_, at + 8) != 1 || valueAt<std::int32_t>(bytes_, at + 12) != 1)
                 return wrong(at + 8, "has a channel with fewer values than pixels");
             if (!names.insert(*name).second) return wrong(begin, "has a channel twice");
-            bytesPerLine_ += width() * (type == 1 ? 2 : 4);
+            head_.bytesPerLine += head_.width * (type == 1 ? 2 : 4);
             at += 16;
         }
         if (at != end || names.empty()) return wrong(at, "has a list of channels that is none");
-        channels_ = static_cast<std::uint32_t>(names.size());
+        head_.channels = static_cast<std::uint32_t>(names.size());
         return {};
     }
 
@@ -226,23 +186,63 @@ class Head {
     const std::string& file_;
     std::span<const std::byte> bytes_;
     std::vector<Attribute> attributes_;
-    std::uint64_t end_ = 0;           ///< of the head, where the table begins
-    std::uint64_t bytesPerLine_ = 0;  ///< of pixels, unpacked
-    std::uint32_t channels_ = 0;
+    ExrHead head_;
 };
+
+/// That its parts lie in the block: which values there are, two numbers and a bit for each from one to
+/// the other; then the length of the codes, with a head of their own, to the end of the block.
+bool isPiz(std::span<const std::byte> block) {
+    constexpr std::size_t kRange = 4, kLength = 4, kCodesHead = 20;
+    if (block.size() < kRange + kLength + kCodesHead) return false;
+    const std::size_t first = valueAt<std::uint16_t>(block, 0), last = valueAt<std::uint16_t>(block, 2);
+    const std::size_t bits = first <= last ? last - first + 1 : 0;
+    if (bits > block.size() - kRange - kLength - kCodesHead) return false;
+    const std::size_t length = valueAt<std::uint32_t>(block, kRange + bits);
+    return length >= kCodesHead && length <= block.size() - kRange - bits - kLength;
+}
 
 }  // namespace
 
 Result<ExrHead> readExrHead(const std::string& file, std::span<const std::byte> content) {
-    Head head(file, content);
-    if (auto status = head.read(); !status) return tl::unexpected(status.error());
-    return ExrHead{head.width(), head.height(), head.channels()};
+    return Head(file, content).read();
 }
 
-Status checkExrBlocks(const std::string& file, std::span<const std::byte> content) {
-    Head head(file, content);
-    if (auto status = head.read(); !status) return status;
-    return head.checkBlocks();
+Status checkExrBlocks(const std::string& file, std::span<const std::byte> content, const ExrHead& head) {
+    const auto wrong = [&](std::uint64_t at, std::string problem) {
+        return wrongAt(file, at, std::move(problem));
+    };
+    const std::uint8_t compression = head.compression;
+    const std::uint64_t lines = kLines.at(compression);
+    const std::uint64_t blocks = (head.height + lines - 1) / lines;
+    if (blocks > (content.size() - head.end) / sizeof(std::uint64_t))
+        return wrong(content.size(), "ends within the table of its lines of pixels");
+    std::vector<std::uint64_t> places(static_cast<std::size_t>(blocks));
+    std::memcpy(places.data(), content.data() + head.end, places.size() * sizeof(std::uint64_t));
+    std::vector<std::uint64_t> order(places.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::sort(order, {}, [&](std::uint64_t i) { return places[static_cast<std::size_t>(i)]; });
+    std::uint64_t at = head.end + blocks * sizeof(std::uint64_t);
+    for (const std::uint64_t block : order) {
+        if (places[static_cast<std::size_t>(block)] != at)
+            return wrong(head.end + block * sizeof(std::uint64_t),
+                         at < content.size() ? "is damaged: lines of pixels are not where the table says"
+                                             : "ends within its pixels");
+        if (content.size() - at < 8) return wrong(content.size(), "ends within its pixels");
+        if (valueAt<std::int32_t>(content, at) != head.top + static_cast<std::int64_t>(block * lines))
+            return wrong(at, "is damaged: other lines of pixels than the table says");
+        const std::uint64_t packed = valueAt<std::uint32_t>(content, at + 4);
+        if (packed > content.size() - at - 8)
+            return wrong(at, "is damaged: lines of pixels do not end where the next begin");
+        const std::uint64_t raw = head.bytesPerLine * std::min(lines, head.height - block * lines);
+        if (packed > raw || raw > packed * kBestRatio.at(compression) ||
+            (compression == None && packed != raw))
+            return wrong(at, fmt::format("is damaged: {} bytes hold {} of pixels", packed, raw));
+        if (compression == Piz && packed < raw && !isPiz(content.subspan(at + 8, packed)))
+            return wrong(at, "is damaged: its wavelets are cut");
+        at += 8 + packed;
+    }
+    if (at == content.size()) return {};
+    return wrong(at, "is damaged: it goes on after its lines of pixels");
 }
 
 }  // namespace hairloom::render

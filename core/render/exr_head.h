@@ -15,6 +15,10 @@ namespace hairloom::render {
 struct ExrHead {
     std::uint64_t width = 0, height = 0;  ///< pixels; 0 where the window is empty
     std::uint32_t channels = 0;
+    std::uint64_t end = 0;           ///< where the table of blocks begins
+    std::uint64_t bytesPerLine = 0;  ///< of pixels, unpacked
+    std::int64_t top = 0;            ///< number of the first line
+    std::uint8_t compression = 0;    ///< as the file numbers it, up to that of PIZ
 };
 
 /// Of a file of one part in lines of pixels. Errors, with the byte: another kind of file; an attribute that
@@ -23,7 +27,8 @@ struct ExrHead {
 Result<ExrHead> readExrHead(const std::string& file, std::span<const std::byte> content);
 
 /// That the blocks of lines are where the table says, one for each, follow each other to the end of the file,
-/// and can hold their pixels. Errors, with the byte: what is lost of them, or put between.
-Status checkExrBlocks(const std::string& file, std::span<const std::byte> content);
+/// and can hold their pixels. `head`: of that content. Errors, with the byte: what is lost of them, or put
+/// between.
+Status checkExrBlocks(const std::string& file, std::span<const std::byte> content, const ExrHead& head);
 
 }  // namespace hairloom::render
