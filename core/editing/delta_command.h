@@ -5,14 +5,13 @@
 #include <memory>
 #include <string>
 
+#include "core/editing/attribute_delta.h"
 #include "core/editing/command.h"
 #include "core/editing/dye_delta.h"
-#include "core/editing/mask_delta.h"
 #include "core/editing/point_delta.h"
 #include "core/editing/root_delta.h"
 #include "core/editing/scalp_delta.h"
 #include "core/editing/strand_delta.h"
-#include "core/editing/width_delta.h"
 
 namespace hairloom::editing {
 
@@ -25,8 +24,8 @@ struct Deltas {
     FaceDelta faces;
     DensityDelta density;
     DyeDelta dye;
-    MaskDelta mask;
-    WidthDelta widths;
+    AttributeDelta mask{AttributeDelta::Of::strands};
+    AttributeDelta widths{AttributeDelta::Of::points};  ///< the attribute `width_change`
     RootDelta roots;
     StrandDelta strands;  ///< last in doing, first in undoing
     bool empty() const {

@@ -148,7 +148,7 @@ std::unique_ptr<Command> setMask(const Model& model, std::uint32_t number, std::
     for (const float value : values) recorded.push_back(readableDecimal(value));
     std::string record = recordOf("mask", {{"mask", number}, {"values", std::move(recorded)}});
     return prepared(model, "Mask", std::move(record), [&](Groom& groom, Deltas& deltas) {
-        deltas.mask.keep(groom, number, allStrands(groom));
+        deltas.mask.keep(groom, maskAttribute(number), allStrands(groom));
         groom.strandAttributes.set(maskAttribute(number), std::vector<float>(values.begin(), values.end()));
         deltas.mask.finish(groom);
     });

@@ -36,7 +36,7 @@ class MaskPaint final : public StrandBrush {
         target.touched = reached.strands;
         if (reached.strands.empty()) return {};
         const auto number = static_cast<std::uint32_t>(target.parameter(kInfo, "mask") + 0.5f);
-        target.changes.mask.keep(target.groom(), number, reached.strands);
+        target.changes.mask.keep(target.groom(), maskAttribute(number), reached.strands);
         std::vector<float>& mask = target.groom().strandAttributes.edit<float>(maskAttribute(number));
         const float wanted = dab.sign > 0 ? target.parameter(kInfo, "value") : 0.0f;
         const auto offsets = target.groom().offsets.view();

@@ -29,7 +29,7 @@ class WidthPaint final : public PointPaint {
 
   protected:
     Change paint(StrokeTarget& target, const DabContext& dab, const Reached& reached) override {
-        target.changes.widths.keep(target.groom(), reached.strands);
+        target.changes.widths.keep(target.groom(), attribute::kWidthChange, reached.strands);
         std::vector<float>& changes = target.groom().pointAttributes.edit<float>(attribute::kWidthChange);
         const bool smooths = target.parameter(kInfo, "smooth") != 0;
         const float width = target.parameter(kInfo, "width");
