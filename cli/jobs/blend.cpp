@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/documents.h"
 #include "cli/job.h"
@@ -19,6 +23,12 @@ struct BlendOptions {
     bool invert = false;
     BlendSettings settings;
 };
+
+std::vector<std::string> mapsOfMasks() {
+    const auto map = std::ranges::find(scriptMaskFields(), std::string_view("map"),
+                                       [](const FieldRow& row) { return std::string_view(row.info.name); });
+    return {map->info.choices.begin(), map->info.choices.end()};
+}
 
 Result<Mask> maskOf(const BlendOptions& options) {
     nlohmann::json mask{{"map", options.map}, {"invert", options.invert}};
@@ -67,7 +77,7 @@ JobRun declare(CLI::App& job) {
                    "Distance between roots in metres within which the other hair counts")
         ->check(CLI::Range(0.0001, 0.5));
     job.add_option("--mask", options->map, "Painted map that limits the effect")
-        ->check(CLI::IsMember({"none", "density", "dye", "mask1", "mask2", "mask3", "mask4"}));
+        ->check(CLI::IsMember(mapsOfMasks()));
     job.add_flag("--invert", options->invert, "Invert the map");
     job.add_option("--formula", options->formula, "Formula that limits the effect, as of operators");
     job.add_option("-o,--output", options->output, "Project to write")->required();
