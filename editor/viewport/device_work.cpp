@@ -8,7 +8,6 @@
 #include "core/groom/move_strands.h"
 
 namespace hairloom::editor {
-namespace {
 
 software::DeviceChoice chosenDevice() {
     const QByteArray wish = qgetenv("HAIRLOOM_RENDERER");
@@ -20,6 +19,8 @@ software::DeviceChoice chosenDevice() {
     }
     return software::chooseDevice();
 }
+
+namespace {
 
 /// They differ at most in their marks.
 bool sameButMarks(const PictureRequest& a, const PictureRequest& b) {

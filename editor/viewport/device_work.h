@@ -15,6 +15,10 @@
 
 namespace hairloom::editor {
 
+/// The best device there is. HAIRLOOM_RENDERER=software takes the software renderer in any case, and =device,
+/// or a window of the device's own, a graphics API's device even where that runs on the processor.
+software::DeviceChoice chosenDevice();
+
 /// A picture, and beside it that of the look it is compared with.
 class Looks {
   public:
@@ -40,9 +44,7 @@ class Looks {
 
 class DeviceWork {
   public:
-    /// The best device there is. `drop` stops stills of the software renderer. HAIRLOOM_RENDERER=software
-    /// takes that renderer in any case, and =device, or a window of the device's own, a graphics API's device
-    /// even where that runs on the processor.
+    /// The chosen device. `drop` stops stills of the software renderer.
     explicit DeviceWork(std::shared_ptr<const std::atomic<bool>> drop);
     /// The software renderer, because of `why`.
     DeviceWork(std::shared_ptr<const std::atomic<bool>> drop, std::string why);

@@ -4,10 +4,10 @@
 #include <QDir>
 #include <QPushButton>
 
-#include "core/software/device.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
+#include "editor/viewport/device_work.h"
 #include "importers/strands.h"
 #include "tests/editor/window_fixture.h"
 
@@ -21,9 +21,7 @@ class WalkTest : public WindowTest {
 
     /// Hair is simulated on the device that draws, where one does and it is not the software renderer.
     static bool drawsOnDevice() {
-        const QByteArray viewport = qgetenv("HAIRLOOM_VIEWPORT");
-        if (viewport.isEmpty()) return false;
-        return viewport == "window" || software::chooseDevice().why.empty();
+        return !qEnvironmentVariableIsEmpty("HAIRLOOM_VIEWPORT") && chosenDevice().why.empty();
     }
 
     /// While it plays: the screen shows the head, and the picture moves. The screen stays as a file.
