@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What somebody who knows other programs expects of every control, and what must never surprise them.
-#include <QtTest/qtestspontaneevent.h>
 #include <QAbstractItemView>
 #include <QAccessible>
 #include <QCheckBox>
@@ -16,7 +15,6 @@
 #include <QSlider>
 #include <QSpinBox>
 #include <QTreeWidget>
-#include <QWheelEvent>
 #include <set>
 
 #include "core/editing/stack_commands.h"
@@ -29,6 +27,7 @@
 #include "editor/fields/input_rules.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/handle_tool.h"
+#include "tests/editor/wheel.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -43,15 +42,6 @@ class HabitsTest : public WindowTest {
     void activate() {
         window->activateWindow();
         ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
-    }
-    /// Notches of a wheel over the middle of a control, as the window system tells of them.
-    static void turnWheel(QWidget& over, int notches) {
-        const QPointF at(over.rect().center());
-        QWheelEvent event(at, over.mapToGlobal(at), {}, {0, -120 * notches}, Qt::NoButton, Qt::NoModifier,
-                          Qt::NoScrollPhase, false);
-        // As from a mouse: what a program sends goes no further than where it is sent.
-        QSpontaneKeyEvent::setSpontaneous(&event);
-        qApp->notify(&over, &event);
     }
     void add(std::string_view name) {
         auto command =

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What must never surprise somebody who uses the window, of every control of a kind wherever it is.
-#include <QtTest/qtestspontaneevent.h>
 #include <QAbstractItemView>
 #include <QAbstractSlider>
 #include <QAccessible>
@@ -17,7 +16,6 @@
 #include <QSpinBox>
 #include <QTabBar>
 #include <QTreeWidget>
-#include <QWheelEvent>
 
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack.h"
@@ -26,6 +24,7 @@
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
 #include "tests/editor/nothing_clipped.h"
+#include "tests/editor/wheel.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -37,13 +36,6 @@ class SurprisesTest : public WindowTest {
         WindowTest::SetUp();
         window->activateWindow();
         ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
-    }
-    static void turnWheel(QWidget& over, int notches) {
-        const QPointF at(over.rect().center());
-        QWheelEvent event(at, over.mapToGlobal(at), {}, {0, -120 * notches}, Qt::NoButton, Qt::NoModifier,
-                          Qt::NoScrollPhase, false);
-        QSpontaneKeyEvent::setSpontaneous(&event);
-        qApp->notify(&over, &event);
     }
     /// What the controls within show.
     static QStringList valuesIn(const QWidget& widget) {

@@ -5,6 +5,7 @@
 #include <QScreen>
 #include <array>
 #include <cstdlib>
+#include <functional>
 
 #include "editor/tools/brush_tool.h"
 #include "editor/tools/surface_pick.h"
@@ -101,6 +102,8 @@ class PictureTest : public WindowTest {
         guides.interpolation.followPerGuide = 0;
         document().open(std::move(guides), {}, "guides");
     }
+    void paintAndUndo(const QString& file, int least, int most,
+                      const std::function<bool(const QColor& now, const QColor& before)>& differs);
     /// Each of these overlays changes the picture.
     void expectDrawn(std::initializer_list<const char*> overlays) {
         ASSERT_TRUE(viewport().waitForPicture(60'000));
@@ -297,71 +300,29 @@ TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
     expectDrawn({"strain", "penetration", "effectCost"});
 }
 
-TEST_F(PictureTest, DyeShowsWhileItIsPainted) {
-    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
-    openGuides();
-    Groom red = groom();
-    red.material.dyeColour = Vec3f(0.95f, 0.0f, 0.0f);
-    change("Dye", red);
-    viewport().look(render::View::Front);
-    viewport().frameAll();
-    trigger("tool.dye_paint");
+/// Paints at the crown with the tool in hand and undoes it: more than `least` pixels change while the button
+/// is down, more when it is released, fewer than `most` after undo, by what tells a pixel from one before.
+/// The painted picture stays as a file.
+void PictureTest::paintAndUndo(const QString& file, int least, int most,
+                               const std::function<bool(const QColor& now, const QColor& before)>& differs) {
     // Fine pictures only: fast ones differ from them.
     const auto settled = [this] {
         EXPECT_TRUE(viewport().waitForPicture(60'000));
         return viewport().picture();
     };
+    // The ring of the brush stays in one place. The display's own pointer may be there, or have stayed there
+    // through the stroke, and only a way of its own is told.
+    const auto parkPointer = [this] {
+        moveTo(QPoint(30, 2));
+        moveTo(QPoint(2, 2));
+    };
+    parkPointer();
     const QImage before = settled();
-    const auto redder = [&before](const QImage& picture) {
+    const auto changed = [&](const QImage& picture) {
         int count = 0;
         for (int y = 0; y < picture.height(); ++y) {
-            for (int x = 0; x < picture.width(); ++x) {
-                const QColor now = picture.pixelColor(x, y), then = before.pixelColor(x, y);
-                count += now.red() - now.green() > then.red() - then.green() + 12 ? 1 : 0;
-            }
-        }
-        return count;
-    };
-    Box3f roots;
-    for (std::size_t s = 0; s < groom().strandCount(); ++s) roots.extend(groom().strand(s).front());
-    const QPoint crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
-    press(crown);
-    moveTo(crown + QPoint(20, 4));
-    const int during = redder(settled());
-    EXPECT_GT(during, 30) << "while the button is down";
-    moveTo(crown + QPoint(60, 10));
-    release(crown + QPoint(60, 10));
-    // The display's own pointer has stayed where it was, and only a way of its own is told.
-    moveTo(QPoint(30, 2));
-    moveTo(QPoint(2, 2));
-    const QImage painted = settled();
-    EXPECT_GT(redder(painted), during);
-    QDir().mkpath(HAIRLOOM_SCREENSHOTS);
-    EXPECT_TRUE(painted.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/dye.png")));
-    trigger("edit.undo");
-    EXPECT_LT(redder(settled()), 5);
-}
-
-TEST_F(PictureTest, WidthShowsWhileItIsPainted) {
-    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
-    openGuides();
-    viewport().look(render::View::Front);
-    viewport().frameAll();
-    trigger("tool.width_paint");
-    dynamic_cast<BrushTool&>(*viewport().tool()).setParameter("width", 10);
-    const auto settled = [this] {
-        EXPECT_TRUE(viewport().waitForPicture(60'000));
-        return viewport().picture();
-    };
-    moveTo(QPoint(2, 2));  // the ring of the brush is in all of them, in the same place
-    const QImage before = settled();
-    const auto changed = [&before](const QImage& picture) {
-        int count = 0;
-        for (int y = 0; y < picture.height(); ++y) {
-            for (int x = 0; x < picture.width(); ++x) {
-                const QColor now = picture.pixelColor(x, y), then = before.pixelColor(x, y);
-                count += std::abs(now.lightness() - then.lightness()) > 8 ? 1 : 0;
-            }
+            for (int x = 0; x < picture.width(); ++x)
+                count += differs(picture.pixelColor(x, y), before.pixelColor(x, y)) ? 1 : 0;
         }
         return count;
     };
@@ -371,18 +332,42 @@ TEST_F(PictureTest, WidthShowsWhileItIsPainted) {
     press(crown);
     moveTo(crown + QPoint(20, 4));
     const int during = changed(settled());
-    EXPECT_GT(during, 100) << "while the button is down";
+    EXPECT_GT(during, least) << "while the button is down";
     moveTo(crown + QPoint(60, 10));
     release(crown + QPoint(60, 10));
-    // The display's own pointer has stayed where it was, and only a way of its own is told.
-    moveTo(QPoint(30, 2));
-    moveTo(QPoint(2, 2));
+    parkPointer();
     const QImage painted = settled();
     EXPECT_GT(changed(painted), during);
     QDir().mkpath(HAIRLOOM_SCREENSHOTS);
-    EXPECT_TRUE(painted.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/width.png")));
+    EXPECT_TRUE(painted.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/") + file));
     trigger("edit.undo");
-    EXPECT_LT(changed(settled()), 20);
+    EXPECT_LT(changed(settled()), most);
+}
+
+TEST_F(PictureTest, DyeShowsWhileItIsPainted) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    Groom red = groom();
+    red.material.dyeColour = Vec3f(0.95f, 0.0f, 0.0f);
+    change("Dye", red);
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    trigger("tool.dye_paint");
+    paintAndUndo("dye.png", 30, 5, [](const QColor& now, const QColor& before) {
+        return now.red() - now.green() > before.red() - before.green() + 12;
+    });
+}
+
+TEST_F(PictureTest, WidthShowsWhileItIsPainted) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    trigger("tool.width_paint");
+    dynamic_cast<BrushTool&>(*viewport().tool()).setParameter("width", 10);
+    paintAndUndo("width.png", 100, 20, [](const QColor& now, const QColor& before) {
+        return std::abs(now.lightness() - before.lightness()) > 8;
+    });
 }
 
 TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {
