@@ -44,12 +44,14 @@ class CurvesWriter {
         : strands_(strands),
           attributes_(exportedAttributes(groom, strands, alembicNames(unreal))),
           parts_(exportedParts(groom, strands, isLegalInAlembic)),
+          frames_(frames),
           unreal_(unreal) {
         if (unreal) groupNames_ = unrealGroupNames(groom, strands);
         file_.reserve(roomOf(strands, attributes_));
         if (!frames) return;
-        times_ = {static_cast<std::uint32_t>(frames->points.size()), frames->first / frames->framesPerSecond,
-                  1 / frames->framesPerSecond};
+        times_ = {static_cast<std::uint32_t>(frames->points.size()), 1 / frames->framesPerSecond, {}};
+        for (std::size_t i = 0; i < frames->exposures.size(); ++i)
+            times_.cycle.push_back(frames->numberOf(i) / frames->framesPerSecond);
     }
 
     std::vector<std::byte> write() {
@@ -135,7 +137,7 @@ class CurvesWriter {
         if (shapes.size() < 2) return;
         std::vector<std::vector<Vec3f>> velocities;
         for (std::size_t f = 0; f < shapes.size(); ++f)
-            velocities.push_back(pointVelocities(shapes, f, 1 / times_.step));
+            velocities.push_back(pointVelocities(shapes, f, *frames_));
         std::vector<std::span<const std::byte>> velocitySamples;
         for (const auto& velocity : velocities) velocitySamples.push_back(bytesOf(velocity));
         curves.arrays(".velocities", AlembicType::Float, 3, velocitySamples,
@@ -226,6 +228,7 @@ class CurvesWriter {
     std::vector<ExportedAttribute> attributes_;
     std::vector<ExportedPart> parts_;
     std::vector<std::string> groupNames_;  ///< of all strands, or none; Unreal's
+    const StrandFrames* frames_;
     bool unreal_;
     AlembicTimes times_;
     OgawaBuilder file_;
@@ -237,7 +240,8 @@ class CurvesWriter {
 Result<ExportReport> writeAlembic(const Groom& groom, const std::filesystem::path& path,
                                   const StrandExportOptions& options, bool unreal) {
     // Unreal tells groups apart by attributes.
-    auto strands = prepareStrands(groom, options, options.pointsPerStrand, !unreal);
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand,
+                                  unreal ? StrandOrder::groom : StrandOrder::layers);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     CurvesWriter writer(groom, *strands, options.frames.get(), unreal);
     auto bytes = writer.write();

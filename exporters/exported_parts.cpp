@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exporters/exported_parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace hairloom {
@@ -31,29 +33,50 @@ std::span<const std::int32_t> ExportedPart::wholes(const ExportedAttribute& attr
                               : std::span(attribute.whole).subspan(firstStrand, strandCount);
 }
 
-std::vector<Vec3f> pointVelocities(std::span<const std::span<const Vec3f>> frames, std::size_t frame,
-                                   double framesPerSecond) {
-    const std::size_t before = frame > 0 ? frame - 1 : 0, after = std::min(frame + 1, frames.size() - 1);
-    const auto perSecond = static_cast<float>(framesPerSecond / static_cast<double>(after - before));
-    std::vector<Vec3f> velocities(frames[frame].size());
+std::vector<Vec3f> pointVelocities(std::span<const std::span<const Vec3f>> samples, std::size_t sample,
+                                   const StrandFrames& frames) {
+    const std::size_t before = sample > 0 ? sample - 1 : 0, after = std::min(sample + 1, samples.size() - 1);
+    const auto seconds = [&](std::size_t from, std::size_t to) {
+        return (frames.numberOf(to) - frames.numberOf(from)) / frames.framesPerSecond;
+    };
+    std::vector<Vec3f> velocities(samples[sample].size());
+    // Where steps are unlike, the shorter one counts for more.
+    const double all = seconds(before, after);
+    const double share = after > sample && sample > before ? seconds(before, sample) / all : 0.5;
+    const auto ofNext = static_cast<float>((before == sample  ? 1
+                                            : after == sample ? 0
+                                                              : share) /
+                                           std::max(seconds(sample, after), 1e-12));
+    const auto ofLast = static_cast<float>((before == sample  ? 0
+                                            : after == sample ? 1
+                                                              : 1 - share) /
+                                           std::max(seconds(before, sample), 1e-12));
     for (std::size_t p = 0; p < velocities.size(); ++p)
-        velocities[p] = (frames[after][p] - frames[before][p]) * perSecond;
+        velocities[p] = (samples[after][p] - samples[sample][p]) * ofNext +
+                        (samples[sample][p] - samples[before][p]) * ofLast;
     return velocities;
 }
 
 std::vector<ExportedPart> exportedParts(const Groom& groom, const PreparedStrands& strands,
                                         NameGiver::Legal isLegal) {
-    constexpr std::string_view kAlone = "hair";
+    constexpr std::string_view kAlone = "hair", kGuides = "guides";
     NameGiver giver(isLegal);
     std::vector<ExportedPart> parts;
+    const bool isOneLayer = std::ranges::all_of(
+        strands.parts, [&](const PreparedPart& part) { return part.layer == strands.parts.front().layer; });
     for (const PreparedPart& prepared : strands.parts) {
         ExportedPart part;
         const bool isNamed = prepared.layer < groom.layers.size();
         const std::string& layer = isNamed ? groom.layers[prepared.layer].name : Layer{}.name;
-        part.name = strands.parts.size() == 1 ? std::string(kAlone) : giver.give(layer);
+        part.areGuides = prepared.areGuides;
+        if (isOneLayer)
+            part.name = part.areGuides ? kGuides : kAlone;
+        else
+            part.name = giver.give(part.areGuides ? fmt::format("{}_{}", layer, kGuides) : layer);
         // One layer of the name that layers have by themselves says nothing.
-        if (part.name != layer && (strands.parts.size() > 1 || layer != Layer{}.name))
-            part.displayName = layer;
+        if (part.name != layer && (!isOneLayer || layer != Layer{}.name)) part.displayName = layer;
+        // What the hairs' prim has for a name, so that both are one layer.
+        if (part.areGuides && part.displayName.empty()) part.displayName = kAlone;
         part.firstStrand = prepared.firstStrand;
         part.strandCount = prepared.strandCount;
         part.firstPoint = strands.offsets[part.firstStrand];

@@ -17,6 +17,7 @@ namespace hairloom {
 struct ExportedPart {
     std::string name;         ///< legal in the file, and of no other part
     std::string displayName;  ///< the layer's own name, where the part's is another; else empty
+    bool areGuides = false;   ///< that other parts' hairs follow
     std::size_t firstStrand = 0, strandCount = 0, firstPoint = 0, pointCount = 0;
 
     std::span<const Vec3f> points(std::span<const Vec3f> all) const {
@@ -32,9 +33,10 @@ struct ExportedPart {
     std::span<const std::int32_t> wholes(const ExportedAttribute& attribute) const;
 };
 
-/// Units of the file per second at one of at least two frames, from the frame before to the one after.
-std::vector<Vec3f> pointVelocities(std::span<const std::span<const Vec3f>> frames, std::size_t frame,
-                                   double framesPerSecond);
+/// Units of the file per second at one of at least two samples, by those before and after it: exact where
+/// points move evenly accelerated.
+std::vector<Vec3f> pointVelocities(std::span<const std::span<const Vec3f>> samples, std::size_t sample,
+                                   const StrandFrames& frames);
 
 /// One for each of the strands' parts; "hair" where there is one alone.
 std::vector<ExportedPart> exportedParts(const Groom& groom, const PreparedStrands& strands,

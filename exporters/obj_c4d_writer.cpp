@@ -25,7 +25,7 @@ std::uint32_t pointsOfAll(const Groom& groom, const StrandExportOptions& options
 Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path& path,
                                  const StrandExportOptions& options) {
     const std::uint32_t points = pointsOfAll(groom, options);
-    auto strands = prepareStrands(groom, options, points, true);
+    auto strands = prepareStrands(groom, options, points, StrandOrder::layers);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     std::string text = fmt::format("# Hairloom, {} m in a unit, {} up\n", options.metresPerUnit,
                                    options.up == UpAxis::Z ? "Z" : "Y");

@@ -13,7 +13,7 @@ namespace {
 
 Result<ExportReport> writeObjLines(const Groom& groom, const std::filesystem::path& path,
                                    const StrandExportOptions& options) {
-    auto strands = prepareStrands(groom, options, options.pointsPerStrand, true);
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand, StrandOrder::layers);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     std::string text = fmt::format("# Hairloom, {} m in a unit, {} up\n", options.metresPerUnit,
                                    options.up == UpAxis::Z ? "Z" : "Y");

@@ -178,14 +178,15 @@ std::vector<std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::
         texts.writeArray(std::span<const char>(text));
     }
     ByteWriter times;
-    const auto sampling = [&](std::uint32_t samples, double step, double first) {
+    const auto sampling = [&](std::uint32_t samples, double step, std::span<const double> cycle) {
         times.write(samples);
         times.write(step);
-        times.write(std::uint32_t{1});  // times in a cycle
-        times.write(first);
+        times.write(static_cast<std::uint32_t>(cycle.size()));
+        times.writeArray(cycle);
     };
-    sampling(1, 1, 0);
-    if (sampled.count > 1) sampling(sampled.count, sampled.step, sampled.first);
+    constexpr std::array<double, 1> kStart{0.0};
+    sampling(1, 1, kStart);
+    if (sampled.count > 1) sampling(sampled.count, sampled.step, sampled.cycle);
     const std::int32_t version = 0;
     const auto bytesOf = [](const auto& value) { return std::as_bytes(std::span(&value, 1)); };
     const std::array<std::uint64_t, 6> root{file.data(bytesOf(version)),

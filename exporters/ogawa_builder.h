@@ -95,7 +95,8 @@ std::uint64_t alembicObject(OgawaBuilder& file, std::vector<std::string>& metada
 /// When the samples of properties that change are.
 struct AlembicTimes {
     std::uint32_t count = 1;
-    double first = 0, step = 0;  ///< seconds
+    double step = 0;            ///< seconds from a cycle to the next
+    std::vector<double> cycle;  ///< seconds of the samples of the first cycle, ascending; one where even
 };
 
 /// The archive around the top object. The first sampling is of one time, 0; `times` are the second, where

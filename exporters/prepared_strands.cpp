@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/base/output_batch.h"
 #include "core/base/parallel.h"
@@ -73,18 +74,19 @@ struct Tally {
 
 class Preparer {
   public:
-    Preparer(const Groom& groom, const StrandExportOptions& options, std::uint32_t target, bool byLayer)
-        : groom_(groom),
-          options_(options),
-          target_(target),
-          byLayer_(byLayer),
-          layers_(layersOfStrands(groom)) {
+    Preparer(const Groom& groom, const StrandExportOptions& options, std::uint32_t target, StrandOrder order)
+        : groom_(groom), options_(options), target_(target), order_(order), layers_(layersOfStrands(groom)) {
         result_.metresPerUnit = options.metresPerUnit;
         result_.up = options.up;
         radii_ = perPoint<float>(attribute::kRadius);
         widthChanges_ = widthChanges(groom);
         transparency_ = perPoint<float>(attribute::kTransparency);
         colours_ = perPoint<Vec3f>(attribute::kPointColour);
+        const auto guides = groom.strandAttributes.view<std::uint8_t>(attribute::kGuide);
+        const bool areMixed = guides.size() == groom.strandCount() &&
+                              std::ranges::find(guides, 0) != guides.end() &&
+                              std::ranges::any_of(guides, [](std::uint8_t flag) { return flag != 0; });
+        if (order == StrandOrder::layersAndGuides && areMixed) guides_ = guides;
     }
 
     PreparedStrands run() {
@@ -94,8 +96,9 @@ class Preparer {
         result_.thickness.reserve(points);
         std::vector<std::size_t> order(strands);
         std::iota(order.begin(), order.end(), std::size_t{0});
-        if (byLayer_)
-            std::ranges::stable_sort(order, {}, [&](std::size_t strand) { return layers_[strand]; });
+        if (order_ != StrandOrder::groom)
+            std::ranges::stable_sort(
+                order, {}, [&](std::size_t strand) { return std::pair(layers_[strand], isGuide(strand)); });
         for (const std::size_t strand : order) add(strand);
         addParts();
         addFrames();
@@ -134,9 +137,11 @@ class Preparer {
 
     void addParts() {
         for (std::size_t s = 0; s < result_.sources.size(); ++s) {
-            const std::uint32_t layer = byLayer_ ? layers_[result_.sources[s]] : 0;
-            if (result_.parts.empty() || result_.parts.back().layer != layer)
-                result_.parts.push_back({layer, s, 0});
+            const std::uint32_t source = result_.sources[s];
+            const std::uint32_t layer = order_ == StrandOrder::groom ? 0 : layers_[source];
+            if (result_.parts.empty() || result_.parts.back().layer != layer ||
+                result_.parts.back().areGuides != isGuide(source))
+                result_.parts.push_back({layer, isGuide(source), s, 0});
             ++result_.parts.back().strandCount;
         }
     }
@@ -161,6 +166,8 @@ class Preparer {
             }
         });
     }
+
+    bool isGuide(std::size_t strand) const { return !guides_.empty() && guides_[strand] != 0; }
 
     void addPosition(const Vec3f& position) { result_.positions.push_back(toFile(position, options_)); }
 
@@ -233,7 +240,8 @@ class Preparer {
     const Groom& groom_;
     const StrandExportOptions& options_;
     std::uint32_t target_;
-    bool byLayer_;
+    StrandOrder order_;
+    std::span<const std::uint8_t> guides_;  ///< where they are kept apart
     std::vector<std::uint32_t> layers_;
     std::span<const float> radii_;
     std::span<const float> widthChanges_;
@@ -325,13 +333,13 @@ Vec3f toFile(const Vec3f& position, const StrandExportOptions& options) {
 }
 
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
-                                       std::uint32_t pointsPerStrand, bool byLayer) {
+                                       std::uint32_t pointsPerStrand, StrandOrder order) {
     if (!(options.metresPerUnit > 0) || !std::isfinite(options.metresPerUnit)) {
         return fail(fmt::format("{} metres per unit", options.metresPerUnit), "expected a positive number");
     }
     if (pointsPerStrand == 1)
         return fail("1 point per strand", "expected 2 or more, or 0 to keep what there is");
-    auto prepared = Preparer(groom, options, pointsPerStrand, byLayer).run();
+    auto prepared = Preparer(groom, options, pointsPerStrand, order).run();
     if (prepared.sources.empty())
         return fail("the groom has no usable strand", "expected at least one to write");
     judgeLimits(options.limits, prepared);
@@ -367,13 +375,14 @@ namespace {
 Result<double> frameError(const PreparedStrands& prepared, const StrandExportOptions& options,
                           const ImportedStrands& readBack, const std::filesystem::path& path) {
     if (readBack.frames.size() != prepared.frames.size())
-        return failIn(path.string(), {}, fmt::format("reads back as {} frames", readBack.frames.size()),
+        return failIn(path.string(), {},
+                      fmt::format("reads back as {} samples in time", readBack.frames.size()),
                       fmt::format("{} were written", prepared.frames.size()));
     double farthest = 0;
     for (std::size_t f = 0; f < prepared.frames.size(); ++f) {
         if (readBack.frames[f].size() != prepared.frames[f].size())
             return failIn(path.string(), {},
-                          fmt::format("reads back with {} points in frame {}", readBack.frames[f].size(), f),
+                          fmt::format("reads back with {} points in sample {}", readBack.frames[f].size(), f),
                           fmt::format("{} were written", prepared.frames[f].size()));
         for (std::size_t p = 0; p < prepared.frames[f].size(); ++p) {
             const Vec3f off = toFile(readBack.frames[f][p], options) - prepared.frames[f][p];
@@ -395,7 +404,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     importOptions.metresPerUnit = options.metresPerUnit;
     importOptions.isUnitAsked = true;
     importOptions.up = options.up;
-    importOptions.frames = options.frames != nullptr;
+    importOptions.frames = importOptions.everySample = options.frames != nullptr;
     // What went into a device cannot be had back.
     std::error_code code;
     const bool isFile = std::filesystem::is_regular_file(whereWritten(path), code);
@@ -423,7 +432,8 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     if (options.frames) {
         const auto off = frameError(prepared, options, *readBack, path);
         if (!off) return tl::unexpected(off.error());
-        report.frames = prepared.frames.size();
+        report.frames = options.frames->frameCount();
+        report.samples = prepared.frames.size();
         farthest = std::max(farthest, *off);
     }
     report.maxErrorMm = farthest;

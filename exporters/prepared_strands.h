@@ -16,6 +16,7 @@ namespace hairloom {
 /// Strands of one layer, one after another.
 struct PreparedPart {
     std::uint32_t layer = 0;  ///< of Groom::layers
+    bool areGuides = false;   ///< that other strands of the groom follow
     std::size_t firstStrand = 0, strandCount = 0;
 };
 
@@ -37,14 +38,19 @@ struct PreparedStrands {
     std::size_t strandCount() const { return sources.size(); }
 };
 
+enum class StrandOrder : std::uint8_t {
+    groom,            ///< one part
+    layers,           ///< for formats that keep layers apart
+    layersAndGuides,  ///< those that keep guides apart, too, where the groom has guides and others
+};
+
 /// A point of the groom, in units and axes of the file.
 Vec3f toFile(const Vec3f& position, const StrandExportOptions& options);
 
 /// `pointsPerStrand` 0 keeps every strand's points; strands that have that many already keep theirs too.
-/// `byLayer` orders them by their layers, for formats that keep these apart; otherwise they are one part.
 /// Errors: options out of range, nothing to write.
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
-                                       std::uint32_t pointsPerStrand, bool byLayer = false);
+                                       std::uint32_t pointsPerStrand, StrandOrder order = StrandOrder::groom);
 
 /// Of Unity's hair (com.unity.demoteam.hair).
 TargetLimits unityLimits();

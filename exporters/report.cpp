@@ -44,6 +44,7 @@ nlohmann::json toJson(const ExportReport& report) {
     }
     if (!report.companions.empty()) json["companions"] = report.companions;
     if (report.frames > 0) json["frames"] = report.frames;
+    if (report.samples > report.frames) json["samples"] = report.samples;
     return json;
 }
 

@@ -42,6 +42,7 @@ struct ExportReport {
     std::size_t strands = 0;  ///< in the file
     std::size_t points = 0;   ///< in the file
     std::size_t frames = 0;   ///< of strands that move; 0 at rest
+    std::size_t samples = 0;  ///< of these in time: more than frames where a shutter was asked for
     std::uint64_t bytes = 0;  ///< size of the file
     /// Largest distance of a point of the groom from its strand in the file, read back; millimetres. Nothing
     /// where the file has no point of a strand.
@@ -54,7 +55,7 @@ struct ExportReport {
     std::vector<std::string> companions;   ///< names of files that were written beside it
 };
 
-/// Keys: format, strands, points, frames (where strands move), bytes, max_error_mm (null where nothing was
+/// Keys: format, strands, points, frames (where strands move), samples (where these are more), bytes, max_error_mm (null where nothing was
 /// measured), attributes (name, max_error), left_behind (what, fix), findings (severity, what, where, fix);
 /// certificate (the fields of SafeLimits, where it was made); companions (names, where there are some); of
 /// cards levels (name, cards, triangles, bytes, distance_m, coverage, flip, light).

@@ -37,9 +37,19 @@ struct TargetLimits {
 
 /// Where strands are in time.
 struct StrandFrames {
-    double framesPerSecond = 60;             ///< > 0
-    double first = 0;                        ///< number of the first frame, in the file's time
-    std::vector<std::vector<Vec3f>> points;  ///< frame by frame, those of the whole groom; metres
+    double framesPerSecond = 60;  ///< > 0
+    double first = 0;             ///< number of the first frame, in the file's time
+    /// Sample by sample, those of the whole groom; metres. Each frame has as many as there are exposures.
+    std::vector<std::vector<Vec3f>> points;
+    /// When the samples of a frame are, in frames from its number; ascending, less than 1 from first to last.
+    std::vector<double> exposures{0.0};
+    bool closes = false;  ///< one sample more: the first exposure of the frame behind the last
+
+    std::size_t frameCount() const { return (points.size() - (closes ? 1 : 0)) / exposures.size(); }
+    /// In frames.
+    double numberOf(std::size_t sample) const {
+        return first + static_cast<double>(sample / exposures.size()) + exposures[sample % exposures.size()];
+    }
 };
 
 struct StrandExportOptions {
@@ -51,6 +61,7 @@ struct StrandExportOptions {
     /// Of strands that move: for writers that animate. The groom is at the first frame. Null: at rest.
     std::shared_ptr<const StrandFrames> frames = nullptr;
     std::optional<SafeLimits> safeLimits{};  ///< for formats that carry them
+    bool physics = false;                    ///< of writers that hold them; of strands at rest
 };
 
 /// A program that reads a format, and what it wants of a file.
@@ -96,6 +107,7 @@ struct HairWriter {
     bool generatesFollowHairs = false;  ///< the file tells how follow hairs come from guides
     bool marksGuides = false;           ///< hairs go with the guides that they follow, and how much they do
     bool animates = false;              ///< the file can hold StrandExportOptions::frames
+    bool holdsPhysics = false;          ///< what simulates curves may stand beside them
 
     std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }
     bool holdsCards() const { return std::holds_alternative<WriteCards>(writer); }

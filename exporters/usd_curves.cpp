@@ -2,6 +2,7 @@
 #include "exporters/usd_curves.h"
 
 #include <array>
+#include <utility>
 
 namespace hairloom {
 
@@ -13,6 +14,22 @@ std::string_view usdTypeOf(const ExportedAttribute& attribute) {
     if (attribute.name == "groom_root_uv" && attribute.components == 2) return "texCoord2f";
     constexpr std::array<std::string_view, 5> kFloats{"", "float", "float2", "float3", "float4"};
     return kFloats[attribute.components];
+}
+
+UsdMore usdMore(const Groom& groom, const PreparedStrands& strands, const StrandExportOptions& options,
+                std::span<const ExportedPart> parts, const std::string& physics) {
+    UsdMore more;
+    more.ofParts.resize(parts.size());
+    if (options.physics) {
+        UsdPhysics made = usdPhysics(groom, strands, parts, physics);
+        more.ofParts = std::move(made.ofParts);
+        more.beside.push_back(std::move(made.beside));
+    }
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (parts[p].areGuides)
+            more.ofParts[p].fields.push_back({"token", "purpose", true, {}, std::string("guide")});
+    }
+    return more;
 }
 
 std::array<Vec3f, 2> extentOf(std::span<const Vec3f> positions) {

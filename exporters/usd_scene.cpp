@@ -100,7 +100,7 @@ UsdMaterial materialOf(const std::string& folder, const std::string& name, const
 UsdBeside usdBeside(std::span<const ExportedPart> parts) {
     NameGiver names(isLegalInUsd);
     for (const ExportedPart& part : parts) names.reserve(part.name);
-    return {names.give("scalp"), names.give("materials")};
+    return {names.give("scalp"), names.give("materials"), names.give("physics")};
 }
 
 UsdMaterials usdMaterials(const Groom& groom, const PreparedStrands& strands,

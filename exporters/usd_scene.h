@@ -26,7 +26,7 @@ struct UsdShader {
 };
 /// Names that stand beside the parts' and are none of these.
 struct UsdBeside {
-    std::string scalp, materials;
+    std::string scalp, materials, physics;
 };
 UsdBeside usdBeside(std::span<const ExportedPart> parts);
 

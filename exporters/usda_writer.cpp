@@ -46,7 +46,7 @@ void writeSamples(std::string& out, const ExportedPart& part, const PreparedStra
     const auto write = [&](std::string_view name, const auto& valueOf) {
         out += fmt::format("        {}.timeSamples = {{\n", name);
         for (std::size_t f = 0; f < strands.frames.size(); ++f) {
-            out += fmt::format("            {}: ", frames.first + static_cast<double>(f));
+            out += fmt::format("            {}: ", frames.numberOf(f));
             const auto value = valueOf(strands.frames[f]);
             writeNumbers(out, numbersOf(value), 3);
             out += ",\n";
@@ -60,8 +60,8 @@ void writeSamples(std::string& out, const ExportedPart& part, const PreparedStra
     if (shapes.size() < 2) return;
     out += "        vector3f[] velocities.timeSamples = {\n";
     for (std::size_t f = 0; f < shapes.size(); ++f) {
-        out += fmt::format("            {}: ", frames.first + static_cast<double>(f));
-        const std::vector<Vec3f> velocities = pointVelocities(shapes, f, frames.framesPerSecond);
+        out += fmt::format("            {}: ", frames.numberOf(f));
+        const std::vector<Vec3f> velocities = pointVelocities(shapes, f, frames);
         writeNumbers(out, numbersOf(velocities), 3);
         out += ",\n";
     }
@@ -127,7 +127,7 @@ std::string scalpText(const std::string& name, const UsdScalp& scalp) {
 /// The lines of the head that say which times there are.
 std::string timesInHead(const StrandExportOptions& options) {
     if (!options.frames) return {};
-    const double last = options.frames->first + static_cast<double>(options.frames->points.size() - 1);
+    const double last = options.frames->first + static_cast<double>(options.frames->frameCount() - 1);
     return fmt::format(
         "    endTimeCode = {}\n    framesPerSecond = {}\n    startTimeCode = {}\n    "
         "timeCodesPerSecond = "
@@ -135,14 +135,57 @@ std::string timesInHead(const StrandExportOptions& options) {
         last, options.frames->framesPerSecond, options.frames->first, options.frames->framesPerSecond);
 }
 
+std::string schemasText(const std::vector<std::string>& schemas) {
+    std::string list;
+    for (const std::string& schema : schemas) list += (list.empty() ? "" : ", ") + inQuotes(schema);
+    return fmt::format("prepend apiSchemas = [{}]\n", list);
+}
+
+/// Relationships and attributes, a line each.
+void writeFields(std::string& out, const UsdNode& node, std::size_t indent) {
+    const std::string space(indent, ' ');
+    for (const auto& [name, path] : node.targets) out += fmt::format("{}rel {} = <{}>\n", space, name, path);
+    for (const UsdField& field : node.fields) {
+        out += fmt::format("{}{}{} {} = ", space, field.isUniform ? "uniform " : "", field.type, field.name);
+        if (const auto* number = std::get_if<float>(&field.value)) {
+            out += fmt::format("{}", *number);
+        } else if (const auto* vector = std::get_if<Vec3f>(&field.value)) {
+            out += fmt::format("({}, {}, {})", vector->x(), vector->y(), vector->z());
+        } else if (const auto* text = std::get_if<std::string>(&field.value)) {
+            out += inQuotes(*text);
+        } else if (const auto* whole = std::get_if<std::vector<std::int32_t>>(&field.value)) {
+            writeNumbers(out, std::span<const std::int32_t>(*whole), 1);
+        } else {
+            const auto& vectors = std::get<std::vector<Vec3f>>(field.value);
+            writeNumbers(out, vectors.empty() ? std::span<const float>() : numbersOf(vectors), 3);
+        }
+        if (!field.interpolation.empty())
+            out += fmt::format(" (\n{0}    interpolation = \"{1}\"\n{0})", space, field.interpolation);
+        out += '\n';
+    }
+}
+
+void writeNode(std::string& out, const UsdNode& node, std::size_t indent) {
+    const std::string space(indent, ' ');
+    out += fmt::format("{}def {} \"{}\"", space, node.type, node.name);
+    if (!node.schemas.empty()) out += fmt::format(" (\n{0}    {1}{0})", space, schemasText(node.schemas));
+    out += fmt::format("\n{}{{\n", space);
+    writeFields(out, node, indent + 4);
+    for (const UsdNode& child : node.children) writeNode(out, child, indent + 4);
+    out += space + "}\n";
+}
+
 void writePart(std::string& out, const ExportedPart& part, const PreparedStrands& strands,
                std::span<const ExportedAttribute> attributes, const StrandExportOptions& options,
-               const UsdMaterial& material) {
+               const UsdMaterial& material, const UsdNode& more) {
+    std::vector<std::string> schemas{"MaterialBindingAPI"};
+    schemas.insert(schemas.end(), more.schemas.begin(), more.schemas.end());
     out += fmt::format(
-        "    def BasisCurves \"{}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n{}    "
+        "    def BasisCurves \"{}\" (\n        {}{}    "
         ")\n    "
         "{{\n        rel material:binding = <{}>\n",
-        part.name, displayLine(part.displayName, 8), material.path);
+        part.name, schemasText(schemas), displayLine(part.displayName, 8), material.path);
+    writeFields(out, more, 8);
     out +=
         "        uniform token type = \"linear\"\n        uniform token wrap = \"nonperiodic\"\n"
         "        float3[] extent = ";
@@ -178,16 +221,19 @@ std::string usdaText(const Groom& groom, PreparedStrands& strands, const StrandE
     const std::vector<ExportedPart> parts = exportedParts(groom, strands, isLegalInUsd);
     const UsdBeside beside = usdBeside(parts);
     const UsdMaterials materials = usdMaterials(groom, strands, attributes, beside.materials);
+    const UsdMore more = usdMore(groom, strands, options, parts, beside.physics);
     for (std::size_t p = 0; p < parts.size(); ++p)
-        writePart(out, parts[p], strands, attributes, options, materials.all[materials.ofPart[p]]);
+        writePart(out, parts[p], strands, attributes, options, materials.all[materials.ofPart[p]],
+                  more.ofParts[p]);
     out += scalpText(beside.scalp, usdScalp(groom, options)) + materialsText(beside.materials, materials);
+    for (const UsdNode& node : more.beside) writeNode(out, node, 4);
     out += "}\n";
     return out;
 }
 
 Result<ExportReport> writeUsda(const Groom& groom, const std::filesystem::path& path,
                                const StrandExportOptions& options) {
-    auto strands = prepareStrands(groom, options, options.pointsPerStrand, true);
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand, StrandOrder::layersAndGuides);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     std::string text = usdaText(groom, *strands, options);
     return writeAndCompare(groom, std::move(*strands), options, path, std::move(text));
@@ -205,6 +251,8 @@ HairWriter usdaWriter() {
                       usdTargets(".usda"),
                       writeUsda};
     writer.animates = true;
+    writer.marksGuides = true;
+    writer.holdsPhysics = true;
     return writer;
 }
 

@@ -23,7 +23,7 @@ std::span<const float> numbersOf(std::span<const Vec3f> values) {
     return {values[0].data(), values.size() * 3};
 }
 
-void writeRoot(UsdcBuilder& file, const PreparedStrands& strands, const StrandExportOptions& options) {
+void writeRoot(UsdcBuilder& file, const StrandExportOptions& options) {
     const std::vector<std::string> top{"groom"};
     UsdcBuilder::Fields head{{"defaultPrim", file.token("groom")},
                              {"metersPerUnit", file.number(readableDecimal(options.metresPerUnit))},
@@ -32,37 +32,81 @@ void writeRoot(UsdcBuilder& file, const PreparedStrands& strands, const StrandEx
     if (options.frames) {
         const double first = options.frames->first, rate = options.frames->framesPerSecond;
         head.emplace_back("startTimeCode", file.number(first));
-        head.emplace_back("endTimeCode", file.number(first + static_cast<double>(strands.frames.size() - 1)));
+        head.emplace_back("endTimeCode",
+                          file.number(first + static_cast<double>(options.frames->frameCount() - 1)));
         head.emplace_back("framesPerSecond", file.number(rate));
         head.emplace_back("timeCodesPerSecond", file.number(rate));
     }
     file.root(head);
 }
 
+void addNames(const UsdNode& node, std::vector<std::string>& names) {
+    for (const auto& [name, path] : node.targets) names.push_back(name);
+    for (const UsdField& field : node.fields) names.push_back(field.name);
+}
+
+UsdcRep valueOf(UsdcBuilder& file, const UsdField& field) {
+    if (const auto* number = std::get_if<float>(&field.value)) return file.single(*number);
+    if (const auto* vector = std::get_if<Vec3f>(&field.value)) return file.vector({vector->data(), 3});
+    if (const auto* text = std::get_if<std::string>(&field.value)) return file.token(*text);
+    if (const auto* whole = std::get_if<std::vector<std::int32_t>>(&field.value)) return file.ints(*whole);
+    const auto& vectors = std::get<std::vector<Vec3f>>(field.value);
+    return file.floats(vectors.empty() ? std::span<const float>() : numbersOf(vectors), 3);
+}
+
+void writeFields(UsdcBuilder& file, const UsdNode& node, std::uint32_t depth) {
+    for (const auto& [name, path] : node.targets)
+        file.relationship(depth, name, {{"variability", file.uniform()}, {"targetPaths", file.path(path)}});
+    for (const UsdField& field : node.fields) {
+        UsdcBuilder::Fields fields{{"typeName", file.token(field.type)}};
+        if (field.isUniform) fields.emplace_back("variability", file.uniform());
+        if (!field.interpolation.empty())
+            fields.emplace_back("interpolation", file.token(field.interpolation));
+        fields.emplace_back("default", valueOf(file, field));
+        file.attribute(depth, field.name, fields);
+    }
+}
+
+void writeNode(UsdcBuilder& file, const UsdNode& node, std::uint32_t depth) {
+    std::vector<std::string> children, names;
+    for (const UsdNode& child : node.children) children.push_back(child.name);
+    addNames(node, names);
+    UsdcBuilder::Fields fields{{"specifier", file.definition()}, {"typeName", file.token(node.type)}};
+    if (!node.schemas.empty()) fields.emplace_back("apiSchemas", file.prepended(node.schemas));
+    if (!children.empty()) fields.emplace_back("primChildren", file.tokens(children));
+    if (!names.empty()) fields.emplace_back("properties", file.tokens(names));
+    file.prim(depth, node.name, fields);
+    for (const UsdNode& child : node.children) writeNode(file, child, depth + 1);
+    writeFields(file, node, depth + 1);
+}
+
 class PartWriter {
   public:
     PartWriter(UsdcBuilder& file, const PreparedStrands& strands, const StrandExportOptions& options)
         : file_(file), strands_(strands) {
-        for (std::size_t f = 0; f < strands.frames.size(); ++f)
-            times_.push_back(options.frames->first + static_cast<double>(f));
-        if (options.frames) framesPerSecond_ = options.frames->framesPerSecond;
+        if (!options.frames) return;
+        frames_ = options.frames.get();
+        for (std::size_t f = 0; f < strands.frames.size(); ++f) times_.push_back(frames_->numberOf(f));
     }
 
     void write(const ExportedPart& part, std::span<const ExportedAttribute> attributes,
-               const UsdMaterial& material) {
+               const UsdMaterial& material, const UsdNode& more) {
         std::vector<std::string> names{"material:binding",  "type",   "wrap",  "extent",
                                        "curveVertexCounts", "points", "widths"};
+        addNames(more, names);
         if (strands_.frames.size() > 1) names.emplace_back("velocities");
         for (const ExportedAttribute& attribute : attributes) names.push_back("primvars:" + attribute.name);
         UsdcBuilder::Fields fields{{"specifier", file_.definition()},
                                    {"typeName", file_.token("BasisCurves")},
                                    {"properties", file_.tokens(names)}};
         if (!part.displayName.empty()) fields.emplace_back("displayName", file_.string(part.displayName));
-        const std::vector<std::string> schemas{"MaterialBindingAPI"};
+        std::vector<std::string> schemas{"MaterialBindingAPI"};
+        schemas.insert(schemas.end(), more.schemas.begin(), more.schemas.end());
         fields.emplace_back("apiSchemas", file_.prepended(schemas));
         file_.prim(2, part.name, fields);
         file_.relationship(3, "material:binding",
                            {{"variability", file_.uniform()}, {"targetPaths", file_.path(material.path)}});
+        writeFields(file_, more, 3);
         for (const auto& [name, value] : {std::pair("type", "linear"), std::pair("wrap", "nonperiodic")})
             file_.attribute(3, name,
                             {{"typeName", file_.token("token")},
@@ -108,7 +152,7 @@ class PartWriter {
         if (shapes.size() < 2) return;
         std::vector<UsdcRep> values;
         for (std::size_t f = 0; f < shapes.size(); ++f)
-            values.push_back(file_.floats(numbersOf(pointVelocities(shapes, f, framesPerSecond_)), 3));
+            values.push_back(file_.floats(numbersOf(pointVelocities(shapes, f, *frames_)), 3));
         file_.attribute(
             3, "velocities",
             {{"typeName", file_.token("vector3f[]")}, {"timeSamples", file_.samples(times_, values)}});
@@ -126,7 +170,7 @@ class PartWriter {
     UsdcBuilder& file_;
     const PreparedStrands& strands_;
     std::vector<double> times_;
-    double framesPerSecond_ = 0;
+    const StrandFrames* frames_ = nullptr;
 };
 
 UsdcRep valueOf(UsdcBuilder& file, const UsdShaderInput& input) {
@@ -215,7 +259,7 @@ void writeScalp(UsdcBuilder& file, const std::string& name, const UsdScalp& scal
 
 Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& path,
                                const StrandExportOptions& options) {
-    auto strands = prepareStrands(groom, options, options.pointsPerStrand, true);
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand, StrandOrder::layersAndGuides);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     const bool hasOperators = usdHasOperators(groom, options);
     const auto attributes = exportedAttributes(groom, *strands, usdNames(hasOperators));
@@ -225,11 +269,13 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
     const UsdScalp scalp = usdScalp(groom, options);
     UsdcBuilder file;
     file.reserve(roomOf(*strands, attributes));
-    writeRoot(file, *strands, options);
+    writeRoot(file, options);
     std::vector<std::string> names, properties;
     for (const ExportedPart& part : parts) names.push_back(part.name);
     if (!scalp.empty()) names.push_back(beside.scalp);
     names.push_back(beside.materials);
+    const UsdMore more = usdMore(groom, *strands, options, parts, beside.physics);
+    for (const UsdNode& node : more.beside) names.push_back(node.name);
     const auto settings = usdSettings(groom, *strands, hasOperators);
     for (const auto& [name, text] : settings) properties.push_back(name);
     file.prim(1, "groom",
@@ -239,9 +285,10 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
                {"properties", file.tokens(properties)}});
     PartWriter writer(file, *strands, options);
     for (std::size_t p = 0; p < parts.size(); ++p)
-        writer.write(parts[p], attributes, materials.all[materials.ofPart[p]]);
+        writer.write(parts[p], attributes, materials.all[materials.ofPart[p]], more.ofParts[p]);
     if (!scalp.empty()) writeScalp(file, beside.scalp, scalp);
     writeMaterials(file, beside.materials, materials);
+    for (const UsdNode& node : more.beside) writeNode(file, node, 2);
     for (const auto& [name, text] : settings)
         file.attribute(2, name,
                        {{"typeName", file.token("string")},
@@ -256,6 +303,8 @@ HairWriter usdcWriter() {
     HairWriter writer{"usdc", "USD .usdc",         "like usda, in a tenth of the time",
                       "none", usdTargets(".usdc"), writeUsdc};
     writer.animates = true;
+    writer.marksGuides = true;
+    writer.holdsPhysics = true;
     return writer;
 }
 

@@ -119,7 +119,9 @@ class Reader {
                          "time", "import with --record to keep all of them"));
             return {};
         }
-        auto times = recordTimes(moving, isRate ? *stated : 0, static_cast<double>(options_.framesPerSecond));
+        auto times = options_.everySample ? everySampleTime(moving)
+                                          : recordTimes(moving, isRate ? *stated : 0,
+                                                        static_cast<double>(options_.framesPerSecond));
         if (!times) return tl::unexpected(times.error());
         times_ = std::move(*times);
         frameCount_ = times_.seconds.size();

@@ -56,6 +56,12 @@ double ownRate(std::span<const MovingProperty> moving, double stated, double sta
     return rate > 0 ? rate : kUsualRate;
 }
 
+Status checkTimes(const MovingProperty& property) {
+    if (property.times->ascend(property.samples)) return {};
+    return fail(fmt::format("{}: the times of its samples do not ascend", property.name),
+                "expected each time after the one before");
+}
+
 }  // namespace
 
 double SampleTimes::at(std::uint32_t sample) const {
@@ -91,13 +97,28 @@ SampleMoment momentAt(const SampleTimes& times, std::uint32_t samples, double se
     return {low, high, share};
 }
 
+Result<RecordTimes> everySampleTime(std::span<const MovingProperty> moving) {
+    RecordTimes record;
+    for (const MovingProperty& property : moving) {
+        if (auto status = checkTimes(property); !status) return tl::unexpected(status.error());
+        if (record.seconds.size() + property.samples > kMaxRecordFrames)
+            return fail(fmt::format("{} has {} samples", property.name, property.samples),
+                        fmt::format("expected at most {}", kMaxRecordFrames));
+        for (std::uint32_t i = 0; i < property.samples; ++i) record.seconds.push_back(property.times->at(i));
+    }
+    std::ranges::sort(record.seconds);
+    record.seconds.erase(std::unique(record.seconds.begin(), record.seconds.end()), record.seconds.end());
+    const double length = record.seconds.back() - record.seconds.front();
+    record.framesPerSecond =
+        length > 0 ? static_cast<double>(record.seconds.size() - 1) / length : kUsualRate;
+    return record;
+}
+
 Result<RecordTimes> recordTimes(std::span<const MovingProperty> moving, double stated, double asked) {
     double start = HUGE_VAL, end = -HUGE_VAL;
     std::uint32_t most = 0;
     for (const MovingProperty& property : moving) {
-        if (!property.times->ascend(property.samples))
-            return fail(fmt::format("{}: the times of its samples do not ascend", property.name),
-                        "expected each time after the one before");
+        if (auto status = checkTimes(property); !status) return tl::unexpected(status.error());
         start = std::min(start, property.times->at(0));
         end = std::max(end, property.times->at(property.samples - 1));
         most = std::max(most, property.samples);

@@ -55,4 +55,7 @@ inline constexpr std::uint32_t kMaxRecordFrames = 100'000;
 /// do not ascend, more than kMaxRecordFrames frames.
 Result<RecordTimes> recordTimes(std::span<const MovingProperty> moving, double stated, double asked);
 
+/// The times of all samples of all, each once, and the rate as if they were even. Errors as above.
+Result<RecordTimes> everySampleTime(std::span<const MovingProperty> moving);
+
 }  // namespace hairloom

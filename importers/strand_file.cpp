@@ -111,6 +111,7 @@ std::vector<std::string> wordsOf(const StrandImportOptions& options) {
         fmt::format("--points={}", options.pointsPerStrand)};
     if (options.isUnitAsked) words.emplace_back("--unit-asked");
     if (options.frames) words.emplace_back("--frames");
+    if (options.everySample) words.emplace_back("--every-sample");
     return words;
 }
 
@@ -119,6 +120,7 @@ bool takeWord(std::string_view word, StrandImportOptions& options) {
     const std::string_view key = word.substr(0, sign), value = word.substr(std::min(sign + 1, word.size()));
     if (key == "--unit-asked") return options.isUnitAsked = true;
     if (key == "--frames") return options.frames = true;
+    if (key == "--every-sample") return options.everySample = true;
     if (key == "--unit") return parse(value, options.metresPerUnit);
     if (key == "--fps") return parse(value, options.framesPerSecond);
     if (key == "--order") return parseChoice(value, options.ribbonOrder, RibbonOrder::Around);

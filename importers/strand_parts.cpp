@@ -12,6 +12,8 @@ namespace {
 
 using Elements = std::vector<std::string>;
 
+constexpr std::string_view kUnnamed = "hair";  ///< the name of parts that have none
+
 Elements elementsOf(std::string_view path) {
     Elements elements;
     while (!path.empty()) {
@@ -125,6 +127,8 @@ void layersFromParts(RawStrands& strands) {
             layerOf.push_back(static_cast<std::int32_t>(known - strands.layerNames.begin()));
         }
         for (const std::uint32_t part : strands.partOfStrand) layer.whole.push_back(layerOf[part]);
+        if (strands.layerNames.size() == 1 && strands.layerNames.front() == kUnnamed)
+            strands.layerNames.clear();
     } else if (strands.groupNames.size() > 1 && strands.groupNames.size() <= kMaxPartLayers) {
         const auto group = std::ranges::find_if(strands.attributes, [](const RawAttribute& one) {
             return one.name == attribute::kGroup && one.type == RawAttribute::Type::Index && !one.perPoint;
@@ -136,8 +140,7 @@ void layersFromParts(RawStrands& strands) {
         const StrandPart& part = strands.parts.front();
         const Elements path = elementsOf(part.path);
         strands.layerNames = {!part.name.empty() ? part.name : path.empty() ? std::string() : path.back()};
-        // The name of those that have none.
-        if (strands.layerNames.front().empty() || strands.layerNames.front() == "hair")
+        if (strands.layerNames.front().empty() || strands.layerNames.front() == kUnnamed)
             strands.layerNames.clear();
         return;
     }

@@ -43,6 +43,7 @@ struct StrandImportOptions {
     RibbonParticle ribbonParticle = RibbonParticle::FirstEdge;
     bool frames = false;                ///< ImportedStrands::frames, too, for the formats that have them
     float framesPerSecond = 0;          ///< of these, resampled in time; 0: as the file has them, if evenly
+    bool everySample = false;           ///< frames are the file's samples, whatever their times
     std::uint32_t ribbonSegments = 0;   ///< segments of each ribbon, n − 1; 0 finds it from the file
     std::uint32_t pointsPerStrand = 0;  ///< of files that hold nothing but points; 0 finds it from these
     /// Where given, the end of a strand nearer to this mesh is its root, for the formats that do not say

@@ -161,8 +161,10 @@ class Reader {
         for (const double time : times_) samples.times.push_back(time / codesPerSecond_);
         const MovingProperty moving{&samples, static_cast<std::uint32_t>(times_.size()), "the stage"};
         const auto planned =
-            recordTimes(std::span(&moving, 1), usdNumber(stage_.metadata, "framesPerSecond", 0),
-                        static_cast<double>(options_.framesPerSecond));
+            options_.everySample
+                ? everySampleTime(std::span(&moving, 1))
+                : recordTimes(std::span(&moving, 1), usdNumber(stage_.metadata, "framesPerSecond", 0),
+                              static_cast<double>(options_.framesPerSecond));
         if (!planned) return tl::unexpected(planned.error());
         if (!planned->words.empty()) strands_.warnings.push_back(fileNote(planned->words, "time"));
         strands_.framesPerSecond = static_cast<float>(planned->framesPerSecond);

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -31,6 +34,11 @@ struct ExportOptions {
     std::vector<std::string> layers;  ///< names; empty: all
     std::string record;               ///< of simulate; empty: at rest
     std::vector<std::uint64_t> frames;
+    std::optional<double> start;  ///< number of the first frame in the file
+    double framesPerSecond = 0;   ///< of the file; 0: of the record
+    std::string shutter;          ///< "OPEN:CLOSE"; empty: none
+    std::uint32_t samples = 3;
+    bool physics = false;
     std::string unit;
     std::string up;
     std::uint32_t points = 0;
@@ -96,6 +104,13 @@ void checkFormat(const HairWriter& writer, const ExportOptions& options,
         throw WrongUsage(
             "--unit, --up and --points do not apply to cards",
             "leave them out: glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
+    if (options.physics && (!writer.holdsPhysics || !options.record.empty()))
+        throw WrongUsage("--physics applies to hair at rest in USD",
+                         "expected it without --record, and with --format " +
+                             formatsWhere([](const HairWriter& w) { return w.holdsPhysics; }));
+    if (!options.shutter.empty() && !writer.animates)
+        throw WrongUsage(fmt::format("{} holds a single pose, and --shutter asks for several", writer.name),
+                         "expected --format " + formatsWhere([](const HairWriter& w) { return w.animates; }));
     if (options.frames.size() != 2 || options.frames[1] <= options.frames[0] || writer.animates) return;
     throw WrongUsage(
         fmt::format("{} holds a single pose, and --frames asks for several", writer.name),
@@ -111,6 +126,29 @@ Result<Report> withCompanion(const ExportOptions& options, Report report) {
     return report;
 }
 
+/// Frames of the record at both ends of those that were asked for, as far as there are some.
+Status addFramesAround(const ExportOptions& options, const Groom& groom, HairToExport& wanted) {
+    MotionSampling sampling;
+    sampling.recordRate = static_cast<double>(wanted.frames.front().framesPerSecond);
+    sampling.framesPerSecond = options.framesPerSecond > 0 ? options.framesPerSecond : sampling.recordRate;
+    sampling.shutter = wanted.shutter;
+    const std::uint64_t reach = framesAround(sampling);
+    const std::uint64_t first = options.frames[0] - std::min(reach, options.frames[0]);
+    const std::uint64_t last = std::min(options.frames[1] + reach, wanted.frames.front().framesInRecord - 1);
+    std::vector<RecordedFrame> before;
+    for (std::uint64_t number = first; number <= last; ++number) {
+        if (number >= options.frames[0] && number <= options.frames[1]) continue;
+        auto frame = readFrame(options.record, groom, number);
+        if (!frame) return tl::unexpected(frame.error());
+        (number < options.frames[0] ? before : wanted.frames).push_back(std::move(*frame));
+    }
+    wanted.framesBefore = before.size();
+    wanted.framesAfter = last - options.frames[1];
+    wanted.frames.insert(wanted.frames.begin(), std::make_move_iterator(before.begin()),
+                         std::make_move_iterator(before.end()));
+    return {};
+}
+
 Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& groom) {
     HairToExport wanted;
     wanted.hair = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
@@ -120,20 +158,31 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
     if (options.record.empty()) return wanted;
     if (options.frames.size() != 2 || options.frames[1] < options.frames[0])
         throw WrongUsage("--frames runs backwards or is not two numbers", "FIRST,LAST");
-    wanted.firstFrame = options.frames[0];
+    if (!options.shutter.empty()) {
+        const auto shutter = shutterFrom(options.shutter, options.samples);
+        if (!shutter) throw WrongUsage(shutter.error().problem, shutter.error().expected);
+        wanted.shutter = *shutter;
+    }
+    wanted.framesPerSecond = options.framesPerSecond;
     for (std::uint64_t number = options.frames[0]; number <= options.frames[1]; ++number) {
         auto frame = readFrame(options.record, groom, number);
         if (!frame) return tl::unexpected(frame.error());
         wanted.frames.push_back(std::move(*frame));
     }
+    const auto rate = static_cast<double>(wanted.frames.front().framesPerSecond);
+    const double perFrame = options.framesPerSecond > 0 ? options.framesPerSecond / rate : 1;
+    wanted.firstFrame = options.start.value_or(std::round(static_cast<double>(options.frames[0]) * perFrame));
+    if (options.shutter.empty() && perFrame == 1) return wanted;
+    if (auto status = addFramesAround(options, groom, wanted); !status) return tl::unexpected(status.error());
     return wanted;
 }
 
 Result<Report> exportAsPage(const ExportOptions& options) {
     if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
-        !options.record.empty() || options.what == "hairs")
+        !options.record.empty() || options.what == "hairs" || options.physics)
         throw WrongUsage(
-            "--target, --unit, --up, --points, --record and --what hairs do not apply to a web page",
+            "--target, --unit, --up, --points, --record, --physics and --what hairs do not apply to a web "
+            "page",
             "leave them out: the page plays a runtime asset in metres, Y up, which draws follow hairs "
             "itself");
     const auto groom = loadDocument(options.input);
@@ -156,6 +205,7 @@ Result<Report> exportAsset(const ExportOptions& options) {
     if (!options.unit.empty()) exporting.metresPerUnit = metresPerUnit(options.unit);
     if (!options.up.empty()) exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     if (options.points > 0) exporting.pointsPerStrand = options.points;
+    exporting.physics = options.physics;
     checkFormat(*asked->writer, options, exporting);
     auto wanted = hairToExport(options, *groom);
     if (!wanted) return tl::unexpected(wanted.error());
@@ -207,6 +257,24 @@ JobRun declare(CLI::App& job) {
             ->delimiter(',')
             ->needs(record);
     record->needs(frames);
+    job.add_option("--start", options->start,
+                   "Number of FIRST in the file, as 1001 (default: its number in the record)")
+        ->check(CLI::Range(-1e6, 1e6))
+        ->needs(record);
+    job.add_option("--fps", options->framesPerSecond,
+                   "Frames per second of the file (default: those of the record)")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->needs(record);
+    auto* shutter =
+        job.add_option("--shutter", options->shutter,
+                       "OPEN:CLOSE in frames, as -0.25:0.25: samples within each frame, for motion blur")
+            ->needs(record);
+    job.add_option("--samples", options->samples, "Number of samples while the shutter is open")
+        ->check(CLI::Range(2u, kMaxShutterSamples))
+        ->needs(shutter);
+    job.add_flag("--physics", options->physics,
+                 "USD: deformable curves for simulators, of the guides or all strands "
+                 "(PhysicsCurvesDeformableSimAPI)");
     addUnitOption(job, options->unit);
     job.add_option("--up", options->up, "Up axis of the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points,

@@ -31,6 +31,7 @@ namespace {
 struct SimulateOptions {
     std::string input;
     std::uint64_t frames = 60;
+    std::uint64_t preRoll = 0;
     float framesPerSecond = 60;
     std::string engine;
     std::string backend = "cpu";
@@ -244,7 +245,12 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (!options.against.empty()) comparison.emplace(options.against);
 
     std::optional<DrawnDepthMeter> depth = depthMeter(*groom);
-    Progress progress("simulating", options.frames);
+    Progress progress("simulating", options.preRoll + options.frames);
+    for (std::uint64_t frame = 1; frame <= options.preRoll; ++frame) {
+        simulation->step(1.0f / options.framesPerSecond, pose);
+        if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
+        progress.done(frame);
+    }
     for (std::uint64_t frame = 1; frame <= options.frames; ++frame) {
         pose = (*motion)->poseAt(static_cast<float>(frame) / options.framesPerSecond);
         simulation->step(1.0f / options.framesPerSecond, pose);
@@ -260,11 +266,13 @@ Result<Report> simulate(const SimulateOptions& options) {
                 return tl::unexpected(compared.error());
             }
         }
-        progress.done(frame);
+        progress.done(options.preRoll + frame);
     }
 
     Report report = statsReport(*groom, simulation->stats());
     report["advice"] = advice;
+    report["frames"] = options.frames;
+    report["pre_roll"] = options.preRoll;
     report["method"] = options.method;
     report["engine"] = engineName(engine->choice.kind);
     report["why"] = engine->choice.why;
@@ -295,6 +303,11 @@ JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SimulateOptions>();
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
+    job.add_option(
+           "--pre-roll", options->preRoll,
+           "Frames to simulate before these on the motion's first pose. They settle the hair, and are "
+           "not recorded")
+        ->check(CLI::Range(0, 100'000));
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
     job.add_option("--engine", options->engine,
                    "Device that simulates: the CPU, a GPU, or the one that was measured to be faster")

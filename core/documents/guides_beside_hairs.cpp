@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 
 namespace hairloom {
@@ -54,6 +55,16 @@ Groom guidesBesideHairs(const Groom& groom, const FollowBindings& bindings, cons
         for (const std::uint32_t guide : bindings.guideStrands) all.push_back(roots[guide]);
         all.insert(all.end(), ofHairs.begin(), ofHairs.end());
         both.setRootBindings(all);
+    }
+    const auto changes = widthChanges(groom);
+    const auto ofThem = widthChanges(hairs);
+    if (!changes.empty() && ofThem.size() == hairs.pointCount()) {
+        std::vector<float> all;
+        for (const std::uint32_t guide : bindings.guideStrands)
+            all.insert(all.end(), changes.begin() + groom.offsets[guide],
+                       changes.begin() + groom.offsets[guide + 1]);
+        all.insert(all.end(), ofThem.begin(), ofThem.end());
+        both.pointAttributes.set(attribute::kWidthChange, std::move(all));
     }
     std::vector<std::uint8_t> flags(strands, 0);
     std::vector<std::uint32_t> ids(strands);

@@ -74,10 +74,12 @@ struct Moving {
     Groom first;
     std::vector<std::vector<Vec3f>> shapes;
     std::vector<std::vector<Vec3f>> guides;  ///< where `shapes` are of hairs that follow: of what they follow
+    std::size_t inFile = 0;                  ///< the first of them that is in the file
 };
 Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> strands, const Groom& guides,
                           const HairToExport& wanted, const FollowBindings* bindings) {
     Moving moving;
+    moving.inFile = wanted.framesBefore;
     std::optional<MovingHairs> hairs;
     if (bindings) {
         auto made = MovingHairs::make(guides, *bindings);
@@ -96,7 +98,7 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
             shape = std::move(*made);
         }
         if (push) pushOutOfBody(*push, guides, frame.pose, shape);
-        if (moving.shapes.empty()) {
+        if (moving.shapes.size() == moving.inFile) {
             moving.first = posed;
             if (push) moving.first.pointAttributes.set(attribute::kPosition, shape);
             if (bindings) {
@@ -117,7 +119,39 @@ void putGuidesBeside(const Groom& guides, const FollowBindings& bindings, Moving
     shown = guidesBesideHairs(guides, bindings, shown);
     for (std::size_t f = 0; f < moving.shapes.size(); ++f)
         moving.shapes[f].insert(moving.shapes[f].begin(), moving.guides[f].begin(), moving.guides[f].end());
-    if (!moving.shapes.empty()) shown.pointAttributes.set(attribute::kPosition, moving.shapes.front());
+    if (!moving.shapes.empty()) shown.pointAttributes.set(attribute::kPosition, moving.shapes[moving.inFile]);
+}
+
+MotionSampling samplingOf(const HairToExport& wanted) {
+    MotionSampling sampling;
+    sampling.recordRate = static_cast<double>(wanted.frames.front().framesPerSecond);
+    sampling.before = wanted.framesBefore;
+    sampling.after = wanted.framesAfter;
+    sampling.framesPerSecond = wanted.framesPerSecond > 0 ? wanted.framesPerSecond : sampling.recordRate;
+    sampling.firstFrame = wanted.firstFrame;
+    sampling.shutter = wanted.shutter;
+    return sampling;
+}
+
+void sayHowSampled(const SampledMotion& sampled, const MotionSampling& sampling,
+                   std::vector<Finding>& findings) {
+    const std::size_t all = sampled.frames.points.size();
+    if (sampled.between > 0)
+        findings.push_back(
+            {Severity::Info,
+             fmt::format("{} of {} samples lie between frames of the record, on curves through these",
+                         sampled.between, all),
+             "time",
+             fmt::format("record at a multiple of {:.6g} frames a second to have simulated ones",
+                         sampling.framesPerSecond)});
+    if (sampled.beyond > 0)
+        findings.push_back(
+            {Severity::Warning,
+             fmt::format(
+                 "{} of {} samples lie before or behind the record, where points go on as they move at "
+                 "its end",
+                 sampled.beyond, all),
+             "time", "simulate more frames at both ends, and export those between them"});
 }
 
 Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
@@ -176,13 +210,23 @@ constexpr std::string_view kRuntimeFormat = "runtime";
 
 Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
-    if (wanted.frames.size() > 1 && !writer.animates) {
+    const std::size_t around = wanted.framesBefore + wanted.framesAfter;
+    if (wanted.frames.size() < around + (around > 0 ? 1 : 0))
+        return fail(fmt::format("{} frames, of which {} are not in the file", wanted.frames.size(), around),
+                    "expected at least one in it");
+    const bool moves =
+        !wanted.frames.empty() && (wanted.frames.size() > around + 1 || wanted.shutter.samples > 1);
+    if (options.physics && (moves || !writer.holdsPhysics))
+        return fail(moves ? "physics was requested of hair that moves"
+                          : "physics was requested, which " + writer.name + " does not hold",
+                    "expected it of hair at rest, in one of usda, usdc");
+    if (moves && !writer.animates) {
         std::string formats;
         for (const HairWriter& other : strandWriters()) {
             if (other.animates) formats += (formats.empty() ? "" : ", ") + other.name;
         }
         return fail(fmt::format("{} holds a single pose, but {} frames were requested", writer.name,
-                                wanted.frames.size()),
+                                wanted.frames.size() - around),
                     "expected one frame, or one of " + formats);
     }
     std::vector<std::uint32_t> strands(groom.strandCount());
@@ -206,16 +250,19 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         bindings = std::move(*bound);
     }
     StrandExportOptions exporting = options;
+    std::vector<Finding> findings;
     const bool marksGuides = isBaked && writer.marksGuides;
     if (!wanted.frames.empty()) {
         auto moving = movingHair(groom, strands, guides, wanted, isBaked ? &bindings : nullptr);
         if (!moving) return tl::unexpected(moving.error());
         shown = std::move(moving->first);
         if (marksGuides) putGuidesBeside(guides, bindings, *moving, shown);
-        if (moving->shapes.size() > 1) {
-            exporting.frames = std::make_shared<const StrandFrames>(
-                StrandFrames{static_cast<double>(wanted.frames.front().framesPerSecond),
-                             static_cast<double>(wanted.firstFrame), std::move(moving->shapes)});
+        if (moves) {
+            const MotionSampling sampling = samplingOf(wanted);
+            SampledMotion sampled = sampleMotion(moving->shapes, sampling);
+            shown.pointAttributes.set(attribute::kPosition, sampled.frames.points.front());
+            sayHowSampled(sampled, sampling, findings);
+            exporting.frames = std::make_shared<const StrandFrames>(std::move(sampled.frames));
         }
     } else if (isBaked) {
         auto baked = bakeFollowHairs(guides, bindings);
@@ -238,6 +285,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
     auto report = writer.holdsCards() ? writeCards(shown, wanted, writer, path, exporting)
                                       : writer.write(shown, path, exporting);
     if (report) report->safeLimits = exporting.safeLimits;
+    if (report) std::ranges::move(findings, std::back_inserter(report->findings));
     if (report && losesBody)
         report->findings.push_back(
             {Severity::Warning,

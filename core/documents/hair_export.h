@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/documents/sampled_motion.h"
 #include "core/levels/level_chain.h"
 #include "core/simulation/frame_record.h"
 #include "exporters/strands.h"
@@ -19,9 +20,14 @@ enum class ExportedHair {
 /// What of a hairstyle is written.
 struct HairToExport {
     ExportedHair hair = ExportedHair::guides;
-    std::vector<std::string> layers;    ///< by their names; empty: all
-    std::vector<RecordedFrame> frames;  ///< of all strands; empty: at rest; one: as they are there
-    std::uint64_t firstFrame = 0;       ///< number of the first of them
+    std::vector<std::string> layers;  ///< by their names; empty: all
+    /// Of all strands; empty: at rest; one in the file: as they are there. So many at both ends are not in
+    /// the file, and serve its shutter (framesAround()).
+    std::vector<RecordedFrame> frames;
+    std::size_t framesBefore = 0, framesAfter = 0;
+    double firstFrame = 0;       ///< number in the file of the first frame that is in it
+    double framesPerSecond = 0;  ///< of the file; 0: of the record
+    Shutter shutter{};
     /// So many random storms find what a game may do to the guides (core/stability/certificate.h; its
     /// thousand take half a minute or so). The report has it, and files that can carry it. 0: none.
     std::uint32_t storms = 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <fstream>
@@ -186,6 +187,10 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
     if (header.bones > kMostBones)
         return failIn(name, Byte{offsetof(Header, bones)}, fmt::format("has {} bones", header.bones),
                       fmt::format("expected {} at most", kMostBones));
+    if (!(header.framesPerSecond > 0) || !std::isfinite(header.framesPerSecond))
+        return failIn(name, Byte{offsetof(Header, framesPerSecond)},
+                      fmt::format("has {} frames a second", header.framesPerSecond),
+                      "expected a positive number");
     if (index >= header.frames) {
         return failIn(name, {}, fmt::format("has no frame {}", index),
                       fmt::format("it has {} frames, counted from 0", header.frames));
@@ -205,6 +210,7 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
 
     RecordedFrame frame;
     frame.framesPerSecond = header.framesPerSecond;
+    frame.framesInRecord = header.frames;
     const auto pointsEnd = values.begin() + static_cast<std::ptrdiff_t>(header.points);
     const auto verticesEnd = pointsEnd + static_cast<std::ptrdiff_t>(header.vertices);
     frame.positions_ws.assign(values.begin(), pointsEnd);

@@ -18,7 +18,8 @@ namespace hairloom {
 struct RecordedFrame {
     std::vector<Vec3f> positions_ws;
     HeadPose pose;
-    float framesPerSecond = 60;  ///< of the record
+    float framesPerSecond = 60;        ///< of the record
+    std::uint64_t framesInRecord = 0;  ///< 0 where it is of none
 };
 
 /// Writes frames as they come into a temporary file; `finish` puts it under the name asked for. A recorder
