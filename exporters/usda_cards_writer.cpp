@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cards and shells as USD's text: a mesh for each level, each a variant of the set "lod" (the nearest LOD0),
-// with a UsdPreviewSurface whose textures go beside the file. The same chain gives the same bytes.
+// Cards and shells as USD's text: a mesh for each level with a UsdPreviewSurface, whose textures go beside
+// the file. All levels are items of UsdLod, by distance. The variant set "lod" shows one of them to programs
+// that do not know UsdLod (LOD0, the nearest, where nothing is chosen), and leaves all to those that do
+// ("UsdLod"). The same chain gives the same bytes.
 #include <fmt/format.h>
 
 #include "exporters/card_files.h"
@@ -104,10 +106,46 @@ std::string materialText(const std::string& name, const Level& level, const card
         name, surface, readers);
 }
 
+/// One variant for each level, in which the others are not there, and one in which all are.
+std::string variantsText(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t lod = 0; lod < names.size(); ++lod) {
+        text += fmt::format(
+            "        \"LOD{}\" (\n            prepend apiSchemas = [\"LODOverrideAPI\"]\n        ) {{\n"
+            "            token lod:override:mode = \"indexedLOD\"\n            float lod:override:index = "
+            "0\n\n"
+            "            over \"levels\"\n            {{\n",
+            lod);
+        for (const std::string& name : names) {
+            if (name != names[lod])
+                text += fmt::format(
+                    "                over \"{}\" (\n                    active = false\n"
+                    "                )\n                {{\n                }}\n",
+                    name);
+        }
+        text += "            }\n        }\n";
+    }
+    return text + "        \"UsdLod\" {\n        }\n";
+}
+
+/// What says which level is seen from how far.
+std::string heuristicText(std::span<const Vec3f> nearest, std::span<const float> distances) {
+    const std::array<Vec3f, 2> extent = extentOf(nearest);
+    const Vec3f centre = 0.5f * (extent[0] + extent[1]);
+    std::string text = fmt::format(
+        "    def LODDistanceHeuristic \"distance\"\n    {{\n        uniform token lod:domain = \"imaging\"\n"
+        "        point3f center = ({}, {}, {})\n        uniform float[] thresholds = ",
+        centre.x(), centre.y(), centre.z());
+    writeNumbers(text, distances, 1);
+    return text + "\n    }\n";
+}
+
 Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesystem::path& path) {
-    std::string variants, materials;
+    std::string meshes, materials;
     CardFiles files(1);
-    std::size_t lod = 0;
+    std::vector<std::string> levels;
+    std::vector<float> distances;  ///< from which on each level but the first is seen
+    std::vector<Vec3f> nearest;
     NameGiver names(isLegalInUsd);
     for (const Level& level : hair.chain.levels) {
         if (level.spec.kind == cards::LevelKind::strands) continue;
@@ -115,18 +153,26 @@ Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesyste
         const std::string name = names.give(level.name);
         auto textures = cards::textureFilesOf(level, arrays, path.stem().string());
         if (!textures) return tl::unexpected(textures.error());
-        variants += fmt::format("        \"LOD{}\" {{\n{}        }}\n", lod++, meshText(name, arrays));
+        meshes += meshText(name, arrays);
+        if (levels.empty())
+            nearest = arrays.positions_ws;
+        else
+            distances.push_back(static_cast<float>(cards::distanceOf(level.spec.headPx)));
+        levels.push_back(name);
         materials += materialText(name, level, *textures);
         for (auto& [beside, bytes] : textures->files)
             files.emplace_back(path.parent_path() / beside, std::move(bytes));
     }
-    if (lod == 0) return fail("no level that a mesh can hold", "one of cards or a shell");
+    if (levels.empty()) return fail("no level that a mesh can hold", "one of cards or a shell");
     const std::string text = fmt::format(
         "#usda 1.0\n(\n    defaultPrim = \"hair\"\n    doc = \"Hairloom\"\n    metersPerUnit = 1\n"
         "    upAxis = \"Y\"\n)\n\ndef Xform \"hair\" (\n    variants = {{\n        string lod = \"LOD0\"\n"
-        "    }}\n    prepend variantSets = \"lod\"\n)\n{{\n    variantSet \"lod\" = {{\n{}    }}\n\n"
-        "    def Scope \"materials\"\n    {{\n{}    }}\n}}\n",
-        variants, materials);
+        "    }}\n    prepend variantSets = \"lod\"\n)\n{{\n"
+        "    def Xform \"levels\" (\n        prepend apiSchemas = [\"LODRootAPI\"]\n    )\n    {{\n"
+        "        int lod:default:index = 0\n        rel lod:heuristics = </hair/distance>\n\n{}    }}\n\n{}\n"
+        "    def Scope \"materials\"\n    {{\n{}    }}\n"
+        "    variantSet \"lod\" = {{\n{}    }}\n}}\n",
+        meshes, heuristicText(nearest, distances), materials, variantsText(levels));
     const auto bytes = std::as_bytes(std::span(text));
     files.front() = {path, {bytes.begin(), bytes.end()}};
     auto companions = writeTogether(files);
@@ -142,7 +188,7 @@ Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesyste
 
 HairWriter usdaCardsWriter() {
     return cardWriter("usda-cards", "Cards as USD .usda",
-                      "one variant per level, with textures next to the file",
+                      "levels by distance (UsdLod) and as variants, with textures next to the file",
                       {"cards-usd", "Engines without strands: cards (USD)", "", {}}, "usda", writeCardUsd);
 }
 

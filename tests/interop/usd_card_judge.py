@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""usd_card_judge.py FILE.usda…: has Pixar's usd-core judge cards, each variant of them; fails on any error."""
+"""usd_card_judge.py FILE.usda…: has Pixar's usd-core judge cards, each variant of them, and its UsdLod choose levels by
+distance; fails on any error."""
 
 import sys
 
-from pxr import Usd, UsdGeom, UsdShade, UsdValidation
+from pxr import Gf, Usd, UsdGeom, UsdLod, UsdShade, UsdValidation
 
 
 def triangles_of(mesh):
@@ -17,17 +18,49 @@ def triangles_of(mesh):
     return len(counts)
 
 
+def meshes_of(stage):
+    return [UsdGeom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]
+
+
+def check_levels(file, stage, count):
+    """In the variant of all levels, UsdLod takes the one that belongs to a distance."""
+    roots = [prim for prim in stage.Traverse() if prim.HasAPI(UsdLod.RootAPI)]
+    if len(roots) != 1 or len(roots[0].GetChildren()) != count:
+        raise SystemExit(f"{file}: {len(roots)} roots of UsdLod; expected one of {count} levels")
+    (path,) = UsdLod.RootAPI(roots[0]).GetLodHeuristicsRel().GetTargets()
+    heuristic = UsdLod.DistanceHeuristic.Get(stage, path)
+    thresholds = list(heuristic.GetThresholdsAttr().Get())
+    if len(thresholds) != count - 1 or thresholds != sorted(set(thresholds)):
+        raise SystemExit(f"{file}: thresholds {thresholds} of {count} levels")
+    centre = heuristic.GetCenterAttr().Get()
+    for level in range(count):
+        before = thresholds[level - 1] if level else 0
+        after = thresholds[level] if level < len(thresholds) else before + 2
+        eye = Gf.Vec3d(centre) + Gf.Vec3d(0, 0, (before + after) / 2)
+        chosen = heuristic.ComputeLOD(eye, Gf.Matrix4d(1))
+        if chosen != level:
+            raise SystemExit(f"{file}: {(before + after) / 2} m away UsdLod takes level {chosen}, not {level}")
+
+
 def main():
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
     failed = False
     for file in sys.argv[1:]:
         stage = Usd.Stage.Open(file)
-        levels = stage.GetDefaultPrim().GetVariantSets().GetVariantSet("lod")
+        variants = stage.GetDefaultPrim().GetVariantSets().GetVariantSet("lod")
+        levels = [name for name in variants.GetVariantNames() if name != "UsdLod"]
         triangles = []
-        for name in levels.GetVariantNames():
-            levels.SetVariantSelection(name)
-            meshes = [UsdGeom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]
-            triangles += [triangles_of(mesh) for mesh in meshes]
+        for name in levels:
+            variants.SetVariantSelection(name)
+            (mesh,) = meshes_of(stage)
+            triangles.append(triangles_of(mesh))
+            override = UsdLod.OverrideAPI(stage.GetDefaultPrim())
+            if override.GetLodOverrideModeAttr().Get() != "indexedLOD" or override.GetLodOverrideIndexAttr().Get() != 0:
+                raise SystemExit(f"{file}: UsdLod may take another level in variant {name}")
+        variants.SetVariantSelection("UsdLod")
+        if [triangles_of(mesh) for mesh in meshes_of(stage)] != triangles:
+            raise SystemExit(f"{file}: the levels of UsdLod are not those of the variants")
+        check_levels(file, stage, len(levels))
         errors = UsdValidation.ValidationContext(validators).Validate(stage)
         print(f"{file}: {len(errors)} errors, triangles of its levels {triangles}")
         for error in errors:
