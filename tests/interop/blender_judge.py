@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Imports a file into Blender and prints its curves as JSON, in metres and Y up, and what objects there are. A process of
-its own: Blender's readers abort on what they do not take."""
+"""blender_judge.py FILE [FRAME] [--usd OUT]: imports a file into Blender and prints its curves as JSON, in metres and Y up, and
+what objects there are; --usd writes them as Blender's own USD. A process of its own: Blender's readers abort on what they do not
+take."""
 import json
 import sys
 
 import bpy
 
-path = sys.argv[1]
+words = sys.argv[1:]
+out = words[words.index("--usd") + 1] if "--usd" in words else None
+if out:
+    del words[words.index("--usd"):]
+path = words[0]
 bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.context.scene.render.fps = 60
 if path.endswith(".abc"):
@@ -15,8 +20,10 @@ elif path.endswith(".obj"):
     bpy.ops.wm.obj_import(filepath=path)
 else:
     bpy.ops.wm.usd_import(filepath=path)
-if len(sys.argv) > 2:
-    bpy.context.scene.frame_set(int(sys.argv[2]))
+if len(words) > 1:
+    bpy.context.scene.frame_set(int(words[1]))
+if out:
+    bpy.ops.wm.usd_export(filepath=out)
 graph = bpy.context.evaluated_depsgraph_get()
 strands, objects = [], []
 for found in bpy.context.scene.objects:

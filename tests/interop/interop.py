@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 
+import odd_grooms
 import plain_readers
 
 CLOSE_MM = 0.001
@@ -92,7 +93,7 @@ def read_usd(path, frame=None):
 def read_blender(path, frame=None):
     judge = os.path.join(os.path.dirname(__file__), "blender_judge.py")
     words = [] if frame is None else [str(frame)]
-    done = subprocess.run([sys.executable, judge, path, *words], capture_output=True, text=True)
+    done = subprocess.run([odd_grooms.blenders()[-1], judge, path, *words], capture_output=True, text=True)
     lines = [line for line in done.stdout.splitlines() if line.startswith("CURVES")]
     if not lines:
         raise ValueError(f"Blender ended with {done.returncode}: {done.stderr.strip()[-200:]}")
@@ -104,10 +105,6 @@ def worst_mm(found, expected):
         raise ValueError(f"{len(found)} strands of {sum(map(len, found))} points; expected {len(expected)} of "
                          f"{sum(map(len, expected))}")
     return max((1000 * math.dist(a, b) for f, e in zip(found, expected) for a, b in zip(f, e)), default=0)
-
-
-def has_blender():
-    return subprocess.run([sys.executable, "-c", "import bpy"], capture_output=True).returncode == 0
 
 
 def judged(row, groom, folder, cli, blender):
@@ -148,7 +145,7 @@ def main():
     options.add_argument("grooms", nargs="+")
     asked = options.parse_args()
     os.makedirs(asked.output, exist_ok=True)
-    blender = has_blender()
+    blender = bool(odd_grooms.blenders())
     if not blender:
         print("skipped: Blender's judgement, since its module bpy is not there for this Python")
     failed, lines = 0, []

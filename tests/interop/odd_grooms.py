@@ -13,9 +13,11 @@ import sys
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 import alembic_judge
+import plain_readers
 
 FORMATS = ("usda", "usdc")
 BY_BLENDER = ("usdc", "abc", "obj-lines")
+OTHERS = ("hair", "tfx", "ply", "obj-c4d")
 CURVES = ("BasisCurves", "NurbsCurves", "HermiteCurves")
 
 
@@ -50,6 +52,20 @@ def names(folder, ext):
     for name in ("bone_weight_Hair_L", "bone_weight_Hair_L_2", "a:b", "a_b", "normals", "colour", "guide", "layer"):
         primvar(prim, name, Sdf.ValueTypeNames.FloatArray, "uniform", [1.0, 2.0])
     primvar(prim, "rest", Sdf.ValueTypeNames.Point3fArray, "vertex", [Gf.Vec3f(i, 0, 0) for i in range(8)])
+    made.Save()
+
+
+def alike(folder, ext):
+    """Layers, attributes and bones whose names become alike once they are legal, without UVs."""
+    made = stage(folder, f"alike.{ext}")
+    for k, (name, shown_as) in enumerate((("_", "頭"), ("__2", "首"), ("Hair_L", "Hair.L"), ("Hair_L_2", "Hair_L"))):
+        prim = curves(made, f"/groom/{name}", k + 1, x=k)
+        prim.GetPrim().SetDisplayName(shown_as)
+        for number, (attribute, original) in enumerate((("bone_weight__", "bone_weight_頭"), ("bone_weight___2", "bone_weight_首"),
+                                                        ("bone_weight_Hair_L", "bone_weight_Hair.L"))):
+            one = UsdGeom.PrimvarsAPI(prim).CreatePrimvar(attribute, Sdf.ValueTypeNames.FloatArray, "uniform")
+            one.Set([0.25 * number] * (k + 1))
+            one.GetAttr().SetDisplayName(original)
     made.Save()
 
 
@@ -141,7 +157,7 @@ def empty(folder, ext):
     made.Save()
 
 
-STAGES = (names, ids, wide_ids, colours, layers, moving, composed, variants, empty)
+STAGES = (names, alike, ids, wide_ids, colours, layers, moving, composed, variants, empty)
 
 
 def shown(path):
@@ -199,10 +215,22 @@ def layers_of(cli, project):
     return sorted((layer["name"], layer["strands"]) for layer in run(cli, "layers", project)["layers"])
 
 
-def blender_objects(path):
+def blenders():
+    """Pythons that have Blender's module bpy: those that HAIRLOOM_BLENDERS names, else this one if it does."""
+    named = os.environ.get("HAIRLOOM_BLENDERS", "").split()
+    asked = named or [sys.executable]
+    return [one for one in asked if subprocess.run([one, "-c", "import bpy"], capture_output=True).returncode == 0]
+
+
+def version_of(blender):
+    done = subprocess.run([blender, "-c", "import bpy; print('VERSION', bpy.app.version_string)"], capture_output=True, text=True)
+    return next(line.split()[1] for line in done.stdout.splitlines() if line.startswith("VERSION"))
+
+
+def blender_objects(path, blender, *more):
     """What Blender has of a file: an object each."""
     judge = os.path.join(os.path.dirname(__file__), "blender_judge.py")
-    done = subprocess.run([sys.executable, judge, path], capture_output=True, text=True)
+    done = subprocess.run([blender, judge, path, *more], capture_output=True, text=True)
     lines = [line for line in done.stdout.splitlines() if line.startswith("OBJECTS")]
     if not lines:
         raise ValueError(f"Blender ended with {done.returncode}: {done.stderr.strip()[-200:]}")
@@ -256,11 +284,11 @@ def check_motion(cli, folder, project, name):
                 raise ValueError(f"{form}: a velocity of {moved[1][1][axis]} where points move at {wanted}")
 
 
-def check_blender(cli, folder, project, name, expected, own, points):
+def check_blender(cli, folder, project, name, expected, own, points, blender):
     for form in BY_BLENDER:
         out = os.path.join(folder, f"{name}.out.{form.split('-')[0]}")
         run(cli, "export", project, "--format", form, "-o", out, "--unit", "m", "--force")
-        objects = blender_objects(out)
+        objects = blender_objects(out, blender)
         hair = [one for one in objects if one["type"] == ("MESH" if form == "obj-lines" else "CURVES")]
         strands = sum(one.get("strands", 0) for one in hair)
         if form != "obj-lines" and strands != expected:
@@ -277,7 +305,7 @@ def check_blender(cli, folder, project, name, expected, own, points):
             raise ValueError(f"{form}: Blender has radii of {[one['radius'] for one in hair]}")
 
 
-def check(cli, folder, name, blender):
+def check(cli, folder, name, all_blenders):
     path = os.path.join(folder, name)
     _, prims = shown(path)
     expected = strands_of(prims)
@@ -310,14 +338,48 @@ def check(cli, folder, name, blender):
         run(cli, "import", out, "-o", again, "--force")
         if len(own) > 1 and layers_of(cli, again) != own:
             raise ValueError(f"{form}: layers {own} came back as {layers_of(cli, again)}")
-    if blender:
-        check_blender(cli, folder, project, name, expected, own, imported["points"])
+    for form in OTHERS:
+        out = os.path.join(folder, f"{name}.{form}.{form.split('-')[0]}")
+        report = run(cli, "export", project, "--format", form, "--points", "16", "-o", out, "--force")
+        read = plain_readers.read_obj_c4d if form == "obj-c4d" else getattr(plain_readers, "read_" + form)
+        found = read(out)
+        if len(found) != expected or report["strands"] != expected or any(len(strand) != 16 for strand in found):
+            raise ValueError(f"{form}: {len(found)} strands of {expected}")
+    for blender in all_blenders:
+        check_blender(cli, folder, project, name, expected, own, imported["points"], blender)
     if name.startswith("moving"):
         check_motion(cli, folder, project, name)
+        check_shutter(cli, folder, project, name)
 
 
-def has_blender():
-    return subprocess.run([sys.executable, "-c", "import bpy"], capture_output=True).returncode == 0
+def check_shutter(cli, folder, project, name):
+    """Samples of a shutter stand at their times, with velocities of their own."""
+    record = os.path.join(folder, name + ".frames")
+    for form in ("abc", "usda", "usdc"):
+        out = os.path.join(folder, f"{name}.shutter.{form}")
+        report = run(cli, "export", project, "--format", form, "-o", out, "--record", record, "--frames", "3,5", "--start", "1001",
+                     "--shutter", "-0.25:0.25", "--samples", "3", "--force")
+        if report["frames"] != 3 or report["samples"] != 9:
+            raise ValueError(f"{form}: {report['frames']} frames of {report['samples']} samples")
+        wanted = [1001 + frame + exposure for frame in range(3) for exposure in (-0.25, 0, 0.25)]
+        if form == "abc":
+            one = alembic_judge.curves_of(out)[0]
+            alembic_judge.check(one)
+            numbers, points, moved = [time * 24 for time in one["times"]], one["frames"], one["velocities"]
+        else:
+            made, prims = shown(out)
+            if (made.GetStartTimeCode(), made.GetEndTimeCode()) != (1001, 1003):
+                raise ValueError(f"{form}: frames from {made.GetStartTimeCode()} to {made.GetEndTimeCode()}")
+            curve = UsdGeom.Curves(prims[0])
+            numbers = curve.GetPointsAttr().GetTimeSamples()
+            points = [curve.GetPointsAttr().Get(code) for code in numbers]
+            moved = [UsdGeom.PointBased(prims[0]).GetVelocitiesAttr().Get(code) for code in numbers]
+        if len(numbers) != 9 or any(abs(a - b) > 1e-6 for a, b in zip(numbers, wanted)):
+            raise ValueError(f"{form}: samples at {numbers}; expected {wanted}")
+        for axis in range(3):
+            speed = (points[5][1][axis] - points[3][1][axis]) * 48
+            if abs(moved[4][1][axis] - speed) > 1e-3 + 1e-3 * abs(speed):
+                raise ValueError(f"{form}: a velocity of {moved[4][1][axis]} where points move at {speed}")
 
 
 def main():
@@ -326,8 +388,9 @@ def main():
     parser.add_argument("-o", "--output", required=True)
     asked = parser.parse_args()
     os.makedirs(asked.output, exist_ok=True)
-    blender = has_blender()
-    if not blender:
+    found = blenders()
+    judges = ", ".join(["usd-core", "the Alembic library"] + [f"Blender {version_of(one)}" for one in found])
+    if not found:
         print("skipped: Blender's judgement, since its module bpy is not there for this Python")
     failed = 0
     for make in STAGES:
@@ -335,8 +398,8 @@ def main():
             make(asked.output, ext)
             name = f"{make.__name__}.{ext}"
             try:
-                check(asked.cli, asked.output, name, blender)
-                print(f"{name}: as usd-core, the Alembic library{' and Blender have it' if blender else ' have it'}")
+                check(asked.cli, asked.output, name, found)
+                print(f"{name}: as {judges} have it")
             except (ValueError, KeyError) as problem:
                 print(f"FAILED {name}: {problem}")
                 failed += 1

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exports a groom of three layers for each program, has the file read by that program or by the library that it reads it
 with, and writes what arrives as the table of targets in docs/exchange.md. Fails where strands or layers that a format
-has do not arrive, and where hair comes back from Blender or USD without its layers."""
+has do not arrive, where Blenders disagree, and where hair comes back from Blender or USD without its layers."""
 import argparse
 import os
 import sys
@@ -50,8 +50,8 @@ def make_groom(cli, folder):
     return project
 
 
-def by_blender(path):
-    objects = odd_grooms.blender_objects(path)
+def by_blender(path, blender):
+    objects = odd_grooms.blender_objects(path, blender)
     hair = [one for one in objects if one["type"] == "CURVES"] or [one for one in objects if "scalp" not in one["name"]]
     names = {name for one in hair for name in one["attributes"]}
     arrived = set()
@@ -122,18 +122,21 @@ def by_reader(path, form, report):
     return arrived
 
 
-def row_of(cli, folder, project, row, blender):
+def row_of(cli, folder, project, row, all_blenders):
     program, target, form, judge = row
     words = ["export", project, "--force"]
     if target:
         words += ["--target", target]
     words += ["--format", form]
     path = os.path.join(folder, f"target-{odd_grooms.legal(program)}.{form.split('-')[0]}")
-    if judge == "Blender" and not blender:
+    if judge == "Blender" and not all_blenders:
         return None
     report = odd_grooms.run(cli, *words, "-o", path)
     if judge == "Blender":
-        return by_blender(path)
+        arrived = [by_blender(path, blender) for blender in all_blenders]
+        if any(one != arrived[0] for one in arrived):
+            raise ValueError(f"Blenders disagree: {[sorted(one) for one in arrived]}")
+        return arrived[0]
     if judge == "usd-core":
         return by_usd(path)
     if judge == "Alembic's library":
@@ -150,6 +153,21 @@ def comes_back(cli, folder, project, form):
     return odd_grooms.layers_of(cli, again) == odd_grooms.layers_of(cli, project)
 
 
+def comes_back_from(cli, folder, project, blender):
+    """Whether hair that goes to Blender as USD or Alembic, is exported there as USD and read again, has its layers."""
+    wanted = [(odd_grooms.legal(name), count) for name, count in odd_grooms.layers_of(cli, project)]
+    for form in ("usdc", "abc"):
+        path = os.path.join(folder, "to-blender." + form)
+        out = os.path.join(folder, f"from-blender-{form}.usdc")
+        odd_grooms.run(cli, "export", project, "--target", "blender", "--format", form, "-o", path, "--force")
+        odd_grooms.blender_objects(path, blender, "--usd", out)
+        again = out + ".hairloom"
+        odd_grooms.run(cli, "import", out, "-o", again, "--force")
+        found = [(odd_grooms.legal(name), count) for name, count in odd_grooms.layers_of(cli, again)]
+        if sorted(found) != sorted(wanted):
+            raise ValueError(f"{form}: layers {wanted} came back from Blender as {found}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cli", required=True)
@@ -157,12 +175,13 @@ def main():
     parser.add_argument("-o", "--output", required=True)
     asked = parser.parse_args()
     os.makedirs(asked.output, exist_ok=True)
-    blender = odd_grooms.has_blender()
+    found = odd_grooms.blenders()
+    versions = [odd_grooms.version_of(blender) for blender in found]
     project = make_groom(asked.cli, asked.output)
     failed, lines = 0, []
     for row in ROWS:
         try:
-            arrived = row_of(asked.cli, asked.output, project, row, blender)
+            arrived = row_of(asked.cli, asked.output, project, row, found)
         except (ValueError, KeyError) as problem:
             print(f"FAILED {row[0]}: {problem}")
             failed += 1
@@ -175,12 +194,20 @@ def main():
             failed += 1
         print(f"{row[0]}: {', '.join(what for what in WHAT if what in arrived)}")
         cells = " | ".join("yes" if what in arrived else "–" for what in WHAT)
-        lines.append(f"| {row[0]} | {row[3]} | {cells} |")
+        judge = f"Blender {', '.join(versions)}" if row[3] == "Blender" else row[3]
+        lines.append(f"| {row[0]} | {judge} | {cells} |")
     for form in ("usda", "usdc", "abc"):
         if not comes_back(asked.cli, asked.output, project, form):
             print(f"FAILED {form}: layers do not come back")
             failed += 1
-    if asked.table and not failed and blender:
+    for blender, version in zip(found, versions):
+        try:
+            comes_back_from(asked.cli, asked.output, project, blender)
+            print(f"to Blender {version}, to USD and back: with its layers")
+        except (ValueError, KeyError) as problem:
+            print(f"FAILED Blender {version}: {problem}")
+            failed += 1
+    if asked.table and not failed and found:
         with open(asked.table, encoding="utf-8") as page:
             text = page.read()
         begin, end = text.index("| program |"), text.index("<!-- end of the table of targets -->")
