@@ -55,10 +55,11 @@ struct ExportReport {
     std::vector<std::string> companions;   ///< names of files that were written beside it
 };
 
-/// Keys: format, strands, points, frames (where strands move), samples (where these are more), bytes, max_error_mm (null where nothing was
-/// measured), attributes (name, max_error), left_behind (what, fix), findings (severity, what, where, fix);
-/// certificate (the fields of SafeLimits, where it was made); companions (names, where there are some); of
-/// cards levels (name, cards, triangles, bytes, distance_m, coverage, flip, light).
+/// Keys: format, strands, points, frames (where strands move), samples (where these are more), bytes,
+/// max_error_mm (null where nothing was measured), attributes (name, max_error), left_behind (what, fix),
+/// findings (severity, what, where, fix); certificate (the fields of SafeLimits, where it was made);
+/// companions (names, where there are some); of cards levels (name, cards, triangles, bytes, distance_m,
+/// coverage, flip, light).
 nlohmann::json toJson(const ExportReport& report);
 
 }  // namespace hairloom

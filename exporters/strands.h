@@ -106,6 +106,7 @@ struct HairWriter {
     std::string ownSuffix{};            ///< of its files, where that is not the name
     bool generatesFollowHairs = false;  ///< the file tells how follow hairs come from guides
     bool marksGuides = false;           ///< hairs go with the guides that they follow, and how much they do
+    bool keepsGuides = false;           ///< likewise, where that is asked for
     bool animates = false;              ///< the file can hold StrandExportOptions::frames
     bool holdsPhysics = false;          ///< what simulates curves may stand beside them
 

@@ -251,7 +251,7 @@ HairWriter usdaWriter() {
                       usdTargets(".usda"),
                       writeUsda};
     writer.animates = true;
-    writer.marksGuides = true;
+    writer.keepsGuides = true;
     writer.holdsPhysics = true;
     return writer;
 }

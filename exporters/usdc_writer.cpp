@@ -303,7 +303,7 @@ HairWriter usdcWriter() {
     HairWriter writer{"usdc", "USD .usdc",         "like usda, in a tenth of the time",
                       "none", usdTargets(".usdc"), writeUsdc};
     writer.animates = true;
-    writer.marksGuides = true;
+    writer.keepsGuides = true;
     writer.holdsPhysics = true;
     return writer;
 }

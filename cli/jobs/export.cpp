@@ -104,6 +104,11 @@ void checkFormat(const HairWriter& writer, const ExportOptions& options,
         throw WrongUsage(
             "--unit, --up and --points do not apply to cards",
             "leave them out: glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
+    if (options.what == "all" && !writer.marksGuides && !writer.keepsGuides)
+        throw WrongUsage(
+            fmt::format("{} does not keep guides apart from hairs, as --what all has them", writer.name),
+            "expected --format " +
+                formatsWhere([](const HairWriter& w) { return w.marksGuides || w.keepsGuides; }));
     if (options.physics && (!writer.holdsPhysics || !options.record.empty()))
         throw WrongUsage("--physics applies to hair at rest in USD",
                          "expected it without --record, and with --format " +
@@ -151,7 +156,9 @@ Status addFramesAround(const ExportOptions& options, const Groom& groom, HairToE
 
 Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& groom) {
     HairToExport wanted;
-    wanted.hair = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
+    wanted.hair = options.what == "all"     ? ExportedHair::all
+                  : options.what == "hairs" ? ExportedHair::hairs
+                                            : ExportedHair::guides;
     wanted.layers = options.layers;
     wanted.levels = options.levels;
     if (options.certify) wanted.storms = CertificateOptions{}.storms;
@@ -179,9 +186,9 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
 
 Result<Report> exportAsPage(const ExportOptions& options) {
     if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
-        !options.record.empty() || options.what == "hairs" || options.physics)
+        !options.record.empty() || options.what != "guides" || options.physics)
         throw WrongUsage(
-            "--target, --unit, --up, --points, --record, --physics and --what hairs do not apply to a web "
+            "--target, --unit, --up, --points, --record, --physics and --what do not apply to a web "
             "page",
             "leave them out: the page plays a runtime asset in metres, Y up, which draws follow hairs "
             "itself");
@@ -245,8 +252,9 @@ JobRun declare(CLI::App& job) {
                    "--format is given")
         ->check(CLI::IsMember(exportPrograms(hairWriters())));
     job.add_option("--what", options->what,
-                   "guides: the strands of the groom; hairs: the follow hairs that images show")
-        ->check(CLI::IsMember({"guides", "hairs"}));
+                   "guides: the strands of the groom; hairs: the follow hairs that images show; all: these, "
+                   "with their guides beside them, in formats that keep them apart")
+        ->check(CLI::IsMember({"guides", "hairs", "all"}));
     job.add_option("--layers", options->layers, "Names of the layers to export (default: all)")
         ->delimiter(',');
     auto* record = job.add_option("--record", options->record,

@@ -216,6 +216,9 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
                     "expected at least one in it");
     const bool moves =
         !wanted.frames.empty() && (wanted.frames.size() > around + 1 || wanted.shutter.samples > 1);
+    if (wanted.hair == ExportedHair::all && !writer.marksGuides && !writer.keepsGuides)
+        return fail(writer.name + " does not keep guides apart from hairs",
+                    "expected one of usda, usdc, abc-unreal");
     if (options.physics && (moves || !writer.holdsPhysics))
         return fail(moves ? "physics was requested of hair that moves"
                           : "physics was requested, which " + writer.name + " does not hold",
@@ -241,7 +244,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
     const bool losesBody = groom.body && (writer.holdsCards() || writer.name == kRuntimeFormat);
     if (losesBody) guides.body.reset();
     const std::uint32_t perGuide = guides.interpolation.followPerGuide;
-    const bool isBaked = wanted.hair == ExportedHair::hairs && perGuide > 0 && !writer.holdsCards();
+    const bool isBaked = wanted.hair != ExportedHair::guides && perGuide > 0 && !writer.holdsCards();
     FollowBindings bindings;
     Groom shown = guides;
     if (isBaked) {
@@ -251,7 +254,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
     }
     StrandExportOptions exporting = options;
     std::vector<Finding> findings;
-    const bool marksGuides = isBaked && writer.marksGuides;
+    const bool marksGuides = isBaked && (writer.marksGuides || wanted.hair == ExportedHair::all);
     if (!wanted.frames.empty()) {
         auto moving = movingHair(groom, strands, guides, wanted, isBaked ? &bindings : nullptr);
         if (!moving) return tl::unexpected(moving.error());

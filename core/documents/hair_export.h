@@ -15,6 +15,7 @@ namespace hairloom {
 enum class ExportedHair {
     guides,  ///< the strands of the groom, for programs that interpolate themselves
     hairs,   ///< the follow hairs that pictures show; the strands where the groom has none
+    all,     ///< those, and beside them the guides that they follow; of writers that keep these apart
 };
 
 /// What of a hairstyle is written.

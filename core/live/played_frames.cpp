@@ -7,13 +7,18 @@ namespace hairloom {
 
 Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMotion& motion,
                                               std::uint32_t count, float framesPerSecond,
-                                              const std::function<bool(std::uint32_t)>& progress) {
+                                              const std::function<bool(std::uint32_t)>& progress,
+                                              std::uint32_t preRoll) {
     HeadPose pose = inWorld(motion.poseAt(0));
     auto simulation = Simulation::make(groom, pose);
     if (!simulation) return tl::unexpected(simulation.error());
     std::vector<RecordedFrame> frames;
-    for (std::uint32_t frame = 0; frame < count; ++frame) {
+    for (std::uint32_t frame = 0; frame < preRoll; ++frame) {
         if (!progress(frame)) return fail("it was cancelled");
+        simulation->step(1 / framesPerSecond, pose);
+    }
+    for (std::uint32_t frame = 0; frame < count; ++frame) {
+        if (!progress(preRoll + frame)) return fail("it was cancelled");
         if (frame > 0) {
             pose = inWorld(motion.poseAt(static_cast<float>(frame) / framesPerSecond));
             simulation->step(1 / framesPerSecond, pose);

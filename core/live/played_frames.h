@@ -10,9 +10,10 @@ namespace hairloom {
 
 /// The hair in `count` frames of a motion, from rest on, simulated on the CPU with its groom's settings.
 /// `progress` is told the frames that are done; where it returns false that ends with an error. Errors:
-/// those of Simulation::make.
+/// those of Simulation::make. `preRoll` frames on the first pose go before, which are not among them.
 Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMotion& motion,
                                               std::uint32_t count, float framesPerSecond,
-                                              const std::function<bool(std::uint32_t)>& progress);
+                                              const std::function<bool(std::uint32_t)>& progress,
+                                              std::uint32_t preRoll = 0);
 
 }  // namespace hairloom

@@ -7,7 +7,6 @@
 #include <QFormLayout>
 #include <QHeaderView>
 #include <QPointer>
-#include <QRegularExpression>
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -20,12 +19,12 @@
 #include "core/groom/strand_subset.h"
 #include "core/live/played_frames.h"
 #include "core/stability/certificate.h"
+#include "editor/dialogs/export_choices.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
 #include "editor/fields/number_spin.h"
 #include "exporters/usd_scene.h"
-#include "importers/child_process.h"
 #include "importers/length_unit.h"
 
 namespace hairloom::editor {
@@ -34,73 +33,6 @@ namespace {
 
 constexpr float kFramesPerSecond = 60;
 constexpr int kMostFrames = 10000;
-
-/// A program, and the writer of the format that it reads.
-struct Choice {
-    const HairWriter* writer;
-    const ExportTarget* target;
-    bool isPage = false;  ///< a folder around the writer's file
-};
-
-const ExportTarget& pageTarget() {
-    static const ExportTarget target{
-        "browser",
-        "Web page with moving hair",
-        "A folder with index.html that opens without a network and plays the runtime asset",
-        {}};
-    return target;
-}
-
-/// What people look for: "Blender" of "Blender, USD", "Engines without strands" of those for cards.
-QString programOf(const ExportTarget& target) {
-    static const QRegularExpression kFormat("[,:]");
-    return QString::fromStdString(target.name).section(kFormat, 0, 0).trimmed();
-}
-
-/// A program, with the formats that it reads, the one that carries most of the hair first.
-struct Program {
-    QString name;
-    std::vector<Choice> choices;
-};
-
-/// Each program once, in order of name.
-const std::vector<Program>& programs() {
-    static const std::vector<Program> all = [] {
-        std::vector<Program> list;
-        const auto add = [&](const Choice& choice) {
-            const QString name = programOf(*choice.target);
-            auto found = std::ranges::find(list, name, &Program::name);
-            if (found == list.end()) found = list.insert(list.end(), {name, {}});
-            found->choices.push_back(choice);
-        };
-        for (const HairWriter& writer : hairWriters()) {
-            for (const ExportTarget& target : writer.targets) add({&writer, &target});
-        }
-        add({&strandWriter("runtime"), &pageTarget(), true});
-        std::ranges::sort(list, [](const Program& a, const Program& b) {
-            return a.name.compare(b.name, Qt::CaseInsensitive) < 0;
-        });
-        for (Program& program : list) {
-            if (program.choices.size() == 1) continue;
-            const std::string& name = program.choices.front().target->program;
-            const HairWriter& best = preferredWriter(name, hairWriters());
-            std::ranges::stable_partition(program.choices, [&](const Choice& choice) {
-                return choice.writer->name == (best.holdsCards() ? kCardFormat : best.name);
-            });
-        }
-        return list;
-    }();
-    return all;
-}
-
-/// Why the choice cannot work on this machine; empty where it can.
-QString problemOf(const Choice& choice) {
-    if (choice.isPage && findWebPlayer(programFolder()).empty())
-        return ExportDialog::tr(
-            "Not available: this program was built without the page's player. Build it with `./dev web`, or "
-            "set HAIRLOOM_WEB to its folder.");
-    return {};
-}
 
 /// Bytes of a point in the formats' files, measured on the samples; text takes what its digits take.
 double bytesOfPoint(const HairWriter& writer) {
@@ -138,6 +70,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       what_(new QComboBox),
       layers_(new QComboBox),
       frames_(new QSpinBox),
+      motion_(new MotionRows(this)),
       note_(new QLabel),
       problem_(new QLabel),
       many_(new QLabel),
@@ -148,6 +81,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       cards_(new QSpinBox),
       textures_(new QSpinBox),
       certify_(new QCheckBox(tr("What your game may do to this hair"))),
+      physics_(new QCheckBox(tr("Physics of curves"))),
       summary_(new QLabel),
       findings_(new QTreeWidget) {
     setWindowTitle(tr("Export hair"));
@@ -159,7 +93,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     form_->setVerticalSpacing(8);
     form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
     layout->addLayout(form_);
-    for (const Program& program : programs()) target_->addItem(program.name);
+    for (const ExportProgram& program : programsToExportFor()) target_->addItem(program.name);
     target_->setObjectName("target");
     target_->setToolTip(tr("Sets the format, unit, up axis and point count that this program expects"));
     format_->setObjectName("format");
@@ -208,6 +142,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     form_->addRow(tr("Strands"), what_);
     form_->addRow(tr("Layers"), layers_);
     form_->addRow(tr("Frames"), frames_);
+    motion_->addTo(*form_);
     form_->addRow(tr("Unit"), unit_);
     form_->addRow(tr("Axis"), up_);
     form_->addRow(tr("Points per strand"), points_);
@@ -228,6 +163,12 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
         tr("Tests the hair in a thousand random storms, which takes about half a minute. The report has the "
            "result, and a runtime asset carries it"));
     form_->addRow(tr("Stress test"), certify_);
+    physics_->setObjectName("physics");
+    physics_->setToolTip(
+        tr("Adds deformable curves for simulators that read USD's physics (PhysicsCurvesDeformableSimAPI), "
+           "with the "
+           "stiffness and thickness of the hair"));
+    form_->addRow(tr("Simulators"), physics_);
     layout->addWidget(many_);
     layout->addWidget(cluster_, 0, Qt::AlignLeft);
     summary_->setObjectName("willWrite");
@@ -258,24 +199,17 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
         connect(box, &QComboBox::currentIndexChanged, this, &ExportDialog::showWhatWillBeWritten);
     for (QSpinBox* box : {frames_, points_, cards_})
         connect(box, &QSpinBox::valueChanged, this, &ExportDialog::showWhatWillBeWritten);
+    connect(motion_, &MotionRows::changed, this, &ExportDialog::showWhatWillBeWritten);
     connect(&tasks_, &Tasks::stopped, this, [this] { write_->setEnabled(canWrite()); });
     takeProgram(0);
 }
-
-namespace {
-
-const Choice& choiceAt(int program, int format) {
-    const std::vector<Choice>& choices = programs()[static_cast<std::size_t>(std::max(program, 0))].choices;
-    return choices[static_cast<std::size_t>(std::clamp(format, 0, static_cast<int>(choices.size()) - 1))];
-}
-
-}  // namespace
 
 void ExportDialog::takeProgram(int index) {
     {
         const QSignalBlocker quiet(format_);
         format_->clear();
-        for (const Choice& choice : programs()[static_cast<std::size_t>(std::max(index, 0))].choices)
+        for (const ExportChoice& choice :
+             programsToExportFor()[static_cast<std::size_t>(std::max(index, 0))].choices)
             format_->addItem(QString::fromStdString(choice.writer->label));
     }
     form_->setRowVisible(format_, format_->count() > 1);
@@ -284,7 +218,7 @@ void ExportDialog::takeProgram(int index) {
 
 bool ExportDialog::canWrite() const {
     return document_.groom().strandCount() > 0 && !tasks_.isBusy() &&
-           problemOf(choiceAt(target_->currentIndex(), format_->currentIndex())).isEmpty();
+           problemOf(exportChoice(target_->currentIndex(), format_->currentIndex())).isEmpty();
 }
 
 std::vector<std::string> ExportDialog::layersToWrite() const {
@@ -298,8 +232,10 @@ std::vector<std::string> ExportDialog::layersToWrite() const {
 }
 
 void ExportDialog::showWhatWillBeWritten() {
-    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
+    const ExportChoice& choice = exportChoice(target_->currentIndex(), format_->currentIndex());
     const Groom& groom = document_.groom();
+    motion_->show(*form_, choice.writer->animates && !choice.isPage && frames_->value() > 0);
+    form_->setRowVisible(physics_, choice.writer->holdsPhysics && frames_->value() == 0);
     // What was found belongs to what was written, which would be something else now.
     findings_->clear();
     report_ = {};
@@ -329,14 +265,15 @@ void ExportDialog::showWhatWillBeWritten() {
     }
     std::size_t count = strands.size();
     const auto perGuide = static_cast<std::size_t>(groom.interpolation.followPerGuide);
-    const bool isBaked =
-        what_->currentData().toInt() == static_cast<int>(ExportedHair::hairs) && perGuide > 0;
+    const auto hair = static_cast<ExportedHair>(what_->currentData().toInt());
+    const bool isBaked = hair != ExportedHair::guides && perGuide > 0;
     if (isBaked) {
-        points = count > 0 ? points / count * guides * perGuide : 0;
-        count = guides * perGuide;
+        const std::size_t perStrand = perGuide + (hair == ExportedHair::all ? 1 : 0);
+        points = count > 0 ? points / count * guides * perStrand : 0;
+        count = guides * perStrand;
     }
     if (points_->value() > 0) points = count * static_cast<std::size_t>(points_->value());
-    const auto frames = static_cast<double>(std::max(1, frames_->value()));
+    const auto frames = static_cast<double>(motion_->samplesOf(std::max(1, frames_->value())));
     double bytes = static_cast<double>(points) * bytesOfPoint(*choice.writer) * frames;
     const bool hasOperators = !isBaked && usdHasOperators(groom, optionsAsked());
     if (frames_->value() == 0) bytes += bytesBeside(*choice.writer, groom, hasOperators ? points : 0);
@@ -349,7 +286,7 @@ void ExportDialog::showWhatWillBeWritten() {
 }
 
 void ExportDialog::takeTarget() {
-    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
+    const ExportChoice& choice = exportChoice(target_->currentIndex(), format_->currentIndex());
     const ExportTarget& target = *choice.target;
     const bool cards = choice.writer->holdsCards();
     for (QWidget* ofStrands : {static_cast<QWidget*>(what_), static_cast<QWidget*>(unit_),
@@ -357,6 +294,11 @@ void ExportDialog::takeTarget() {
         form_->setRowVisible(ofStrands, !cards);
     for (QWidget* ofCards : {cards_, textures_}) form_->setRowVisible(ofCards, cards);
     frames_->setMaximum(cards ? 1 : kMostFrames);
+    const int all = what_->findData(static_cast<int>(ExportedHair::all));
+    if (all < 0 && choice.writer->keepsGuides)
+        what_->addItem(tr("Rendered hairs, with guides beside them"), static_cast<int>(ExportedHair::all));
+    else if (all >= 0 && !choice.writer->keepsGuides)
+        what_->removeItem(all);
     note_->setText(QString::fromStdString(target.note));
     const QString problem = problemOf(choice);
     problem_->setText(problem);
@@ -372,7 +314,7 @@ void ExportDialog::takeTarget() {
 }
 
 void ExportDialog::choosePath() {
-    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
+    const ExportChoice& choice = exportChoice(target_->currentIndex(), format_->currentIndex());
     const QString title = QFileInfo(document_.title()).completeBaseName();
     if (choice.isPage) {
         const QString folder = QFileDialog::getExistingDirectory(this, tr("Folder for the web page"));
@@ -387,15 +329,16 @@ void ExportDialog::choosePath() {
 
 StrandExportOptions ExportDialog::optionsAsked() const {
     StrandExportOptions options;
-    options.limits = choiceAt(target_->currentIndex(), format_->currentIndex()).target->options.limits;
+    options.limits = exportChoice(target_->currentIndex(), format_->currentIndex()).target->options.limits;
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
+    options.physics = physics_->isVisibleTo(this) && physics_->isChecked();
     return options;
 }
 
 void ExportDialog::exportTo(const QString& path) {
-    const Choice& choice = choiceAt(target_->currentIndex(), format_->currentIndex());
+    const ExportChoice& choice = exportChoice(target_->currentIndex(), format_->currentIndex());
     const HairWriter& writer = *choice.writer;
     const StrandExportOptions options = optionsAsked();
     HairToExport wanted;
@@ -411,17 +354,23 @@ void ExportDialog::exportTo(const QString& path) {
     auto motion = player_.makeMeasuredMotion();
     if (!motion) return messages_.warn(errorText(motion.error()));
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
-    const auto count = static_cast<std::uint32_t>(frames_->value());
+    // One more for the end of the last frame's shutter.
+    const bool hasShutter = motion_->isVisibleIn(*form_) && motion_->apply(wanted);
+    const std::uint32_t preRoll = motion_->isVisibleIn(*form_) ? motion_->preRoll() : 0;
+    const auto count = static_cast<std::uint32_t>(frames_->value()) + (hasShutter ? 1u : 0u);
     write_->setEnabled(false);
     const bool started = tasks_.run<ExportReport>(
         tr("Exporting %1").arg(QFileInfo(path).fileName()),
-        [groom = document_.groom(), wanted, moves, count, path, options, &writer,
+        [groom = document_.groom(), wanted, moves, count, preRoll, path, options, &writer,
          isPage = choice.isPage](TaskControl& control) mutable -> Result<ExportReport> {
             if (count > 0) {
-                auto frames = playFrames(groom, *moves, count, kFramesPerSecond, [&](std::uint32_t done) {
-                    control.setProgress(static_cast<float>(done) / static_cast<float>(count));
-                    return !control.isCancelled();
-                });
+                auto frames = playFrames(
+                    groom, *moves, count, kFramesPerSecond,
+                    [&](std::uint32_t done) {
+                        control.setProgress(static_cast<float>(done) / static_cast<float>(preRoll + count));
+                        return !control.isCancelled();
+                    },
+                    preRoll);
                 if (!frames) return tl::unexpected(frames.error());
                 wanted.frames = std::move(*frames);
             }

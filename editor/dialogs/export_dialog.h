@@ -11,6 +11,7 @@
 #include <QSpinBox>
 #include <QTreeWidget>
 
+#include "editor/dialogs/motion_rows.h"
 #include "editor/document/messages.h"
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
@@ -58,6 +59,7 @@ class ExportDialog : public QDialog {
     QComboBox* what_;
     QComboBox* layers_;
     QSpinBox* frames_;
+    MotionRows* motion_;
     QLabel* note_;
     QLabel* problem_;  ///< why the target cannot work here
     QLabel* many_;     ///< more guides than a game moves
@@ -66,7 +68,7 @@ class ExportDialog : public QDialog {
     QComboBox* up_;
     QSpinBox* points_;
     QSpinBox *cards_, *textures_;
-    QCheckBox* certify_;
+    QCheckBox *certify_, *physics_;
     QPushButton* write_;
     QLabel* summary_;
     QTreeWidget* findings_;

@@ -169,7 +169,7 @@ TEST_F(HairOut, GuidesStandBesideTheHairsInUsd) {
     layers.back() = 1;
     groom.strandAttributes.set(attribute::kLayer, layers);
     HairToExport wanted;
-    wanted.hair = ExportedHair::hairs;
+    wanted.hair = ExportedHair::all;
     StrandExportOptions options;
     options.physics = true;
     for (const std::string format : {"usda", "usdc"}) {
@@ -214,11 +214,17 @@ TEST_F(HairOut, GuidesStandBesideTheHairsInUsd) {
     wanted.frames = turning(groom, 2);
     EXPECT_FALSE(exportHair(groom, wanted, strandWriter("usda"), folder_ / "b.usda", options)) << "moves";
     EXPECT_FALSE(exportHair(groom, {}, strandWriter("abc"), folder_ / "b.abc", options));
+    EXPECT_FALSE(exportHair(groom, wanted, strandWriter("abc"), folder_ / "b.abc", {}))
+        << "has one kind of strands";
+    wanted.hair = ExportedHair::hairs;
+    const auto alone = exportHair(groom, wanted, strandWriter("usda"), folder_ / "c.usda", {});
+    ASSERT_TRUE(alone) << alone.error().message();
+    EXPECT_EQ(alone->strands, groom.strandCount() * 4) << "guides where they were asked for alone";
 }
 
 TEST_F(HairOut, OneLayerHasHairsAndGuides) {
     HairToExport wanted;
-    wanted.hair = ExportedHair::hairs;
+    wanted.hair = ExportedHair::all;
     wanted.frames = turning(smallHead(), 3);
     const fs::path path = folder_ / "a.usdc";
     ASSERT_TRUE(exportHair(smallHead(), wanted, strandWriter("usdc"), path, {}));

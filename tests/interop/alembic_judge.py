@@ -41,7 +41,8 @@ def curves_of(path):
             frames, velocities, times = [], [], []
             for i in range(schema.getNumSamples()):
                 times.append(sampling.getSampleTime(i))
-                sample = schema.getValue(Abc.ISampleSelector(i))
+                # By time: this module takes a whole number for seconds, too (findings/alembic-sample-index.sh).
+                sample = schema.getValue(Abc.ISampleSelector(times[-1]))
                 frames.append([(p[0], p[1], p[2]) for p in sample.getPositions()])
                 moved = sample.getVelocities()
                 velocities.append([(v[0], v[1], v[2]) for v in moved] if moved else [])

@@ -108,7 +108,7 @@ def moving(folder, ext):
     turn = group.AddRotateYOp()
     turn.Set(0.0, 1)
     turn.Set(90.0, 13)
-    curves(made, "/turns/hair", 2)
+    curves(made, "/turns/hair", 2, x=0.1)
     made.Save()
 
 
@@ -279,9 +279,11 @@ def check_motion(cli, folder, project, name):
             raise ValueError(f"{form}: {len(times)} frames to {times[-1]} s of {last + 1} at {rate} a second")
         # Velocities are those of the frames before and after.
         for axis in range(3):
-            wanted = (points[2][1][axis] - points[0][1][axis]) * rate / 2
-            if abs(moved[1][1][axis] - wanted) > 1e-3:
-                raise ValueError(f"{form}: a velocity of {moved[1][1][axis]} where points move at {wanted}")
+            wanted = (points[2][-1][axis] - points[0][-1][axis]) * rate / 2
+            if abs(moved[1][-1][axis] - wanted) > 1e-3:
+                raise ValueError(f"{form}: a velocity of {moved[1][-1][axis]} where points move at {wanted}")
+        if math.dist(points[0][-1], points[2][-1]) < 1e-4:
+            raise ValueError(f"{form}: the tip does not move")
 
 
 def check_blender(cli, folder, project, name, expected, own, points, blender):
@@ -377,9 +379,11 @@ def check_shutter(cli, folder, project, name):
         if len(numbers) != 9 or any(abs(a - b) > 1e-6 for a, b in zip(numbers, wanted)):
             raise ValueError(f"{form}: samples at {numbers}; expected {wanted}")
         for axis in range(3):
-            speed = (points[5][1][axis] - points[3][1][axis]) * 48
-            if abs(moved[4][1][axis] - speed) > 1e-3 + 1e-3 * abs(speed):
-                raise ValueError(f"{form}: a velocity of {moved[4][1][axis]} where points move at {speed}")
+            speed = (points[5][-1][axis] - points[3][-1][axis]) * 48
+            if abs(moved[4][-1][axis] - speed) > 1e-3 + 1e-3 * abs(speed):
+                raise ValueError(f"{form}: a velocity of {moved[4][-1][axis]} where points move at {speed}")
+        if math.dist(points[3][-1], points[5][-1]) < 1e-4:
+            raise ValueError(f"{form}: the tip does not move while the shutter is open")
 
 
 def main():

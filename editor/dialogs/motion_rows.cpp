@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/dialogs/motion_rows.h"
+
+#include <QPointF>
+#include <QVariant>
+
+namespace hairloom::editor {
+namespace {
+
+constexpr int kMostRunUp = 10000, kFarthestFrame = 1'000'000;
+
+}  // namespace
+
+MotionRows::MotionRows(QObject* parent)
+    : QObject(parent),
+      preRoll_(new QSpinBox),
+      start_(new QSpinBox),
+      samples_(new QSpinBox),
+      shutter_(new QComboBox) {
+    preRoll_->setObjectName("preRoll");
+    preRoll_->setRange(0, kMostRunUp);
+    preRoll_->setSpecialValueText(tr("none"));
+    preRoll_->setToolTip(
+        tr("Number of frames to simulate before the first one, on the motion's first pose, so that the hair "
+           "settles"));
+    start_->setObjectName("startFrame");
+    start_->setRange(-kFarthestFrame, kFarthestFrame);
+    start_->setToolTip(tr("Number of the first frame in the file"));
+    shutter_->setObjectName("shutter");
+    shutter_->addItem(tr("none: one sample per frame"));
+    shutter_->addItem(tr("180° around the frame"), QVariant::fromValue(QPointF(-0.25, 0.25)));
+    shutter_->addItem(tr("180° after the frame"), QVariant::fromValue(QPointF(0, 0.5)));
+    shutter_->addItem(tr("360° around the frame"), QVariant::fromValue(QPointF(-0.5, 0.5)));
+    shutter_->setToolTip(
+        tr("When the camera sees a frame. The file has samples within that time, for motion blur"));
+    samples_->setObjectName("shutterSamples");
+    samples_->setRange(2, static_cast<int>(kMaxShutterSamples));
+    samples_->setValue(3);
+    samples_->setToolTip(tr("Number of samples while the shutter is open"));
+    connect(shutter_, &QComboBox::currentIndexChanged, this, [this] {
+        samples_->setEnabled(shutter_->currentIndex() > 0);
+        Q_EMIT changed();
+    });
+    samples_->setEnabled(false);
+    connect(samples_, &QSpinBox::valueChanged, this, &MotionRows::changed);
+}
+
+void MotionRows::addTo(QFormLayout& form) {
+    form.addRow(tr("Run-up"), preRoll_);
+    form.addRow(tr("First frame"), start_);
+    form.addRow(tr("Shutter"), shutter_);
+    form.addRow(tr("Samples"), samples_);
+}
+
+void MotionRows::show(QFormLayout& form, bool visible) {
+    for (QWidget* widget : {static_cast<QWidget*>(preRoll_), static_cast<QWidget*>(start_),
+                            static_cast<QWidget*>(shutter_), static_cast<QWidget*>(samples_)})
+        form.setRowVisible(widget, visible);
+}
+
+std::uint32_t MotionRows::samplesOf(int frames) const {
+    const int perFrame = shutter_->currentIndex() > 0 && frames > 1 ? samples_->value() : 1;
+    return static_cast<std::uint32_t>(frames * perFrame);
+}
+
+bool MotionRows::apply(HairToExport& wanted) const {
+    wanted.firstFrame = start_->value();
+    if (shutter_->currentIndex() == 0) return false;
+    const auto open = shutter_->currentData().toPointF();
+    wanted.shutter = {open.x(), open.y(), static_cast<std::uint32_t>(samples_->value())};
+    wanted.framesAfter = 1;
+    return true;
+}
+
+}  // namespace hairloom::editor
