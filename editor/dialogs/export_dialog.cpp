@@ -85,7 +85,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       summary_(new QLabel),
       findings_(new QTreeWidget) {
     setWindowTitle(tr("Export hair"));
-    resize(620, 560);
+    resize(620, 640);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(20, 20, 20, 16);
     layout->setSpacing(12);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/dialogs/motion_rows.h"
 
+#include <QHBoxLayout>
 #include <QPointF>
 #include <QVariant>
 
@@ -9,6 +10,15 @@ namespace {
 
 constexpr int kMostRunUp = 10000, kFarthestFrame = 1'000'000;
 
+QWidget* sideBySide(QWidget* left, QWidget* right) {
+    auto* row = new QWidget;
+    auto* layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(left, 1);
+    layout->addWidget(right, 1);
+    return row;
+}
+
 }  // namespace
 
 MotionRows::MotionRows(QObject* parent)
@@ -16,17 +26,24 @@ MotionRows::MotionRows(QObject* parent)
       preRoll_(new QSpinBox),
       start_(new QSpinBox),
       samples_(new QSpinBox),
-      shutter_(new QComboBox) {
+      shutter_(new QComboBox),
+      settling_(sideBySide(preRoll_, start_)),
+      exposure_(sideBySide(shutter_, samples_)) {
     preRoll_->setObjectName("preRoll");
     preRoll_->setRange(0, kMostRunUp);
     preRoll_->setSpecialValueText(tr("none"));
+    preRoll_->setSuffix(tr(" frames"));
+    preRoll_->setAccessibleName(tr("Run-up"));
     preRoll_->setToolTip(
         tr("Number of frames to simulate before the first one, on the motion's first pose, so that the hair "
            "settles"));
     start_->setObjectName("startFrame");
     start_->setRange(-kFarthestFrame, kFarthestFrame);
+    start_->setPrefix(tr("first frame "));
+    start_->setAccessibleName(tr("First frame"));
     start_->setToolTip(tr("Number of the first frame in the file"));
     shutter_->setObjectName("shutter");
+    shutter_->setAccessibleName(tr("Shutter"));
     shutter_->addItem(tr("none: one sample per frame"));
     shutter_->addItem(tr("180° around the frame"), QVariant::fromValue(QPointF(-0.25, 0.25)));
     shutter_->addItem(tr("180° after the frame"), QVariant::fromValue(QPointF(0, 0.5)));
@@ -36,6 +53,8 @@ MotionRows::MotionRows(QObject* parent)
     samples_->setObjectName("shutterSamples");
     samples_->setRange(2, static_cast<int>(kMaxShutterSamples));
     samples_->setValue(3);
+    samples_->setSuffix(tr(" samples"));
+    samples_->setAccessibleName(tr("Samples"));
     samples_->setToolTip(tr("Number of samples while the shutter is open"));
     connect(shutter_, &QComboBox::currentIndexChanged, this, [this] {
         samples_->setEnabled(shutter_->currentIndex() > 0);
@@ -46,16 +65,13 @@ MotionRows::MotionRows(QObject* parent)
 }
 
 void MotionRows::addTo(QFormLayout& form) {
-    form.addRow(tr("Run-up"), preRoll_);
-    form.addRow(tr("First frame"), start_);
-    form.addRow(tr("Shutter"), shutter_);
-    form.addRow(tr("Samples"), samples_);
+    form.addRow(tr("Run-up"), settling_);
+    form.addRow(tr("Shutter"), exposure_);
 }
 
 void MotionRows::show(QFormLayout& form, bool visible) {
-    for (QWidget* widget : {static_cast<QWidget*>(preRoll_), static_cast<QWidget*>(start_),
-                            static_cast<QWidget*>(shutter_), static_cast<QWidget*>(samples_)})
-        form.setRowVisible(widget, visible);
+    form.setRowVisible(settling_, visible);
+    form.setRowVisible(exposure_, visible);
 }
 
 std::uint32_t MotionRows::samplesOf(int frames) const {

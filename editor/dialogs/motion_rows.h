@@ -5,6 +5,7 @@
 #include <QComboBox>
 #include <QFormLayout>
 #include <QSpinBox>
+#include <QWidget>
 
 #include "core/documents/hair_export.h"
 
@@ -18,7 +19,7 @@ class MotionRows : public QObject {
     /// The form owns the widgets.
     void addTo(QFormLayout& form);
     void show(QFormLayout& form, bool visible);
-    bool isVisibleIn(const QFormLayout& form) const { return form.isRowVisible(start_); }
+    bool isVisibleIn(const QFormLayout& form) const { return form.isRowVisible(settling_); }
 
     /// Of so many frames.
     std::uint32_t samplesOf(int frames) const;
@@ -32,6 +33,7 @@ class MotionRows : public QObject {
   private:
     QSpinBox *preRoll_, *start_, *samples_;
     QComboBox* shutter_;
+    QWidget *settling_, *exposure_;  ///< a row each
 };
 
 }  // namespace hairloom::editor

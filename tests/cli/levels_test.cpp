@@ -234,8 +234,10 @@ TEST_F(LodJob, CardsAreExportedForProgramsThatReadNoGltf) {
     EXPECT_EQ(usd["companions"], fbx["companions"]);
     const std::string text = readText(folder / "hair.usda");
     EXPECT_EQ(usd["bytes"], text.size());
-    for (const char* part : {"#usda 1.0", "variantSet \"lod\"", "\"LOD1\"", "def Mesh \"cards_12\"",
-                             "def Mesh \"shell_200\"", "@./hair_cards-12_colour.png@", "primvars:st"})
+    for (const char* part :
+         {"#usda 1.0", "variantSet \"lod\"", "\"LOD1\"", "\"LODRootAPI\"", "\"UsdLod\" {",
+          "def LODDistanceHeuristic \"distance\"", "thresholds = [", "def Mesh \"cards_12\"",
+          "def Mesh \"shell_200\"", "@./hair_cards-12_colour.png@", "primvars:st"})
         EXPECT_THAT(text, HasSubstr(part));
     EXPECT_THAT(text, Not(HasSubstr("nan")));
     EXPECT_GT(runJson("export hair.hairloom --format gltf" + levels + "hair.glb")["bytes"],
