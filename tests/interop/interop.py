@@ -137,6 +137,37 @@ def moving(read, words, path, truth, groom, cli):
     return worst_mm(read(path, LAST_FRAME), plain_readers.read_hair(truth))
 
 
+def check_guides(groom, folder, cli, blender):
+    """Hairs with their guides beside them, deformable: usd-core tells both apart, every hair names guides that there are, and
+    Blender shows the hairs alone."""
+    from pxr import Usd, UsdGeom
+    path = os.path.join(folder, os.path.basename(groom) + ".all.usdc")
+    hairs = run(cli, "export", groom, "--what", "hairs", "--format", "usdc", "--force", "-o", path)["strands"]
+    both = run(cli, "export", groom, "--what", "all", "--physics", "--format", "usdc", "--force", "-o", path)["strands"]
+    read_usd(path)
+    stage = Usd.Stage.Open(path)
+    counts, guides, named = {}, set(), set()
+    for prim in stage.Traverse():
+        if not prim.IsA(UsdGeom.BasisCurves):
+            continue
+        purpose = UsdGeom.Imageable(prim).ComputePurpose()
+        counts[purpose] = counts.get(purpose, 0) + len(UsdGeom.Curves(prim).GetCurveVertexCountsAttr().Get())
+        primvars = UsdGeom.PrimvarsAPI(prim)
+        if purpose == "guide":
+            guides |= set(primvars.GetPrimvar("groom_id").Get())
+            rest = prim.GetAttribute("physics:restShapePoints").Get()
+            if rest != UsdGeom.Curves(prim).GetPointsAttr().Get():
+                raise ValueError(f"{prim.GetPath()}: a rest shape of {len(rest)} points")
+        else:
+            for k in range(3):
+                named |= set(primvars.GetPrimvar(f"groom_closest_guides_{k}").Get())
+    if counts != {"default": hairs, "guide": both - hairs} or not named <= guides:
+        raise ValueError(f"{counts} of {hairs} hairs and {both - hairs} guides; {len(named - guides)} guides are named that are not there")
+    if blender and len(read_blender(path)) != hairs:
+        raise ValueError(f"Blender shows {len(read_blender(path))} strands of {hairs} hairs")
+    return counts
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--cli", required=True)
@@ -149,6 +180,11 @@ def main():
     if not blender:
         print("skipped: Blender's judgement, since its module bpy is not there for this Python")
     failed, lines = 0, []
+    try:
+        print(f"guides beside hairs: {check_guides(asked.grooms[0], asked.output, asked.cli, blender)}")
+    except (RuntimeError, ValueError) as problem:
+        print(f"FAILED guides beside hairs: {problem}")
+        failed += 1
     for row in ROWS:
         name, comes_in, judge = row
         errors, own, carried = [], [], set()
