@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
-#include "core/geometry/curve.h"
 #include "hairloom/settings.h"
 
 namespace hairloom {
