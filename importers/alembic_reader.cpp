@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "importers/alembic_curves.h"
+#include "importers/alembic_shown.h"
 #include "importers/alembic_unreal.h"
 #include "importers/curve_set.h"
 #include "importers/obj_text.h"
@@ -42,14 +42,14 @@ class Reader {
     /// All that is needed of the archive.
     Status readAll() {
         const auto told = [&](const Error& error) { return tl::unexpected(inFile(error, file_)); };
-        auto all = findCurves(archive_);
+        auto all = shownObjects(archive_, kCurveSchemas);
         if (!all) return told(all.error());
         found_ = std::move(all->curves);
         hidden_ = std::move(all->hidden);
         strands_.warnings = std::move(all->warnings);
         if (found_.empty()) return noCurves();
         if (auto status = findTimes(); !status) return told(status.error());
-        for (const AlembicCurves& found : found_) {
+        for (const AlembicShownObject& found : found_) {
             if (auto status = readCurves(found); !status) return told(status.error());
         }
         if (hidden_.size() > 0) reportHidden();
@@ -100,7 +100,7 @@ class Reader {
             if (!known.emplace(property->timeSampling, property->samples).second) return;
             moving.push_back({&archive_.times(property->timeSampling), property->samples, path});
         };
-        for (const AlembicCurves& found : found_) {
+        for (const AlembicShownObject& found : found_) {
             add(found.path, findProperty(found.properties, "P"));
             for (const AlembicLevel& level : found.inherited.levels)
                 add(level.path, hairloom::valuesOf(level));
@@ -151,7 +151,7 @@ class Reader {
         return before;
     }
 
-    Status readCurves(const AlembicCurves& found) {
+    Status readCurves(const AlembicShownObject& found) {
         const AlembicProperty* const points = findProperty(found.properties, "P");
         const AlembicProperty* const counts = findProperty(found.properties, "nVertices");
         if (points == nullptr || counts == nullptr)
@@ -263,7 +263,7 @@ class Reader {
         return {};
     }
 
-    Status readAttributes(const AlembicCurves& found, CurveSet& set) {
+    Status readAttributes(const AlembicShownObject& found, CurveSet& set) {
         for (const char* name : {"width", "uv"}) {
             if (const AlembicProperty* const property = findProperty(found.properties, name)) {
                 if (auto status = addAttribute(*property, set); !status) return status;
@@ -415,7 +415,7 @@ class Reader {
     const AlembicArchive& archive_;
     const std::string& file_;
     const StrandImportOptions& options_;
-    std::vector<AlembicCurves> found_;
+    std::vector<AlembicShownObject> found_;
     std::vector<std::string> hidden_;  ///< paths
     std::uint64_t points_ = 0;
     double start_ = 0;  ///< seconds
@@ -425,14 +425,6 @@ class Reader {
     std::map<std::string, std::string> partNames_;  ///< that objects give themselves, by path
     RawStrands strands_;
 };
-
-bool isAlembic(std::span<const std::byte> bytes) {
-    constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
-    const auto starts = [&](std::string_view text) {
-        return bytes.size() >= text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
-    };
-    return starts("Ogawa") || starts(kHdf5);
-}
 
 Result<RawStrands> readAlembic(const std::string& file, std::vector<std::byte>&& bytes,
                                const StrandImportOptions& options) {
@@ -453,7 +445,7 @@ Result<RawStrands> readAlembic(const std::string& file, std::vector<std::byte>&&
 }  // namespace
 
 StrandReader alembicReader() {
-    return {{"Alembic .abc", {"abc"}}, Recognition::Signature, isAlembic, readAlembic};
+    return {{"Alembic .abc", {"abc"}}, Recognition::Signature, startsLikeAlembic, readAlembic};
 }
 
 }  // namespace hairloom

@@ -3,6 +3,8 @@
 // File formats as people choose among them: in help texts, messages and the filters of file dialogs.
 
 #include <span>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,5 +17,10 @@ struct FileFormat {
 
 /// Their labels: "OBJ, PLY or STL".
 std::string labelsOf(std::span<const FileFormat> formats);
+
+/// Whether a file that starts so is USD: text, binary, or a package of either.
+bool startsLikeUsd(std::span<const std::byte> head);
+/// Likewise of Alembic, in either of its containers.
+bool startsLikeAlembic(std::span<const std::byte> head);
 
 }  // namespace hairloom

@@ -19,6 +19,9 @@ struct RawScene {
     SkinWeights skin;  ///< per position of the soup, or empty
     std::vector<std::string> warnings;
     float metresPerUnit = 0;  ///< as the file states it; 0 where it states none
+    /// What the format takes for the unit where the file states none; 0 where it takes nothing.
+    float assumedMetresPerUnit = 0;
+    bool statesUp = false;  ///< the file says which axis is up
 };
 
 /// Multiplies every length: positions, translations of bones and of clips.

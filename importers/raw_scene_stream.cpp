@@ -38,6 +38,8 @@ constexpr auto kSceneMembers = [](auto& archive, auto& scene) {
     archive(scene.skin.weights);
     archive.each(scene.warnings, archive);
     archive(scene.metresPerUnit);
+    archive(scene.assumedMetresPerUnit);
+    archive(scene.statesUp);
 };
 
 }  // namespace

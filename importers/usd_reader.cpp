@@ -67,20 +67,20 @@ class Reader {
 
     Result<RawStrands> run() {
         readStage();
-        auto shown = shownCurves(stage_.root, firstTime(stage_.root));
+        auto shown = shownPrims(stage_.root, UsdShape::Curves, firstTime(stage_.root));
         if (!shown) return tl::unexpected(inFile(shown.error(), file_));
         std::vector<std::string> reasons = stage_.notFollowed;
         reasons.insert(reasons.end(), shown->leftOut.begin(), shown->leftOut.end());
-        if (shown->curves.empty())
+        if (shown->prims.empty())
             return failIn(file_, {},
                           reasons.empty() ? "has no curves" : "has no curves that show: " + listOf(reasons),
                           "expected hair as BasisCurves, NurbsCurves or HermiteCurves");
         if (!shown->leftOut.empty())
             strands_.warnings.push_back(
                 fileNote(listOf(shown->leftOut), "stage", "these curves were left out"));
-        if (auto status = planTimes(shown->curves); !status)
+        if (auto status = planTimes(shown->prims); !status)
             return tl::unexpected(inFile(status.error(), file_));
-        for (UsdShownCurves& curves : shown->curves) {
+        for (UsdShownPrim& curves : shown->prims) {
             if (auto status = readCurves(curves); !status)
                 return tl::unexpected(inFile(status.error(), file_));
         }
@@ -133,9 +133,9 @@ class Reader {
     }
 
     /// When the frames are, over all curves: each property is looked up at these times.
-    Status planTimes(const std::vector<UsdShownCurves>& curves) {
+    Status planTimes(const std::vector<UsdShownPrim>& curves) {
         std::set<double> times;
-        for (const UsdShownCurves& one : curves) {
+        for (const UsdShownPrim& one : curves) {
             for (const char* name : {"points", "tangents"}) {
                 const UsdAttribute* const moving = one.prim->find(name);
                 if (moving == nullptr) continue;
@@ -180,7 +180,7 @@ class Reader {
                     fmt::format("expected at most {}", kMaxPoints));
     }
 
-    Status readCurves(UsdShownCurves& curves) {
+    Status readCurves(UsdShownPrim& curves) {
         UsdPrim& prim = *curves.prim;
         UsdAttribute* const points = prim.find("points");
         const UsdAttribute* const counts = prim.find("curveVertexCounts");
@@ -238,7 +238,7 @@ class Reader {
                                             : CurveBasis::Bezier;
     }
 
-    Status readFrames(const UsdShownCurves& curves, const UsdAttribute& points, CurveSet& set) {
+    Status readFrames(const UsdShownPrim& curves, const UsdAttribute& points, CurveSet& set) {
         if (frames_.empty()) return {};
         std::set<double> moving;
         addTimes(curves.levels, moving);
@@ -264,7 +264,7 @@ class Reader {
     }
 
     /// Hermite curves are Bézier curves; what points have is of these' knots then.
-    void bendHermite(UsdShownCurves& curves, CurveSet& set) {
+    void bendHermite(UsdShownPrim& curves, CurveSet& set) {
         UsdAttribute* const tangents = curves.prim->find("tangents");
         std::uint64_t points = 0;
         for (const std::uint32_t size : set.counts) points += size;
@@ -292,7 +292,7 @@ class Reader {
         }
     }
 
-    void addAttribute(const UsdShownCurves& curves, UsdAttribute& attribute, double time, CurveSet& set) {
+    void addAttribute(const UsdShownPrim& curves, UsdAttribute& attribute, double time, CurveSet& set) {
         constexpr std::string_view kPrimvar = "primvars:", kIndices = ":indices", kWidths = "primvars:widths";
         const UsdPrim& prim = *curves.prim;
         const UsdAttribute* const primvar = prim.find(kWidths);
@@ -376,7 +376,7 @@ class Reader {
 
     /// Number and name of a group that an object states for all its curves: as a primvar that they inherit,
     /// or as what Blender makes of a property of an object.
-    void addGroup(const UsdShownCurves& curves, CurveSet& set) {
+    void addGroup(const UsdShownPrim& curves, CurveSet& set) {
         for (const char* name : {"groom_group_id", "groom_group_name"}) {
             if (std::ranges::find(set.attributes, name, &CurveAttribute::name) != set.attributes.end())
                 continue;
@@ -394,7 +394,7 @@ class Reader {
         }
     }
 
-    static const UsdAttribute* ofLevels(const UsdShownCurves& curves, std::string_view name) {
+    static const UsdAttribute* ofLevels(const UsdShownPrim& curves, std::string_view name) {
         for (auto level = curves.levels.rbegin(); level != curves.levels.rend(); ++level) {
             for (const char* prefix : {"primvars:", "userProperties:", ""}) {
                 const UsdAttribute* const found = level->prim->find(prefix + std::string(name));
@@ -451,25 +451,6 @@ class Reader {
     RawStrands strands_;
 };
 
-bool beginsWith(std::span<const std::byte> bytes, std::string_view start) {
-    return bytes.size() >= start.size() && std::memcmp(bytes.data(), start.data(), start.size()) == 0;
-}
-
-/// A zip whose first file's name is that of a layer.
-bool isPackage(std::span<const std::byte> bytes) {
-    constexpr std::size_t kNameSize = 26, kName = 30;
-    if (!beginsWith(bytes, "PK\x03\x04") || bytes.size() < kName) return false;
-    const std::size_t size = std::to_integer<std::size_t>(bytes[kNameSize]) |
-                             std::to_integer<std::size_t>(bytes[kNameSize + 1]) << 8u;
-    const std::string_view name(reinterpret_cast<const char*>(bytes.data()) + kName,
-                                std::min(size, bytes.size() - kName));
-    return name.ends_with(".usd") || name.ends_with(".usda") || name.ends_with(".usdc");
-}
-
-bool isUsd(std::span<const std::byte> bytes) {
-    return beginsWith(bytes, "#usda") || beginsWith(bytes, "PXR-USDC") || isPackage(bytes);
-}
-
 Result<RawStrands> readUsd(const std::string& file, std::vector<std::byte>&& bytes,
                            const StrandImportOptions& options) {
     auto stage = openUsdStage(file, std::move(bytes), options.folder);
@@ -483,7 +464,7 @@ Result<RawStrands> readUsd(const std::string& file, std::vector<std::byte>&& byt
 StrandReader usdReader() {
     return {{"USD .usda, .usdc or .usdz", {"usda", "usdc", "usd", "usdz"}},
             Recognition::Signature,
-            isUsd,
+            startsLikeUsd,
             readUsd};
 }
 

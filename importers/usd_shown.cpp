@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which curves a stage shows: what usd-core's traversal and the imaging of USD make of it.
+// Which curves and meshes a stage shows: what usd-core's traversal and the imaging of USD make of it.
 
 #include <fmt/format.h>
 
@@ -11,18 +11,19 @@
 namespace hairloom {
 namespace {
 
-constexpr std::size_t kMaxCurves = 1'000'000;  ///< prims and copies of these
+constexpr std::size_t kMaxShown = 1'000'000;  ///< prims and copies of these
 constexpr int kMaxInstancers = 8;              ///< in each other's prototypes
 
-bool areCurves(const UsdPrim& prim) {
+bool isOf(const UsdPrim& prim, UsdShape shape) {
+    if (shape == UsdShape::Meshes) return prim.type == "Mesh";
     return prim.type == "BasisCurves" || prim.type == "NurbsCurves" || prim.type == "HermiteCurves";
 }
 
-/// Curves below a prim, whatever is shown.
-std::size_t countCurves(const UsdPrim& prim) {
-    std::size_t count = areCurves(prim) ? 1 : 0;
-    for (const UsdPrim& child : prim.children) count += countCurves(child);
-    return count;
+/// Whether anything of the shape lies below a prim, shown or not.
+bool isAnyBelow(const UsdPrim& prim, UsdShape shape) {
+    return isOf(prim, shape) || std::ranges::any_of(prim.children, [&](const UsdPrim& child) {
+               return isAnyBelow(child, shape);
+           });
 }
 
 std::string tokenOf(const UsdPrim& prim, std::string_view name, double time) {
@@ -34,33 +35,34 @@ std::string tokenOf(const UsdPrim& prim, std::string_view name, double time) {
 
 class Walk {
   public:
-    Walk(UsdPrim& root, double time) : root_(root), time_(time) {}
+    Walk(UsdPrim& root, UsdShape shape, double time) : root_(root), shape_(shape), time_(time) {}
 
     Result<UsdShown> run() {
         visit(root_, "", {}, "default", 0);
-        if (shown_.curves.size() > kMaxCurves)
-            return fail("instances make more curves than are read",
-                        fmt::format("expected at most {}", kMaxCurves));
+        if (shown_.prims.size() > kMaxShown)
+            return fail(shape_ == UsdShape::Curves ? "instances make more curves than are read"
+                                                   : "instances make more meshes than are read",
+                        fmt::format("expected at most {}", kMaxShown));
         std::map<const UsdPrim*, std::size_t> last;
-        for (std::size_t i = 0; i < shown_.curves.size(); ++i) last[shown_.curves[i].prim] = i;
-        for (std::size_t i = 0; i < shown_.curves.size(); ++i)
-            shown_.curves[i].isLast = last[shown_.curves[i].prim] == i;
+        for (std::size_t i = 0; i < shown_.prims.size(); ++i) last[shown_.prims[i].prim] = i;
+        for (std::size_t i = 0; i < shown_.prims.size(); ++i)
+            shown_.prims[i].isLast = last[shown_.prims[i].prim] == i;
         return std::move(shown_);
     }
 
   private:
     using Levels = std::vector<UsdLevel>;
 
-    /// Only what hair there would be is worth a word.
+    /// Only where something of the shape would be is worth a word.
     void leaveOut(const UsdPrim& prim, const std::string& path, const char* why) {
         constexpr std::size_t kMost = 64;
-        if (countCurves(prim) > 0 && shown_.leftOut.size() < kMost)
+        if (isAnyBelow(prim, shape_) && shown_.leftOut.size() < kMost)
             shown_.leftOut.push_back(fmt::format("{} {}", path, why));
     }
 
     void visit(UsdPrim& prim, const std::string& path, const Levels& above, const std::string& purposeAbove,
                int instancers) {
-        if (shown_.curves.size() > kMaxCurves) return;
+        if (shown_.prims.size() > kMaxShown) return;
         const bool isRoot = &prim == &root_;
         if (!isRoot) {
             if (prim.active && !*prim.active) return leaveOut(prim, path, "is not active");
@@ -76,11 +78,11 @@ class Walk {
         Levels levels = above;
         levels.push_back({&prim, false, 0});
         if (prim.hasClips) leaveOut(prim, path, "has value clips, which are not followed");
-        if (areCurves(prim)) {
+        if (isOf(prim, shape_)) {
             if (purpose == "proxy")
                 leaveOut(prim, path, "is a proxy of what pictures show");
             else
-                shown_.curves.push_back({&prim, path, levels, purpose == "guide", true});
+                shown_.prims.push_back({&prim, path, levels, purpose == "guide", true});
         }
         if (prim.type == "PointInstancer") return copies(prim, path, levels, purpose, instancers);
         for (UsdPrim& child : prim.children)
@@ -125,10 +127,10 @@ class Walk {
         for (const std::string& target : prototypes->value.texts) {
             UsdPrim* const prototype = at(target);
             const bool isUsed =
-                prototype != nullptr && prototype != &instancer && countCurves(*prototype) > 0;
+                prototype != nullptr && prototype != &instancer && isAnyBelow(*prototype, shape_);
             found.push_back(isUsed ? prototype : nullptr);
         }
-        for (std::size_t i = 0; i < indices.size() && shown_.curves.size() <= kMaxCurves; ++i) {
+        for (std::size_t i = 0; i < indices.size() && shown_.prims.size() <= kMaxShown; ++i) {
             const std::int64_t id = ids.size() == indices.size() ? ids[i] : static_cast<std::int64_t>(i);
             if (std::ranges::binary_search(hidden, id)) continue;
             if (indices[i] < 0 || static_cast<std::size_t>(indices[i]) >= found.size()) continue;
@@ -141,14 +143,15 @@ class Walk {
     }
 
     UsdPrim& root_;
+    UsdShape shape_;
     double time_;
     UsdShown shown_;
 };
 
 }  // namespace
 
-Result<UsdShown> shownCurves(UsdPrim& root, double time) {
-    return Walk(root, time).run();
+Result<UsdShown> shownPrims(UsdPrim& root, UsdShape shape, double time) {
+    return Walk(root, shape, time).run();
 }
 
 }  // namespace hairloom

@@ -113,6 +113,18 @@ Eigen::Affine3d instanceTransform(const UsdPrim& instancer, std::size_t instance
     return result;
 }
 
+/// Quaternions from `numbers` towards `after`, the shorter way.
+void turnBetween(UsdNumbers& numbers, const UsdNumbers& after, double share) {
+    const auto at = [](const UsdNumbers& from, std::size_t i) {
+        return Eigen::Quaterniond(from[i], from[i + 1], from[i + 2], from[i + 3]);
+    };
+    for (std::size_t i = 0; i + 3 < numbers.size(); i += 4) {
+        const Eigen::Quaterniond turned = at(numbers, i).slerp(share, at(after, i));
+        numbers.set(i, turned.w());
+        for (int k = 0; k < 3; ++k) numbers.set(i + 1 + static_cast<std::size_t>(k), turned.vec()[k]);
+    }
+}
+
 }  // namespace
 
 UsdValue valueAt(const UsdAttribute& attribute, double time) {
@@ -120,10 +132,17 @@ UsdValue valueAt(const UsdAttribute& attribute, double time) {
     const auto after = attribute.samples.lower_bound(time);
     if (after == attribute.samples.begin()) return after->second;
     if (after == attribute.samples.end()) return std::prev(after)->second;
+    if (after->first == time) return after->second;
     const auto before = std::prev(after);
     UsdValue value = before->second;
-    if (value.numbers.size() != after->second.numbers.size()) return value;
+    if (value.numbers.size() != after->second.numbers.size() ||
+        value.numbers.kind() == UsdNumbers::Kind::Whole)
+        return value;
     const double t = (time - before->first) / (after->first - before->first);
+    if (attribute.type.starts_with("quat")) {
+        turnBetween(value.numbers, after->second.numbers, t);
+        return value;
+    }
     for (std::size_t i = 0; i < value.numbers.size(); ++i)
         value.numbers.set(i, (1 - t) * value.numbers[i] + t * after->second.numbers[i]);
     return value;

@@ -2,6 +2,7 @@
 #pragma once
 // What prims of a composed stage are at a time: values, transforms, and what is shown.
 
+#include <cstdint>
 #include <set>
 #include <span>
 #include <string>
@@ -12,7 +13,8 @@
 
 namespace hairloom {
 
-/// The value at a time, or at the first one that there is: held between samples of numbers that do not match.
+/// The value at a time, or at the first one that there is. Between samples quaternions turn the shorter way;
+/// whole numbers and samples of unlike size are held.
 UsdValue valueAt(const UsdAttribute& attribute, double time);
 
 /// A prim's transform, or that of a copy that an instancer makes.
@@ -27,8 +29,11 @@ Result<Eigen::Affine3d> toFile(std::span<const UsdLevel> levels, double time);
 /// Times at which the transforms of the levels are given.
 void addTimes(std::span<const UsdLevel> levels, std::set<double>& times);
 
-/// Curves that the stage shows.
-struct UsdShownCurves {
+/// What is looked for in a stage: hair, or heads.
+enum class UsdShape : std::uint8_t { Curves, Meshes };
+
+/// Curves or a mesh that the stage shows.
+struct UsdShownPrim {
     UsdPrim* prim = nullptr;
     std::string path;
     std::vector<UsdLevel> levels;  ///< from the root to the prim
@@ -37,12 +42,13 @@ struct UsdShownCurves {
 };
 
 struct UsdShown {
-    std::vector<UsdShownCurves> curves;
+    std::vector<UsdShownPrim> prims;
     std::vector<std::string> leftOut;  ///< "/old/hair is not visible"
 };
 
-/// Active, visible, defined curves of purposes that pictures show, and guides; those of instancers once for
-/// each of their instances. Visibility and instances are those at `time`. Errors: more copies than are read.
-Result<UsdShown> shownCurves(UsdPrim& root, double time);
+/// Active, visible, defined prims of a shape, of purposes that pictures show, and guides; those of instancers
+/// once for each of their instances. Visibility and instances are those at `time`. Errors: more copies than
+/// are read.
+Result<UsdShown> shownPrims(UsdPrim& root, UsdShape shape, double time);
 
 }  // namespace hairloom

@@ -338,6 +338,7 @@ class Parser {
         if (!attribute.samples.empty()) found->samples = std::move(attribute.samples);
         if (!attribute.displayName.empty()) found->displayName = std::move(attribute.displayName);
         if (!attribute.interpolation.empty()) found->interpolation = std::move(attribute.interpolation);
+        if (attribute.elementSize != 1) found->elementSize = attribute.elementSize;
     }
 
     UsdaScanner in_;

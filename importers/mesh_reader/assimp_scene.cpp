@@ -16,7 +16,7 @@
 
 #include "importers/mesh_reader/assimp_skeleton.h"
 #include "importers/mesh_reader/limited_files.h"
-#include "importers/mesh_reader/scene_parts.h"
+#include "importers/scene_parts.h"
 
 namespace hairloom {
 namespace {

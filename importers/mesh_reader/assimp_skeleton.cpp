@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "importers/mesh_reader/scene_parts.h"
+#include "importers/scene_parts.h"
 
 namespace hairloom {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "importers/mesh_reader/gltf_keys.h"
-#include "importers/mesh_reader/scene_parts.h"
+#include "importers/scene_parts.h"
 #include "importers/mesh_reader/tinygltf.h"
 
 namespace hairloom {

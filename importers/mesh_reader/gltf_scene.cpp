@@ -11,7 +11,7 @@
 
 #include "importers/mesh_reader/gltf_draco.h"
 #include "importers/mesh_reader/gltf_nodes.h"
-#include "importers/mesh_reader/scene_parts.h"
+#include "importers/scene_parts.h"
 #include "importers/mesh_reader/tinygltf.h"
 
 namespace hairloom {
@@ -169,6 +169,7 @@ class Converter {
 
     Result<RawScene> convert() {
         scene_.metresPerUnit = 1;
+        scene_.statesUp = true;
         for (const tinygltf::Mesh& mesh : model_.meshes) {
             for (const tinygltf::Primitive& primitive : mesh.primitives) {
                 anyUvs_ = anyUvs_ || primitive.attributes.contains("TEXCOORD_0");

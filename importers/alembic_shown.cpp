@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "importers/alembic_curves.h"
+#include "importers/alembic_shown.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ class Finder {
   public:
     explicit Finder(const AlembicArchive& archive) : archive_(archive) {}
 
-    Result<AlembicCurvesFound> find() {
+    Result<AlembicShown> find() {
         if (auto status = visit(archive_.top(), {}, 0); !status) return tl::unexpected(status.error());
         return std::move(found_);
     }
@@ -100,13 +100,13 @@ class Finder {
     }
 
     const AlembicArchive& archive_;
-    AlembicCurvesFound found_;
+    AlembicShown found_;
     std::size_t objects_ = 0;
 };
 
 }  // namespace
 
-Result<AlembicCurvesFound> findCurves(const AlembicArchive& archive) {
+Result<AlembicShown> findCurves(const AlembicArchive& archive) {
     return Finder(archive).find();
 }
 

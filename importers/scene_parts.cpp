@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "importers/mesh_reader/scene_parts.h"
+#include "importers/scene_parts.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What both readers of scenes, assimp's and the one of glTF 2, do alike.
+// What all readers of scenes do alike.
 
 #include <cstdint>
 #include <string>

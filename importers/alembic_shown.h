@@ -20,21 +20,21 @@ struct AlembicInherited {
     bool isHidden = false;
 };
 
-struct AlembicCurves {
+struct AlembicShownObject {
     std::string path;
     std::vector<AlembicProperty> properties;
     AlembicInherited inherited;
 };
 
-struct AlembicCurvesFound {
-    std::vector<AlembicCurves> curves;
+struct AlembicShown {
+    std::vector<AlembicShownObject> curves;
     std::vector<std::string> hidden;  ///< paths of those that are not visible
     std::vector<Finding> warnings;
 };
 
 /// Those of the schemas AbcGeom_Curve_v1 and _v2, instances in their own places. Errors: objects that lie too
 /// deep or are too many, as instances of what they lie in are.
-Result<AlembicCurvesFound> findCurves(const AlembicArchive& archive);
+Result<AlembicShown> findCurves(const AlembicArchive& archive);
 
 /// The value of a key, or nothing.
 std::string valueOf(const AlembicMetadata& metadata, std::string_view key);

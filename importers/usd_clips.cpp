@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clips of a USD stage: animations of its skeletons, and transforms that change.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "importers/scene_parts.h"
+#include "importers/usd_bones.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::size_t kMaxKeys = std::size_t{1} << 26u;  ///< of all clips
+constexpr int kMaxHalvings = 6;                          ///< of the time between two samples of transforms
+
+/// A transform in the parts that keys have; what it shears is lost.
+struct Parts {
+    Eigen::Vector3d place, factors;
+    Eigen::Quaterniond turn;
+
+    static Parts of(const Eigen::Affine3d& transform) {
+        Eigen::Matrix3d rotation, scale;
+        transform.computeRotationScaling(&rotation, &scale);
+        return {transform.translation(), scale.diagonal(), Eigen::Quaterniond(rotation).normalized()};
+    }
+    Parts towards(const Parts& other, double share) const {
+        return {(1 - share) * place + share * other.place, (1 - share) * factors + share * other.factors,
+                turn.slerp(share, other.turn)};
+    }
+    Eigen::Affine3d whole() const {
+        return Eigen::Translation3d(place) * turn * Eigen::Scaling(factors);
+    }
+};
+
+bool isNear(const Eigen::Affine3d& a, const Eigen::Affine3d& b) {
+    constexpr double kTolerance = 1e-5;
+    const double size = a.linear().norm() + 1e-30, length = a.translation().norm() + size;
+    return (a.linear() - b.linear()).norm() <= kTolerance * size &&
+           (a.translation() - b.translation()).norm() <= kTolerance * length;
+}
+
+class Builder {
+  public:
+    Builder(const UsdStage& stage, const UsdRange& range, const Eigen::Affine3d& turn, RawScene& scene)
+        : stage_(stage), range_(range), turn_(turn), scene_(scene) {}
+
+    Status run(std::span<const UsdMovingPrim> moving, std::span<const UsdSkeletonBones> skeletons) {
+        Clip clip;
+        for (const UsdMovingPrim& prim : moving) {
+            if (auto status = addMoving(prim, clip); !status) return status;
+        }
+        std::set<const UsdPrim*> played;
+        for (const UsdSkeletonBones& skeleton : skeletons) {
+            const UsdPrim* const animation = animationOf(skeleton);
+            if (animation == nullptr) continue;
+            if (clip.name.empty()) clip.name = animation->name;
+            if (played.insert(animation).second && played.size() > 1) clip.name = "animation";
+            addAnimation(*animation, skeleton, range_, clip);
+        }
+        if (clip.name.empty()) clip.name = "animation";
+        finish(std::move(clip), range_.isAuthored);
+        addOthers(stage_.root, skeletons, played);
+        if (keys_ > kMaxKeys)
+            return fail("its clips have more keys than are read", fmt::format("expected at most {}", kMaxKeys));
+        if (lost_ > 0)
+            scene_.warnings.push_back(fmt::format(
+                "{} keys are no numbers or do not fit the joints of their animation; they were left out", lost_));
+        if (isSheared_) scene_.warnings.emplace_back("transforms that shear in time were taken without shear");
+        if (hasShapes_) scene_.warnings.emplace_back("clips animate blend shapes, which stay at 0");
+        return {};
+    }
+
+  private:
+    void finish(Clip&& clip, bool isAuthored) {
+        if (clip.channels.empty()) return;
+        std::size_t moving = 0;
+        for (const Channel& channel : clip.channels) {
+            clip.duration = std::max(clip.duration, lastTime(channel));
+            moving += channel.translation.times.size() > 1 || channel.rotation.times.size() > 1 ||
+                      channel.scale.times.size() > 1;
+        }
+        if (isAuthored && moving > 0) clip.duration = range_.seconds(range_.end);
+        const auto isTaken = [&](const std::string& name) {
+            return std::ranges::find(scene_.clips, name, &Clip::name) != scene_.clips.end();
+        };
+        const std::string name = clip.name;
+        for (int number = 2; isTaken(clip.name); ++number) clip.name = fmt::format("{} {}", name, number);
+        scene_.clips.push_back(std::move(clip));
+    }
+
+    /// Animations that are bound to no skeleton are clips, too, of those whose joints they name.
+    void addOthers(const UsdPrim& prim, std::span<const UsdSkeletonBones> skeletons,
+                   const std::set<const UsdPrim*>& played) {
+        const bool isShown = (!prim.active || *prim.active) && prim.specifier != UsdPrim::Specifier::Class;
+        if (!isShown || keys_ > kMaxKeys) return;
+        if (prim.type == "SkelAnimation" && !played.contains(&prim)) {
+            Clip clip;
+            clip.name = prim.name;
+            UsdRange range = range_;
+            double first = std::numeric_limits<double>::infinity();
+            for (const char* name : {"translations", "rotations", "scales"}) {
+                const UsdAttribute* const values = prim.find(name);
+                if (values == nullptr || values->samples.empty()) continue;
+                first = std::min(first, values->samples.begin()->first);
+            }
+            if (std::isfinite(first)) range.start = first;
+            for (const UsdSkeletonBones& skeleton : skeletons) addAnimation(prim, skeleton, range, clip);
+            finish(std::move(clip), false);
+        }
+        for (const UsdPrim& child : prim.children) addOthers(child, skeletons, played);
+    }
+
+    /// What the skeleton or the nearest prim above it says moves it.
+    const UsdPrim* animationOf(const UsdSkeletonBones& skeleton) {
+        const auto path = targetOf(skeleton.levels, "skel:animationSource");
+        if (!path) return nullptr;
+        const std::vector<const UsdPrim*> prims = primsTo(stage_.root, *path);
+        const bool isThere = !prims.empty() && prims.back()->type == "SkelAnimation";
+        const bool isActive = std::ranges::all_of(
+            prims, [](const UsdPrim* prim) { return !prim->active || *prim->active; });
+        if (isThere && isActive) return prims.back();
+        scene_.warnings.push_back(fmt::format("the skeleton {} has the animation {}, which there is not",
+                                              skeleton.prim->name, *path));
+        return nullptr;
+    }
+
+    /// Numbers of one joint at each sample of an attribute, or at once where it does not change.
+    template <class T, class Make>
+    void addTrack(const UsdPrim& animation, std::string_view name, std::size_t joint, std::size_t joints,
+                  std::uint32_t components, const UsdRange& range, Track<T>& track, const Make& make) {
+        const UsdAttribute* const attribute = animation.find(name);
+        if (attribute == nullptr) return;
+        const auto take = [&](float seconds, const UsdValue& value) {
+            if (value.isBlock) return;
+            if (value.numbers.size() != joints * components) {
+                ++lost_;
+                return;
+            }
+            std::array<double, 4> numbers{};
+            for (std::size_t c = 0; c < components; ++c) numbers[c] = value.numbers[joint * components + c];
+            const std::optional<T> key = make(numbers);
+            const bool isLater = track.times.empty() || seconds > track.times.back();
+            if (!key || !std::isfinite(seconds)) {
+                ++lost_;
+            } else if (isLater) {
+                track.times.push_back(seconds);
+                track.values.push_back(*key);
+                ++keys_;
+            }
+        };
+        if (attribute->samples.empty()) {
+            if (attribute->value.isThere()) take(0, attribute->value);
+            return;
+        }
+        for (const auto& [code, value] : attribute->samples) take(range.seconds(code), value);
+    }
+
+    void addAnimation(const UsdPrim& animation, const UsdSkeletonBones& skeleton, const UsdRange& range,
+                      Clip& clip) {
+        const UsdAttribute* const names = animation.find("joints");
+        if (names == nullptr) return;
+        const UsdAttribute* const shapes = animation.find("blendShapes");
+        hasShapes_ = hasShapes_ || (shapes != nullptr && !shapes->value.texts.empty());
+        const std::size_t count = names->value.texts.size();
+        const std::vector<std::size_t> joints = jointsNamed(skeleton.joints, names->value.texts);
+        std::vector<bool> isDone(skeleton.joints.size(), false);
+        for (std::size_t a = 0; a < count && keys_ <= kMaxKeys; ++a) {
+            const std::size_t joint = joints[a];
+            if (joint == kNoJoint || isDone[joint]) continue;
+            isDone[joint] = true;
+            Channel channel;
+            channel.bone = skeleton.bones[joint];
+            addTrack(animation, "translations", a, count, 3, range, channel.translation, vectorOf);
+            addTrack(animation, "scales", a, count, 3, range, channel.scale, vectorOf);
+            addTrack(animation, "rotations", a, count, 4, range, channel.rotation, rotationOf);
+            if (channel.translation.times.empty() && channel.rotation.times.empty() &&
+                channel.scale.times.empty())
+                continue;
+            fillFromRest(channel, skeleton.joints[joint].rest.cast<float>());
+            if (skeleton.joints[joint].parent == kNoJoint) put(channel, Parts::of(skeleton.base));
+            clip.channels.push_back(std::move(channel));
+        }
+    }
+
+    static std::optional<Vec3f> vectorOf(const std::array<double, 4>& numbers) {
+        const Vec3f value = Vec3d(numbers[0], numbers[1], numbers[2]).cast<float>();
+        return value.allFinite() ? std::optional(value) : std::nullopt;
+    }
+    static std::optional<Quatf> rotationOf(const std::array<double, 4>& numbers) {
+        const Eigen::Quaterniond value(numbers[0], numbers[1], numbers[2], numbers[3]);
+        const double length = value.norm();
+        if (!std::isfinite(length) || !(length > 1e-12)) return std::nullopt;
+        return value.normalized().cast<float>();
+    }
+
+    /// What a topmost joint has before its own transform: a rotation, one factor and a place.
+    static void put(Channel& channel, const Parts& before) {
+        const Quatf turn = before.turn.cast<float>();
+        const auto factor = static_cast<float>(before.factors.x());
+        for (Vec3f& value : channel.translation.values)
+            value = factor * (turn * value) + before.place.cast<float>();
+        for (Quatf& value : channel.rotation.values) value = (turn * value).normalized();
+        for (Vec3f& value : channel.scale.values) value *= factor;
+    }
+
+    Status addMoving(const UsdMovingPrim& prim, Clip& clip) {
+        std::set<double> times;
+        addTimes(prim.levels, times);
+        Channel channel;
+        channel.bone = prim.bone;
+        const auto at = [&](double code) -> Result<Eigen::Affine3d> {
+            auto transform = toFile(prim.levels, code);
+            return transform && prim.isTop ? Eigen::Affine3d(turn_ * *transform) : transform;
+        };
+        const auto put = [&](double code, const Parts& parts) {
+            const float seconds = range_.seconds(code);
+            Track<Vec3f>& places = channel.translation;
+            if (!std::isfinite(seconds) || (!places.times.empty() && seconds <= places.times.back())) return;
+            for (std::vector<float>* const track :
+                 {&places.times, &channel.rotation.times, &channel.scale.times})
+                track->push_back(seconds);
+            places.values.push_back(parts.place.cast<float>());
+            channel.rotation.values.push_back(parts.turn.cast<float>());
+            channel.scale.values.push_back(parts.factors.cast<float>());
+            keys_ += 3;
+        };
+        // Angles of transforms go straight between samples, keys on the shortest way.
+        const std::function<Status(double, const Parts&, double, const Parts&, int)> between =
+            [&](double from, const Parts& before, double to, const Parts& after, int halvings) -> Status {
+            const double middle = 0.5 * (from + to);
+            const auto there = at(middle);
+            if (!there) return tl::unexpected(there.error());
+            if (halvings < kMaxHalvings && !isNear(*there, before.towards(after, 0.5).whole())) {
+                const Parts parts = Parts::of(*there);
+                if (auto status = between(from, before, middle, parts, halvings + 1); !status) return status;
+                put(middle, parts);
+                return between(middle, parts, to, after, halvings + 1);
+            }
+            return {};
+        };
+        std::optional<std::pair<double, Parts>> last;
+        for (const double code : times) {
+            if (keys_ > kMaxKeys) return {};
+            const auto transform = at(code);
+            if (!transform) return tl::unexpected(transform.error());
+            const Parts parts = Parts::of(*transform);
+            isSheared_ = isSheared_ || !isNear(*transform, parts.whole());
+            if (last && !isSheared_) {
+                if (auto status = between(last->first, last->second, code, parts, 0); !status) return status;
+            }
+            put(code, parts);
+            last = std::pair(code, parts);
+        }
+        if (!channel.translation.times.empty()) clip.channels.push_back(std::move(channel));
+        return {};
+    }
+
+    const UsdStage& stage_;
+    const UsdRange& range_;
+    const Eigen::Affine3d& turn_;
+    RawScene& scene_;
+    std::size_t keys_ = 0, lost_ = 0;
+    bool isSheared_ = false, hasShapes_ = false;
+};
+
+}  // namespace
+
+Status addUsdClips(const UsdStage& stage, const UsdRange& range, const Eigen::Affine3d& turn,
+                   std::span<const UsdMovingPrim> moving, std::span<const UsdSkeletonBones> skeletons,
+                   RawScene& scene) {
+    return Builder(stage, range, turn, scene).run(moving, skeletons);
+}
+
+}  // namespace hairloom
