@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
 
 #include "importers/alembic_shown.h"
 #include "importers/alembic_unreal.h"
 #include "importers/curve_set.h"
+#include "importers/file_format.h"
 #include "importers/obj_text.h"
 #include "importers/strand_parts.h"
 
@@ -42,9 +42,9 @@ class Reader {
     /// All that is needed of the archive.
     Status readAll() {
         const auto told = [&](const Error& error) { return tl::unexpected(inFile(error, file_)); };
-        auto all = shownObjects(archive_, kCurveSchemas);
+        auto all = shownObjects(archive_, kAlembicCurves);
         if (!all) return told(all.error());
-        found_ = std::move(all->curves);
+        found_ = std::move(all->objects);
         hidden_ = std::move(all->hidden);
         strands_.warnings = std::move(all->warnings);
         if (found_.empty()) return noCurves();

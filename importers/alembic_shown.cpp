@@ -3,20 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace hairloom {
 namespace {
 
 constexpr int kMaxDepth = 64;
 constexpr std::size_t kMaxObjects = 1'000'000;
 
-bool startsWith(const AlembicMetadata& metadata, std::string_view key, std::string_view value) {
-    const auto found = metadata.find(key);
-    return found != metadata.end() && found->second.starts_with(value);
-}
-
 class Finder {
   public:
-    explicit Finder(const AlembicArchive& archive) : archive_(archive) {}
+    Finder(const AlembicArchive& archive, std::span<const std::string_view> schemas)
+        : archive_(archive), schemas_(schemas) {}
 
     Result<AlembicShown> find() {
         if (auto status = visit(archive_.top(), {}, 0); !status) return tl::unexpected(status.error());
@@ -42,20 +40,30 @@ class Finder {
             takeOfObjects(inherited.levels.back().xform, inherited);
         }
         const AlembicProperty* const geometry = findProperty(*properties, ".geom");
-        if (geometry != nullptr && (startsWith(object.metadata, "schema", "AbcGeom_Curve_v") ||
-                                    startsWith(geometry->metadata, "schema", "AbcGeom_Curve_v"))) {
+        const std::string schema = geometry == nullptr ? std::string() : schemaOf(object, *geometry);
+        if (!schema.empty()) {
             if (inherited.isHidden) {
                 found_.hidden.push_back(object.path);
             } else {
                 auto inside = archive_.properties(*geometry);
                 if (!inside) return tl::unexpected(inside.error());
-                found_.curves.push_back({object.path, std::move(*inside), inherited});
+                found_.objects.push_back({object.path, object.node, schema, std::move(*inside), inherited});
             }
         }
         const auto children = archive_.children(object);
         if (!children) return tl::unexpected(children.error());
         for (const AlembicObject& child : *children) {
             if (auto status = visit(child, inherited, depth + 1); !status) return status;
+        }
+        return {};
+    }
+
+    /// The schema that is looked for; empty where it is another one.
+    std::string schemaOf(const AlembicObject& object, const AlembicProperty& geometry) const {
+        for (const AlembicMetadata* const metadata : {&object.metadata, &geometry.metadata}) {
+            const std::string schema = valueOf(*metadata, "schema");
+            const auto isIt = [&](std::string_view beginning) { return schema.starts_with(beginning); };
+            if (std::ranges::any_of(schemas_, isIt)) return schema;
         }
         return {};
     }
@@ -100,14 +108,15 @@ class Finder {
     }
 
     const AlembicArchive& archive_;
+    std::span<const std::string_view> schemas_;
     AlembicShown found_;
     std::size_t objects_ = 0;
 };
 
 }  // namespace
 
-Result<AlembicShown> findCurves(const AlembicArchive& archive) {
-    return Finder(archive).find();
+Result<AlembicShown> shownObjects(const AlembicArchive& archive, std::span<const std::string_view> schemas) {
+    return Finder(archive, schemas).find();
 }
 
 std::string valueOf(const AlembicMetadata& metadata, std::string_view key) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The objects of curves of an Alembic file, each in every place that it is seen at.
+// The curves or meshes of an Alembic file, each in every place that it is seen at.
 
+#include <array>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "importers/alembic_archive.h"
@@ -22,19 +25,24 @@ struct AlembicInherited {
 
 struct AlembicShownObject {
     std::string path;
-    std::vector<AlembicProperty> properties;
+    OgawaNode node;
+    std::string schema;                       ///< "AbcGeom_Curve_v2"
+    std::vector<AlembicProperty> properties;  ///< of its geometry
     AlembicInherited inherited;
 };
 
 struct AlembicShown {
-    std::vector<AlembicShownObject> curves;
+    std::vector<AlembicShownObject> objects;
     std::vector<std::string> hidden;  ///< paths of those that are not visible
     std::vector<Finding> warnings;
 };
 
-/// Those of the schemas AbcGeom_Curve_v1 and _v2, instances in their own places. Errors: objects that lie too
-/// deep or are too many, as instances of what they lie in are.
-Result<AlembicShown> findCurves(const AlembicArchive& archive);
+inline constexpr std::array<std::string_view, 1> kAlembicCurves{"AbcGeom_Curve_v"};
+inline constexpr std::array<std::string_view, 2> kAlembicMeshes{"AbcGeom_PolyMesh_v", "AbcGeom_SubD_v"};
+
+/// Those of schemas that begin so, instances in their own places. Errors: objects that lie too deep or are
+/// too many, as instances of what they lie in are.
+Result<AlembicShown> shownObjects(const AlembicArchive& archive, std::span<const std::string_view> schemas);
 
 /// The value of a key, or nothing.
 std::string valueOf(const AlembicMetadata& metadata, std::string_view key);

@@ -2,7 +2,6 @@
 #pragma once
 // File formats as people choose among them: in help texts, messages and the filters of file dialogs.
 
-#include <span>
 #include <cstddef>
 #include <span>
 #include <string>

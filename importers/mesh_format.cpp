@@ -11,15 +11,17 @@ namespace {
 
 struct Row {
     MeshFormat format;
-    std::string_view name;  ///< the suffix of its files, too
+    std::string_view name;  ///< the suffix of its files, too, unless there are several
     std::string_view label;
 };
-constexpr std::array<Row, 6> kFormats{{{MeshFormat::Obj, "obj", "OBJ"},
+constexpr std::array<Row, 8> kFormats{{{MeshFormat::Obj, "obj", "OBJ"},
                                        {MeshFormat::Ply, "ply", "PLY"},
                                        {MeshFormat::Stl, "stl", "STL"},
                                        {MeshFormat::Fbx, "fbx", "FBX"},
                                        {MeshFormat::Gltf, "gltf", "glTF"},
-                                       {MeshFormat::Glb, "glb", "GLB"}}};
+                                       {MeshFormat::Glb, "glb", "GLB"},
+                                       {MeshFormat::Usd, "usd", "USD"},
+                                       {MeshFormat::Alembic, "abc", "Alembic"}}};
 
 constexpr std::string_view kBlank = " \t\r\n\f\v";
 
@@ -87,14 +89,25 @@ std::optional<MeshFormat> meshFormatNamed(std::string_view name) {
 
 std::vector<FileFormat> meshFormats() {
     std::vector<FileFormat> formats;
-    for (const Row& row : kFormats) formats.push_back({std::string(row.label), {std::string(row.name)}});
+    for (const Row& row : kFormats) {
+        FileFormat& format =
+            formats.emplace_back(FileFormat{std::string(row.label), {std::string(row.name)}});
+        if (row.format == MeshFormat::Usd) format.suffixes = {"usda", "usdc", "usd", "usdz"};
+    }
     return formats;
+}
+
+bool mayBeHair(MeshFormat format) {
+    return format == MeshFormat::Obj || format == MeshFormat::Ply || format == MeshFormat::Usd ||
+           format == MeshFormat::Alembic;
 }
 
 std::optional<MeshFormat> meshFormatOf(std::span<const std::byte> head, std::uint64_t fileSize) {
     std::string text(head.size(), '\0');
     if (!head.empty()) std::memcpy(text.data(), head.data(), head.size());
     if (text.starts_with("glTF")) return MeshFormat::Glb;
+    if (startsLikeUsd(head)) return MeshFormat::Usd;
+    if (startsLikeAlembic(head)) return MeshFormat::Alembic;
     if (text.starts_with("Kaydara FBX Binary")) return MeshFormat::Fbx;
     if (isBinaryStl(head, fileSize)) return MeshFormat::Stl;
     const std::string_view start = withoutLeadingBlanks(text);

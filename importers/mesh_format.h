@@ -14,11 +14,13 @@
 
 namespace hairloom {
 
-enum class MeshFormat { Obj, Ply, Stl, Fbx, Gltf, Glb };
+enum class MeshFormat { Obj, Ply, Stl, Fbx, Gltf, Glb, Usd, Alembic };
 
-/// "obj", "ply", "stl", "fbx", "gltf", "glb".
+/// "obj", "ply", "stl", "fbx", "gltf", "glb", "usd", "abc".
 std::string_view name(MeshFormat format);
 std::optional<MeshFormat> meshFormatNamed(std::string_view name);
+/// Whether files of the format have hair or a head, as their content says.
+bool mayBeHair(MeshFormat format);
 
 /// How many bytes of a file's start meshFormatOf() wants to see.
 inline constexpr std::size_t kMeshFormatHead = 64 * 1024;

@@ -62,7 +62,7 @@ struct RawStrands {
     std::optional<RibbonsFound> ribbons;  ///< of hair written as polygons
     /// Settings, material, interpolation, spheres, layers and operators, of a file that has them; no strands.
     std::shared_ptr<const Groom> authored;
-    std::uint64_t authoredShape = 0;  ///< hash of the positions that the operators of `authored` made
+    std::uint64_t authoredShape = 0;     ///< hash of the positions that the operators of `authored` made
     std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out
     std::vector<Finding> warnings;
 };

@@ -64,7 +64,8 @@ bool startsWithUtf16Mark(const std::vector<std::byte>& bytes) {
 }
 
 Result<RawScene> readRaw(const std::filesystem::path& path, MeshFormat format, std::uint64_t fileBytes) {
-    const bool isOurs = format == MeshFormat::Obj || format == MeshFormat::Ply;
+    const bool isOurs = format == MeshFormat::Obj || format == MeshFormat::Ply || format == MeshFormat::Usd ||
+                        format == MeshFormat::Alembic;
     const auto answer =
         readInChild(std::string(name(format)), path, {}, isOurs ? limitsOfFile(fileBytes) : meshLimits());
     if (!answer) return tl::unexpected(answer.error());
@@ -86,7 +87,13 @@ void cleanNames(RawScene& scene) {
 /// Decides the unit, says so where a user should know, and turns all lengths into metres.
 float convertToMetres(RawScene& scene, const MeshImportOptions& options) {
     const bool stated = scene.metresPerUnit > 0 && std::isfinite(scene.metresPerUnit);
-    const float metresPerUnit = stated ? scene.metresPerUnit : options.metresPerUnit.value_or(1.0f);
+    const bool assumed = !stated && !options.metresPerUnit && scene.assumedMetresPerUnit > 0;
+    const float metresPerUnit = stated    ? scene.metresPerUnit
+                                : assumed ? scene.assumedMetresPerUnit
+                                          : options.metresPerUnit.value_or(1.0f);
+    if (assumed)
+        scene.warnings.push_back(
+            fmt::format("the file states no unit; its format takes {} m then", metresPerUnit));
     if (stated && options.metresPerUnit && std::abs(*options.metresPerUnit / metresPerUnit - 1) > 1e-4f) {
         scene.warnings.push_back(
             fmt::format("the file states its unit, {} m, so the requested unit is not used", metresPerUnit));
@@ -119,6 +126,7 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
     cleanNames(raw);
     ImportedScene scene;
     scene.statesUnit = raw.metresPerUnit > 0 && std::isfinite(raw.metresPerUnit);
+    scene.statesUp = raw.statesUp;
     scene.metresPerUnit = convertToMetres(raw, options);
     if (auto status = validate(raw); !status) return tl::unexpected(status.error());
     const double metres = largestExtent(raw.soup);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Characters from mesh files: OBJ, PLY, STL, FBX, glTF and GLB. docs/formats/meshes.md says what is read of
-// each.
+// Characters from mesh files: OBJ, PLY, STL, FBX, glTF, GLB, USD and Alembic. docs/formats/meshes.md says
+// what is read of each.
 
 #include <filesystem>
 #include <optional>
@@ -15,8 +15,9 @@
 namespace hairloom {
 
 struct MeshImportOptions {
-    /// Metres in one unit of a file that states none (OBJ, PLY, STL), > 0; metres where this is empty. Files
-    /// that state their unit (FBX, glTF) keep it, with a warning.
+    /// Metres in one unit of a file that states none (OBJ, PLY, STL, Alembic), > 0; where this is empty,
+    /// metres, and centimetres in USD. Files that state their unit (FBX, glTF, most of USD) keep it, with a
+    /// warning.
     std::optional<float> metresPerUnit;
 };
 
@@ -26,15 +27,17 @@ struct ImportedScene {
     std::vector<Clip> clips;
     SkinWeights skin;  ///< per vertex of `mesh`; empty when nothing moves it
     std::vector<std::string> warnings;
-    std::string format;       ///< "obj", "ply", "stl", "fbx", "gltf", "glb"
+    std::string format;       ///< "obj", "ply", "stl", "fbx", "gltf", "glb", "usd", "abc"
     float metresPerUnit = 1;  ///< that the file's lengths were multiplied with
-    bool statesUnit = false;  ///< the file says it, and which axis is up
+    bool statesUnit = false;  ///< the file says it
+    bool statesUp = false;    ///< the file says which axis is up
 };
 
-/// Reads a file by its content; its name plays no part. FBX, glTF and STL are read in a process of their
-/// own (hairloom-mesh-reader, found beside the running program or named by the environment variable
-/// HAIRLOOM_MESH_READER), within 8 s and 1.5 GiB. Errors: missing or unreadable file, no supported format,
-/// damaged or too large for these limits, no faces, nothing left after repair.
+/// Reads a file by its content; its name plays no part. It is read in a process of its own
+/// (hairloom-mesh-reader, found beside the running program or named by the environment variable
+/// HAIRLOOM_MESH_READER), FBX, glTF and STL within 8 s and 1.5 GiB, others within limitsOfFile(). Errors:
+/// missing or unreadable file, no supported format, damaged or too large for these limits, no faces, nothing
+/// left after repair.
 Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options = {});
 
 }  // namespace hairloom

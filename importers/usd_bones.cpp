@@ -82,7 +82,8 @@ UsdRange rangeOf(const UsdStage& stage) {
     takeTimes(stage.root, first, last);
     const double start = usdNumber(stage.metadata, "startTimeCode", first),
                  end = usdNumber(stage.metadata, "endTimeCode", last);
-    range.isAuthored = std::isfinite(start) && std::isfinite(end) && start < end && start < last && end > first;
+    range.isAuthored =
+        std::isfinite(start) && std::isfinite(end) && start < end && start < last && end > first;
     if (range.isAuthored) {
         range.start = start;
         range.end = end;

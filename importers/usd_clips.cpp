@@ -6,46 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
 
 #include "importers/scene_parts.h"
+#include "importers/transform_keys.h"
 #include "importers/usd_bones.h"
 
 namespace hairloom {
 namespace {
 
 constexpr std::size_t kMaxKeys = std::size_t{1} << 26u;  ///< of all clips
-constexpr int kMaxHalvings = 6;                          ///< of the time between two samples of transforms
-
-/// A transform in the parts that keys have; what it shears is lost.
-struct Parts {
-    Eigen::Vector3d place, factors;
-    Eigen::Quaterniond turn;
-
-    static Parts of(const Eigen::Affine3d& transform) {
-        Eigen::Matrix3d rotation, scale;
-        transform.computeRotationScaling(&rotation, &scale);
-        return {transform.translation(), scale.diagonal(), Eigen::Quaterniond(rotation).normalized()};
-    }
-    Parts towards(const Parts& other, double share) const {
-        return {(1 - share) * place + share * other.place, (1 - share) * factors + share * other.factors,
-                turn.slerp(share, other.turn)};
-    }
-    Eigen::Affine3d whole() const {
-        return Eigen::Translation3d(place) * turn * Eigen::Scaling(factors);
-    }
-};
-
-bool isNear(const Eigen::Affine3d& a, const Eigen::Affine3d& b) {
-    constexpr double kTolerance = 1e-5;
-    const double size = a.linear().norm() + 1e-30, length = a.translation().norm() + size;
-    return (a.linear() - b.linear()).norm() <= kTolerance * size &&
-           (a.translation() - b.translation()).norm() <= kTolerance * length;
-}
-
 class Builder {
   public:
     Builder(const UsdStage& stage, const UsdRange& range, const Eigen::Affine3d& turn, RawScene& scene)
@@ -68,11 +40,14 @@ class Builder {
         finish(std::move(clip), range_.isAuthored);
         addOthers(stage_.root, skeletons, played);
         if (keys_ > kMaxKeys)
-            return fail("its clips have more keys than are read", fmt::format("expected at most {}", kMaxKeys));
+            return fail("its clips have more keys than are read",
+                        fmt::format("expected at most {}", kMaxKeys));
         if (lost_ > 0)
             scene_.warnings.push_back(fmt::format(
-                "{} keys are no numbers or do not fit the joints of their animation; they were left out", lost_));
-        if (isSheared_) scene_.warnings.emplace_back("transforms that shear in time were taken without shear");
+                "{} keys are no numbers or do not fit the joints of their animation; they were left out",
+                lost_));
+        if (isSheared_)
+            scene_.warnings.emplace_back("transforms that shear in time were taken without shear");
         if (hasShapes_) scene_.warnings.emplace_back("clips animate blend shapes, which stay at 0");
         return {};
     }
@@ -123,8 +98,8 @@ class Builder {
         if (!path) return nullptr;
         const std::vector<const UsdPrim*> prims = primsTo(stage_.root, *path);
         const bool isThere = !prims.empty() && prims.back()->type == "SkelAnimation";
-        const bool isActive = std::ranges::all_of(
-            prims, [](const UsdPrim* prim) { return !prim->active || *prim->active; });
+        const bool isActive =
+            std::ranges::all_of(prims, [](const UsdPrim* prim) { return !prim->active || *prim->active; });
         if (isThere && isActive) return prims.back();
         scene_.warnings.push_back(fmt::format("the skeleton {} has the animation {}, which there is not",
                                               skeleton.prim->name, *path));
@@ -184,7 +159,7 @@ class Builder {
                 channel.scale.times.empty())
                 continue;
             fillFromRest(channel, skeleton.joints[joint].rest.cast<float>());
-            if (skeleton.joints[joint].parent == kNoJoint) put(channel, Parts::of(skeleton.base));
+            if (skeleton.joints[joint].parent == kNoJoint) put(channel, TransformParts::of(skeleton.base));
             clip.channels.push_back(std::move(channel));
         }
     }
@@ -201,7 +176,7 @@ class Builder {
     }
 
     /// What a topmost joint has before its own transform: a rotation, one factor and a place.
-    static void put(Channel& channel, const Parts& before) {
+    static void put(Channel& channel, const TransformParts& before) {
         const Quatf turn = before.turn.cast<float>();
         const auto factor = static_cast<float>(before.factors.x());
         for (Vec3f& value : channel.translation.values)
@@ -219,45 +194,11 @@ class Builder {
             auto transform = toFile(prim.levels, code);
             return transform && prim.isTop ? Eigen::Affine3d(turn_ * *transform) : transform;
         };
-        const auto put = [&](double code, const Parts& parts) {
-            const float seconds = range_.seconds(code);
-            Track<Vec3f>& places = channel.translation;
-            if (!std::isfinite(seconds) || (!places.times.empty() && seconds <= places.times.back())) return;
-            for (std::vector<float>* const track :
-                 {&places.times, &channel.rotation.times, &channel.scale.times})
-                track->push_back(seconds);
-            places.values.push_back(parts.place.cast<float>());
-            channel.rotation.values.push_back(parts.turn.cast<float>());
-            channel.scale.values.push_back(parts.factors.cast<float>());
-            keys_ += 3;
-        };
-        // Angles of transforms go straight between samples, keys on the shortest way.
-        const std::function<Status(double, const Parts&, double, const Parts&, int)> between =
-            [&](double from, const Parts& before, double to, const Parts& after, int halvings) -> Status {
-            const double middle = 0.5 * (from + to);
-            const auto there = at(middle);
-            if (!there) return tl::unexpected(there.error());
-            if (halvings < kMaxHalvings && !isNear(*there, before.towards(after, 0.5).whole())) {
-                const Parts parts = Parts::of(*there);
-                if (auto status = between(from, before, middle, parts, halvings + 1); !status) return status;
-                put(middle, parts);
-                return between(middle, parts, to, after, halvings + 1);
-            }
-            return {};
-        };
-        std::optional<std::pair<double, Parts>> last;
-        for (const double code : times) {
-            if (keys_ > kMaxKeys) return {};
-            const auto transform = at(code);
-            if (!transform) return tl::unexpected(transform.error());
-            const Parts parts = Parts::of(*transform);
-            isSheared_ = isSheared_ || !isNear(*transform, parts.whole());
-            if (last && !isSheared_) {
-                if (auto status = between(last->first, last->second, code, parts, 0); !status) return status;
-            }
-            put(code, parts);
-            last = std::pair(code, parts);
-        }
+        const auto isSheared = addTransformKeys(
+            times, at, [&](double code) { return range_.seconds(code); }, channel);
+        if (!isSheared) return tl::unexpected(isSheared.error());
+        isSheared_ = isSheared_ || *isSheared;
+        keys_ += 3 * channel.translation.times.size();
         if (!channel.translation.times.empty()) clip.channels.push_back(std::move(channel));
         return {};
     }

@@ -130,8 +130,8 @@ class Reader {
             faces.offsets.push_back(static_cast<std::uint32_t>(end));
         }
         if (faces.offsets.back() != indices.size())
-            return fail(fmt::format("has {} indices for faces of {} corners", indices.size(),
-                                    faces.offsets.back()));
+            return fail(
+                fmt::format("has {} indices for faces of {} corners", indices.size(), faces.offsets.back()));
         for (const std::int64_t index : indices) {
             if (index < 0 || static_cast<std::uint64_t>(index) >= points)
                 return fail(fmt::format("has a face that refers to point {} of {}", index, points));
@@ -182,11 +182,11 @@ class Reader {
         return {};
     }
 
-    void addFaces(const UsdShownPrim& shown, const Faces& faces, const UsdMeshSize& size,
+    void addFaces(const UsdShownPrim& shown, const Faces& faces, const MeshCounts& size,
                   std::uint32_t firstPoint, const Eigen::Affine3d& toWorld) {
         const UsdPrim& mesh = *shown.prim;
         PolygonSoup& soup = scene_.soup;
-        const auto uvs = primvarOf(shown, uvNameOf(mesh), 2, "constant", size);
+        const auto uvs = primvarOf(shown, uvNameOf(mesh), 2, size);
         const auto normals = normalsOf(shown, size);
         const std::vector<std::uint32_t> groups = groupsOf(shown, faces.count()),
                                          materials = materialsOf(shown, faces.count());
@@ -238,23 +238,21 @@ class Reader {
         scene_.soup.normals.push_back(normal / length);
     }
 
-    std::optional<UsdPrimvar> primvarOf(const UsdShownPrim& shown, std::string_view name,
-                                        std::uint32_t components, std::string_view otherwise,
-                                        const UsdMeshSize& size) {
+    std::optional<CornerValues> primvarOf(const UsdShownPrim& shown, std::string_view name,
+                                          std::uint32_t components, const MeshCounts& size) {
         std::string problem;
-        auto primvar =
-            UsdPrimvar::read(*shown.prim, name, components, otherwise, range_.start, size, problem);
+        auto primvar = readPrimvar(*shown.prim, name, components, range_.start, size, problem);
         if (!problem.empty() && scene_.warnings.size() < 64)
             scene_.warnings.push_back(fmt::format("{}: {}; they were left out", shown.path, problem));
         return primvar;
     }
 
     /// Those of subdivision surfaces, which a mesh is that does not say otherwise, are not of its cage.
-    std::optional<UsdPrimvar> normalsOf(const UsdShownPrim& shown, const UsdMeshSize& size) {
+    std::optional<CornerValues> normalsOf(const UsdShownPrim& shown, const MeshCounts& size) {
         if (tokenAt(*shown.prim, "subdivisionScheme", "catmullClark", range_.start) != "none")
             return std::nullopt;
-        auto normals = primvarOf(shown, "primvars:normals", 3, "constant", size);
-        return normals ? std::move(normals) : primvarOf(shown, "normals", 3, "vertex", size);
+        auto normals = primvarOf(shown, "primvars:normals", 3, size);
+        return normals ? std::move(normals) : primvarOf(shown, "normals", 3, size);
     }
 
     /// Subsets of a mesh's faces; those of materials last.
@@ -329,11 +327,11 @@ class Reader {
         tell(badSubsetFaces_, "faces of subsets are not there");
         if (!scene_.soup.uvs.empty())
             tell(meshesWithoutUvs_, "meshes have no texture coordinates; those of their corners are (0, 0)");
-        if (isCage_) scene_.warnings.emplace_back("subdivision surfaces are taken as the polygons of their cages");
+        if (isCage_)
+            scene_.warnings.emplace_back("subdivision surfaces are taken as the polygons of their cages");
         if (movesPoints_)
             scene_.warnings.emplace_back("points of meshes move in time; they stay as they are at first");
-        if (hasNormals_)
-            tell(badNormals_, "normals are unusable, so all are computed from the faces");
+        if (hasNormals_) tell(badNormals_, "normals are unusable, so all are computed from the faces");
         if (!hasNormals_ || badNormals_ > 0) scene_.soup.normals.clear();
         if (scene_.bones.empty()) scene_.skin = {};
     }

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <set>
 
 #include "importers/authored_settings.h"
 #include "importers/curve_set.h"
+#include "importers/file_format.h"
 #include "importers/hermite_curves.h"
 #include "importers/sample_times.h"
 #include "importers/strand_parts.h"

@@ -12,7 +12,7 @@ namespace hairloom {
 namespace {
 
 constexpr std::size_t kMaxShown = 1'000'000;  ///< prims and copies of these
-constexpr int kMaxInstancers = 8;              ///< in each other's prototypes
+constexpr int kMaxInstancers = 8;             ///< in each other's prototypes
 
 bool isOf(const UsdPrim& prim, UsdShape shape) {
     if (shape == UsdShape::Meshes) return prim.type == "Mesh";
@@ -21,9 +21,8 @@ bool isOf(const UsdPrim& prim, UsdShape shape) {
 
 /// Whether anything of the shape lies below a prim, shown or not.
 bool isAnyBelow(const UsdPrim& prim, UsdShape shape) {
-    return isOf(prim, shape) || std::ranges::any_of(prim.children, [&](const UsdPrim& child) {
-               return isAnyBelow(child, shape);
-           });
+    return isOf(prim, shape) ||
+           std::ranges::any_of(prim.children, [&](const UsdPrim& child) { return isAnyBelow(child, shape); });
 }
 
 std::string tokenOf(const UsdPrim& prim, std::string_view name, double time) {

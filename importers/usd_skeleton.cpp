@@ -74,7 +74,8 @@ Result<std::vector<UsdJoint>> readJoints(const UsdPrim& skeleton, double time,
     const std::vector<std::string> paths = names == nullptr ? std::vector<std::string>() : names->value.texts;
     if (paths.empty()) return fail("has no joints", "expected joints by their paths");
     if (paths.size() > kMaxJoints)
-        return fail(fmt::format("has {} joints", paths.size()), fmt::format("expected at most {}", kMaxJoints));
+        return fail(fmt::format("has {} joints", paths.size()),
+                    fmt::format("expected at most {}", kMaxJoints));
     auto rest = matricesOf(skeleton, "restTransforms", paths.size(), time);
     auto bind = matricesOf(skeleton, "bindTransforms", paths.size(), time);
     if (!rest && !bind)
@@ -105,7 +106,8 @@ Result<std::vector<UsdJoint>> readJoints(const UsdPrim& skeleton, double time,
         if (rest) {
             joint.rest = (*rest)[j];
         } else {
-            joint.rest = isRoot ? joint.bind : Eigen::Affine3d(joints[joint.parent].bind.inverse() * joint.bind);
+            joint.rest =
+                isRoot ? joint.bind : Eigen::Affine3d(joints[joint.parent].bind.inverse() * joint.bind);
             if (!joint.rest.matrix().allFinite()) joint.rest = Eigen::Affine3d::Identity();
         }
         joint.world = isRoot ? joint.rest : joints[joint.parent].world * joint.rest;
@@ -114,7 +116,8 @@ Result<std::vector<UsdJoint>> readJoints(const UsdPrim& skeleton, double time,
     }
     const auto unbound = std::ranges::count(joints, false, &UsdJoint::isBound);
     if (unbound > 0)
-        words.push_back(fmt::format("has {} joints whose bind transforms flatten: they move nothing", unbound));
+        words.push_back(
+            fmt::format("has {} joints whose bind transforms flatten: they move nothing", unbound));
     return joints;
 }
 

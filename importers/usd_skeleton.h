@@ -16,13 +16,13 @@ namespace hairloom {
 inline constexpr std::size_t kNoJoint = SIZE_MAX;
 
 struct UsdJoint {
-    std::string path;              ///< "hips/spine/head"
-    std::string name;              ///< the last of it, or all of it where joints share that; never empty
-    std::size_t parent = kNoJoint; ///< the nearest joint above, as UsdSkel has it
+    std::string path;               ///< "hips/spine/head"
+    std::string name;               ///< the last of it, or all of it where joints share that; never empty
+    std::size_t parent = kNoJoint;  ///< the nearest joint above, as UsdSkel has it
     Eigen::Affine3d rest = Eigen::Affine3d::Identity();   ///< to the parent's space, without animation
     Eigen::Affine3d bind = Eigen::Affine3d::Identity();   ///< to the space that meshes were bound in
     Eigen::Affine3d world = Eigen::Affine3d::Identity();  ///< `rest` to the skeleton's space
-    bool isBound = true;           ///< `bind` can be inverted
+    bool isBound = true;                                  ///< `bind` can be inverted
 };
 
 /// The joints in the file's order. `words` gets what was missing. Errors: no joints, neither rest nor bind

@@ -168,7 +168,7 @@ Result<Report> import(const ImportOptions& options) {
         taken = read->taken;
         mesh = std::make_shared<const ScalpMesh>(std::move(read->scene.mesh));
         head = headReport(taken, read->words);
-        if (taken.guessUp && !taken.zUp && !read->scene.statesUnit)
+        if (taken.guessUp && !taken.zUp && !read->scene.statesUp)
             layHeadToHair(options, strandsAs, mesh, taken, head);
         auto selected = selectFaces(*mesh, options.scalp);
         if (!selected) return tl::unexpected(selected.error());

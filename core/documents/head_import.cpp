@@ -90,8 +90,9 @@ HeadGuess guessHead(const ImportedScene& scene) {
     withoutHelpers.leaveOut = guess.helpers;
     const auto skin = partOfHead(scene.mesh, withoutHelpers);
     const Vec3f size = (skin ? *skin : scene.mesh).bounds().sizes();
-    const double largest = static_cast<double>(size.maxCoeff());
-    if (const LengthUnit* fits = fittingUnit(largest); implausibleSize(largest, 1) && fits)
+    const auto unit = static_cast<double>(scene.metresPerUnit);
+    const double largest = static_cast<double>(size.maxCoeff()) / unit;
+    if (const LengthUnit* fits = fittingUnit(largest); implausibleSize(largest, unit) && fits)
         guess.unit = fits->name;
     const bool isDeep = size.z() > kLies * size.y() && size.y() > kFlat * size.z();
     guess.zUp = isDeep || isHighAlongZ(skin ? *skin : scene.mesh);
@@ -154,22 +155,25 @@ namespace {
 Status guessInto(const std::string& path, ImportedHead& head) {
     const HeadGuess guess = guessHead(head.scene);
     HeadImportOptions& options = head.taken;
-    if (guess.zUp && options.guessUp && head.scene.statesUnit)
-        head.words.emplace_back(
-            "looks as if its Z axis were up, though its format has Y up. --up z turns it");
-    if (head.scene.statesUnit) return {};
-    if (options.guessUnit && options.metresPerUnit == 0 && !guess.unit.empty()) {
+    if (guess.zUp && options.guessUp && head.scene.statesUp)
+        head.words.emplace_back("looks as if its Z axis were up, though it has another one. --up z turns it");
+    const bool mayGuess = options.guessUnit && options.metresPerUnit == 0 && !head.scene.statesUnit;
+    if (mayGuess && !guess.unit.empty()) {
         options.metresPerUnit = metresPerUnit(guess.unit);
         const Vec3f size = head.scene.mesh.bounds().sizes();
-        head.words.push_back(
-            fmt::format("states no unit; {0} were taken, since metres would make it {1:.3g} m "
-                        "large; --unit m takes metres",
-                        guess.unit, size.maxCoeff()));
+        const auto units = lengthUnits();
+        const auto read = std::ranges::find_if(units, [&](const LengthUnit& known) {
+            return static_cast<float>(known.metres) == head.scene.metresPerUnit;
+        });
+        const char* const usual = read == units.end() ? "m" : read->name;
+        head.words.push_back(fmt::format(
+            "states no unit; {0} were taken, since {1} would make it {2:.3g} m large; --unit {1} takes {1}",
+            guess.unit, usual, size.maxCoeff()));
         auto scene = importScene(path, {options.metresPerUnit});
         if (!scene) return tl::unexpected(scene.error());
         head.scene = std::move(*scene);
     }
-    if (options.guessUp && guess.zUp) {
+    if (options.guessUp && guess.zUp && !head.scene.statesUp) {
         options.zUp = true;
         head.words.emplace_back(
             "has its Z axis taken as up, along which it is high; --up y leaves it as it is");

@@ -71,7 +71,7 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
     Groom moved = groom;
     auto transfer = putOn(moved, head->scene.mesh);
     if (!transfer) return tl::unexpected(transfer.error());
-    if (options.guessUp && !done.taken.zUp && !head->scene.statesUnit) {
+    if (options.guessUp && !done.taken.zUp && !head->scene.statesUp) {
         auto laid = layingFits(groom, path, done, head->scene.mesh);
         if (!laid) return tl::unexpected(laid.error());
         if (*laid) {

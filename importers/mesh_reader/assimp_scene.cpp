@@ -82,6 +82,7 @@ class Converter {
         Eigen::Affine3f toWorld = Eigen::Affine3f::Identity();
         const bool isGltf = format_ == MeshFormat::Gltf || format_ == MeshFormat::Glb;
         if (isGltf) scene_.metresPerUnit = 1;
+        scene_.statesUp = format_ != MeshFormat::Stl;
         if (format_ == MeshFormat::Fbx && source_.mMetaData) {
             float centimetres = 1;
             source_.mMetaData->Get("UnitScaleFactor", centimetres);

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "importers/alembic_mesh.h"
 #include "importers/confinement.h"
 #include "importers/mesh_format.h"
 #include "importers/mesh_reader/assimp_scene.h"
@@ -38,6 +39,7 @@
 #include "importers/raw_strands_stream.h"
 #include "importers/reader_limits.h"
 #include "importers/strand_file.h"
+#include "importers/usd_mesh.h"
 
 namespace hairloom {
 namespace {
@@ -74,9 +76,12 @@ Result<RawScene> readMesh(const Request& request) {
         return text ? readObjMesh(file, *text) : tl::unexpected(text.error());
     }
     if (format == MeshFormat::Stl || format == MeshFormat::Fbx) return readWithAssimp(file.c_str(), format);
-    const auto bytes = readFile(file, kLargestFile);
+    auto bytes = readFile(file, kLargestFile);
     if (!bytes) return tl::unexpected(bytes.error());
     if (format == MeshFormat::Ply) return readPlyMesh(file, *bytes);
+    if (format == MeshFormat::Alembic) return readAlembicMesh(file, *bytes);
+    if (format == MeshFormat::Usd)
+        return readUsdMesh(file, std::move(*bytes), std::filesystem::path(file).parent_path());
     return isFirstGltf(*bytes) ? readWithAssimp(file.c_str(), format) : readGltf(file.c_str(), *bytes);
 }
 
@@ -201,7 +206,8 @@ int run(int count, char** arguments) {
     auto request = requestOf(std::span(arguments, static_cast<std::size_t>(count)).subspan(1));
     if (!request) {
         std::fputs(
-            "usage: hairloom-mesh-reader obj|ply|stl|fbx|gltf|glb|strands|picture FILE [OPTION…] > ANSWER\n"
+            "usage: hairloom-mesh-reader obj|ply|stl|fbx|gltf|glb|usd|abc|strands|picture FILE [OPTION…] > "
+            "ANSWER\n"
             "       hairloom-mesh-reader --security FOLDER FILE_OUTSIDE PROCESS\n",
             stderr);
         return 2;
