@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "core/base/file.h"
 #include "core/base/log.h"
@@ -11,6 +13,7 @@
 #include "core/groom/file/settings_json.h"
 #include "core/operations/stack.h"
 #include "importers/length_unit.h"
+#include "importers/mesh_format.h"
 #include "importers/strands.h"
 
 namespace hairloom {
@@ -34,6 +37,12 @@ Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::st
     MeshImportOptions options;
     if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
     return importSceneLoud(path, options);
+}
+
+bool mayBeHead(const std::string& path) {
+    std::error_code code;
+    const std::uint64_t size = std::filesystem::file_size(path, code);
+    return !code && meshFormatOf(readBeginning(path, kMeshFormatHead), size).has_value();
 }
 
 Result<Groom> loadDocument(const std::string& path) {
@@ -74,7 +83,12 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
         }
         return opened;
     } else if (looksLikeStrandFile(readBeginning(path, 256))) {
-        return tl::unexpected(imported.error());
+        if (!mayBeHead(path)) return tl::unexpected(imported.error());
+        if (const auto head = importScene(path); !head) {
+            Error both = imported.error();
+            both.problem += "; and as a head it " + head.error().problem;
+            return tl::unexpected(both);
+        }
     }
     auto scene = importSceneWithUnit(path, unit);
     if (!scene) return tl::unexpected(scene.error());

@@ -12,6 +12,8 @@
 
 namespace hairloom {
 
+/// Whether the file's content is of a format that heads come in; USD and Alembic may be hair as well.
+bool mayBeHead(const std::string& path);
 /// Metres of one unit of that name (m, dm, cm, mm, inch); 1 for an empty or unknown name.
 float metresPerUnit(const std::string& unit);
 

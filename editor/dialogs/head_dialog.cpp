@@ -79,8 +79,8 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     QStringList units;
     for (const LengthUnit& unit : lengthUnits()) units.append(unit.name);
     form->addRow(tr("Unit"), choices(*unit_, "headUnit", units,
-                                     tr("Length of one unit in the file. FBX and glTF files state their "
-                                        "unit, so it is fixed for them")));
+                                     tr("Length of one unit in the file. FBX, glTF and most USD files state "
+                                        "their unit, so it is fixed for them")));
     form->addRow(tr("Up"), choices(*up_, "headUp", {tr("Y"), tr("Z")},
                                    tr("Up axis of the file. Change it if the head lies on its back")));
     side->addWidget(groups_, 1);
@@ -135,10 +135,10 @@ void HeadDialog::take(std::shared_ptr<const ImportedScene> scene) {
     scene_ = std::move(scene);
     const HeadGuess guess = guessHead(*scene_);
     const auto units = lengthUnits();
-    // Positions are in metres already where the file says of what they are.
-    statesUnit_ = scene_->format == "fbx" || scene_->format == "gltf" || scene_->format == "glb";
+    statesUnit_ = scene_->statesUnit;
     const auto known = std::ranges::find_if(units, [&](const LengthUnit& u) {
-        return statesUnit_ ? static_cast<float>(u.metres) == scene_->metresPerUnit : guess.unit == u.name;
+        const bool isGuessed = !statesUnit_ && !guess.unit.empty();
+        return isGuessed ? guess.unit == u.name : static_cast<float>(u.metres) == scene_->metresPerUnit;
     });
     if (known != units.end()) unit_->button(static_cast<int>(known - units.begin()))->setChecked(true);
     for (QAbstractButton* button : unit_->buttons()) {
@@ -151,15 +151,18 @@ void HeadDialog::take(std::shared_ptr<const ImportedScene> scene) {
 }
 
 float HeadDialog::metresPerUnit() const {
-    if (statesUnit_) return 1;
-    return static_cast<float>(
-        lengthUnits()[static_cast<std::size_t>(std::max(unit_->checkedId(), 0))].metres);
+    if (statesUnit_ || unit_->checkedId() < 0) return scene_->metresPerUnit;
+    return static_cast<float>(lengthUnits()[static_cast<std::size_t>(unit_->checkedId())].metres);
+}
+
+float HeadDialog::toMetres() const {
+    return scene_ ? metresPerUnit() / scene_->metresPerUnit : 1;
 }
 
 HeadImportOptions HeadDialog::options() const {
     HeadImportOptions options;
-    // Metres are what a file without a unit has.
-    if (!statesUnit_ && unit_->checkedId() > 0) options.metresPerUnit = metresPerUnit();
+    // What a file without a unit is read in needs no word.
+    if (!statesUnit_ && toMetres() != 1) options.metresPerUnit = metresPerUnit();
     options.zUp = up_->checkedId() == 1;
     options.leaveOut = groups_->groupsOf(GroupRole::LeftOut);
     options.collideWith = groups_->groupsOf(GroupRole::Collide);
@@ -171,7 +174,7 @@ void HeadDialog::refresh() {
     if (!scene_) return;
     auto part = partOfHead(scene_->mesh, options());
     open_->setEnabled(part.has_value());
-    head_ = part ? std::make_shared<const ScalpMesh>(scaled(*part, metresPerUnit())) : nullptr;
+    head_ = part ? std::make_shared<const ScalpMesh>(scaled(*part, toMetres())) : nullptr;
     if (!part) {
         summary_->setText(errorText(part.error()));
     } else {
@@ -203,7 +206,7 @@ void HeadDialog::fit() {
     using Fit = std::pair<editing::SphereFit, QString>;
     fitting_ = tasks_.run<Fit>(
         tr("Fitting spheres"),
-        [scene = scene_, wanted, scale = metresPerUnit()](TaskControl& control) -> Result<Fit> {
+        [scene = scene_, wanted, scale = toMetres()](TaskControl& control) -> Result<Fit> {
             auto fit = fitColliders(scaled(scene->mesh, scale), {}, wanted, control.cancelFlag());
             if (!fit) return Fit{{}, errorText(fit.error())};
             return Fit{std::move(*fit), {}};

@@ -39,6 +39,8 @@ class HeadDialog : public QDialog {
     void fit();
     void show(const editing::SphereFit& fit);
     float metresPerUnit() const;
+    /// What the mesh as it was read is scaled by.
+    float toMetres() const;
 
     Tasks& tasks_;
     const Preferences& preferences_;

@@ -118,14 +118,14 @@ QString patternsOf(const std::vector<FileFormat>& formats) {
 FileKind kindOf(const QString& path) {
     const std::string file = path.toStdString();
     if (looksLikeProject(file)) return FileKind::Project;
-    if (looksLikeStrandFile(readBeginning(file, 256))) return FileKind::Strands;
-    const bool isMesh =
-        meshFormatOf(readBeginning(file, kMeshFormatHead), static_cast<std::uint64_t>(QFileInfo(path).size()))
-            .has_value();
-    const bool mayBeEither =
-        path.endsWith(".obj", Qt::CaseInsensitive) || path.endsWith(".ply", Qt::CaseInsensitive);
-    if (isMesh && !mayBeEither) return FileKind::Head;
-    return hairloom::importStrands(file) ? FileKind::Strands : FileKind::Head;
+    const auto mesh = meshFormatOf(readBeginning(file, kMeshFormatHead),
+                                   static_cast<std::uint64_t>(QFileInfo(path).size()));
+    const bool isStrands = looksLikeStrandFile(readBeginning(file, 256));
+    if (mesh && !isStrands && !mayBeHair(*mesh)) return FileKind::Head;
+    if (!mesh && isStrands) return FileKind::Strands;
+    if (hairloom::importStrands(file)) return FileKind::Strands;
+    // What is wrong with hair is told rather than that it is no head.
+    return isStrands && !importScene(file) ? FileKind::Strands : FileKind::Head;
 }
 
 QString openFilter() {
