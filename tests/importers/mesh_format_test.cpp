@@ -35,7 +35,7 @@ using SceneFile = MeshFiles;
 
 TEST_F(SceneFile, OtherFormatsAreRefusedNamingThoseThatAreRead) {
     EXPECT_THAT(refusal("mesh.obj", "OFF\n3 1 0\n"),
-                HasSubstr("expected a mesh in OBJ, PLY, STL, FBX, glTF or GLB"));
+                HasSubstr("expected a mesh in OBJ, PLY, STL, FBX, glTF, GLB, USD or Alembic"));
     EXPECT_THAT(importScene(folder / "none.obj").error().message(), HasSubstr("no such file"));
     EXPECT_THAT(importScene(folder).error().message(), HasSubstr("is not a regular file"));
 }
