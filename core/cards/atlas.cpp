@@ -77,6 +77,11 @@ Atlas makeAtlas(std::vector<Picture> pictures, std::vector<Rect> rects, std::uin
     atlas.rects = std::move(rects);
     atlas.levels.push_back(std::move(whole));
     while (atlas.levels.back().width > 1) atlas.levels.push_back(halved(atlas.levels.back()));
+    for (const Picture& level : atlas.levels) {
+        std::vector<float>& coverage = atlas.coverage.emplace_back();
+        coverage.reserve(level.texels.size());
+        for (const Texel& t : level.texels) coverage.push_back(t.coverage);
+    }
     return atlas;
 }
 
@@ -94,21 +99,9 @@ struct Taps {
     std::array<float, 4> weight;
 };
 Taps taps(const Picture& picture, const Rect& rect, std::size_t level, float u, float v) {
-    const float scale = 1.0f / static_cast<float>(1u << level);
-    const auto place = [&](float share, std::uint32_t first, std::uint32_t count, std::uint32_t size,
-                           std::uint32_t& low, std::uint32_t& high) {
-        const float begin = static_cast<float>(first) * scale, length = static_cast<float>(count) * scale;
-        // No nearer to the border than half a texel, where there is room for that.
-        const float margin = std::min(0.5f, 0.5f * length);
-        const float at = begin + std::clamp(share * length, margin, length - margin) - 0.5f;
-        const float floor = std::floor(std::max(at, 0.0f));
-        low = std::min(static_cast<std::uint32_t>(floor), size - 1);
-        high = std::min(low + 1, size - 1);
-        return std::max(at, 0.0f) - floor;
-    };
     std::uint32_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-    const float fx = place(u, rect.x, rect.width, picture.width, x0, x1);
-    const float fy = place(v, rect.y, rect.height, picture.height, y0, y1);
+    const float fx = CoverageSampler::Axis(rect.x, rect.width, picture.width, level).place(u, x0, x1);
+    const float fy = CoverageSampler::Axis(rect.y, rect.height, picture.height, level).place(v, y0, y1);
     const auto index = [&](std::uint32_t x, std::uint32_t y) { return std::size_t{y} * picture.width + x; };
     return {{index(x0, y0), index(x1, y0), index(x0, y1), index(x1, y1)},
             {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
@@ -116,12 +109,34 @@ Taps taps(const Picture& picture, const Rect& rect, std::size_t level, float u, 
 
 }  // namespace
 
-float sampleCoverage(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v) {
-    const Picture& picture = atlas.levels[level];
-    const Taps t = taps(picture, rect, level, u, v);
-    float sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) sum += t.weight[k] * picture.texels[t.at[k]].coverage;
-    return sum;
+CoverageSampler::Axis::Axis(std::uint32_t first, std::uint32_t count, std::uint32_t size, std::size_t level)
+    : size_(size) {
+    const float scale = 1.0f / static_cast<float>(1u << level);
+    begin_ = static_cast<float>(first) * scale, length_ = static_cast<float>(count) * scale;
+    // No nearer to the border than half a texel, where there is room for that.
+    margin_ = std::min(0.5f, 0.5f * length_);
+}
+
+float CoverageSampler::Axis::place(float share, std::uint32_t& low, std::uint32_t& high) const {
+    const float at = std::max(begin_ + std::clamp(share * length_, margin_, length_ - margin_) - 0.5f, 0.0f);
+    const auto texel = static_cast<std::int32_t>(at);
+    low = std::min(static_cast<std::uint32_t>(texel), size_ - 1);
+    high = std::min(low + 1, size_ - 1);
+    return at - static_cast<float>(texel);
+}
+
+CoverageSampler::CoverageSampler(const Atlas& atlas, const Rect& rect, std::size_t level)
+    : coverage_(atlas.coverage[level]),
+      width_(atlas.levels[level].width),
+      x_(rect.x, rect.width, atlas.levels[level].width, level),
+      y_(rect.y, rect.height, atlas.levels[level].height, level) {}
+
+float CoverageSampler::at(float u, float v) const {
+    std::uint32_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+    const float fx = x_.place(u, x0, x1), fy = y_.place(v, y0, y1);
+    const float *const upper = &coverage_[y0 * width_], *const lower = &coverage_[y1 * width_];
+    return (1 - fx) * (1 - fy) * upper[x0] + fx * (1 - fy) * upper[x1] + (1 - fx) * fy * lower[x0] +
+           fx * fy * lower[x1];
 }
 
 Texel sample(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v) {

@@ -41,10 +41,15 @@ StrandLight strandLight(const Hair& hair, const HairLight& light);
 /// A picture of samples, before it is one of pixels.
 class Plate {
   public:
-    /// `samplesPerHead` along the height of a head, a multiple of 32.
-    Plate(const View& view, std::uint32_t samplesPerHead);
+    Plate() = default;
+    Plate(const View& view, std::uint32_t samplesPerHead) { start(view, samplesPerHead); }
+    /// Anew, in the memory that it has. `samplesPerHead` along the height of a head, a multiple of 32.
+    void start(const View& view, std::uint32_t samplesPerHead);
     void drawHead(const Hair& hair);
     void drawStrands(const Hair& hair, const StrandLight& light);
+    /// What strands cover as drawStrands() has it, before what is drawn by now. Their light is not known, and
+    /// nothing can be drawn before them.
+    void coverByStrands(const Hair& hair);
     /// Alpha is dithered, each sample by itself, and mip maps are those of pixels of that many a head.
     void drawCards(const Hair& hair, const HairLight& light, const Cards& cards, std::uint32_t headPx);
     void drawShell(const Hair& hair, const HairLight& light, const Shell& shell);
@@ -52,17 +57,34 @@ class Plate {
     Shot developed(std::uint32_t headPx) const;
 
   private:
+    /// What of a card a sample shows.
+    struct Seen {
+        std::uint32_t triangle = UINT32_MAX;
+        float b0 = 0, b1 = 0;
+    };
+    /// Strands on the plate, as many as are drawn at once.
+    struct Projected {
+        std::vector<float> xs, ys, radii, depths;
+        std::vector<Vec3f> colours;
+        std::vector<std::vector<std::uint32_t>> bands;  ///< by rows, the first points of segments
+    };
     Vec3f onPlate(const Vec3f& point_ws) const;  ///< samples, and metres towards the eye
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
     }
+    template <class Draw>
+    void forStrandSamples(const Hair& hair, const StrandLight* light, const Draw& draw);
+    void project(const Hair& hair, const StrandLight* light, std::size_t strand);
     View view_;
-    std::uint32_t samplesPerHead_;
-    float perMetre_;
-    int width_, height_;
+    std::uint32_t samplesPerHead_ = 0;
+    float perMetre_ = 0;
+    int width_ = 0, height_ = 0;
     std::vector<float> depth_;
     std::vector<Vec3f> colour_;
     std::vector<std::uint8_t> isHair_;
+    // Kept for their memory.
+    std::vector<Seen> seen_;
+    Projected projected_;
 };
 
 /// Luminance of hair, summed up over the pixels of pictures.

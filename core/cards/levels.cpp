@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <numeric>
 #include <optional>
 
@@ -21,15 +23,38 @@ namespace {
 constexpr std::uint32_t kFarthestPx = 16;    // of a head, 23 m away: as far as levels are looked at
 constexpr std::uint32_t kSamplesAPixel = 4;  // of cards and shells, along each axis
 
+/// Plates that were drawn on. They are large, and a system takes its time to hand out memory.
+class Plates {
+  public:
+    /// Calls draw(plate) with one that nobody else draws on.
+    template <class Draw>
+    void draw(const View& view, std::uint32_t samplesPerHead, const Draw& drawOn) {
+        std::unique_ptr<Plate> plate;
+        {
+            const std::lock_guard lock(mutex_);
+            if (!idle_.empty()) plate = std::move(idle_.back()), idle_.pop_back();
+        }
+        if (!plate) plate = std::make_unique<Plate>();
+        plate->start(view, samplesPerHead);
+        drawOn(*plate);
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(plate));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Plate>> idle_;
+};
+
 /// All that levels are made from and held against.
 struct Work {
     const Hair& hair;
     const HairLight& light;
-    const StrandLight& strandLight;
     const std::vector<View>& views;
     const std::map<std::uint32_t, std::vector<Shot>>& strands;  ///< by pixels of a head
     double strandsMs;                                           ///< to draw them in a direction
     const ChainOptions& options;
+    Plates& plates;
     const std::function<void()>& tick;  ///< called now and then while a level is made
     Cancel cancel;
 
@@ -49,35 +74,37 @@ struct Work {
     }
 };
 
-void drawHairAlone(const Work& work, const Hair& hair, Plate& plate) {
-    // The light in thinner hair is that of all hair.
-    if (&hair == &work.hair) return plate.drawStrands(hair, work.strandLight);
-    plate.drawStrands(hair, strandLight(hair, work.light));
-}
-
 struct Shooting {
     std::vector<Shot> shots;
     double drawMs = 0;  ///< mean of a direction
 };
-/// Pictures of a level from some directions.
-Shooting shoot(const Work& work, const Level& level, const std::vector<std::size_t>& which,
-               std::uint32_t px) {
+enum class Shown { all, coverage };
+/// Pictures of a level from some directions; where coverage alone is asked for, those of strands have no
+/// light.
+Shooting shoot(const Work& work, const Level& level, const std::vector<std::size_t>& which, std::uint32_t px,
+               Shown shown = Shown::all) {
     Shooting result;
     result.shots.resize(which.size());
     std::vector<double> seconds(which.size());
+    const auto* const hair = std::get_if<Hair>(&level.content);
+    // The light in thinner hair is that of all hair.
+    const StrandLight light =
+        hair != nullptr && shown == Shown::all ? strandLight(*hair, work.light) : StrandLight{};
+    const std::uint32_t samples = hair != nullptr ? kSamplesPerHead : std::max(32u, px * kSamplesAPixel);
     parallelFor(which.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && !cancelled(work.cancel); ++i) {
-            const bool hairs = level.spec.kind == LevelKind::strands;
-            Plate plate(work.views[which[i]], hairs ? kSamplesPerHead : std::max(32u, px * kSamplesAPixel));
-            plate.drawHead(work.hair);
-            const Stopwatch watch;
-            if (const auto* hair = std::get_if<Hair>(&level.content)) drawHairAlone(work, *hair, plate);
-            if (const auto* cards = std::get_if<Cards>(&level.content))
-                plate.drawCards(work.hair, work.light, *cards, px);
-            if (const auto* shell = std::get_if<Shell>(&level.content))
-                plate.drawShell(work.hair, work.light, *shell);
-            seconds[i] = watch.seconds();
-            result.shots[i] = plate.developed(px);
+            work.plates.draw(work.views[which[i]], samples, [&](Plate& plate) {
+                plate.drawHead(work.hair);
+                const Stopwatch watch;
+                if (hair != nullptr && shown == Shown::all) plate.drawStrands(*hair, light);
+                if (hair != nullptr && shown == Shown::coverage) plate.coverByStrands(*hair);
+                if (const auto* cards = std::get_if<Cards>(&level.content))
+                    plate.drawCards(work.hair, work.light, *cards, px);
+                if (const auto* shell = std::get_if<Shell>(&level.content))
+                    plate.drawShell(work.hair, work.light, *shell);
+                seconds[i] = watch.seconds();
+                result.shots[i] = plate.developed(px);
+            });
         }
     });
     for (const double s : seconds) result.drawMs += 1000 * s / static_cast<double>(seconds.size());
@@ -90,10 +117,10 @@ std::vector<Shot> chosen(const std::vector<Shot>& shots, const std::vector<std::
     return some;
 }
 
-Result<Shares> measured(const Work& work, const Level& level) {
+Result<Shares> measured(const Work& work, const Level& level, Shown shown = Shown::all) {
     work.tick();
     const auto which = work.viewsFor(level.spec);
-    const Shooting shooting = shoot(work, level, which, level.spec.headPx);
+    const Shooting shooting = shoot(work, level, which, level.spec.headPx, shown);
     if (cancelled(work.cancel)) return stopped();
     return sharesOf(chosen(work.strands.at(level.spec.headPx), which), shooting.shots);
 }
@@ -120,7 +147,7 @@ Status makeStrands(const Work& work, Level& level) {
     auto widen = static_cast<float>(1 / level.spec.amount);
     for (int round = 0; round < kRounds; ++round) {
         level.content = thinned(work.hair, level.spec.amount, widen);
-        const auto off = measured(work, level);
+        const auto off = measured(work, level, Shown::coverage);
         if (!off) return tl::unexpected(off.error());
         if (std::abs(off->coverage - 1) < kFarEnough) break;
         // Of few hairs none may be seen.
@@ -303,17 +330,20 @@ Status finish(const Work& work, Level& level) {
     Shooting shooting = isAll ? Shooting{level.strands, work.strandsMs}
                               : shoot(work, level, work.allViews(), level.spec.headPx);
     if (cancelled(work.cancel)) return stopped();
-    const auto off = difference(level.strands, shooting.shots);
-    if (!off) return tl::unexpected(off.error());
-    level.difference = *off;
+    if (!isAll) {
+        const auto off = difference(level.strands, shooting.shots);
+        if (!off) return tl::unexpected(off.error());
+        level.difference = *off;
+    }
     level.shots = std::move(shooting.shots);
     level.drawMs = shooting.drawMs;
     const double target = static_cast<double>(work.options.targetPx);
-    if (target > 0 && level.spec.kind == LevelKind::cards && off->silhouettePx > target) {
+    const double outlines = level.difference.silhouettePx;
+    if (target > 0 && level.spec.kind == LevelKind::cards && outlines > target) {
         return fail(fmt::format("the outline error of {} is {:.2f} pixels, more than the {:g} asked for",
-                                level.name, off->silhouettePx, target),
+                                level.name, outlines, target),
                     fmt::format("use a limit of {:.2f} pixels, which these cards reach, or more cards",
-                                off->silhouettePx + 0.005));
+                                outlines + 0.005));
     }
     if (work.options.walk) {
         if (auto status = walk(work, level); !status) return status;
@@ -327,19 +357,20 @@ struct StrandShots {
     double drawMs = 0;
 };
 Result<StrandShots> shootStrands(const Hair& hair, const StrandLight& light, const std::vector<View>& views,
-                                 const std::vector<LevelSpec>& specs, Cancel cancel) {
+                                 const std::vector<LevelSpec>& specs, Plates& plates, Cancel cancel) {
     StrandShots result;
     auto& shots = result.shots;
     std::vector<double> seconds(views.size());
     for (const LevelSpec& spec : specs) shots[spec.headPx].resize(views.size());
     parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end && !cancelled(cancel); ++v) {
-            Plate plate(views[v], kSamplesPerHead);
-            plate.drawHead(hair);
-            const Stopwatch watch;
-            plate.drawStrands(hair, light);
-            seconds[v] = watch.seconds();
-            for (auto& [px, all] : shots) all[v] = plate.developed(px);
+            plates.draw(views[v], kSamplesPerHead, [&](Plate& plate) {
+                plate.drawHead(hair);
+                const Stopwatch watch;
+                plate.drawStrands(hair, light);
+                seconds[v] = watch.seconds();
+                for (auto& [px, all] : shots) all[v] = plate.developed(px);
+            });
         }
     });
     if (cancelled(cancel)) return stopped();
@@ -396,7 +427,8 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
     for (std::size_t s = 0; s < chain.strands; ++s) chain.roots_ws.push_back(hair.strand(s)[0]);
     chain.views = viewsAround(hair, options.directions);
     const StrandLight onStrands = strandLight(hair, *light);
-    const auto shots = shootStrands(hair, onStrands, chain.views, specs, cancel);
+    Plates plates;
+    const auto shots = shootStrands(hair, onStrands, chain.views, specs, plates, cancel);
     if (!shots) return tl::unexpected(shots.error());
     double share = 1 / steps;
     std::string_view making;
@@ -405,7 +437,7 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
         const double end = (2 + static_cast<double>(chain.levels.size())) / steps;
         progress(making, share += 0.1 * (end - share));
     };
-    const Work work{hair, *light, onStrands, chain.views, shots->shots, shots->drawMs, options, tick, cancel};
+    const Work work{hair, *light, chain.views, shots->shots, shots->drawMs, options, plates, tick, cancel};
     for (std::size_t i = 0; i < specs.size(); ++i) {
         Level level;
         level.spec = specs[i];

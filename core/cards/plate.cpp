@@ -60,12 +60,12 @@ StrandLight strandLight(const Hair& hair, const HairLight& light) {
     return result;
 }
 
-Plate::Plate(const View& view, std::uint32_t samplesPerHead)
-    : view_(view),
-      samplesPerHead_(samplesPerHead),
-      perMetre_(static_cast<float>(samplesPerHead) / kHeadHeight),
-      width_(static_cast<int>(view.columns * (samplesPerHead / kSquaresPerHead))),
-      height_(static_cast<int>(view.rows * (samplesPerHead / kSquaresPerHead))) {
+void Plate::start(const View& view, std::uint32_t samplesPerHead) {
+    view_ = view;
+    samplesPerHead_ = samplesPerHead;
+    perMetre_ = static_cast<float>(samplesPerHead) / kHeadHeight;
+    width_ = static_cast<int>(view.columns * (samplesPerHead / kSquaresPerHead));
+    height_ = static_cast<int>(view.rows * (samplesPerHead / kSquaresPerHead));
     const std::size_t samples = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     depth_.assign(samples, -std::numeric_limits<float>::infinity());
     colour_.assign(samples, kBackground);
@@ -98,44 +98,73 @@ void Plate::drawHead(const Hair& hair) {
     }
 }
 
-void Plate::drawStrands(const Hair& hair, const StrandLight& light) {
+void Plate::project(const Hair& hair, const StrandLight* light, std::size_t strand) {
     const Reflection fibre{hair.specular, hair.shininess};
-    std::vector<Vec3f> colours;
-    std::vector<LinePoint> places;
-    std::vector<float> depths;
-    for (std::size_t s = 0; s < hair.strandCount(); ++s) {
-        const std::size_t first = hair.offsets[s], count = hair.offsets[s + 1] - first;
-        colours.clear(), places.clear(), depths.clear();
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t p = first + i;
-            const Vec3f step =
-                hair.positions_ws[std::min(p + 1, first + count - 1)] - hair.positions_ws[i == 0 ? p : p - 1];
-            const Vec3f along = step.norm() > 0 ? Vec3f(step.normalized()) : Vec3f(0, -1, 0);
-            colours.push_back(
-                reflected(fibre, hair.albedo[p], along, view_.toEye_ws, light.open[p], light.lit[p]));
-            const Vec3f at = onPlate(hair.positions_ws[p]);
-            places.push_back({at.head<2>(), Vec2f::Constant(std::max(1e-4f, hair.radii[p] * perMetre_))});
-            depths.push_back(at.z());
-        }
-        for (std::size_t i = 0; i + 1 < count; ++i) {
-            forSamplesOfLine(places[i], places[i + 1], width_, height_, [&](int x, int y, float t) {
-                const float depth = depths[i] + t * (depths[i + 1] - depths[i]);
-                const std::size_t at = index(x, y);
-                if (depth <= depth_[at]) return;
-                depth_[at] = depth, isHair_[at] = 1;
-                colour_[at] = (1 - t) * colours[i] + t * colours[i + 1];
-            });
+    const std::size_t first = hair.offsets[strand], end = hair.offsets[strand + 1];
+    for (std::size_t p = first; p < end; ++p) {
+        const Vec3f at = onPlate(hair.positions_ws[p]);
+        projected_.xs.push_back(at.x()), projected_.ys.push_back(at.y());
+        projected_.radii.push_back(std::max(1e-4f, hair.radii[p] * perMetre_));
+        projected_.depths.push_back(at.z());
+        if (light == nullptr) continue;
+        const Vec3f step =
+            hair.positions_ws[std::min(p + 1, end - 1)] - hair.positions_ws[p == first ? p : p - 1];
+        const Vec3f along = step.norm() > 0 ? Vec3f(step.normalized()) : Vec3f(0, -1, 0);
+        projected_.colours.push_back(
+            reflected(fibre, hair.albedo[p], along, view_.toEye_ws, light->open[p], light->lit[p]));
+    }
+}
+
+/// Calls draw(sample, depth, segment, t). Strands come in their order at every sample, but sample by sample
+/// of some rows that a processor keeps at hand, not of the whole plate.
+template <class Draw>
+void Plate::forStrandSamples(const Hair& hair, const StrandLight* light, const Draw& draw) {
+    constexpr std::size_t kPointsAtOnce = 1u << 19u;
+    constexpr int kSamplesAtHand = 1 << 15;
+    const int rows = std::max(8, kSamplesAtHand / std::max(width_, 1));
+    auto& [xs, ys, radii, depths, colours, bands] = projected_;
+    bands.resize(static_cast<std::size_t>((height_ + rows - 1) / rows));
+    const auto place = [&](std::size_t p) { return LinePoint{{xs[p], ys[p]}, Vec2f::Constant(radii[p])}; };
+    for (std::size_t s = 0; s < hair.strandCount();) {
+        xs.clear(), ys.clear(), radii.clear(), depths.clear(), colours.clear();
+        for (auto& band : bands) band.clear();
+        do {
+            const std::size_t first = xs.size();
+            project(hair, light, s);
+            for (std::size_t p = first; p + 1 < xs.size(); ++p) {
+                const Rows touched = rowsOfLine(place(p), place(p + 1), height_);
+                for (int band = touched.first / rows; band * rows < touched.end; ++band)
+                    bands[static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(p));
+            }
+        } while (++s < hair.strandCount() && xs.size() < kPointsAtOnce);
+        for (std::size_t band = 0; band < bands.size(); ++band) {
+            const int top = static_cast<int>(band) * rows;
+            const Rows inBand{top, std::min(top + rows, height_)};
+            for (const std::uint32_t p : bands[band]) {
+                forSamplesOfLine(place(p), place(p + 1), width_, inBand, [&](int x, int y, float t) {
+                    draw(index(x, y), depths[p] + t * (depths[p + 1] - depths[p]), p, t);
+                });
+            }
         }
     }
 }
 
-namespace {
+void Plate::drawStrands(const Hair& hair, const StrandLight& light) {
+    const std::vector<Vec3f>& colours = projected_.colours;
+    forStrandSamples(hair, &light, [&](std::size_t at, float depth, std::size_t p, float t) {
+        if (depth <= depth_[at]) return;
+        depth_[at] = depth, isHair_[at] = 1;
+        colour_[at] = (1 - t) * colours[p] + t * colours[p + 1];
+    });
+}
 
-/// What of a card a sample shows.
-struct Seen {
-    std::uint32_t triangle = UINT32_MAX;
-    float b0 = 0, b1 = 0;
-};
+void Plate::coverByStrands(const Hair& hair) {
+    forStrandSamples(hair, nullptr, [&](std::size_t at, float depth, std::size_t, float) {
+        if (depth > depth_[at]) isHair_[at] = 1;
+    });
+}
+
+namespace {
 
 /// Level of the atlas between whose texels pixels lie, by area, as anisotropic filters have it.
 float levelOf(const Cards& cards, const std::array<const CardVertex*, 3>& v, float areaPx) {
@@ -170,7 +199,7 @@ T mixed(const Vec3f& b, const T& x, const T& y, const T& z) {
 
 void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& cards, std::uint32_t headPx) {
     const float perPx = static_cast<float>(samplesPerHead_) / static_cast<float>(headPx);
-    std::vector<Seen> seen(depth_.size());
+    seen_.assign(depth_.size(), {});
     std::vector<float> levels(cards.mesh.indices.size() / 3);
     const auto corners = [&](std::size_t triangle) {
         std::array<const CardVertex*, 3> v{};
@@ -188,6 +217,7 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const float share = level - static_cast<float>(low);
         const Card& card = cards.cards[v[0]->card];
         const Rect& rect = cards.atlas.rects[card.texture];
+        const CoverageSampler finer(cards.atlas, rect, low), coarser(cards.atlas, rect, high);
         forSamplesOfTriangle(
             a.head<2>(), b.head<2>(), c.head<2>(), width_, height_, [&](int x, int y, const Vec3f& w) {
                 const std::size_t i = index(x, y);
@@ -195,22 +225,21 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
                 if (depth <= depth_[i]) return;
                 const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
                 const float alpha =
-                    (1 - share) * sampleCoverage(cards.atlas, rect, low, place.x(), place.y()) +
-                    share * sampleCoverage(cards.atlas, rect, high, place.x(), place.y());
+                    (1 - share) * finer.at(place.x(), place.y()) + share * coarser.at(place.x(), place.y());
                 if (alpha <=
                     hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), v[0]->card))
                     return;
                 depth_[i] = depth, isHair_[i] = 1;
-                seen[i] = {t, w.x(), w.y()};
+                seen_[i] = {t, w.x(), w.y()};
             });
     }
     const Reflection fibre{hair.specular, hair.shininess};
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (seen[i].triangle == UINT32_MAX) continue;
-        const auto v = corners(seen[i].triangle);
-        const Vec3f w(seen[i].b0, seen[i].b1, 1 - seen[i].b0 - seen[i].b1);
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+        if (seen_[i].triangle == UINT32_MAX) continue;
+        const auto v = corners(seen_[i].triangle);
+        const Vec3f w(seen_[i].b0, seen_[i].b1, 1 - seen_[i].b0 - seen_[i].b1);
         const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
-        const auto level = static_cast<std::size_t>(levels[seen[i].triangle] + 0.5f);
+        const auto level = static_cast<std::size_t>(levels[seen_[i].triangle] + 0.5f);
         const Texel texel = sample(cards.atlas, cards.atlas.rects[cards.cards[v[0]->card].texture], level,
                                    place.x(), place.y());
         const Vec3f normal = mixed<Vec3f>(w, v[0]->normal_ws, v[1]->normal_ws, v[2]->normal_ws).normalized();
@@ -252,14 +281,15 @@ Shot Plate::developed(std::uint32_t headPx) const {
     shot.width = static_cast<std::uint32_t>(width_) / finer;
     shot.height = static_cast<std::uint32_t>(height_) / finer;
     const float share = 1 / static_cast<float>(finer * finer);
+    const std::size_t pixels = std::size_t{shot.width} * shot.height;
+    shot.coverage.reserve(pixels), shot.hair.reserve(pixels), shot.all.reserve(pixels);
     for (std::uint32_t y = 0; y < shot.height; ++y) {
         for (std::uint32_t x = 0; x < shot.width; ++x) {
             float coverage = 0;
             Vec3f hair = Vec3f::Zero(), all = Vec3f::Zero();
             for (std::uint32_t j = 0; j < finer; ++j) {
-                for (std::uint32_t i = 0; i < finer; ++i) {
-                    const std::size_t at =
-                        index(static_cast<int>(x * finer + i), static_cast<int>(y * finer + j));
+                const std::size_t first = index(static_cast<int>(x * finer), static_cast<int>(y * finer + j));
+                for (std::size_t at = first; at < first + finer; ++at) {
                     all += colour_[at];
                     if (isHair_[at] == 0) continue;
                     coverage += 1, hair += colour_[at];

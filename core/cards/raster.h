@@ -25,29 +25,45 @@ struct LinePoint {
     Vec2f radius;
 };
 
+/// Rows [first, end) of a picture.
+struct Rows {
+    int first, end;
+};
+
 /// Calls f(x, y, t) for the samples of a line of round cross-section, t in [0, 1] from a to b. A line thinner
-/// than a sample covers as many of them as its area says.
+/// than a sample covers as many of them as its area says. In some rows of a picture it has the samples that
+/// it has there in all of them.
 template <class F>
-void forSamplesOfLine(const LinePoint& a, const LinePoint& b, int width, int height, const F& f) {
+void forSamplesOfLine(const LinePoint& a, const LinePoint& b, int width, Rows rows, const F& f) {
     const Vec2f d = b.at - a.at;
     const int major = std::abs(d.y()) * a.radius.x() >= std::abs(d.x()) * a.radius.y() ? 1 : 0;
     const int minor = 1 - major;
     if (d[major] == 0) return;
     const float low = std::min(a.at[major], b.at[major]), high = std::max(a.at[major], b.at[major]);
-    const int size[2] = {width, height};
-    const int begin = std::max(0, static_cast<int>(std::ceil(std::max(low, -1.0f) - 0.5f)));
-    const int end = std::min(size[major], static_cast<int>(std::ceil(std::min(high, 1e6f) - 0.5f)));
+    const int from[2] = {0, rows.first}, to[2] = {width, rows.end};
+    const int begin = std::max(from[major], static_cast<int>(std::ceil(std::max(low, -1.0f) - 0.5f)));
+    const int end = std::min(to[major], static_cast<int>(std::ceil(std::min(high, 1e6f) - 0.5f)));
     const float slope = (d[minor] * a.radius[major]) / (d[major] * a.radius[minor]);
     const float wider = std::sqrt(1 + slope * slope);
     for (int i = begin; i < end; ++i) {
         const float t = std::clamp((static_cast<float>(i) + 0.5f - a.at[major]) / d[major], 0.0f, 1.0f);
         const float middle = a.at[minor] + t * d[minor];
         const float half = wider * (a.radius[minor] + t * (b.radius[minor] - a.radius[minor]));
-        const int first = std::max(0, static_cast<int>(std::ceil(std::max(middle - half, -1.0f) - 0.5f)));
+        const int first =
+            std::max(from[minor], static_cast<int>(std::ceil(std::max(middle - half, -1.0f) - 0.5f)));
         const int last =
-            std::min(size[minor], static_cast<int>(std::ceil(std::min(middle + half, 1e6f) - 0.5f)));
+            std::min(to[minor], static_cast<int>(std::ceil(std::min(middle + half, 1e6f) - 0.5f)));
         for (int j = first; j < last; ++j) major == 1 ? f(j, i, t) : f(i, j, t);
     }
+}
+
+/// Rows outside of which the line has no sample.
+inline Rows rowsOfLine(const LinePoint& a, const LinePoint& b, int height) {
+    // A line that lies flat is wider by at most the square root of two: its slope is 1 at most.
+    const float wide = 1.5f * std::max(a.radius.maxCoeff(), b.radius.maxCoeff()) + 1;
+    const float low = std::min(a.at.y(), b.at.y()) - wide, high = std::max(a.at.y(), b.at.y()) + wide;
+    return {static_cast<int>(std::clamp(low, 0.0f, static_cast<float>(height))),
+            static_cast<int>(std::clamp(high + 1, 0.0f, static_cast<float>(height)))};
 }
 
 /// Of a row of samples those that may lie in the triangle: where no barycentric is clearly below 0.
@@ -82,12 +98,17 @@ void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int wi
     const Vec3f growth = Vec3f(b.y() - c.y(), c.y() - a.y(), a.y() - b.y()) / area;
     for (int y = y0; y < y1; ++y) {
         const auto [begin, end] = spanOfRow(a, b, c, area, growth, static_cast<float>(y) + 0.5f, x0, x1);
-        for (int x = begin; x < end; ++x) {
-            const Vec2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-            const float u = ((b - p).x() * (c - p).y() - (b - p).y() * (c - p).x()) / area;
-            const float v = ((c - p).x() * (a - p).y() - (c - p).y() * (a - p).x()) / area;
-            const float w = 1 - u - v;
-            if (u >= 0 && v >= 0 && w > 0) f(x, y, Vec3f(u, v, w));
+        const float py = static_cast<float>(y) + 0.5f;
+        const float ay = a.y() - py, by = b.y() - py, cy = c.y() - py;
+        constexpr int kAtOnce = 4;  // samples that share an instruction
+        const Eigen::Array4f places(0, 1, 2, 3);
+        for (int x = begin; x < end; x += kAtOnce) {
+            const Eigen::Array4f px = (static_cast<float>(x) + places) + 0.5f;
+            const Eigen::Array4f u = ((b.x() - px) * cy - by * (c.x() - px)) / area;
+            const Eigen::Array4f v = ((c.x() - px) * ay - cy * (a.x() - px)) / area;
+            const Eigen::Array4f w = 1 - u - v;
+            for (int i = 0; i < std::min(kAtOnce, end - x); ++i)
+                if (u[i] >= 0 && v[i] >= 0 && w[i] > 0) f(x + i, y, Vec3f(u[i], v[i], w[i]));
         }
     }
 }

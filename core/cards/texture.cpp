@@ -64,7 +64,7 @@ class Canvas {
             const LinePoint from{Vec2f(a.x, a.y).cwiseProduct(size), a.radius.cwiseProduct(size)};
             const LinePoint to{Vec2f(b.x, b.y).cwiseProduct(size), b.radius.cwiseProduct(size)};
             if (!(from.radius.minCoeff() > 0)) continue;
-            forSamplesOfLine(from, to, width_, height_, [&](int x, int y, float t) {
+            forSamplesOfLine(from, to, width_, {0, height_}, [&](int x, int y, float t) {
                 Sample& sample = samples_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                                           static_cast<std::size_t>(x)];
                 const float off = a.off + t * (b.off - a.off);

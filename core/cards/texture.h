@@ -48,8 +48,9 @@ struct Rect {
 };
 
 struct Atlas {
-    std::vector<Picture> levels;  ///< mip maps: the first is the atlas itself, the last 1 x 1
-    std::vector<Rect> rects;      ///< of each picture, in the first level
+    std::vector<Picture> levels;               ///< mip maps: the first is the atlas itself, the last 1 x 1
+    std::vector<std::vector<float>> coverage;  ///< of the texels of each level, by itself
+    std::vector<Rect> rects;                   ///< of each picture, in the first level
     float threshold =
         0.5f;  ///< alpha above which as many texels of the first level lie as its mean coverage says
     std::uint32_t side() const { return levels.empty() ? 0 : levels[0].width; }
@@ -68,6 +69,28 @@ float keepingScale(const Atlas& atlas, std::size_t level);
 
 /// Bilinear within a rect of a level, u and v in [0, 1] of the rect.
 Texel sample(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v);
-float sampleCoverage(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v);
+
+/// What sample() says of coverage alone, for many places of a rect of a level.
+class CoverageSampler {
+  public:
+    CoverageSampler(const Atlas& atlas, const Rect& rect, std::size_t level);
+    float at(float u, float v) const;
+
+    /// Texels along one axis of a level.
+    struct Axis {
+        Axis(std::uint32_t first, std::uint32_t count, std::uint32_t size, std::size_t level);
+        /// Texels on both sides of a place in [0, 1] of the rect; the share of the second.
+        float place(float share, std::uint32_t& low, std::uint32_t& high) const;
+
+      private:
+        float begin_, length_, margin_;
+        std::uint32_t size_;
+    };
+
+  private:
+    const std::vector<float>& coverage_;
+    std::size_t width_;
+    Axis x_, y_;
+};
 
 }  // namespace hairloom::cards

@@ -81,32 +81,32 @@ double hyab(const Vec3d& a, const Vec3d& b) {
     return std::abs(a.x() - b.x()) + (a - b).tail<2>().norm();
 }
 
-/// A sum of two Gaussians, what eyes make of a point in each of the three channels (section 4.1.1, Table 1).
+/// A sum of Gaussians, what eyes make of a point in each of the three channels (section 4.1.1, Table 1). A
+/// Gaussian of the distance is one along x times one along y, so that rows and columns are blurred in turn.
 struct ContrastFilter {
     struct Gaussian {
+        std::size_t channel;
         double weight, spread;
+        std::vector<double> along = {};  ///< from −radius to radius, along each axis
+        double share = 0;                ///< factor of the product: weights of a channel sum up to 1
     };
-    std::array<std::array<Gaussian, 2>, 3> channels{
-        {{{{1, 0.0047}, {0, 1e-5}}}, {{{1, 0.0053}, {0, 1e-5}}}, {{{34.1, 0.04}, {13.5, 0.025}}}}};
+    std::array<Gaussian, 4> gaussians{{{0, 1, 0.0047}, {1, 1, 0.0053}, {2, 34.1, 0.04}, {2, 13.5, 0.025}}};
     int radius;
-    std::vector<Vec3d> weights;  ///< rows of a square, sum 1 in each channel
 
     explicit ContrastFilter(double pixelsPerDegree) {
-        radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * std::numbers::pi * std::numbers::pi)) * pixelsPerDegree));
-        Vec3d sum = Vec3d::Zero();
-        for (int y = -radius; y <= radius; ++y) {
+        constexpr double kPi = std::numbers::pi, kWidest = 0.04;
+        radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixelsPerDegree));
+        Vec3d sums = Vec3d::Zero();
+        for (Gaussian& g : gaussians) {
+            double sum = 0;
             for (int x = -radius; x <= radius; ++x) {
-                const double squared = (x * x + y * y) / (pixelsPerDegree * pixelsPerDegree);
-                Vec3d w = Vec3d::Zero();
-                for (int c = 0; c < 3; ++c) {
-                    for (const auto& [weight, spread] : channels[static_cast<std::size_t>(c)])
-                        w[c] += weight * std::sqrt(std::numbers::pi / spread) * std::exp(-std::numbers::pi * std::numbers::pi * squared / spread);
-                }
-                weights.push_back(w);
-                sum += w;
+                const double squared = x * x / (pixelsPerDegree * pixelsPerDegree);
+                sum += g.along.emplace_back(std::exp(-kPi * kPi * squared / g.spread));
             }
+            g.share = g.weight * std::sqrt(kPi / g.spread);
+            sums[static_cast<int>(g.channel)] += g.share * sum * sum;
         }
-        for (Vec3d& w : weights) w = w.cwiseQuotient(sum);
+        for (Gaussian& g : gaussians) g.share /= sums[static_cast<int>(g.channel)];
     }
 };
 
@@ -119,30 +119,79 @@ void forRows(int height, const Row& row) {
 
 Colours opponents(const Image& image) {
     Colours result(static_cast<int>(image.width), static_cast<int>(image.height), Vec3d::Zero());
-    for (std::size_t i = 0; i < result.values.size(); ++i) {
-        Vec3d rgb;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float encoded = static_cast<float>(image.rgba[4 * i + c]) / 255;
-            rgb[static_cast<int>(c)] = static_cast<double>(decodeSrgb(encoded));
+    forRows(result.height, [&](int y) {
+        for (std::size_t i = result.place(0, y); i < result.place(0, y + 1); ++i) {
+            Vec3d rgb;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float encoded = static_cast<float>(image.rgba[4 * i + c]) / 255;
+                rgb[static_cast<int>(c)] = static_cast<double>(decodeSrgb(encoded));
+            }
+            result.values[i] = opponentOf(rgb);
         }
-        result.values[i] = opponentOf(rgb);
-    }
+    });
+    return result;
+}
+
+/// Sums of `weights` times the values from −radius to radius along an axis, in that order. Beyond the border
+/// lies the border's value.
+Plane<double> filtered(const Plane<double>& image, const std::vector<double>& weights, bool alongX) {
+    using Row = Eigen::Map<Eigen::ArrayXd>;
+    using ConstRow = Eigen::Map<const Eigen::ArrayXd>;
+    Plane<double> result(image.width, image.height, 0.0);
+    const int count = static_cast<int>(weights.size()), radius = count / 2;
+    forRows(image.height, [&](int y) {
+        Row sum(&result.values[image.place(0, y)], image.width);
+        Eigen::ArrayXd padded;
+        if (alongX) {
+            padded.resize(image.width + 2 * radius);
+            for (int x = 0; x < image.width + 2 * radius; ++x) padded[x] = image.at(x - radius, y);
+        }
+        // In pieces that stay in registers.
+        constexpr Eigen::Index kPiece = 16;
+        for (Eigen::Index x = 0; x < image.width; x += kPiece) {
+            const auto add = [&](auto& piece) {
+                for (int k = 0; k < count; ++k) {
+                    const double w = weights[static_cast<std::size_t>(k)];
+                    if (alongX) {
+                        piece += w * padded.segment(x + k, piece.size());
+                    } else {
+                        const int from = std::clamp(y + k - radius, 0, image.height - 1);
+                        piece += w * ConstRow(&image.values[image.place(0, from)], image.width)
+                                         .segment(x, piece.size());
+                    }
+                }
+                sum.segment(x, piece.size()) = piece;
+            };
+            if (x + kPiece <= image.width) {
+                Eigen::Array<double, kPiece, 1> piece = Eigen::Array<double, kPiece, 1>::Zero();
+                add(piece);
+            } else {
+                Eigen::ArrayXd piece = Eigen::ArrayXd::Zero(image.width - x);
+                add(piece);
+            }
+        }
+    });
     return result;
 }
 
 /// What eyes see of it at that distance, in the space in which differences are measured.
 Colours seen(const Colours& image, const ContrastFilter& filter) {
     Colours result(image.width, image.height, Vec3d::Zero());
-    forRows(image.height, [&](int y) {
-        for (int x = 0; x < image.width; ++x) {
-            Vec3d sum = Vec3d::Zero();
-            std::size_t k = 0;
-            for (int j = -filter.radius; j <= filter.radius; ++j) {
-                for (int i = -filter.radius; i <= filter.radius; ++i)
-                    sum += filter.weights[k++].cwiseProduct(image.at(x + i, y + j));
-            }
-            result.values[image.place(x, y)] = huntLabOf(rgbOf(sum).cwiseMax(0.0).cwiseMin(1.0));
+    Plane<double> channel(image.width, image.height, 0.0);
+    std::size_t held = 3;
+    for (const ContrastFilter::Gaussian& g : filter.gaussians) {
+        if (held != g.channel) {
+            for (std::size_t i = 0; i < channel.values.size(); ++i)
+                channel.values[i] = image.values[i][static_cast<int>(g.channel)];
+            held = g.channel;
         }
+        const auto blurred = filtered(filtered(channel, g.along, true), g.along, false);
+        for (std::size_t i = 0; i < blurred.values.size(); ++i)
+            result.values[i][static_cast<int>(g.channel)] += g.share * blurred.values[i];
+    }
+    forRows(image.height, [&](int y) {
+        for (std::size_t i = result.place(0, y); i < result.place(0, y + 1); ++i)
+            result.values[i] = huntLabOf(rgbOf(result.values[i]).cwiseMax(0.0).cwiseMin(1.0));
     });
     return result;
 }
@@ -170,29 +219,15 @@ struct FeatureFilter {
     }
 };
 
-Plane<double> filtered(const Plane<double>& image, const std::vector<double>& weights, int dx, int dy) {
-    Plane<double> result(image.width, image.height, 0.0);
-    const int count = static_cast<int>(weights.size()), radius = count / 2;
-    forRows(image.height, [&](int y) {
-        for (int x = 0; x < image.width; ++x) {
-            double sum = 0;
-            for (int k = 0; k < count; ++k) {
-                const int off = k - radius;
-                sum += weights[static_cast<std::size_t>(k)] * image.at(x + off * dx, y + off * dy);
-            }
-            result.values[image.place(x, y)] = sum;
-        }
-    });
-    return result;
-}
-
 /// How strong the edge, or the point, of each pixel is.
 Plane<double> features(const Plane<double>& lightness, const FeatureFilter& filter) {
-    const auto x = filtered(filtered(lightness, filter.along, 1, 0), filter.across, 0, 1);
-    const auto y = filtered(filtered(lightness, filter.along, 0, 1), filter.across, 1, 0);
+    const auto x = filtered(filtered(lightness, filter.along, true), filter.across, false);
+    const auto y = filtered(filtered(lightness, filter.along, false), filter.across, true);
     Plane<double> result(lightness.width, lightness.height, 0.0);
-    for (std::size_t i = 0; i < result.values.size(); ++i)
-        result.values[i] = std::hypot(x.values[i], y.values[i]);
+    forRows(lightness.height, [&](int row) {
+        for (std::size_t i = result.place(0, row); i < result.place(0, row + 1); ++i)
+            result.values[i] = std::hypot(x.values[i], y.values[i]);
+    });
     return result;
 }
 
@@ -233,20 +268,25 @@ Result<FlipDifference> flipDifference(const Image& reference, const Image& test,
 
     FlipDifference result;
     result.map = {reference.width, reference.height, std::vector<std::uint8_t>(4 * pixels, 255)};
-    for (std::size_t i = 0; i < pixels; ++i) {
-        // Eq. 9 and 11.
-        const double feature = std::pow(std::max(std::abs(edgesA.values[i] - edgesB.values[i]),
-                                                 std::abs(pointsA.values[i] - pointsB.values[i])) /
-                                            std::sqrt(2.0),
-                                        kFeatureExponent);
-        const double colour = std::min(colourDifference(seenA.values[i], seenB.values[i]), 1.0);
-        const double flip = std::pow(colour, 1 - std::min(feature, 1.0));
+    Plane<double> flips(a.width, a.height, 0.0);
+    forRows(a.height, [&](int y) {
+        for (std::size_t i = a.place(0, y); i < a.place(0, y + 1); ++i) {
+            // Eq. 9 and 11.
+            const double feature = std::pow(std::max(std::abs(edgesA.values[i] - edgesB.values[i]),
+                                                     std::abs(pointsA.values[i] - pointsB.values[i])) /
+                                                std::sqrt(2.0),
+                                            kFeatureExponent);
+            const double colour = std::min(colourDifference(seenA.values[i], seenB.values[i]), 1.0);
+            const double flip = flips.values[i] = std::pow(colour, 1 - std::min(feature, 1.0));
+            const Vec3d shown = Vec3d(1.5 * flip, 2 * flip - 0.6, 0.4 * flip).cwiseMax(0.0).cwiseMin(1.0);
+            for (std::size_t c = 0; c < 3; ++c)
+                result.map.rgba[4 * i + c] =
+                    static_cast<std::uint8_t>(std::lround(255 * shown[static_cast<int>(c)]));
+        }
+    });
+    for (const double flip : flips.values) {
         result.mean += flip / static_cast<double>(pixels);
         result.largest = std::max(result.largest, flip);
-        const Vec3d shown = Vec3d(1.5 * flip, 2 * flip - 0.6, 0.4 * flip).cwiseMax(0.0).cwiseMin(1.0);
-        for (std::size_t c = 0; c < 3; ++c)
-            result.map.rgba[4 * i + c] =
-                static_cast<std::uint8_t>(std::lround(255 * shown[static_cast<int>(c)]));
     }
     return result;
 }

@@ -18,7 +18,7 @@ TEST(Raster, ThinLinesCoverAsMuchAsTheirAreaSays) {
         const float turn = 0.031f * static_cast<float>(i);
         const Vec2f middle(100.3f, 99.7f), way(80 * std::cos(turn), 80 * std::sin(turn));
         const Vec2f radius = Vec2f::Constant(0.2f);
-        forSamplesOfLine({middle - way, radius}, {middle + way, radius}, 200, 200,
+        forSamplesOfLine({middle - way, radius}, {middle + way, radius}, 200, {0, 200},
                          [&](int, int, float) { covered += 1; });
         area += 160 * 0.4;
     }
