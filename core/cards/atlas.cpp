@@ -100,8 +100,8 @@ struct Taps {
 };
 Taps taps(const Picture& picture, const Rect& rect, std::size_t level, float u, float v) {
     std::uint32_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-    const float fx = CoverageSampler::Axis(rect.x, rect.width, picture.width, level).place(u, x0, x1);
-    const float fy = CoverageSampler::Axis(rect.y, rect.height, picture.height, level).place(v, y0, y1);
+    const float fx = TexelAxis(rect.x, rect.width, picture.width, level).place(u, x0, x1);
+    const float fy = TexelAxis(rect.y, rect.height, picture.height, level).place(v, y0, y1);
     const auto index = [&](std::uint32_t x, std::uint32_t y) { return std::size_t{y} * picture.width + x; };
     return {{index(x0, y0), index(x1, y0), index(x0, y1), index(x1, y1)},
             {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
@@ -109,20 +109,12 @@ Taps taps(const Picture& picture, const Rect& rect, std::size_t level, float u, 
 
 }  // namespace
 
-CoverageSampler::Axis::Axis(std::uint32_t first, std::uint32_t count, std::uint32_t size, std::size_t level)
+TexelAxis::TexelAxis(std::uint32_t first, std::uint32_t count, std::uint32_t size, std::size_t level)
     : size_(size) {
     const float scale = 1.0f / static_cast<float>(1u << level);
     begin_ = static_cast<float>(first) * scale, length_ = static_cast<float>(count) * scale;
     // No nearer to the border than half a texel, where there is room for that.
     margin_ = std::min(0.5f, 0.5f * length_);
-}
-
-float CoverageSampler::Axis::place(float share, std::uint32_t& low, std::uint32_t& high) const {
-    const float at = std::max(begin_ + std::clamp(share * length_, margin_, length_ - margin_) - 0.5f, 0.0f);
-    const auto texel = static_cast<std::int32_t>(at);
-    low = std::min(static_cast<std::uint32_t>(texel), size_ - 1);
-    high = std::min(low + 1, size_ - 1);
-    return at - static_cast<float>(texel);
 }
 
 CoverageSampler::CoverageSampler(const Atlas& atlas, const Rect& rect, std::size_t level)
@@ -131,12 +123,20 @@ CoverageSampler::CoverageSampler(const Atlas& atlas, const Rect& rect, std::size
       x_(rect.x, rect.width, atlas.levels[level].width, level),
       y_(rect.y, rect.height, atlas.levels[level].height, level) {}
 
-float CoverageSampler::at(float u, float v) const {
-    std::uint32_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-    const float fx = x_.place(u, x0, x1), fy = y_.place(v, y0, y1);
-    const float *const upper = &coverage_[y0 * width_], *const lower = &coverage_[y1 * width_];
-    return (1 - fx) * (1 - fy) * upper[x0] + fx * (1 - fy) * upper[x1] + (1 - fx) * fy * lower[x0] +
-           fx * fy * lower[x1];
+float CoverageSampler::most(const Vec2f& low, const Vec2f& high) const {
+    std::uint32_t left = 0, right = 0, top = 0, bottom = 0, between = 0;
+    x_.place(low.x(), left, between), x_.place(high.x(), between, right);
+    y_.place(low.y(), top, between), y_.place(high.y(), between, bottom);
+    // Places are rounded: the next texel may have a say, and weights sum up to a little more than 1.
+    constexpr float kRounding = 1.00001f;
+    const auto last = static_cast<std::uint32_t>(width_ - 1);  // atlases are squares
+    float most = 0;
+    for (std::size_t y = top - std::min(top, 1u); y <= std::min(bottom + 1, last); ++y) {
+        const float* const row = &coverage_[y * width_];
+        for (std::uint32_t x = left - std::min(left, 1u); x <= std::min(right + 1, last); ++x)
+            most = std::max(most, row[x]);
+    }
+    return kRounding * most;
 }
 
 Texel sample(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v) {

@@ -218,17 +218,22 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const Card& card = cards.cards[v[0]->card];
         const Rect& rect = cards.atlas.rects[card.texture];
         const CoverageSampler finer(cards.atlas, rect, low), coarser(cards.atlas, rect, high);
+        const Vec2f least = v[0]->place.cwiseMin(v[1]->place).cwiseMin(v[2]->place);
+        const Vec2f largest = v[0]->place.cwiseMax(v[1]->place).cwiseMax(v[2]->place);
+        // Most samples of thin hair fail by this alone.
+        const float most = (1 - share) * finer.most(least, largest) + share * coarser.most(least, largest);
         forSamplesOfTriangle(
             a.head<2>(), b.head<2>(), c.head<2>(), width_, height_, [&](int x, int y, const Vec3f& w) {
                 const std::size_t i = index(x, y);
                 const float depth = mixed(w, a.z(), b.z(), c.z());
                 if (depth <= depth_[i]) return;
+                const float dither =
+                    hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), v[0]->card);
+                if (most <= dither) return;
                 const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
                 const float alpha =
                     (1 - share) * finer.at(place.x(), place.y()) + share * coarser.at(place.x(), place.y());
-                if (alpha <=
-                    hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), v[0]->card))
-                    return;
+                if (alpha <= dither) return;
                 depth_[i] = depth, isHair_[i] = 1;
                 seen_[i] = {t, w.x(), w.y()};
             });

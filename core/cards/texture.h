@@ -2,6 +2,7 @@
 #pragma once
 // Pictures that cards wear: what lies on a strip, seen straight on, texel by texel; and an atlas of them.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -70,27 +71,43 @@ float keepingScale(const Atlas& atlas, std::size_t level);
 /// Bilinear within a rect of a level, u and v in [0, 1] of the rect.
 Texel sample(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v);
 
+/// Texels along one axis of a rect of a level.
+class TexelAxis {
+  public:
+    TexelAxis(std::uint32_t first, std::uint32_t count, std::uint32_t size, std::size_t level);
+    /// Texels on both sides of a place in [0, 1] of the rect; the share of the second.
+    float place(float share, std::uint32_t& low, std::uint32_t& high) const {
+        const float at =
+            std::max(begin_ + std::clamp(share * length_, margin_, length_ - margin_) - 0.5f, 0.0f);
+        const auto texel = static_cast<std::int32_t>(at);
+        low = std::min(static_cast<std::uint32_t>(texel), size_ - 1);
+        high = std::min(low + 1, size_ - 1);
+        return at - static_cast<float>(texel);
+    }
+
+  private:
+    float begin_, length_, margin_;
+    std::uint32_t size_;
+};
+
 /// What sample() says of coverage alone, for many places of a rect of a level.
 class CoverageSampler {
   public:
     CoverageSampler(const Atlas& atlas, const Rect& rect, std::size_t level);
-    float at(float u, float v) const;
-
-    /// Texels along one axis of a level.
-    struct Axis {
-        Axis(std::uint32_t first, std::uint32_t count, std::uint32_t size, std::size_t level);
-        /// Texels on both sides of a place in [0, 1] of the rect; the share of the second.
-        float place(float share, std::uint32_t& low, std::uint32_t& high) const;
-
-      private:
-        float begin_, length_, margin_;
-        std::uint32_t size_;
-    };
+    float at(float u, float v) const {
+        std::uint32_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+        const float fx = x_.place(u, x0, x1), fy = y_.place(v, y0, y1);
+        const float *const upper = &coverage_[y0 * width_], *const lower = &coverage_[y1 * width_];
+        return (1 - fx) * (1 - fy) * upper[x0] + fx * (1 - fy) * upper[x1] + (1 - fx) * fy * lower[x0] +
+               fx * fy * lower[x1];
+    }
+    /// No less than at() anywhere from one corner to the other.
+    float most(const Vec2f& low, const Vec2f& high) const;
 
   private:
     const std::vector<float>& coverage_;
     std::size_t width_;
-    Axis x_, y_;
+    TexelAxis x_, y_;
 };
 
 }  // namespace hairloom::cards
