@@ -80,6 +80,15 @@ TEST(Judge, HeadsHideWhatIsBehindThem) {
     hair.headIndices = {0, 1, 2};
     EXPECT_LT(covered(hair), 0.8 * bare);
     EXPECT_GT(covered(hair), 0);
+    // Without light, on a plate that was used before for another picture.
+    Plate plate(viewsAround(hair, 3)[1], 64);
+    plate.drawHead(hair);
+    plate.start(view, kSamplesPerHead);
+    plate.drawHead(hair);
+    plate.coverByStrands(hair);
+    double sum = 0;
+    for (const float c : plate.developed(64).coverage) sum += static_cast<double>(c);
+    EXPECT_EQ(sum, covered(hair));
 }
 
 TEST(Levels, OfABallComeNearTheStrands) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 
@@ -23,6 +24,32 @@ TEST(Raster, ThinLinesCoverAsMuchAsTheirAreaSays) {
         area += 160 * 0.4;
     }
     EXPECT_NEAR(covered / area, 1, 0.03);
+}
+
+TEST(Raster, LinesHaveTheSameSamplesInBandsAsInOnePiece) {
+    // Steep, flat and upright lines, thick and thin, that leave the picture, too.
+    for (int i = 0; i < 60; ++i) {
+        const float turn = 0.11f * static_cast<float>(i);
+        const Vec2f middle(31.3f, 60.7f), way(45 * std::cos(turn), 45 * std::sin(turn));
+        const Vec2f radius = Vec2f::Constant(i % 2 == 0 ? 0.2f : 3.3f);
+        const LinePoint a{middle - way, radius}, b{middle + way, 0.5f * radius};
+        std::vector<std::array<float, 3>> whole, pieces;
+        const auto into = [](auto& list) {
+            return [&list](int x, int y, float t) {
+                list.push_back({static_cast<float>(x), static_cast<float>(y), t});
+            };
+        };
+        forSamplesOfLine(a, b, 80, {0, 90}, into(whole));
+        const Rows touched = rowsOfLine(a, b, 90);
+        for (const auto& sample : whole) {
+            ASSERT_GE(sample[1], static_cast<float>(touched.first)) << i;
+            ASSERT_LT(sample[1], static_cast<float>(touched.end)) << i;
+        }
+        for (int row = 0; row < 90; row += 7)
+            forSamplesOfLine(a, b, 80, {row, std::min(row + 7, 90)}, into(pieces));
+        std::ranges::sort(whole), std::ranges::sort(pieces);
+        ASSERT_EQ(whole, pieces) << i;
+    }
 }
 
 TEST(Raster, NeighbouringTrianglesShareNoSampleAndLeaveNoGap) {
@@ -97,6 +124,24 @@ TEST(Atlas, PacksWithoutOverlapOrNotAtAll) {
                 EXPECT_EQ(used[128 * y + x]++, 0);
     }
     EXPECT_TRUE(packed(sizes, 64, 4).empty());
+}
+
+TEST(Atlas, CoverageAloneIsThatOfWholeTexels) {
+    Baked baked = bakedRibbon(80);
+    const Rect rect{4, 6, 64, 128};
+    const Atlas atlas = makeAtlas({baked.picture}, {rect}, 256);
+    for (const std::size_t level : {0u, 1u, 4u, 8u}) {
+        const CoverageSampler sampler(atlas, rect, level);
+        for (int v = 0; v <= 40; ++v) {
+            for (int u = 0; u <= 40; ++u) {
+                const Vec2f at(static_cast<float>(u) / 40, static_cast<float>(v) / 40);
+                const float coverage = sampler.at(at.x(), at.y());
+                ASSERT_EQ(coverage, sample(atlas, rect, level, at.x(), at.y()).coverage);
+                ASSERT_LE(coverage, sampler.most(at, at));
+                ASSERT_LE(coverage, sampler.most(Vec2f(0.5f * at.x(), 0), Vec2f(1, at.y())));
+            }
+        }
+    }
 }
 
 TEST(Atlas, MipMapsKeepCoverage) {
