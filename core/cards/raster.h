@@ -62,8 +62,10 @@ inline Rows rowsOfLine(const LinePoint& a, const LinePoint& b, int height) {
     // A line that lies flat is wider by at most the square root of two: its slope is 1 at most.
     const float wide = 1.5f * std::max(a.radius.maxCoeff(), b.radius.maxCoeff()) + 1;
     const float low = std::min(a.at.y(), b.at.y()) - wide, high = std::max(a.at.y(), b.at.y()) + wide;
-    return {static_cast<int>(std::clamp(low, 0.0f, static_cast<float>(height))),
-            static_cast<int>(std::clamp(high + 1, 0.0f, static_cast<float>(height)))};
+    const auto row = [&](float y) {
+        return static_cast<int>(std::max(0.0f, std::min(static_cast<float>(height), y)));
+    };
+    return {row(low), row(high + 1)};
 }
 
 /// Of a row of samples those that may lie in the triangle: where no barycentric is clearly below 0.
