@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/body_free.h"
+#include "engine/body_table.h"
 #include "hwy/base.h"
 
 namespace hairloom::runtime {
@@ -82,6 +83,12 @@ HWY_INLINE bool isInside(const BodyField& field, Float3 cells) {
 
 std::size_t cornerIndex(const BodyField& field, const CellPlace& place) {
     return (std::size_t{place.z} * (field.size[1] + 1) + place.y) * (field.size[0] + 1) + place.x;
+}
+
+/// Of the cell that a place is in, or the nearest to it.
+std::size_t cornerOfCell(const BodyField& field, Float3 point_ss) {
+    const Float3 cells = (point_ss - field.low_ss) * (1 / field.cell);
+    return cornerIndex(field, placeAt(cells, field.size[0], field.size[1], field.size[2]));
 }
 
 BonePose blendOf(const BonePose& a, const BonePose& b, float weight) {
@@ -183,7 +190,8 @@ BonePose inverseOf(const BonePose& pose) {
 std::size_t BodyField::bytes() const {
     return distances.size() * sizeof(distances[0]) + skins.size() * sizeof(skins[0]) +
            palette.size() * sizeof(palette[0]) + blocks.size() * sizeof(blocks[0]) +
-           values.size() * sizeof(values[0]) + boxes.size() * sizeof(boxes[0]);
+           values.size() * sizeof(values[0]) + boxes.size() * sizeof(boxes[0]) +
+           (refinements.size() + finer.size()) * sizeof(finer[0]);
 }
 
 std::string BodyField::problem() const {
@@ -203,6 +211,16 @@ std::string BodyField::problem() const {
         return "a body's blocks are not whole";
     const std::size_t blockCount = values.size() / kBlockValues;
     for (const std::uint16_t block : blocks) {
+        if (block != kNoBlock && block >= blockCount) return "a body names a block that it does not have";
+    }
+    if (!refinements.empty() && refinements.size() != blockCount)
+        return "a body's refined blocks do not match its blocks";
+    if (finer.size() % kFinerCells != 0) return "a body's refined blocks are not whole";
+    for (const std::uint16_t refined : refinements) {
+        if (refined != kNoBlock && refined >= finer.size() / kFinerCells)
+            return "a body names a refined block that it does not have";
+    }
+    for (const std::uint16_t block : finer) {
         if (block != kNoBlock && block >= blockCount) return "a body names a block that it does not have";
     }
     for (const std::uint16_t skin : skins) {
@@ -236,13 +254,27 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
     const std::uint16_t block = blocks[(std::size_t{place.z} * size[1] + place.y) * size[0] + place.x];
     if (block == kNoBlock) return coarseSample();
     constexpr auto kFine = static_cast<float>(kBlockCells);
-    const CellPlace in = placeAt({place.in.x * kFine, place.in.y * kFine, place.in.z * kFine}, kBlockCells,
-                                 kBlockCells, kBlockCells);
-    const std::int8_t* const first = values.data() + std::size_t{block} * kBlockValues +
-                                     (std::size_t{in.z} * kBlockCorners + in.y) * kBlockCorners + in.x;
+    const auto placeIn = [](const Trilinear& cellPlace) {
+        return placeAt({cellPlace.x * kFine, cellPlace.y * kFine, cellPlace.z * kFine}, kBlockCells,
+                       kBlockCells, kBlockCells);
+    };
+    CellPlace in = placeIn(place.in);
+    std::size_t own = block;
+    float steps = perCell * kFine;
+    if (const std::uint16_t refined = refinements.empty() ? kNoBlock : refinements[block];
+        refined != kNoBlock) {
+        const std::size_t inBlock = (std::size_t{in.z} * kBlockCells + in.y) * kBlockCells + in.x;
+        if (const std::uint16_t finest = finer[refined * kFinerCells + inBlock]; finest != kNoBlock) {
+            own = finest;
+            in = placeIn(in.in);
+            steps *= kFine;
+        }
+    }
+    const std::int8_t* const first =
+        values.data() + own * kBlockValues + (std::size_t{in.z} * kBlockCorners + in.y) * kBlockCorners + in.x;
     Sample fine =
         in.in.sample(scaled(cornersOf(first, kBlockCorners, kBlockCorners * kBlockCorners), kFineUnit));
-    fine.gradient = fine.gradient * (perCell * kFine);
+    fine.gradient = fine.gradient * steps;
     const float away = std::abs(fine.distance);
     if (away <= kFineReach) return fine;
     const Sample coarse = coarseSample();
@@ -337,7 +369,7 @@ PosedBody::Contact PosedBody::ofWhole(Float3 point_ws) const {
     const Float3 gradient = gradientBack(inverse_[0], sample.gradient);
     const float slope = length(gradient);
     if (!(slope > kFlatSlope)) return nothing;
-    return {sample.distance * (length(sample.gradient) / slope), gradient * (1 / slope), rest};
+    return {sample.distance * (length(sample.gradient) / slope), gradient * (1 / slope), rest, 0};
 }
 
 float PosedBody::freeAround(Float3 point_ws) const {
@@ -389,7 +421,10 @@ PosedBody::Contact PosedBody::at(Float3 point_ws) const {
             if (!(slope > kFlatSlope)) continue;
             // Bones that stretch the skin stretch what is before it.
             const float distance = sample.distance * (length(sample.gradient) / slope);
-            if (distance < nearest.distance) nearest = {distance, gradient * (1 / slope), rest};
+            if (!(distance < nearest.distance)) continue;
+            nearest = {distance, gradient * (1 / slope), rest, {}};
+            if (map.inverse && boneOfCell(field, cornerOfCell(field, rest)) == static_cast<std::int32_t>(b))
+                nearest.bone = b;
         }
     }
     return nearest;

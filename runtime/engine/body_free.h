@@ -11,11 +11,13 @@
 
 namespace hairloom::runtime {
 
+/// Shares of a distance and of a cell that are sure.
+inline constexpr float kBodySure = 0.9f, kBodyUnsure = 0.2f, kBodyUnsureFine = 0.05f;
+
 /// Metres that a body is away at least from a place at `distance` of it: what is interpolated, and posed, may
 /// be closer than it seems; where cells are small, by less. Below 0 where it is not away.
 inline float surelyFree(float distance, float cell) {
-    constexpr float kSure = 0.9f, kUnsure = 0.2f, kUnsureFine = 0.05f;
-    return kSure * distance - (distance < BodyField::kFineReach ? kUnsureFine : kUnsure) * cell;
+    return kBodySure * distance - (distance < BodyField::kFineReach ? kBodyUnsureFine : kBodyUnsure) * cell;
 }
 
 /// A corner of a table, and how many cells it is away.

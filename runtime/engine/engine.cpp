@@ -62,7 +62,7 @@ std::size_t Engine::bodyBytes() const {
     const std::size_t loads = impl_->plan_.on(Effect::collision)
                                   ? 0
                                   : impl_->strands_->effectBytes(Effect::collision, impl_->state_);
-    return impl_->body_->bytes() + loads +
+    return impl_->body_->bytes() + impl_->bodyTable_.bytes() + loads +
            (impl_->clearances_.size() + impl_->bodySeen_.size()) * sizeof(float);
 }
 

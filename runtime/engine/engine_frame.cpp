@@ -263,7 +263,8 @@ void Engine::Impl::setBody(std::shared_ptr<const BodyField> body) {
 
 void Engine::Impl::allocateForBody() {
     clearances_ = meetsBody() ? bodyClearances(*shape_, *body_) : Floats();
-    bodyCarrier_ = meetsBody() ? carrierOf(*shape_, *body_) : 0;
+    bodyTable_ = meetsBody() ? BodyTable(*body_) : BodyTable();
+    bodyCarriers_ = meetsBody() ? carriersOf(*shape_, *body_) : std::vector<std::uint32_t>();
     bodySeen_ = Floats(meetsBody() ? kBodyPlanes * shape_->planeFloats : 0, kNeverSeen);
     bodyLost_ = true;
 }
@@ -291,10 +292,7 @@ void Engine::Impl::takeBody(const FrameInput& input) {
         }
         bodyMoves_ = bodyMoves_ || !(to[b] == from[b]);
     }
-    const Float3 middle = (state_.rootsMin_ws + state_.rootsMax_ws) * 0.5f;
-    const float reach =
-        length(state_.rootsMax_ws - middle) + rootMotion_ + hairReach(settings_, shape_->longestStrand);
-    movingBody_.take(*body_, from, to, bodyCarrier_, substepsIn(settings_, input.dt), middle, reach);
+    movingBody_.take(*body_, bodyTable_, from, to, bodyCarriers_, substepsIn(settings_, input.dt));
     if (bodyLost_ || movingBody_.lostTrack()) std::fill(bodySeen_.begin(), bodySeen_.end(), kNeverSeen);
     bodyLost_ = false;
     if (to.data() != state_.body.data()) state_.body.assign(to.begin(), to.end());

@@ -81,7 +81,8 @@ struct Engine::Impl {
     Floats clearances_;            // of the body; empty without one
     Floats bodySeen_;              // kBodyPlanes, per block
     bool bodyLost_ = true;         // what they say is void
-    std::size_t bodyCarrier_ = 0;  // the bone that moves most roots
+    BodyTable bodyTable_;
+    std::vector<std::uint32_t> bodyCarriers_;  // carriersOf()
     OwnedStrands strands_;         // as their model has them
     EffectPlan plan_;
     FrameWind wind_;

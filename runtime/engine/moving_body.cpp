@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "engine/body_free.h"
 #include "shaders/rod_constants.h"
@@ -27,34 +28,38 @@ BonePose wayOf(const BonePose& before, const BonePose& after) {
     return {turned(back.x), turned(back.y), turned(back.z), turned(back.origin) + after.origin};
 }
 
-/// Metres that two bones take what is within `reach` of a place apart.
-float apart(const BonePose& a, const BonePose& b, Float3 around_ws, float reach) {
-    const BonePose turn{a.x - b.x, a.y - b.y, a.z - b.z, {}};
-    return length(a.apply(around_ws) - b.apply(around_ws)) + stretchOf(turn) * reach;
-}
+constexpr float kFarFromBody = 1e6f;  // metres
 
 }  // namespace
 
-void MovingBody::take(const BodyField& field, std::span<const BonePose> from, std::span<const BonePose> to,
-                      std::size_t carrierBone, std::uint32_t substeps, Float3 around_ws, float reach) {
+void MovingBody::take(const BodyField& field, const BodyTable& table, std::span<const BonePose> from,
+                      std::span<const BonePose> to, std::span<const std::uint32_t> carriers,
+                      std::uint32_t substeps) {
     field_ = &field;
+    table_ = &table;
     bones_ = to.size();
-    const std::size_t c = carrier_ = std::min(carrierBone, bones_ - 1);
+    carrierCount_ = std::min(carriers.size(), bones_);
     inverses_.resize(substeps * bones_);
     leasts_.resize(substeps * bones_);
     at_.resize(std::size_t{substeps} + 1);
-    carriers_.resize(substeps);
-    between_.resize(to.size());
+    carriers_.resize(substeps * carrierCount_);
+    wholes_.resize(substeps);
+    between_.resize(bones_);
     before_.assign(from.begin(), from.end());
     // Sums of lengths lose their digits, and a carrier that is flat tells no place.
     constexpr float kFarStrayed = 0.5f;
-    lostTrack_ = strayed_ > kFarStrayed || !std::isfinite(strayed_);
-    if (lostTrack_) strayed_ = 0.0f;
+    lostTrack_ = std::any_of(strayed_.begin(), strayed_.end(),
+                             [](float s) { return s > kFarStrayed || !std::isfinite(s); });
+    if (lostTrack_) strayed_ = {};
     moves_ = !std::equal(from.begin(), from.end(), to.begin(), to.end());
+    const auto isWhole = [](std::span<const BonePose> pose) {
+        return std::all_of(pose.begin(), pose.end(), [&](const BonePose& b) { return b == pose[0]; });
+    };
+    const bool startsWhole = isWhole(from), endsWhole = isWhole(to);
     const auto mix = [](Float3 a, Float3 b, float t) { return a + (b - a) * t; };
     for (std::uint32_t i = 0; i <= substeps; ++i) {
         const float t = static_cast<float>(i) / static_cast<float>(substeps);
-        for (std::size_t b = 0; b < to.size(); ++b) {
+        for (std::size_t b = 0; b < bones_; ++b) {
             between_[b] = i == substeps
                               ? to[b]
                               : BonePose{mix(from[b].x, to[b].x, t), mix(from[b].y, to[b].y, t),
@@ -62,6 +67,7 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
         }
         at_[i].take(field, between_);
         if (i == 0) continue;
+        wholes_[i - 1] = startsWhole && endsWhole ? 1 : 0;
         for (std::size_t b = 0; b < bones_; ++b) {
             const BonePose& pose = between_[b];
             const bool flat = isFlatPose(pose);
@@ -69,79 +75,138 @@ void MovingBody::take(const BodyField& field, std::span<const BonePose> from, st
                 flat ? 0.0f : std::min({length(pose.x), length(pose.y), length(pose.z)});
             inverses_[(i - 1) * bones_ + b] = flat ? BonePose{} : inverseOf(pose);
         }
-        Carrier& carrier = carriers_[i - 1];
-        carrier = {};
-        if (isFlatPose(between_[c]) || isFlatPose(before_[c])) {
-            strayed_ = carrier.apart = std::numeric_limits<float>::infinity();
-        } else {
-            const BonePose own = wayOf(before_[c], between_[c]);
-            for (std::size_t b = 0; b < to.size(); ++b) {
-                if (b == c || isFlatPose(before_[b]) || isFlatPose(between_[b])) continue;
-                carrier.apart =
-                    std::max(carrier.apart, apart(wayOf(before_[b], between_[b]), own, around_ws, reach));
-            }
-            strayed_ += carrier.apart;
-            carrier.inverse = inverses_[(i - 1) * bones_ + c];
-            carrier.step = {own.x - Float3{1, 0, 0}, own.y - Float3{0, 1, 0}, own.z - Float3{0, 0, 1},
-                            own.origin};
-        }
-        carrier.largest = stretchOf(between_[c]);
-        carrier.least = 1.0f / std::max(carrier.largest * stretchOf(carrier.inverse), 1.0f);
-        carrier.strayed = strayed_;
+        takeCarriers(i - 1, carriers, before_, between_);
         before_.swap(between_);
-        between_.resize(to.size());
+        between_.resize(bones_);
     }
 }
 
-/// Of the end of a substep. What hangs on the carrier alone is as far as it is at rest; what hangs on other
-/// bones, too, lies in the boxes of those, and skin between two bones may be closer than it was at rest, but
-/// hardly by half.
-BodyRoom MovingBody::roomAround(std::uint32_t substep, Float3 point_ws) const {
+void MovingBody::takeCarriers(std::uint32_t substep, std::span<const std::uint32_t> bones,
+                              std::span<const BonePose> before, std::span<const BonePose> after) {
+    for (std::size_t c = 0; c < carrierCount_; ++c) {
+        const std::size_t b = std::min<std::size_t>(bones[c], bones_ - 1);
+        Carrier& carrier = carriers_[substep * carrierCount_ + c];
+        carrier = {};
+        carrier.bone = static_cast<std::uint32_t>(b);
+        carrier.usable = !isFlatPose(before[b]) && !isFlatPose(after[b]);
+        if (carrier.usable) {
+            carrier.apart = stray(b, wayOf(before[b], after[b]), before, after);
+            strayed_[c] += carrier.apart;
+            carrier.before = before[b];
+            carrier.inverseBefore = inverseOf(before[b]);
+            carrier.inverse = inverses_[substep * bones_ + b];
+            carrier.largest = std::max(stretchOf(after[b]), stretchOf(before[b]));
+            carrier.least = 1.0f / std::max(carrier.largest * stretchOf(carrier.inverse), 1.0f);
+        } else {
+            strayed_[c] = std::numeric_limits<float>::infinity();
+        }
+        carrier.strayed = strayed_[c];
+    }
+}
+
+/// Metres that what hangs on other bones goes against one in a substep, at most: what is between bones goes
+/// no farther than what is on them, and that no farther than the corners of their boxes.
+float MovingBody::stray(std::size_t carrier, const BonePose& way, std::span<const BonePose> before,
+                        std::span<const BonePose> after) const {
+    float most = 0.0f;
+    for (std::size_t b = 0; b < std::min(bones_, field_->boxes.size()); ++b) {
+        if (b == carrier || (after[b] == after[carrier] && before[b] == before[carrier])) continue;
+        // What a flat bone would carry goes with the others, from when it is flat on.
+        const bool flat = isFlatPose(after[b]);
+        if (flat != isFlatPose(before[b])) return std::numeric_limits<float>::infinity();
+        if (flat) continue;
+        const BodyField::Box& box = field_->boxes[b];
+        for (int corner = 0; corner < 8; ++corner) {
+            const Float3 at{(corner & 1) != 0 ? box.high.x : box.low.x,
+                            (corner & 2) != 0 ? box.high.y : box.low.y,
+                            (corner & 4) != 0 ? box.high.z : box.low.z};
+            most = std::max(most, length(after[b].apply(at) - way.apply(before[b].apply(at))));
+        }
+    }
+    return most;
+}
+
+/// What hangs on the carrier alone is as far as it is at rest; what hangs on other bones, too, lies in the
+/// boxes of those, and skin between two bones may be closer than it was at rest, but hardly by half.
+BodyLook MovingBody::look(std::uint32_t substep, const BodyVisit& visit) const {
     const BonePose* const inverses = inverses_.data() + substep * bones_;
     const float* const leasts = leasts_.data() + substep * bones_;
-    constexpr float kFar = 1e6f;
-    if (bones_ == 1 || !(leasts[carrier_] > 0.0f)) {
-        const float away = std::min(at_[substep + 1].freeAround(point_ws), kFar);
-        return {away, bones_ == 1 ? kFar : away};
+    const std::span<const Carrier> all = carriers(substep);
+    const auto besideOf = [&](std::size_t b, Float3 rest) {
+        return isWhole(substep) || field_->boxes.empty() ? 0.0f : leasts[b] * distanceTo(field_->boxes[b], rest);
+    };
+    BodyLook look;
+    // The carrier whose skin may be nearest.
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t c = 0; c < all.size(); ++c) {
+        if (!all[c].usable) continue;
+        const std::size_t b = all[c].bone;
+        const Float3 rest = inverses[b].apply(visit.point_ws);
+        const float beside = besideOf(b, rest);
+        if (beside >= nearest) continue;
+        const float away = std::max(beside, leasts[b] * field_->freeAround(rest));
+        if (away >= nearest) continue;
+        nearest = away;
+        look.carrier = c;
+        if (isWhole(substep)) break;
     }
-    BodyRoom room{leasts[carrier_] * field_->freeAround(inverses[carrier_].apply(point_ws)), kFar};
-    for (std::size_t b = 0; b < bones_; ++b) {
-        if (b == carrier_ || !(leasts[b] > 0.0f)) continue;
-        const Float3 rest = inverses[b].apply(point_ws);
-        const float beside = leasts[b] * distanceTo(field_->boxes[b], rest);
-        if (beside >= room.other) continue;
-        room.other = std::min(room.other, std::max(beside, 0.5f * leasts[b] * field_->freeAround(rest)));
-    }
-    return room;
-}
-
-bool MovingBody::touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch,
-                       BodyRoom& room) const {
     const PosedBody& now = at_[substep + 1];
-    const float farthest = visit.reach + visit.apart;
-    room = roomAround(substep, visit.point_ws);
-    if (room.carried > visit.reach && room.other > farthest) return false;
+    const Carrier& carrier = all[look.carrier];
+    float gone = length(visit.displacement), apart = gone;
+    if (std::isfinite(nearest)) {
+        const Float3 place = carrier.inverse.apply(visit.point_ws);
+        gone = length(visit.displacement - (visit.point_ws - carrier.before.apply(place)));
+        apart = carrier.apart;
+        look.room = {nearest, isWhole(substep) ? nearest : kFarFromBody};
+        for (std::size_t b = 0; b < bones_ && !isWhole(substep); ++b) {
+            if (b == carrier.bone || !(leasts[b] > 0.0f)) continue;
+            const Float3 rest = inverses[b].apply(visit.point_ws);
+            const float beside = besideOf(b, rest);
+            if (beside >= look.room.other) continue;
+            look.room.other =
+                std::min(look.room.other, std::max(beside, 0.5f * leasts[b] * field_->freeAround(rest)));
+        }
+    } else {
+        const float away = std::min(now.freeAround(visit.point_ws), kFarFromBody);
+        look.room = {away, away};
+    }
+    const float near = visit.radius + gone + static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR);
+    if (look.room.carried > near && look.room.other > near + apart) return look;
     const PosedBody::Contact contact = now.at(visit.point_ws);
     if (std::isfinite(contact.distance)) {
-        const float free = surelyFree(contact.distance, now.cell());
-        room = {std::max(room.carried, free), std::max(room.other, free)};
+        const float free = surelyFree(contact.distance, field_->cell);
+        look.room = {std::max(look.room.carried, free), std::max(look.room.other, free)};
     }
-    if (!(contact.distance <= farthest)) return false;
+    if (!(contact.distance <= near + apart)) return look;
+    if (contact.bone) {
+        for (std::size_t c = 0; c < all.size(); ++c) {
+            if (!all[c].usable || (all[c].bone != *contact.bone && !isWhole(substep))) continue;
+            if (c != look.carrier && !isWhole(substep)) {
+                const float free = surelyFree(contact.distance, field_->cell);
+                look.room = {free, free};
+                look.carrier = c;
+            }
+            look.isCarried = true;
+            return look;
+        }
+    }
+    look.met = true;
+    BodyTouch& touch = look.touch;
     touch.normal = contact.normal_ws;
     touch.distance = contact.distance;
     touch.way = moves_ ? visit.point_ws - at_[substep].place(contact.point_ss) : Float3{0.0f, 0.0f, 0.0f};
     // By the plane that is there at the end; skin curves away from it.
     touch.before = contact.distance - dot(touch.normal, visit.displacement - touch.way);
     if (touch.before < visit.radius - static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP))
-        sweep(substep, visit, touch);
-    return true;
+        sweep(substep, visit, near + apart, touch);
+    return look;
 }
 
 /// Where the plane at the end has it inside at the start: whether it was, and if not, where it came in.
-void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch) const {
+void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, float near, BodyTouch& touch) const {
     const Float3 moved = visit.displacement - touch.way;
     const PosedBody::Contact start = at_[substep].at(visit.point_ws - visit.displacement);
-    touch.before = std::min(start.distance, visit.reach + visit.apart);
+    touch.before = std::min(start.distance, near);
     const float whole = length(moved);
     if (touch.before < visit.radius || !(touch.distance < visit.radius) || !(whole > 0.0f)) return;
     // From place to place, as far as nothing is, along its way by the body as it is at the end.
@@ -166,15 +231,29 @@ void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch&
     }
 }
 
-std::size_t carrierOf(const RestShape& shape, const BodyField& body) {
-    std::vector<std::size_t> roots(std::max<std::size_t>(body.bones.size(), 1), 0);
+std::vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body) {
+    std::vector<std::size_t> roots(std::max<std::size_t>(body.bones.size(), 1), 0), corners(roots);
     for (const RootFrame& root : shape.restRoots) {
         const Corner corner = nearestCorner(body, (root.position - body.low_ss) * (1 / body.cell));
         const BodyField::Skin& skin = body.palette[body.skins[corner.index]];
         const auto most = std::max_element(skin.weights.begin(), skin.weights.end());
         if (*most > 0) ++roots[skin.bones[static_cast<std::size_t>(most - skin.weights.begin())]];
     }
-    return static_cast<std::size_t>(std::max_element(roots.begin(), roots.end()) - roots.begin());
+    constexpr std::uint8_t kAll = 255;
+    for (const std::uint16_t index : body.skins) {
+        const BodyField::Skin& skin = body.palette[index];
+        for (std::size_t i = 0; i < skin.bones.size(); ++i)
+            if (skin.weights[i] == kAll) ++corners[skin.bones[i]];
+    }
+    std::vector<std::uint32_t> carriers(roots.size());
+    std::iota(carriers.begin(), carriers.end(), 0u);
+    std::stable_sort(carriers.begin(), carriers.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return corners[a] > corners[b]; });
+    const auto first = std::max_element(carriers.begin(), carriers.end(),
+                                        [&](std::uint32_t a, std::uint32_t b) { return roots[a] < roots[b]; });
+    std::rotate(carriers.begin(), first, first + 1);
+    if (carriers.size() > MovingBody::kMostCarriers) carriers.resize(MovingBody::kMostCarriers);
+    return carriers;
 }
 
 Floats bodyClearances(const RestShape& shape, const BodyField& body) {

@@ -2,11 +2,13 @@
 #pragma once
 // A body on its way through a frame, as rods meet it.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "engine/body_table.h"
 #include "engine/state.h"
 #include "hairloom/body_field.h"
 
@@ -24,72 +26,95 @@ struct BodyTouch {
 struct BodyVisit {
     Float3 point_ws, displacement;
     float radius;  ///< metres that it keeps from the body
-    float reach;   ///< metres: skin of the carrier that is farther away is none of its business
-    float apart;   ///< metres more for other skin
 };
 
 /// Metres that a body is away from a place at least.
 struct BodyRoom {
-    float carried = 0.0f;  ///< skin that moves with the carrier alone
+    float carried = 0.0f;  ///< skin that moves with one bone alone
     float other = 0.0f;    ///< all other
+};
+
+/// What a look at the bones of a body has found.
+struct BodyLook {
+    std::size_t carrier = 0;  ///< number among the carriers; the room is told from its side
+    BodyRoom room;
+    bool met = false;        ///< the body is near, and `touch` is of it
+    bool isCarried = false;  ///< what is near hangs on the carrier alone, and is to be measured in its space
+    BodyTouch touch{{0.0f, 1.0f, 0.0f}, 0.0f, 0.0f, {}};
 };
 
 /// Poses of a body at the ends of a frame's substeps. Its bones go straight on from pose to pose, as roots
 /// do.
 class MovingBody {
   public:
-    /// `from` and `to` are of as many bones; `carrier` is the one that moves most hair. `around_ws`: where
-    /// nodes may be, all within `reach` metres of it.
-    void take(const BodyField& field, std::span<const BonePose> from, std::span<const BonePose> to,
-              std::size_t carrier, std::uint32_t substeps, Float3 around_ws, float reach);
+    static constexpr std::size_t kMostCarriers = 8;
+
+    /// `from` and `to` are of as many bones; `carriers` are the ones in whose spaces nodes are looked for.
+    /// `field` and `table` are of one body and outlive it.
+    void take(const BodyField& field, const BodyTable& table, std::span<const BonePose> from,
+              std::span<const BonePose> to, std::span<const std::uint32_t> carriers, std::uint32_t substeps);
     void clear() { at_.clear(); }
     bool empty() const { return at_.empty(); }
+    const BodyField& field() const { return *field_; }
+    const BodyTable& table() const { return *table_; }
+    float cell() const { return field_->cell; }
 
-    /// Nothing and false where the body is farther away than the reach at the end of the substep. `room` is
-    /// how far the body is away then. What came in in the substep meets the plane where it
-    /// did, however fast it is and however thin what it came into.
-    bool touch(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch, BodyRoom& room) const;
+    /// Which carrier a node is with, how far the body is, and what is met of skin that several bones move.
+    BodyLook look(std::uint32_t substep, const BodyVisit& visit) const;
+    /// What came in in the substep meets the plane where it did, however fast it is and however thin what it
+    /// came into. `touch` is of the plane at the end; nodes may be `near` metres from the body.
+    void sweep(std::uint32_t substep, const BodyVisit& visit, float near, BodyTouch& touch) const;
 
-    /// How far nodes are from where they were looked at is measured in the space of one of its bones. Skin
-    /// that hangs on it alone stands still there.
+    /// How far nodes are from where they were looked at is measured in the space of a bone. Skin that hangs
+    /// on it alone stands still there.
     struct Carrier {
-        BonePose inverse;      ///< from the world at the end of the substep
-        float largest = 1;     ///< metres in the world of one there, at most
-        float least = 1;       ///< share of that, at least
-        float strayed = 0.0f;  ///< metres that another bone has gone against this one, ever
-        /// What it adds, in this substep, to a place in the world at its start.
-        BonePose step{{}, {}, {}, {}};
-        float apart = 0.0f;  ///< metres that another bone goes against this one in this substep
+        BonePose inverse;        ///< from the world at the end of the substep
+        BonePose inverseBefore;  ///< and at its start
+        BonePose before;         ///< to the world at its start
+        float largest = 1;       ///< metres in the world of one there, at most
+        float least = 1;         ///< share of that, at least
+        float apart = 0.0f;      ///< metres that other skin goes against this bone in the substep, at most
+        float strayed = 0.0f;    ///< the same, ever
+        std::uint32_t bone = 0;
+        bool usable = false;  ///< it is not flat
     };
-    const Carrier& carrier(std::uint32_t substep) const { return carriers_[substep]; }
+    std::span<const Carrier> carriers(std::uint32_t substep) const {
+        return std::span(carriers_).subspan(substep * carrierCount_, carrierCount_);
+    }
+    /// All bones move alike in the substep.
+    bool isWhole(std::uint32_t substep) const { return wholes_[substep] != 0; }
     /// What was looked at before is void.
     bool lostTrack() const { return lostTrack_; }
 
   private:
-    BodyRoom roomAround(std::uint32_t substep, Float3 point_ws) const;
-    void sweep(std::uint32_t substep, const BodyVisit& visit, BodyTouch& touch) const;
+    void takeCarriers(std::uint32_t substep, std::span<const std::uint32_t> bones,
+                      std::span<const BonePose> before, std::span<const BonePose> after);
+    float stray(std::size_t carrier, const BonePose& way, std::span<const BonePose> before,
+                std::span<const BonePose> after) const;
 
     std::vector<PosedBody> at_;  ///< at the start of the frame, and at the end of each substep
     std::vector<BonePose> between_, before_;
     std::vector<BonePose> inverses_;  ///< of each bone at the end of each substep
     std::vector<float> leasts_;       ///< metres in the world of one that it carries, at least; 0: it is flat
     const BodyField* field_ = nullptr;
-    std::size_t bones_ = 0, carrier_ = 0;
-    std::vector<Carrier> carriers_;  ///< at the end of each substep
-    bool moves_ = false;
-    float strayed_ = 0.0f;
-    bool lostTrack_ = true;
+    const BodyTable* table_ = nullptr;
+    std::size_t bones_ = 0, carrierCount_ = 0;
+    std::vector<Carrier> carriers_;  ///< of each substep
+    std::vector<std::uint8_t> wholes_;
+    std::array<float, kMostCarriers> strayed_{};
+    bool moves_ = false, lostTrack_ = true;
 };
 
 /// Per block and lane of a plane: metres that a point is from the body at rest, so far that it may come again
 /// (it is pushed no farther out than it was authored). Large where the body is not near.
 Floats bodyClearances(const RestShape& shape, const BodyField& body);
 
-/// The bone of the body that moves most roots.
-std::size_t carrierOf(const RestShape& shape, const BodyField& body);
+/// Bones of the body in whose spaces nodes are looked for: the one that moves most roots first, then those
+/// that alone move most of the body; at most MovingBody::kMostCarriers.
+std::vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body);
 
-/// Planes of what is known of each point and the body: where it was looked at, in the carrier's space, and
-/// metres that it may go from there to skin of the carrier and to other skin, which has strayed.
-inline constexpr std::size_t kBodyPlanes = 5;
+/// Planes of what is known of each point and the body: where it was looked at, in its carrier's space, metres
+/// that it may go from there to skin of the carrier and to other skin, which has strayed, and the carrier.
+inline constexpr std::size_t kBodyPlanes = 6;
 
 }  // namespace hairloom::runtime

@@ -28,10 +28,11 @@ bool isFlatPose(const BonePose& pose);
 BonePose inverseOf(const BonePose& pose);
 
 /// Distances at the corners of cells, interpolated trilinearly. Cells near the skin have a block of
-/// kBlockCells³ smaller ones. Negative inside.
+/// kBlockCells³ smaller ones, of which some have a block of their own. Negative inside.
 struct BodyField {
     static constexpr std::uint32_t kBlockCells = 4, kBlockCorners = kBlockCells + 1;
     static constexpr std::uint32_t kBlockValues = kBlockCorners * kBlockCorners * kBlockCorners;
+    static constexpr std::size_t kFinerCells = kBlockCells * kBlockCells * kBlockCells;
     static constexpr std::uint16_t kNoBlock = 0xffff;
     static constexpr float kFineUnit = 1e-4f;    ///< metres of one step of a block's values: ± 12.7 mm
     static constexpr float kFineReach = 0.006f;  ///< metres from the skin within which blocks alone count
@@ -53,6 +54,11 @@ struct BodyField {
     std::vector<Skin> palette;
     std::vector<std::uint16_t> blocks;  ///< of each cell, x fastest
     std::vector<std::int8_t> values;    ///< kBlockValues of each block, x fastest
+    /// Of each block, its number among those that are refined where skin is folded or thin; kNoBlock for
+    /// others. Empty: none is.
+    std::vector<std::uint16_t> refinements;
+    /// Of each refined block and each of its cells, x fastest: a block for that cell; kNoBlock for none.
+    std::vector<std::uint16_t> finer;
     std::vector<std::string> bones;     ///< names of at most 255; empty: the body moves as a whole
     /// A box at rest: outside of it a bone moves no skin and what is near it.
     struct Box {
@@ -98,6 +104,8 @@ class PosedBody {
         float distance;    ///< metres in the world; infinite out of reach of the field
         Float3 normal_ws;  ///< unit length, out of the body; any where it is infinite
         Float3 point_ss;   ///< where on the body at rest that is
+        /// The bone that alone moves the skin there, where the place was found by it.
+        std::optional<std::size_t> bone = {};
     };
     Contact at(Float3 point_ws) const;
     /// Metres that the body is away from there at least; 0 where it may be anywhere near.

@@ -8,6 +8,8 @@
 #endif
 
 #include "engine/kernels.h"
+#include "engine/body_free.h"
+#include "engine/body_sample-inl.h"
 #include "engine/lanes-inl.h"
 #include "engine/moving_body.h"
 #include "engine/spheres-inl.h"
@@ -75,103 +77,240 @@ HWY_INLINE void forgetPlane(BodyPlane& plane) {
     plane.distance = plane.before = plane.known = plane.room = hn::Zero(D());
 }
 
+/// BonePose for each lane.
+struct LanePose {
+    V3 x, y, z, origin;
+    V3 apply(V3 p) const { return mad3(x, p.x, mad3(y, p.y, mad3(z, p.z, origin))); }
+};
+HWY_INLINE LanePose allPose(const BonePose& pose) {
+    return {all3(pose.x), all3(pose.y), all3(pose.z), all3(pose.origin)};
+}
+HWY_INLINE void putPose(RodMask which, const BonePose& pose, LanePose& to) {
+    to.x = select(which, all3(pose.x), to.x);
+    to.y = select(which, all3(pose.y), to.y);
+    to.z = select(which, all3(pose.z), to.z);
+    to.origin = select(which, all3(pose.origin), to.origin);
+}
+
+/// MovingBody::Carrier of each lane.
+struct LaneCarrier {
+    LanePose inverse, inverseBefore, before;
+    V largest, least, apart, strayed, bone, number;
+    RodMask usable;
+};
+
+/// `number`: of each lane's carrier; below 0 for none, which is as the first.
+HWY_INLINE LaneCarrier carrierOfLanes(std::span<const MovingBody::Carrier> carriers, V number) {
+    const MovingBody::Carrier& first = carriers[0];
+    LaneCarrier of{allPose(first.inverse),
+                   allPose(first.inverseBefore),
+                   allPose(first.before),
+                   all(first.largest),
+                   all(first.least),
+                   all(first.apart),
+                   all(first.strayed),
+                   all(static_cast<float>(first.bone)),
+                   hn::Max(number, hn::Zero(D())),
+                   first.usable ? hn::Not(noLane()) : noLane()};
+    if (HWY_LIKELY(hn::AllFalse(D(), number > hn::Zero(D())))) return of;
+    for (std::size_t c = 1; c < carriers.size(); ++c) {
+        const auto which = number == all(static_cast<float>(c));
+        if (hn::AllFalse(D(), which)) continue;
+        const MovingBody::Carrier& own = carriers[c];
+        putPose(which, own.inverse, of.inverse);
+        putPose(which, own.inverseBefore, of.inverseBefore);
+        putPose(which, own.before, of.before);
+        of.largest = choose(which, all(own.largest), of.largest);
+        of.least = choose(which, all(own.least), of.least);
+        of.apart = choose(which, all(own.apart), of.apart);
+        of.strayed = choose(which, all(own.strayed), of.strayed);
+        of.bone = choose(which, all(static_cast<float>(own.bone)), of.bone);
+        of.usable = own.usable ? either(of.usable, which) : hn::AndNot(which, of.usable);
+    }
+    return of;
+}
+
+/// Numbers of a vector's lanes, one by one.
+struct Lanes3 {
+    alignas(64) float at[3][kWidth];
+
+    explicit Lanes3(V3 v) {
+        hn::Store(v.x, D(), at[0]);
+        hn::Store(v.y, D(), at[1]);
+        hn::Store(v.z, D(), at[2]);
+    }
+    Float3 operator[](std::size_t lane) const { return {at[0][lane], at[1][lane], at[2][lane]}; }
+    void set(std::size_t lane, Float3 v) {
+        at[0][lane] = v.x;
+        at[1][lane] = v.y;
+        at[2][lane] = v.z;
+    }
+    V3 all() const { return {hn::Load(D(), at[0]), hn::Load(D(), at[1]), hn::Load(D(), at[2])}; }
+};
+struct Lanes1 {
+    alignas(64) float at[kWidth];
+
+    explicit Lanes1(V v) { hn::Store(v, D(), at); }
+    V all() const { return hn::Load(D(), at); }
+};
+
+/// How nodes of a body's skin are seen: bodySeen of a node of each lane.
+struct BodySeen {
+    V3 place;  ///< in the space of the carrier
+    V carried, other, number;
+
+    BodySeen(const float* at, std::size_t pitch)
+        : place(load3(at, pitch)),
+          carried(hn::Load(D(), at + 3 * pitch)),
+          other(hn::Load(D(), at + 4 * pitch)),
+          number(hn::Load(D(), at + 5 * pitch)) {}
+    void store(float* at, std::size_t pitch) const {
+        store3(place, at, pitch);
+        hn::Store(carried, D(), at + 3 * pitch);
+        hn::Store(other, D(), at + 4 * pitch);
+        hn::Store(number, D(), at + 5 * pitch);
+    }
+};
+
+/// Looks for lanes whose plane does not hold; gives back all that meet one.
+HWY_NOINLINE RodMask lookAtBody(const MovingBody& body, V3 position_ws, V reach, const RodNode& node,
+                                const BlockView& block, std::size_t i, std::uint32_t substep, RodMask kept,
+                                BodyPlane& plane) {
+    constexpr auto kDeep = static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP);
+    const V margin = reach + all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
+    BodySeen seen(block.bodySeen + i, block.pitch);
+    LaneCarrier carrier = carrierOfLanes(body.carriers(substep), seen.number);
+    V3 place = carrier.inverse.apply(position_ws);
+    const V3 start_ws = position_ws - node.displacement;
+    // On its way through the substep no node is farther from where it was looked at than at one of its ends.
+    V3 since = place - seen.place, sinceStart = carrier.inverseBefore.apply(start_ws) - seen.place;
+    V used = hn::Sqrt(hn::Max(dot(since, since), dot(sinceStart, sinceStart))) * carrier.largest;
+    V carried = seen.carried - used, other = seen.other - (used + carrier.strayed);
+    const auto far = both(both(carried > margin, other > margin), carrier.usable);
+    const auto searched = hn::Not(either(kept, far));
+    plane.room = (hn::Min(carried, other) - reach) * carrier.least;
+    plane.moved = node.displacement;
+    if (HWY_LIKELY(hn::AllFalse(D(), searched))) return kept;
+
+    // How each comes against its carrier.
+    V3 way = position_ws - carrier.before.apply(place);
+    V3 against = node.displacement - way;
+    V near = margin + hn::Sqrt(dot(against, against));
+    const bool isWhole = body.isWhole(substep);
+    const auto ownOnly = isWhole ? carrier.usable : both(carrier.usable, other > near);
+    BodySample sample = sampleBody(body.field(), body.table(), place);
+    const auto isOwn = [&] { return isWhole ? sample.inside : hn::And(sample.inside, sample.bone == carrier.bone); };
+    // Skin of others is farther away than `near`.
+    auto lone = both(both(searched, ownOnly), either(isOwn(), both(sample.inside, sample.distance > near)));
+    auto met = noLane();
+    const std::uint32_t looked = bitsOf(hn::AndNot(lone, searched));
+    if (looked != 0) {
+        const Lanes3 at(position_ws), moved(node.displacement);
+        const Lanes1 keeps(reach);
+        Lanes3 normal(plane.normal), ways(plane.way);
+        Lanes1 distance(plane.distance), before(plane.before), carriedRoom(carried), otherRoom(other),
+            number(carrier.number);
+        std::uint32_t metBits = 0, carriedBits = 0;
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            if ((looked >> lane & 1u) == 0) continue;
+            const BodyLook found = body.look(substep, {at[lane], moved[lane], keeps.at[lane]});
+            carriedRoom.at[lane] = found.room.carried;
+            otherRoom.at[lane] = found.room.other;
+            number.at[lane] = static_cast<float>(found.carrier);
+            if (found.isCarried) carriedBits |= 1u << lane;
+            if (!found.met) continue;
+            metBits |= 1u << lane;
+            normal.set(lane, found.touch.normal);
+            ways.set(lane, found.touch.way);
+            distance.at[lane] = found.touch.distance;
+            before.at[lane] = found.touch.before;
+        }
+        met = maskOf(metBits);
+        plane.normal = normal.all();
+        plane.way = ways.all();
+        plane.distance = distance.all();
+        plane.before = before.all();
+        carried = carriedRoom.all();
+        other = otherRoom.all();
+        const auto changed = maskOf(looked);
+        const V numbers = number.all();
+        const bool turned = !hn::AllFalse(D(), both(changed, numbers != carrier.number));
+        if (turned) {
+            carrier = carrierOfLanes(body.carriers(substep), numbers);
+            place = select(changed, carrier.inverse.apply(position_ws), place);
+            way = position_ws - carrier.before.apply(place);
+            against = node.displacement - way;
+            near = choose(changed, margin + hn::Sqrt(dot(against, against)), near);
+            if (carriedBits != 0) sample = sampleBody(body.field(), body.table(), place);
+        }
+        lone = either(lone, maskOf(carriedBits));
+    }
+    if (!hn::AllFalse(D(), lone)) {
+        const V3 g = sample.gradient;
+        const V3 gradient{dot(carrier.inverse.x, g), dot(carrier.inverse.y, g), dot(carrier.inverse.z, g)};
+        const V slope = hn::Sqrt(dot(gradient, gradient)), inverse = all(1.0f) / slope;
+        const auto sloped = both(sample.inside, slope > all(1e-3f));
+        const V distance = sample.distance * (hn::Sqrt(dot(g, g)) * inverse);
+        const V3 normal = gradient * inverse;
+        const V fine = choose(distance < all(BodyField::kFineReach), all(kBodyUnsureFine), all(kBodyUnsure));
+        const V free = mad(all(kBodySure), distance, negMad(fine, all(body.cell()), hn::Zero(D())));
+        const auto told = both(lone, sloped);
+        carried = choose(told, hn::Max(carried, free), carried);
+        other = isWhole ? choose(told, hn::Max(other, free), other) : other;
+        const auto here = both(told, distance <= near + carrier.apart);
+        const V before = distance - dot(normal, against);
+        plane.normal = select(here, normal, plane.normal);
+        plane.way = select(here, way, plane.way);
+        plane.distance = choose(here, distance, plane.distance);
+        plane.before = choose(here, before, plane.before);
+        met = either(met, here);
+        const std::uint32_t swept = bitsOf(both(here, before < reach - all(kDeep)));
+        if (HWY_UNLIKELY(swept != 0)) {
+            const Lanes3 at(position_ws), moved(node.displacement), ways(plane.way);
+            const Lanes1 keeps(reach), nears(near + carrier.apart);
+            Lanes3 normals(plane.normal);
+            Lanes1 distances(plane.distance), befores(plane.before);
+            for (std::size_t lane = 0; lane < kWidth; ++lane) {
+                if ((swept >> lane & 1u) == 0) continue;
+                BodyTouch touch{normals[lane], distances.at[lane], befores.at[lane], ways[lane]};
+                body.sweep(substep, {at[lane], moved[lane], keeps.at[lane]}, nears.at[lane], touch);
+                normals.set(lane, touch.normal);
+                distances.at[lane] = touch.distance;
+                befores.at[lane] = touch.before;
+            }
+            plane.normal = normals.all();
+            plane.distance = distances.all();
+            plane.before = befores.all();
+        }
+    }
+    // Lanes that were searched are known from where they are now.
+    seen.place = select(searched, place, seen.place);
+    seen.carried = choose(searched, carried, seen.carried);
+    seen.other = choose(searched, other + carrier.strayed, seen.other);
+    seen.number = choose(searched, carrier.number, seen.number);
+    seen.store(block.bodySeen + i, block.pitch);
+    plane.at = select(searched, node.position, plane.at);
+    plane.known = choose(searched, hn::IfThenElseZero(met, all(1.0f)), plane.known);
+    plane.room = choose(searched, (hn::Min(carried, other) - reach) * carrier.least, plane.room);
+    return either(kept, met);
+}
+
 /// The same for a body. A node keeps its radius from it, but no more than its clearance.
 /// Nodes that were far off when they were last looked at, and have not come far since, are not looked at. In
 /// a substep the plane that was found holds for all guesses that are close to where it was found, and for
-/// those that are outside for certain.
+/// those that are outside for certain. Where all that is near hangs on one bone, it is looked up at rest, all
+/// lanes at once; what else there is, MovingBody::look() finds.
 template <class Visit>
 HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, const BlockView& block,
                           std::size_t i, std::uint32_t substep, BodyPlane& plane, Visit&& visit) {
-    constexpr float kClose = 1e-4f, kClearly = 1e-4f;  // metres
-    const V3 position_ws = node.position + root;
     const V reach = hn::Min(node.radius, hn::Load(D(), block.clearance + i));
     const V3 from = node.position - plane.at;
     const V gone = hn::Sqrt(dot(from, from));
+    constexpr float kClose = 1e-4f, kClearly = 1e-4f;  // metres
     const auto outside = negMad(gone, all(1.25f), plane.distance) > reach + all(kClearly);
-    const auto kept = both(plane.known > hn::Zero(D()), either(gone <= all(kClose), outside));
-    auto meets = kept;
-    const MovingBody::Carrier& carrier = body.carrier(substep);
-    // How far it comes against the body in this substep.
-    const V3 start_ws = position_ws - node.displacement;
-    const BonePose& step = carrier.step;
-    const V3 against = node.displacement - mad3(all3(step.x), start_ws.x,
-                                                mad3(all3(step.y), start_ws.y,
-                                                     mad3(all3(step.z), start_ws.z, all3(step.origin))));
-    const V near =
-        reach + hn::Sqrt(dot(against, against)) + all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
-    const std::size_t pitch = block.pitch;
-    float* const seen = block.bodySeen + i;
-    const V3 carried = mad3(all3(carrier.inverse.x), position_ws.x,
-                            mad3(all3(carrier.inverse.y), position_ws.y,
-                                 mad3(all3(carrier.inverse.z), position_ws.z, all3(carrier.inverse.origin))));
-    struct Rooms {
-        V carried, other;
-    };
-    const auto roomLeft = [&] {
-        const V3 since =
-            carried - V3{hn::Load(D(), seen), hn::Load(D(), seen + pitch), hn::Load(D(), seen + 2 * pitch)};
-        const V used = hn::Sqrt(dot(since, since)) * all(carrier.largest);
-        return Rooms{hn::Load(D(), seen + 3 * pitch) - used,
-                     hn::Load(D(), seen + 4 * pitch) - (used + all(carrier.strayed))};
-    };
-    Rooms room = roomLeft();
-    const auto far = both(room.carried > near, room.other > near + all(carrier.apart));
-    const std::uint32_t looked = bitsOf(hn::Not(either(kept, far)));
-    if (looked != 0) {
-        alignas(64) float at[3][kWidth], moved[3][kWidth], keeps[kWidth], farthest[kWidth], place[3][kWidth],
-            normal[3][kWidth], way[3][kWidth], distance[kWidth], before[kWidth];
-        const auto put = [](V3 v, float(*to)[kWidth]) {
-            hn::Store(v.x, D(), to[0]);
-            hn::Store(v.y, D(), to[1]);
-            hn::Store(v.z, D(), to[2]);
-        };
-        const auto get = [](const float(*from_)[kWidth]) {
-            return V3{hn::Load(D(), from_[0]), hn::Load(D(), from_[1]), hn::Load(D(), from_[2])};
-        };
-        put(position_ws, at);
-        put(node.displacement, moved);
-        put(carried, place);
-        put(plane.normal, normal);
-        put(plane.way, way);
-        hn::Store(reach, D(), keeps);
-        hn::Store(near, D(), farthest);
-        hn::Store(plane.distance, D(), distance);
-        hn::Store(plane.before, D(), before);
-        std::uint32_t met = 0;
-        for (std::size_t lane = 0; lane < kWidth; ++lane) {
-            if ((looked >> lane & 1u) == 0) continue;
-            BodyTouch touch{{0.0f, 1.0f, 0.0f}, 0.0f, 0.0f, {}};
-            BodyRoom around;
-            const BodyVisit how{{at[0][lane], at[1][lane], at[2][lane]},
-                                {moved[0][lane], moved[1][lane], moved[2][lane]},
-                                keeps[lane],
-                                farthest[lane],
-                                carrier.apart};
-            if (body.touch(substep, how, touch, around)) met |= 1u << lane;
-            for (std::size_t axis = 0; axis < 3; ++axis) seen[axis * pitch + lane] = place[axis][lane];
-            seen[3 * pitch + lane] = around.carried;
-            seen[4 * pitch + lane] = around.other + carrier.strayed;
-            distance[lane] = touch.distance;
-            before[lane] = touch.before;
-            normal[0][lane] = touch.normal.x;
-            normal[1][lane] = touch.normal.y;
-            normal[2][lane] = touch.normal.z;
-            way[0][lane] = touch.way.x;
-            way[1][lane] = touch.way.y;
-            way[2][lane] = touch.way.z;
-        }
-        const auto fresh = maskOf(looked);
-        plane.at = select(fresh, node.position, plane.at);
-        plane.normal = get(normal);
-        plane.way = get(way);
-        plane.distance = hn::Load(D(), distance);
-        plane.before = hn::Load(D(), before);
-        plane.known = choose(fresh, hn::IfThenElseZero(maskOf(met), all(1.0f)), plane.known);
-        meets = either(meets, maskOf(met));
-        room = roomLeft();
-    }
-    plane.room = (hn::Min(room.carried, room.other) - reach) * all(carrier.least);
-    plane.moved = node.displacement;
+    auto meets = both(plane.known > hn::Zero(D()), either(gone <= all(kClose), outside));
+    if (HWY_UNLIKELY(!hn::AllTrue(D(), meets)))
+        meets = lookAtBody(body, node.position + root, reach, node, block, i, substep, meets, plane);
     if (HWY_LIKELY(hn::AllFalse(D(), meets))) return;
     const V farOutside = all(-1e3f);
     const V distance = plane.distance + dot(node.position - plane.at, plane.normal);

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A body's distances as vectors of lanes gather them.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "hairloom/body_field.h"
+
+namespace hairloom::runtime {
+
+/// The same numbers as a field's, packed into aligned words so that two reads tell all corners of a cell.
+struct BodyTable {
+    static constexpr std::int32_t kMixed = 0xff;  ///< of a cell whose skin does not go with one bone alone
+    static constexpr std::int32_t kRefined = 1 << 24;
+    static constexpr std::int32_t kRow = BodyField::kBlockCells, kLayer = kRow * kRow;
+    static constexpr std::int32_t kBlockQuads = kLayer * BodyField::kBlockCorners;
+
+    BodyTable() = default;
+    explicit BodyTable(const BodyField& field);
+
+    /// Of each cell: its block, BodyField::kNoBlock for none; from bit 16 the bone; kRefined.
+    std::vector<std::int32_t> cells;
+    /// Of each block and each of its cells and layers, four bytes: the distances at (0, 0), (1, 0), (0, 1) and
+    /// (1, 1) of x and y.
+    std::vector<std::int32_t> quads;
+    /// Of each corner, two halves: the distances there and at the next one along x.
+    std::vector<std::int32_t> pairs;
+    std::vector<std::int32_t> refinements;  ///< of each block, BodyField::refinements
+    std::vector<std::int32_t> finer;        ///< BodyField::finer
+
+    std::size_t bytes() const {
+        return (cells.size() + quads.size() + pairs.size() + refinements.size() + finer.size()) *
+               sizeof(std::int32_t);
+    }
+};
+
+/// The one bone that skin hangs on in a whole cell, of which `corner` is the first; BodyTable::kMixed where
+/// there are more.
+std::int32_t boneOfCell(const BodyField& field, std::size_t corner);
+
+}  // namespace hairloom::runtime
