@@ -7,9 +7,9 @@
 #define HAIRLOOM_RUNTIME_ROD_CONTACT_INL_H
 #endif
 
-#include "engine/kernels.h"
 #include "engine/body_free.h"
 #include "engine/body_sample-inl.h"
+#include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "engine/moving_body.h"
 #include "engine/spheres-inl.h"
@@ -131,10 +131,10 @@ HWY_INLINE LaneCarrier carrierOfLanes(std::span<const MovingBody::Carrier> carri
 }
 
 /// Numbers of a vector's lanes, one by one.
-struct Lanes3 {
+struct SplitLanes {
     alignas(64) float at[3][kWidth];
 
-    explicit Lanes3(V3 v) {
+    explicit SplitLanes(V3 v) {
         hn::Store(v.x, D(), at[0]);
         hn::Store(v.y, D(), at[1]);
         hn::Store(v.z, D(), at[2]);
@@ -199,15 +199,17 @@ HWY_NOINLINE RodMask lookAtBody(const MovingBody& body, V3 position_ws, V reach,
     const bool isWhole = body.isWhole(substep);
     const auto ownOnly = isWhole ? carrier.usable : both(carrier.usable, other > near);
     BodySample sample = sampleBody(body.field(), body.table(), place);
-    const auto isOwn = [&] { return isWhole ? sample.inside : hn::And(sample.inside, sample.bone == carrier.bone); };
+    const auto isOwn = [&] {
+        return isWhole ? sample.inside : hn::And(sample.inside, sample.bone == carrier.bone);
+    };
     // Skin of others is farther away than `near`.
     auto lone = both(both(searched, ownOnly), either(isOwn(), both(sample.inside, sample.distance > near)));
     auto met = noLane();
     const std::uint32_t looked = bitsOf(hn::AndNot(lone, searched));
     if (looked != 0) {
-        const Lanes3 at(position_ws), moved(node.displacement);
+        const SplitLanes at(position_ws), moved(node.displacement);
         const Lanes1 keeps(reach);
-        Lanes3 normal(plane.normal), ways(plane.way);
+        SplitLanes normal(plane.normal), ways(plane.way);
         Lanes1 distance(plane.distance), before(plane.before), carriedRoom(carried), otherRoom(other),
             number(carrier.number);
         std::uint32_t metBits = 0, carriedBits = 0;
@@ -266,9 +268,9 @@ HWY_NOINLINE RodMask lookAtBody(const MovingBody& body, V3 position_ws, V reach,
         met = either(met, here);
         const std::uint32_t swept = bitsOf(both(here, before < reach - all(kDeep)));
         if (HWY_UNLIKELY(swept != 0)) {
-            const Lanes3 at(position_ws), moved(node.displacement), ways(plane.way);
+            const SplitLanes at(position_ws), moved(node.displacement), ways(plane.way);
             const Lanes1 keeps(reach), nears(near + carrier.apart);
-            Lanes3 normals(plane.normal);
+            SplitLanes normals(plane.normal);
             Lanes1 distances(plane.distance), befores(plane.before);
             for (std::size_t lane = 0; lane < kWidth; ++lane) {
                 if ((swept >> lane & 1u) == 0) continue;
