@@ -94,7 +94,9 @@ TEST(SampledMotion, OtherRatesSeeTheSameMotion) {
 class HairOut : public testing::Test {
   protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) / "hairloom-hair-out";
+        folder_ =
+            fs::path(testing::TempDir()) / (std::string("hairloom-hair-out-") +
+                                            testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }
