@@ -10,15 +10,13 @@
 #include <unordered_map>
 
 #include "importers/alembic_shown.h"
-#include "importers/corner_values.h"
+#include "importers/file_faces.h"
 #include "importers/scene_parts.h"
 #include "importers/transform_keys.h"
 
 namespace hairloom {
 namespace {
 
-constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 25u;   ///< of all meshes and their instances
-constexpr std::uint64_t kMaxCorners = std::uint64_t{1} << 26u;  ///< likewise
 constexpr std::uint32_t kNoSet = 0xffffffffu;
 
 std::string leafOf(const std::string& path) {
@@ -39,26 +37,16 @@ class Reader {
             if (auto status = addMesh(object); !status) return tl::unexpected(inFile(status.error(), file_));
         }
         if (scene_.soup.offsets.size() < 2)
-            return failIn(file_, {},
-                          leftOut_.empty() ? "has no meshes" : "has no mesh that can be read: " + leftOut(),
-                          "expected a visible head as polygons");
-        if (!leftOut_.empty()) scene_.warnings.push_back(leftOut() + ": these meshes were left out");
+            return failIn(
+                file_, {},
+                leftOut_.empty() ? "has no meshes" : "has no mesh that can be read: " + firstOf(leftOut_),
+                "expected a visible head as polygons");
+        if (!leftOut_.empty()) scene_.warnings.push_back(firstOf(leftOut_) + ": these meshes were left out");
         finish();
         return std::move(scene_);
     }
 
   private:
-    using Corners = std::vector<std::uint32_t>;
-
-    std::string leftOut() const {
-        constexpr std::size_t kShown = 3;
-        std::string list;
-        for (std::size_t i = 0; i < std::min(leftOut_.size(), kShown); ++i)
-            list += (list.empty() ? "" : "; ") + leftOut_[i];
-        if (leftOut_.size() > kShown) list += fmt::format("; and {} more", leftOut_.size() - kShown);
-        return list;
-    }
-
     static const AlembicProperty* movingOf(const AlembicLevel& level) {
         const AlembicProperty* const values = hairloom::valuesOf(level);
         return values != nullptr && values->moves() ? values : nullptr;
@@ -107,8 +95,8 @@ class Reader {
             if (!*numbers) return tl::unexpected(numbers->error());
         }
         const std::size_t pointCount = points->size() / 3;
-        std::vector<std::uint32_t> offsets{0};
-        Corners corners;
+        FileFaces faces;
+        auto& [offsets, corners, isHole] = faces;
         for (const std::int64_t count : *counts) {
             if (count < 0) return leave(fmt::format("has a face of {} corners", count));
             const std::uint64_t end = offsets.back() + static_cast<std::uint64_t>(count);
@@ -124,12 +112,10 @@ class Reader {
                 return leave(fmt::format("has a face that refers to point {} of {}", index, pointCount));
             corners.push_back(static_cast<std::uint32_t>(index));
         }
-        if (scene_.soup.positions.size() + pointCount > kMaxPoints ||
-            scene_.soup.corners.size() + corners.size() > kMaxCorners)
-            return fail("its meshes and their instances have more points or corners than are read",
-                        fmt::format("expected at most {} points and {} corners", kMaxPoints, kMaxCorners));
-        movesPoints_ = movesPoints_ || positions->moves();
-        isCage_ = isCage_ || object.schema.starts_with("AbcGeom_SubD");
+        if (auto status = FaceCollector::fits(scene_.soup, pointCount, faces.corners.size()); !status)
+            return status;
+        collector_.movesPoints = collector_.movesPoints || positions->moves();
+        collector_.isCage = collector_.isCage || object.schema.starts_with("AbcGeom_SubD");
         const auto where = toFileAt(archive_, object.inherited.levels, start_);
         if (!where) return tl::unexpected(where.error());
         const auto carrier = carrierOf(object.inherited.levels);
@@ -143,64 +129,33 @@ class Reader {
         const bool isCarried = *carrier != kNoBone;
         scene_.skin.bones.resize(scene_.soup.positions.size(), {isCarried ? *carrier : 0});
         scene_.skin.weights.resize(scene_.soup.positions.size(), {isCarried ? 1.0f : 0.0f});
-        std::vector<bool> isHole(offsets.size() - 1, false);
+        isHole.assign(faces.count(), 0);
         for (const std::int64_t hole : *holes) {
             if (hole >= 0 && static_cast<std::size_t>(hole) < isHole.size())
-                isHole[static_cast<std::size_t>(hole)] = true;
+                isHole[static_cast<std::size_t>(hole)] = 1;
         }
-        return addFaces(object, offsets, corners, isHole, {pointCount, corners.size(), offsets.size() - 1},
-                        *where);
+        return addFaces(object, faces, {pointCount, corners.size(), faces.count()}, *where);
     }
 
     /// Faces go clockwise in Alembic, seen from outside.
-    Status addFaces(const AlembicShownObject& object, const Corners& offsets, const Corners& corners,
-                    const std::vector<bool>& isHole, const MeshCounts& size, const Eigen::Affine3d& toFile) {
-        PolygonSoup& soup = scene_.soup;
-        const auto uvs = valuesAt(object, "uv", 2, size), normals = valuesAt(object, "N", 3, size);
+    Status addFaces(const AlembicShownObject& object, const FileFaces& faces, const MeshCounts& size,
+                    const Eigen::Affine3d& toFile) {
+        auto uvs = valuesAt(object, "uv", 2, size), normals = valuesAt(object, "N", 3, size);
         for (const auto* const values : {&uvs, &normals}) {
             if (!*values) return tl::unexpected(values->error());
         }
-        const auto groups = groupsOf(object, size.faces);
+        auto groups = groupsOf(object, size.faces);
         if (!groups) return tl::unexpected(groups.error());
-        const bool isMirrored = toFile.linear().determinant() < 0;
-        const Mat3f linear = toFile.linear().cast<float>();
-        Mat3f turned;
-        turned << linear.col(1).cross(linear.col(2)), linear.col(2).cross(linear.col(0)),
-            linear.col(0).cross(linear.col(1));
-        if (isMirrored) turned = -turned;
-        if (*uvs) soup.uvs.resize(soup.corners.size(), Vec2f::Zero());
-        const bool hasUvs = !soup.uvs.empty() || *uvs;
-        meshesWithoutUvs_ += !*uvs;
-        hasNormals_ = hasNormals_ && *normals;
-        for (std::size_t face = 0; face < size.faces; ++face) {
-            const std::uint32_t begin = offsets[face], end = offsets[face + 1];
-            if (isHole[face] || end - begin < 3) {
-                (isHole[face] ? holes_ : tooFewCorners_) += 1;
-                continue;
-            }
-            for (std::uint32_t i = begin; i < end; ++i) {
-                const std::uint32_t corner = isMirrored ? i : end - 1 - (i - begin);
-                soup.corners.push_back(firstPoint_ + corners[corner]);
-                if (hasUvs) {
-                    const float* const uv = *uvs ? (*uvs)->at(corner, corners[corner], face) : nullptr;
-                    const Vec2f found = uv == nullptr ? Vec2f::Zero() : Vec2f(uv[0], uv[1]);
-                    soup.uvs.push_back(found.allFinite() ? found : Vec2f::Zero());
-                }
-                if (hasNormals_) addNormal((*normals)->at(corner, corners[corner], face), turned);
-            }
-            soup.offsets.push_back(static_cast<std::uint32_t>(soup.corners.size()));
-            soup.faceGroups.push_back((*groups)[face]);
-            soup.faceMaterials.push_back(0);
-        }
+        FacesInScene in;
+        in.uvs = std::move(*uvs);
+        in.normals = std::move(*normals);
+        in.groups = std::move(*groups);
+        in.materials.assign(faces.count(), 0);
+        in.firstPoint = firstPoint_;
+        in.toWorld = toFile;
+        in.isReversed = !(toFile.linear().determinant() < 0);
+        collector_.add(faces, in, scene_.soup);
         return {};
-    }
-
-    void addNormal(const float* numbers, const Mat3f& turned) {
-        Vec3f normal = Vec3f::Zero();
-        if (numbers != nullptr) normal = turned * Vec3f(numbers[0], numbers[1], numbers[2]);
-        const float length = normal.norm();
-        badNormals_ += !(std::isfinite(length) && length > 0);
-        scene_.soup.normals.push_back(normal / length);
     }
 
     /// A plain property, or the pair of values and indices into them.
@@ -261,7 +216,7 @@ class Reader {
             if (!members) return tl::unexpected(members.error());
             for (const std::int64_t face : *members) {
                 if (face < 0 || static_cast<std::size_t>(face) >= faces) {
-                    ++badSetFaces_;
+                    ++collector_.badSetFaces;
                     continue;
                 }
                 std::uint32_t& group = groups[static_cast<std::size_t>(face)];
@@ -305,7 +260,7 @@ class Reader {
         const auto isSheared = addTransformKeys(
             times, at, [&](double seconds) { return static_cast<float>(seconds - start_); }, channel);
         if (!isSheared) return tl::unexpected(isSheared.error());
-        isSheared_ = isSheared_ || *isSheared;
+        collector_.isSheared = collector_.isSheared || *isSheared;
         scene_.bones.push_back(std::move(bone));
         clip_.duration = std::max(clip_.duration, lastTime(channel));
         clip_.channels.push_back(std::move(channel));
@@ -314,22 +269,7 @@ class Reader {
 
     void finish() {
         scene_.soup.materialNames = {"default"};
-        const auto tell = [&](std::size_t count, const char* what) {
-            if (count > 0) scene_.warnings.push_back(fmt::format("{} {}", count, what));
-        };
-        tell(tooFewCorners_, "faces with fewer than three corners were left out");
-        tell(holes_, "faces that are holes were left out");
-        tell(badSetFaces_, "faces of sets are not there");
-        if (!scene_.soup.uvs.empty())
-            tell(meshesWithoutUvs_, "meshes have no texture coordinates; those of their corners are (0, 0)");
-        if (isCage_)
-            scene_.warnings.emplace_back("subdivision surfaces are taken as the polygons of their cages");
-        if (movesPoints_)
-            scene_.warnings.emplace_back("points of meshes move in time; they stay as they are at first");
-        if (isSheared_)
-            scene_.warnings.emplace_back("transforms that shear in time were taken without shear");
-        if (hasNormals_) tell(badNormals_, "normals are unusable, so all are computed from the faces");
-        if (!hasNormals_ || badNormals_ > 0) scene_.soup.normals.clear();
+        collector_.finish(scene_, "sets");
         clip_.name = "animation";
         if (!clip_.channels.empty()) scene_.clips.push_back(std::move(clip_));
         if (scene_.bones.empty()) scene_.skin = {};
@@ -344,8 +284,7 @@ class Reader {
     std::map<std::string, std::uint32_t> carriers_;
     std::unordered_map<std::string, std::uint32_t> groups_;
     std::vector<std::string> leftOut_;
-    bool hasNormals_ = true, isCage_ = false, movesPoints_ = false, isSheared_ = false;
-    std::size_t meshesWithoutUvs_ = 0, tooFewCorners_ = 0, holes_ = 0, badNormals_ = 0, badSetFaces_ = 0;
+    FaceCollector collector_;
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "importers/scene_parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace hairloom {
@@ -31,6 +33,15 @@ std::uint32_t indexOf(const std::string& name, std::unordered_map<std::string, s
     const auto [entry, added] = indices.try_emplace(name, static_cast<std::uint32_t>(names.size()));
     if (added) names.push_back(name);
     return entry->second;
+}
+
+std::string firstOf(const std::vector<std::string>& texts) {
+    constexpr std::size_t kShown = 3;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(texts.size(), kShown); ++i)
+        list += (list.empty() ? "" : "; ") + texts[i];
+    if (texts.size() > kShown) list += fmt::format("; and {} more", texts.size() - kShown);
+    return list;
 }
 
 }  // namespace hairloom

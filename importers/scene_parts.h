@@ -21,4 +21,7 @@ float lastTime(const Channel& channel);
 std::uint32_t indexOf(const std::string& name, std::unordered_map<std::string, std::uint32_t>& indices,
                       std::vector<std::string>& names);
 
+/// The first three texts and how many more there are: "a; b; c; and 2 more".
+std::string firstOf(const std::vector<std::string>& texts);
+
 }  // namespace hairloom

@@ -7,24 +7,13 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "importers/file_faces.h"
 #include "importers/scene_parts.h"
 #include "importers/usd_bones.h"
 #include "importers/usd_primvar.h"
 
 namespace hairloom {
 namespace {
-
-constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 25u;   ///< of all meshes and their instances
-constexpr std::uint64_t kMaxCorners = std::uint64_t{1} << 26u;  ///< likewise
-
-std::string listOfSome(const std::vector<std::string>& texts) {
-    constexpr std::size_t kShown = 3;
-    std::string list;
-    for (std::size_t i = 0; i < std::min(texts.size(), kShown); ++i)
-        list += (list.empty() ? "" : "; ") + texts[i];
-    if (texts.size() > kShown) list += fmt::format("; and {} more", texts.size() - kShown);
-    return list;
-}
 
 std::string tokenAt(const UsdPrim& prim, std::string_view name, const char* otherwise, double time) {
     const UsdAttribute* const attribute = prim.find(name);
@@ -39,13 +28,6 @@ const std::string& calledName(const UsdPrim& prim) {
 }
 
 constexpr std::uint32_t kNoSubset = 0xffffffffu;
-
-/// Faces of one mesh as the file has them.
-struct Faces {
-    std::vector<std::uint32_t> offsets{0}, corners;
-    std::vector<std::uint8_t> isHole;
-    std::size_t count() const { return offsets.size() - 1; }
-};
 
 class Reader {
   public:
@@ -68,8 +50,7 @@ class Reader {
                 return tl::unexpected(status.error());
         }
         if (scene_.soup.offsets.size() < 2) return noMesh();
-        if (!leftOut_.empty())
-            scene_.warnings.push_back(listOfSome(leftOut_) + ": these meshes were left out");
+        if (!leftOut_.empty()) scene_.warnings.push_back(firstOf(leftOut_) + ": these meshes were left out");
         if (auto status = bones_.addClips(); !status) return tl::unexpected(status.error());
         finish();
         return std::move(scene_);
@@ -94,7 +75,7 @@ class Reader {
         const auto up = stage_.metadata.find("upAxis");
         scene_.statesUp = up != stage_.metadata.end() && !up->second.texts.empty();
         const auto tell = [&](const std::vector<std::string>& what, const char* behind) {
-            if (!what.empty()) scene_.warnings.push_back(listOfSome(what) + behind);
+            if (!what.empty()) scene_.warnings.push_back(firstOf(what) + behind);
         };
         tell(stage_.repeated, ": stands twice, and USD's own library refuses it");
         tell(stage_.chosen, ": other variants were left out");
@@ -104,7 +85,7 @@ class Reader {
     Result<RawScene> noMesh() const {
         std::vector<std::string> reasons = stage_.notFollowed;
         reasons.insert(reasons.end(), leftOut_.begin(), leftOut_.end());
-        return fail(reasons.empty() ? "has no meshes" : "has no mesh that shows: " + listOfSome(reasons),
+        return fail(reasons.empty() ? "has no meshes" : "has no mesh that shows: " + firstOf(reasons),
                     "expected a head as a Mesh with faces");
     }
 
@@ -119,8 +100,8 @@ class Reader {
     }
 
     /// What is wrong with a mesh leaves it out, and the others to be had.
-    Result<Faces> facesOf(const UsdPrim& mesh, std::size_t points) {
-        Faces faces;
+    Result<FileFaces> facesOf(const UsdPrim& mesh, std::size_t points) {
+        FileFaces faces;
         const std::vector<std::int64_t> counts = wholesOf(mesh, "faceVertexCounts"),
                                         indices = wholesOf(mesh, "faceVertexIndices");
         for (const std::int64_t count : counts) {
@@ -155,17 +136,14 @@ class Reader {
         if (attribute == nullptr) return leave("has no points");
         UsdValue value = valueAt(*attribute, range_.start);
         if (value.numbers.empty() || value.components != 3) return leave("has no points");
-        movesPoints_ = movesPoints_ || attribute->samples.size() > 1;
+        collector_.movesPoints = collector_.movesPoints || attribute->samples.size() > 1;
         const std::vector<float> points = std::move(value.numbers).floats();
         const std::size_t count = points.size() / 3;
         const auto faces = facesOf(mesh, count);
         if (!faces) return leave(faces.error().problem);
         if (faces->count() == 0) return leave("has no faces");
         PolygonSoup& soup = scene_.soup;
-        if (soup.positions.size() + count > kMaxPoints ||
-            soup.corners.size() + faces->corners.size() > kMaxCorners)
-            return fail("its meshes and their instances have more points or corners than are read",
-                        fmt::format("expected at most {} points and {} corners", kMaxPoints, kMaxCorners));
+        if (auto status = FaceCollector::fits(soup, count, faces->corners.size()); !status) return status;
         auto binding = bones_.bind(shown, count);
         if (!binding) return tl::unexpected(binding.error());
         const auto first = static_cast<std::uint32_t>(soup.positions.size());
@@ -177,65 +155,25 @@ class Reader {
         skin.bones.insert(skin.bones.end(), binding->skin.bones.begin(), binding->skin.bones.end());
         skin.weights.insert(skin.weights.end(), binding->skin.weights.begin(), binding->skin.weights.end());
         const std::string scheme = tokenAt(mesh, "subdivisionScheme", "", range_.start);
-        isCage_ = isCage_ || (!scheme.empty() && scheme != "none");
+        collector_.isCage = collector_.isCage || (!scheme.empty() && scheme != "none");
         addFaces(shown, *faces, {count, faces->corners.size(), faces->count()}, first, binding->toWorld);
         return {};
     }
 
-    void addFaces(const UsdShownPrim& shown, const Faces& faces, const MeshCounts& size,
+    void addFaces(const UsdShownPrim& shown, const FileFaces& faces, const MeshCounts& size,
                   std::uint32_t firstPoint, const Eigen::Affine3d& toWorld) {
         const UsdPrim& mesh = *shown.prim;
-        PolygonSoup& soup = scene_.soup;
-        const auto uvs = primvarOf(shown, uvNameOf(mesh), 2, size);
-        const auto normals = normalsOf(shown, size);
-        const std::vector<std::uint32_t> groups = groupsOf(shown, faces.count()),
-                                         materials = materialsOf(shown, faces.count());
         const bool isMirrored = toWorld.linear().determinant() < 0;
-        const bool isReversed =
-            isMirrored != (tokenAt(mesh, "orientation", "rightHanded", range_.start) == "leftHanded");
-        const Mat3f linear = toWorld.linear().cast<float>();
-        Mat3f turned;
-        turned << linear.col(1).cross(linear.col(2)), linear.col(2).cross(linear.col(0)),
-            linear.col(0).cross(linear.col(1));
-        if (isMirrored) turned = -turned;
-        // Corners of meshes without texture coordinates have them at 0 once another mesh has some.
-        if (uvs) soup.uvs.resize(soup.corners.size(), Vec2f::Zero());
-        const bool hasUvs = !soup.uvs.empty() || uvs;
-        meshesWithoutUvs_ += !uvs;
-        hasNormals_ = hasNormals_ && normals;
-        for (std::size_t face = 0; face < faces.count(); ++face) {
-            const std::uint32_t begin = faces.offsets[face], end = faces.offsets[face + 1];
-            if (faces.isHole[face]) {
-                ++holes_;
-                continue;
-            }
-            if (end - begin < 3) {
-                ++tooFewCorners_;
-                continue;
-            }
-            for (std::uint32_t i = begin; i < end; ++i) {
-                const std::uint32_t corner = isReversed ? end - 1 - (i - begin) : i;
-                const std::uint32_t point = faces.corners[corner];
-                soup.corners.push_back(firstPoint + point);
-                if (hasUvs) {
-                    const float* const uv = uvs ? uvs->at(corner, point, face) : nullptr;
-                    const Vec2f found = uv == nullptr ? Vec2f::Zero() : Vec2f(uv[0], uv[1]);
-                    soup.uvs.push_back(found.allFinite() ? found : Vec2f::Zero());
-                }
-                if (hasNormals_) addNormal(normals->at(corner, point, face), turned);
-            }
-            soup.offsets.push_back(static_cast<std::uint32_t>(soup.corners.size()));
-            soup.faceGroups.push_back(groups[face]);
-            soup.faceMaterials.push_back(materials[face]);
-        }
-    }
-
-    void addNormal(const float* numbers, const Mat3f& turned) {
-        Vec3f normal = Vec3f::Zero();
-        if (numbers != nullptr) normal = turned * Vec3f(numbers[0], numbers[1], numbers[2]);
-        const float length = normal.norm();
-        badNormals_ += !(std::isfinite(length) && length > 0);
-        scene_.soup.normals.push_back(normal / length);
+        const bool isLeftHanded = tokenAt(mesh, "orientation", "rightHanded", range_.start) == "leftHanded";
+        FacesInScene in;
+        in.uvs = primvarOf(shown, uvNameOf(mesh), 2, size);
+        in.normals = normalsOf(shown, size);
+        in.groups = groupsOf(shown, faces.count());
+        in.materials = materialsOf(shown, faces.count());
+        in.firstPoint = firstPoint;
+        in.toWorld = toWorld;
+        in.isReversed = isMirrored != isLeftHanded;
+        collector_.add(faces, in, scene_.soup);
     }
 
     std::optional<CornerValues> primvarOf(const UsdShownPrim& shown, std::string_view name,
@@ -284,7 +222,7 @@ class Reader {
             if (!number) continue;
             for (const std::int64_t index : wholesOf(*subset, "indices")) {
                 if (index < 0 || static_cast<std::uint64_t>(index) >= faces) {
-                    ++badSubsetFaces_;
+                    ++collector_.badSetFaces;
                     continue;
                 }
                 std::uint32_t& own = numbers[static_cast<std::size_t>(index)];
@@ -319,20 +257,7 @@ class Reader {
     }
 
     void finish() {
-        const auto tell = [&](std::size_t count, const char* what) {
-            if (count > 0) scene_.warnings.push_back(fmt::format("{} {}", count, what));
-        };
-        tell(tooFewCorners_, "faces with fewer than three corners were left out");
-        tell(holes_, "faces that are holes were left out");
-        tell(badSubsetFaces_, "faces of subsets are not there");
-        if (!scene_.soup.uvs.empty())
-            tell(meshesWithoutUvs_, "meshes have no texture coordinates; those of their corners are (0, 0)");
-        if (isCage_)
-            scene_.warnings.emplace_back("subdivision surfaces are taken as the polygons of their cages");
-        if (movesPoints_)
-            scene_.warnings.emplace_back("points of meshes move in time; they stay as they are at first");
-        if (hasNormals_) tell(badNormals_, "normals are unusable, so all are computed from the faces");
-        if (!hasNormals_ || badNormals_ > 0) scene_.soup.normals.clear();
+        collector_.finish(scene_, "subsets");
         if (scene_.bones.empty()) scene_.skin = {};
     }
 
@@ -344,8 +269,7 @@ class Reader {
     UsdBones bones_;
     std::unordered_map<std::string, std::uint32_t> groups_, materials_;
     std::vector<std::string> leftOut_;
-    bool hasNormals_ = true, isCage_ = false, movesPoints_ = false;
-    std::size_t meshesWithoutUvs_ = 0, tooFewCorners_ = 0, holes_ = 0, badNormals_ = 0, badSubsetFaces_ = 0;
+    FaceCollector collector_;
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "importers/file_format.h"
 #include "importers/hermite_curves.h"
 #include "importers/sample_times.h"
+#include "importers/scene_parts.h"
 #include "importers/strand_parts.h"
 #include "importers/usd_values.h"
 
@@ -45,15 +46,6 @@ std::vector<float> pointsOf(UsdValue value) {
     return value.components == 3 ? std::move(value.numbers).floats() : std::vector<float>();
 }
 
-std::string listOf(const std::vector<std::string>& texts) {
-    constexpr std::size_t kShown = 3;
-    std::string list;
-    for (std::size_t i = 0; i < std::min(texts.size(), kShown); ++i)
-        list += (list.empty() ? "" : "; ") + texts[i];
-    if (texts.size() > kShown) list += fmt::format("; and {} more", texts.size() - kShown);
-    return list;
-}
-
 std::string tokenOf(const UsdPrim& prim, std::string_view name, const char* otherwise) {
     const UsdAttribute* const attribute = prim.find(name);
     return attribute == nullptr || attribute->value.texts.empty() ? otherwise
@@ -73,11 +65,11 @@ class Reader {
         reasons.insert(reasons.end(), shown->leftOut.begin(), shown->leftOut.end());
         if (shown->prims.empty())
             return failIn(file_, {},
-                          reasons.empty() ? "has no curves" : "has no curves that show: " + listOf(reasons),
+                          reasons.empty() ? "has no curves" : "has no curves that show: " + firstOf(reasons),
                           "expected hair as BasisCurves, NurbsCurves or HermiteCurves");
         if (!shown->leftOut.empty())
             strands_.warnings.push_back(
-                fileNote(listOf(shown->leftOut), "stage", "these curves were left out"));
+                fileNote(firstOf(shown->leftOut), "stage", "these curves were left out"));
         if (auto status = planTimes(shown->prims); !status)
             return tl::unexpected(inFile(status.error(), file_));
         for (UsdShownPrim& curves : shown->prims) {
@@ -125,10 +117,10 @@ class Reader {
                                          repeated, "write the file anew with each name once"});
         if (!stage_.chosen.empty())
             strands_.warnings.push_back(
-                fileNote(listOf(stage_.chosen), "variants", "other variants were left out"));
+                fileNote(firstOf(stage_.chosen), "variants", "other variants were left out"));
         if (!stage_.notFollowed.empty())
             strands_.warnings.push_back(
-                fileWarning(listOf(stage_.notFollowed), "composition",
+                fileWarning(firstOf(stage_.notFollowed), "composition",
                             "put what is missing beside the file, or flatten the stage (usdcat --flatten)"));
     }
 
@@ -433,7 +425,7 @@ class Reader {
             endPart(strands_, path, parts_[i]);
         }
         if (strands_.offsets.size() < 2 && !broken.empty())
-            return failIn(file_, {}, "has no curves that can be read: " + listOf(broken),
+            return failIn(file_, {}, "has no curves that can be read: " + firstOf(broken),
                           "expected counts that add up to the points");
         adoptAttributes(strands_);
         strands_.format = "USD";
