@@ -122,8 +122,7 @@ void layersFromParts(RawStrands& strands) {
             std::string name = part.name.empty() ? names[path] : part.name;
             if (name.empty()) name = Layer{}.name;
             auto known = std::ranges::find(strands.layerNames, name);
-            if (known == strands.layerNames.end())
-                known = strands.layerNames.insert(known, name);
+            if (known == strands.layerNames.end()) known = strands.layerNames.insert(known, name);
             layerOf.push_back(static_cast<std::int32_t>(known - strands.layerNames.begin()));
         }
         for (const std::uint32_t part : strands.partOfStrand) layer.whole.push_back(layerOf[part]);

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "importers/mesh_reader/gltf_keys.h"
-#include "importers/scene_parts.h"
 #include "importers/mesh_reader/tinygltf.h"
+#include "importers/scene_parts.h"
 
 namespace hairloom {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "importers/mesh_reader/gltf_draco.h"
 #include "importers/mesh_reader/gltf_nodes.h"
-#include "importers/scene_parts.h"
 #include "importers/mesh_reader/tinygltf.h"
+#include "importers/scene_parts.h"
 
 namespace hairloom {
 namespace {

@@ -270,8 +270,8 @@ BodyField::Sample BodyField::at(Float3 point_ss) const {
             steps *= kFine;
         }
     }
-    const std::int8_t* const first =
-        values.data() + own * kBlockValues + (std::size_t{in.z} * kBlockCorners + in.y) * kBlockCorners + in.x;
+    const std::int8_t* const first = values.data() + own * kBlockValues +
+                                     (std::size_t{in.z} * kBlockCorners + in.y) * kBlockCorners + in.x;
     Sample fine =
         in.in.sample(scaled(cornersOf(first, kBlockCorners, kBlockCorners * kBlockCorners), kFineUnit));
     fine.gradient = fine.gradient * steps;

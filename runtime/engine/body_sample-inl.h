@@ -63,8 +63,7 @@ HWY_INLINE BodySample sampleBody(const BodyField& field, const BodyTable& table,
     const V perCell = all(1 / field.cell), zero = hn::Zero(D());
     V3 at = (point_ss - all3(field.low_ss)) * perCell;
     const auto within = [&](V place, V most) { return hn::And(place >= zero, place <= most); };
-    const auto inside =
-        hn::And(within(at.x, size.x), hn::And(within(at.y, size.y), within(at.z, size.z)));
+    const auto inside = hn::And(within(at.x, size.x), hn::And(within(at.y, size.y), within(at.z, size.z)));
     // No lane reads beyond the table, nor one that is no number.
     at = onlyWhere(inside, at);
     const V one = all(1.0f);
@@ -84,15 +83,15 @@ HWY_INLINE BodySample sampleBody(const BodyField& field, const BodyTable& table,
             return in.z * allWords(BodyTable::kLayer) + in.y * allWords(BodyTable::kRow) + in.x;
         };
         V steps = perCell * all(kFine);
-        const auto refined =
-            hn::And(has, hn::RebindMask(D(), hn::And(entry, allWords(BodyTable::kRefined)) !=
-                                                 hn::Zero(BodyInts())));
+        const auto refined = hn::And(
+            has, hn::RebindMask(D(), hn::And(entry, allWords(BodyTable::kRefined)) != hn::Zero(BodyInts())));
         if (HWY_UNLIKELY(!hn::AllFalse(D(), refined))) {
             const auto words = hn::RebindMask(BodyInts(), refined);
             const BodyWords ours = hn::IfThenElseZero(words, block);
             // Lanes that are not refined read what some other one does.
             const BodyWords which = hn::IfThenElseZero(words, wordsAt(table.refinements, ours));
-            const BodyWords own = wordsAt(table.finer, which * allWords(BodyTable::kRow * BodyTable::kLayer) + quadOf(place));
+            const BodyWords own =
+                wordsAt(table.finer, which * allWords(BodyTable::kRow * BodyTable::kLayer) + quadOf(place));
             const auto isFiner = hn::And(refined, hn::RebindMask(D(), own != allWords(BodyField::kNoBlock)));
             const BodyPlace inner = bodyPlaceAt(place.in * all(kFine), last);
             const auto finer = hn::RebindMask(BodyInts(), isFiner);
@@ -132,10 +131,10 @@ HWY_INLINE BodySample sampleBody(const BodyField& field, const BodyTable& table,
     V3 gradient;
     bodyTrilinear(corners, cell.in, all(field.unit), distance, gradient);
     gradient = gradient * perCell;
-    const V mixed = hn::Max(hn::Min((away - all(BodyField::kFineReach)) *
-                                        all(1 / (BodyField::kFineEnd - BodyField::kFineReach)),
-                                    one),
-                            zero);
+    const V mixed = hn::Max(
+        hn::Min((away - all(BodyField::kFineReach)) * all(1 / (BodyField::kFineEnd - BodyField::kFineReach)),
+                one),
+        zero);
     const V share = hn::IfThenElse(has, mixed, one);
     sample.distance = lerp(sample.distance, distance, share);
     sample.gradient = mulAdd(gradient - sample.gradient, share, sample.gradient);

@@ -9,7 +9,8 @@ std::int32_t boneOfCell(const BodyField& field, std::size_t corner) {
     if (field.bones.empty()) return 0;
     const std::size_t row = field.size[0] + 1, layer = row * (field.size[1] + 1);
     const std::uint16_t first = field.skins[corner];
-    for (const std::size_t step : {std::size_t{1}, row, row + 1, layer, layer + 1, layer + row, layer + row + 1})
+    for (const std::size_t step :
+         {std::size_t{1}, row, row + 1, layer, layer + 1, layer + row, layer + row + 1})
         if (field.skins[corner + step] != first) return BodyTable::kMixed;
     const BodyField::Skin& skin = field.palette[first];
     constexpr std::uint8_t kAll = 255;
@@ -44,16 +45,16 @@ BodyTable::BodyTable(const BodyField& field) {
                 for (std::uint32_t x = 0; x < kCells; ++x) {
                     const std::int8_t* const v = field.values.data() + b * BodyField::kBlockValues +
                                                  (std::size_t{z} * kCorners + y) * kCorners + x;
-                    quads.push_back(
-                        word(byte(v[0], 0) | byte(v[1], 8) | byte(v[kCorners], 16) | byte(v[kCorners + 1], 24)));
+                    quads.push_back(word(byte(v[0], 0) | byte(v[1], 8) | byte(v[kCorners], 16) |
+                                         byte(v[kCorners + 1], 24)));
                 }
     // What lanes without a block read.
     quads.resize(std::max<std::size_t>(quads.size(), kBlockQuads), 0);
     pairs.reserve(field.distances.size());
     for (std::size_t i = 0; i < field.distances.size(); ++i) {
         const auto here = static_cast<std::uint16_t>(field.distances[i]);
-        const auto next =
-            static_cast<std::uint16_t>(i + 1 < field.distances.size() ? field.distances[i + 1] : std::int16_t{0});
+        const auto next = static_cast<std::uint16_t>(i + 1 < field.distances.size() ? field.distances[i + 1]
+                                                                                    : std::int16_t{0});
         pairs.push_back(word(std::uint32_t{here} | std::uint32_t{next} << 16));
     }
     refinements.assign(field.refinements.begin(), field.refinements.end());

@@ -22,8 +22,8 @@ struct BodyTable {
 
     /// Of each cell: its block, BodyField::kNoBlock for none; from bit 16 the bone; kRefined.
     std::vector<std::int32_t> cells;
-    /// Of each block and each of its cells and layers, four bytes: the distances at (0, 0), (1, 0), (0, 1) and
-    /// (1, 1) of x and y.
+    /// Of each block and each of its cells and layers, four bytes: the distances at (0, 0), (1, 0), (0, 1)
+    /// and (1, 1) of x and y.
     std::vector<std::int32_t> quads;
     /// Of each corner, two halves: the distances there and at the next one along x.
     std::vector<std::int32_t> pairs;

@@ -78,12 +78,12 @@ struct Engine::Impl {
     Host host_;
     std::shared_ptr<const RestShape> shape_;
     std::shared_ptr<const BodyField> body_;
-    Floats clearances_;            // of the body; empty without one
-    Floats bodySeen_;              // kBodyPlanes, per block
-    bool bodyLost_ = true;         // what they say is void
+    Floats clearances_;     // of the body; empty without one
+    Floats bodySeen_;       // kBodyPlanes, per block
+    bool bodyLost_ = true;  // what they say is void
     BodyTable bodyTable_;
     std::vector<std::uint32_t> bodyCarriers_;  // carriersOf()
-    OwnedStrands strands_;         // as their model has them
+    OwnedStrands strands_;                     // as their model has them
     EffectPlan plan_;
     FrameWind wind_;
     State state_;

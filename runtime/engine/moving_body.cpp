@@ -133,7 +133,8 @@ BodyLook MovingBody::look(std::uint32_t substep, const BodyVisit& visit) const {
     const float* const leasts = leasts_.data() + substep * bones_;
     const std::span<const Carrier> all = carriers(substep);
     const auto besideOf = [&](std::size_t b, Float3 rest) {
-        return isWhole(substep) || field_->boxes.empty() ? 0.0f : leasts[b] * distanceTo(field_->boxes[b], rest);
+        return isWhole(substep) || field_->boxes.empty() ? 0.0f
+                                                         : leasts[b] * distanceTo(field_->boxes[b], rest);
     };
     BodyLook look;
     // The carrier whose skin may be nearest.
@@ -249,8 +250,9 @@ std::vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& b
     std::iota(carriers.begin(), carriers.end(), 0u);
     std::stable_sort(carriers.begin(), carriers.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return corners[a] > corners[b]; });
-    const auto first = std::max_element(carriers.begin(), carriers.end(),
-                                        [&](std::uint32_t a, std::uint32_t b) { return roots[a] < roots[b]; });
+    const auto first =
+        std::max_element(carriers.begin(), carriers.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return roots[a] < roots[b]; });
     std::rotate(carriers.begin(), first, first + 1);
     if (carriers.size() > MovingBody::kMostCarriers) carriers.resize(MovingBody::kMostCarriers);
     return carriers;

@@ -59,7 +59,7 @@ struct BodyField {
     std::vector<std::uint16_t> refinements;
     /// Of each refined block and each of its cells, x fastest: a block for that cell; kNoBlock for none.
     std::vector<std::uint16_t> finer;
-    std::vector<std::string> bones;     ///< names of at most 255; empty: the body moves as a whole
+    std::vector<std::string> bones;  ///< names of at most 255; empty: the body moves as a whole
     /// A box at rest: outside of it a bone moves no skin and what is near it.
     struct Box {
         Float3 low{}, high{};
