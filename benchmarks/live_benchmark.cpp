@@ -37,7 +37,7 @@ Groom manyHairs() {
 Result<Sample> groomOf(const std::string& name) {
     if (name == kMany) return Sample{name, manyHairs()};
     if (std::filesystem::exists(name)) {
-        auto opened = loadDocument(name);
+        auto opened = openGroom(name);
         if (!opened) return tl::unexpected(opened.error());
         return Sample{name, std::move(*opened)};
     }

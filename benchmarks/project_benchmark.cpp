@@ -9,6 +9,7 @@
 #include "benchmarks/temporary_file.h"
 #include "core/base/file.h"
 #include "core/groom/file/project_file.h"
+#include "core/operations/stack.h"
 
 namespace hairloom::benchmarks {
 namespace {
@@ -39,7 +40,7 @@ void measure(Timings& timings, const std::string& name, const Groom& groom) {
     });
     timings.measure("load, " + name, [&](Rounds& rounds) -> Status {
         while (rounds.next()) {
-            const auto loaded = loadProject(file.path);
+            const auto loaded = openProject(file.path);
             if (!loaded) return tl::unexpected(loaded.error());
             keep(*loaded);
         }

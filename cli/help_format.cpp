@@ -19,8 +19,23 @@ std::string namesOf(const std::set<CLI::Option*>& options) {
     return names;
 }
 
-/// What is said of the option, and what the parser knows of it.
-std::string meaningOf(const CLI::Option& option, const OptionValues& kind) {
+}  // namespace
+
+OptionValues valuesOf(const CLI::Option& option) {
+    const std::string words = option.get_type_name();
+    OptionValues values{words.substr(0, words.find_first_of(":{")), {}, {}};
+    const auto between = [&](char open, char close) -> std::string {
+        const auto begin = words.find(open), end = words.rfind(close);
+        if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
+        return words.substr(begin + 1, end - begin - 1);
+    };
+    values.choices = between('{', '}');
+    values.range = between('[', ']');
+    return values;
+}
+
+std::string meaningOf(const CLI::Option& option) {
+    const OptionValues kind = valuesOf(option);
     const std::string said = option.get_description();
     const auto list = said.find('\n');
     std::string text = said.substr(0, list);
@@ -37,19 +52,10 @@ std::string meaningOf(const CLI::Option& option, const OptionValues& kind) {
     return list == std::string::npos ? text : text + said.substr(list);
 }
 
-}  // namespace
-
-OptionValues valuesOf(const CLI::Option& option) {
-    const std::string words = option.get_type_name();
-    OptionValues values{words.substr(0, words.find_first_of(":{")), {}, {}};
-    const auto between = [&](char open, char close) -> std::string {
-        const auto begin = words.find(open), end = words.rfind(close);
-        if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
-        return words.substr(begin + 1, end - begin - 1);
-    };
-    values.choices = between('{', '}');
-    values.range = between('[', ']');
-    return values;
+std::string termOf(const CLI::Option& option) {
+    if (option.get_positional()) return option.get_name(true);
+    const std::string type = valuesOf(option).type;
+    return option.get_name(false, true) + (type.empty() ? "" : " " + type);
 }
 
 std::string spaced(std::string_view list) {
@@ -86,7 +92,7 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool isPositio
                                       : std::string(kColumn - left.size(), ' ');
     std::string out;
     std::string_view rest;
-    const std::string meaning = meaningOf(*option, kind);
+    const std::string meaning = meaningOf(*option);
     for (rest = meaning; !rest.empty();) {
         const auto end = rest.find('\n');
         const std::string_view line = rest.substr(0, end);

@@ -18,6 +18,13 @@ struct OptionValues {
 };
 OptionValues valuesOf(const CLI::Option& option);
 
+/// What an option does, with its choices, range and default, what it needs and what it excludes. A list of
+/// choices with a meaning each follows in lines of its own: `abc  Alembic`.
+std::string meaningOf(const CLI::Option& option);
+
+/// `-o,--output TEXT`, or the name of an argument that stands without one.
+std::string termOf(const CLI::Option& option);
+
 /// Lines of an option's description stay lines; each is wrapped, and what follows two spaces inside a line
 /// hangs under itself: `abc  Alembic`.
 class HelpFormatter : public CLI::Formatter {

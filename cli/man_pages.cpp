@@ -8,6 +8,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "cli/global_options.h"
+#include "cli/help_format.h"
 #include "cli/job.h"
 #include "core/editing/brush_list.h"
 
@@ -40,19 +41,11 @@ std::string entry(const std::string& term, const std::string& meaning) {
     return fmt::format(".TP\n.B {}\n{}\n", escaped(term), escaped(meaning));
 }
 
-/// `--frames INT`, or the name of what stands without one.
-std::string nameOf(const CLI::Option& option) {
-    std::string name = option.get_positional() ? option.get_name(true) : option.get_name(false, true);
-    if (const std::string type = option.get_type_name(); !type.empty() && option.get_expected_max() > 0)
-        name += " " + type;
-    return name;
-}
-
 void addOptions(const CLI::App& app, std::string& page) {
     for (const CLI::Option* option : app.get_options()) {
         if (option->get_name().empty() || option->get_name() == "--help" || option->get_description().empty())
             continue;
-        page += entry(nameOf(*option), option->get_description());
+        page += entry(termOf(*option), meaningOf(*option));
     }
 }
 

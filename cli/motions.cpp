@@ -36,7 +36,7 @@ void addMotionOptions(CLI::App& job, MotionOptions& options) {
 
 Result<MovingGroom> openMovingGroom(const MotionOptions& options) {
     checkMotion(options.motion);
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     if (auto status = setWind(*groom, options.wind); !status) return tl::unexpected(status.error());
     auto motion = makeMotion(options.motion, options.character, *groom);

@@ -65,7 +65,7 @@ Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std:
     std::tie(measuring.picture.width, measuring.picture.height) = size;
     measuring.picture.frames = options.frames;
     measuring.repeats = repeats;
-    auto groom = loadDocument(groomFile);
+    auto groom = openGroom(groomFile);
     if (!groom) return tl::unexpected(groom.error());
     const auto gpu = GpuBackend::make(std::nullopt, options.device);
     if (!gpu) return tl::unexpected(gpu.error());

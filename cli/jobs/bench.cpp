@@ -90,9 +90,10 @@ std::vector<std::string> names() {
 }
 
 std::string namesInWords() {
-    std::string text = "What to measure.";
+    constexpr int kColumn = 13;
+    std::string text = "What to measure";
     for (const Benchmark& benchmark : benchmarks::benchmarks())
-        text += fmt::format(" {}: {}.", benchmark.name, benchmark.measures);
+        text += fmt::format("\n{:<{}}{}", benchmark.name, kColumn, benchmark.measures);
     return text;
 }
 

@@ -41,7 +41,7 @@ Result<Mask> maskOf(const BlendOptions& options) {
 }
 
 Result<Report> run(const BlendOptions& options) {
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     BlendSettings settings = options.settings;
     const auto mask = maskOf(options);

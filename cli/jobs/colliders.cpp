@@ -68,7 +68,7 @@ Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& o
 
 Result<Report> fitColliders(const CollidersOptions& options) {
     const Stopwatch watch;
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     const auto actor = actorForColliders(options.character, *groom);
     if (!actor) return tl::unexpected(actor.error());

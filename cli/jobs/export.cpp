@@ -192,7 +192,7 @@ Result<Report> exportAsPage(const ExportOptions& options) {
             "page",
             "leave them out: the page plays a runtime asset in metres, Y up, which draws follow hairs "
             "itself");
-    const auto groom = loadDocument(options.input);
+    const auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     HairToExport wanted;
     wanted.layers = options.layers;
@@ -206,7 +206,7 @@ Result<Report> exportAsPage(const ExportOptions& options) {
 Result<Report> exportAsset(const ExportOptions& options) {
     const auto asked = findAsked(options);
     if (!asked) return tl::unexpected(asked.error());
-    const auto groom = loadDocument(options.input);
+    const auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     StrandExportOptions exporting = asked->target->options;
     if (!options.unit.empty()) exporting.metresPerUnit = metresPerUnit(options.unit);
@@ -243,13 +243,24 @@ std::string formatsInWords() {
     return text;
 }
 
+std::string targetsInWords() {
+    constexpr int kColumn = 16;
+    std::string text =
+        "Program to export for. Sets unit, axis, points and limits, and the format unless "
+        "--format is given";
+    for (const std::string& program : exportPrograms(hairWriters())) {
+        const HairWriter& writer = preferredWriter(program, hairWriters());
+        text += fmt::format("\n{:<{}}{}", program, kColumn,
+                            writer.holdsCards() ? writer.label : findTarget(writer, program)->note);
+    }
+    return text;
+}
+
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ExportOptions>();
     job.add_option("groom", options->input, "Groom to export")->required();
     job.add_option("--format", options->format, formatsInWords())->check(CLI::IsMember(formatNames()));
-    job.add_option("--target", options->target,
-                   "Program to export for. Sets unit, axis, points and limits, and the format unless "
-                   "--format is given")
+    job.add_option("--target", options->target, targetsInWords())
         ->check(CLI::IsMember(exportPrograms(hairWriters())));
     job.add_option("--what", options->what,
                    "guides: the strands of the groom; hairs: the follow hairs that images show; all: these, "

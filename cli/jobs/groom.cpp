@@ -23,7 +23,7 @@ struct GroomOptions {
 
 Result<Report> replay(const GroomOptions& options) {
     const Stopwatch watch;
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     const auto text = readTextFile(options.script, kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());

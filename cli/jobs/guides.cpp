@@ -22,7 +22,7 @@ struct GuidesOptions {
 };
 
 Result<Report> run(const GuidesOptions& options) {
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     const Stopwatch watch;
     GuidesSettings settings = options.settings;

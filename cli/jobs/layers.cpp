@@ -21,7 +21,7 @@ Report operatorsOf(const Groom& groom, std::uint32_t number) {
 }
 
 Result<Report> layers(const std::string& input) {
-    const auto groom = loadDocument(input);
+    const auto groom = openGroom(input);
     if (!groom) return tl::unexpected(groom.error());
     Report report{{"layers", Report::array()}};
     for (std::uint32_t layer = 0; layer < groom->layers.size(); ++layer) {

@@ -23,7 +23,7 @@ struct LodOptions {
 
 Result<Report> run(const LodOptions& options, const std::string& commandLine) {
     const Stopwatch watch;
-    const auto groom = loadDocument(options.input);
+    const auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     Progress bar("creating levels", 1000);
     const auto chain = makeLevels(

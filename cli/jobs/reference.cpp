@@ -6,8 +6,11 @@
 
 #include <cctype>
 #include <memory>
+#include <sstream>
 
 #include "cli/field_rows.h"
+#include "cli/global_options.h"
+#include "cli/help_format.h"
 #include "cli/job.h"
 #include "cli/man_pages.h"
 #include "cli/outputs.h"
@@ -100,13 +103,46 @@ void addBrushes(std::string& page) {
     }
 }
 
+/// A cell of a table. Lines of a list, `abc  Alembic`, stay lines.
+std::string cellOf(const std::string& text) {
+    std::string cell;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        const auto gap = line.find("  ");
+        if (gap != std::string::npos)
+            line = fmt::format("`{}` {}", line.substr(0, gap), line.substr(line.find_first_not_of(' ', gap)));
+        cell += (cell.empty() ? "" : "<br>") + line;
+    }
+    for (auto at = cell.find('|'); at != std::string::npos; at = cell.find('|', at + 2))
+        cell.insert(at, 1, '\\');
+    return cell;
+}
+
+void addOptions(const CLI::App& app, std::string& page) {
+    page += "\n| option | meaning |\n|---|---|\n";
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_name().empty() || option->get_name() == "--help" || option->get_description().empty())
+            continue;
+        page += fmt::format("| `{}` | {} |\n", cellOf(termOf(*option)), cellOf(meaningOf(*option)));
+    }
+}
+
 void addJobs(std::string& page) {
     page +=
-        "\n## Jobs of the command line\n\n`hairloom-cli JOB --help` shows the options of a job. "
-        "[cli.md](cli.md) describes the answers.\n\n| job | does | example |\n|---|---|---|\n";
-    for (const Job& job : jobs())
-        page +=
-            fmt::format("| `{}` | {} | `hairloom-cli {} {}` |\n", job.name, job.does, job.name, job.example);
+        "\n## Jobs of the command line\n\n`hairloom-cli JOB --help` shows the same options. "
+        "[cli.md](cli.md) describes the answers. Every job\ntakes these options, before its name or after "
+        "it.\n";
+    CLI::App program;
+    GlobalOptions global;
+    addGlobalOptions(program, global);
+    addOptions(program, page);
+    for (const Job& job : jobs()) {
+        page += fmt::format("\n### `{}`\n\n{}\n\n    hairloom-cli {} {}\n", job.name, asSentence(job.does),
+                            job.name, job.example);
+        CLI::App& app = *program.add_subcommand(job.name);
+        job.declare(app);
+        addOptions(app, page);
+    }
 }
 
 Result<Report> write(const std::string& output) {

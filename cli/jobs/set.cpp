@@ -88,7 +88,7 @@ std::vector<std::string> presetNames() {
 }
 
 Result<Report> set(const SetOptions& options) {
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     std::size_t changed = 0;
     if (const runtime::HairPreset* preset = runtime::findPreset(options.preset))

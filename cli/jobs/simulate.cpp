@@ -219,7 +219,7 @@ Result<JobEngine> engineOf(const SimulateOptions& options, const Groom& groom) {
 
 Result<Report> simulate(const SimulateOptions& options) {
     checkMotion(options.motion);
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     if (auto status = overrideSettings(*groom, options); !status) return tl::unexpected(status.error());
     if (options.sag) return sagOf(*groom, options);

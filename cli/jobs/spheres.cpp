@@ -44,7 +44,7 @@ Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOpt
 }
 
 Result<Report> placeSpheres(const SpheresOptions& options) {
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     Report report;
     const auto spheres = options.fit > 0 ? fitted(*groom, options, report) : readSpheres(options.from);

@@ -152,7 +152,7 @@ Report certificateReport(const Certificate& certificate) {
 
 /// What one hairstyle withstands.
 Result<Report> certificateOf(const StabilityJobOptions& options) {
-    const auto groom = loadDocument(options.groom);
+    const auto groom = openGroom(options.groom);
     if (!groom) return tl::unexpected(groom.error());
     CertificateOptions storms;
     storms.storms = options.storms.value_or(storms.storms);

@@ -135,7 +135,7 @@ Result<Report> edit(const StackOptions& options, Groom groom) {
 }
 
 Result<Report> run(const StackOptions& options) {
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     if (!options.output.empty()) return edit(options, std::move(*groom));
     std::vector<Operator> shown = groom->operators;

@@ -24,7 +24,7 @@ struct TransferOptions {
 };
 
 Result<Report> transferHair(const TransferOptions& options) {
-    auto groom = loadDocument(options.input);
+    auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     const auto done = transferToFile(*groom, options.to, headImportOptions(options.head));
     if (!done) return tl::unexpected(inFile(done.error(), options.input));

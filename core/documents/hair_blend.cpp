@@ -155,7 +155,7 @@ Result<OtherShape> shapeOfOther(const Groom& groom, const Groom& other, float re
 Result<HairBlend> blendWithFile(const editing::Model& model, const std::string& path,
                                 const BlendSettings& settings) {
     if (auto status = checkFields("blend", settings); !status) return tl::unexpected(status.error());
-    const auto other = loadDocument(path);
+    const auto other = openGroom(path);
     if (!other) return tl::unexpected(other.error());
     auto shape = shapeOfOther(model.groom, *other, settings.reach);
     if (!shape) return tl::unexpected(inFile(shape.error(), path));

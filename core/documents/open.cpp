@@ -45,7 +45,7 @@ bool mayBeHead(const std::string& path) {
     return !code && meshFormatOf(readBeginning(path, kMeshFormatHead), size).has_value();
 }
 
-Result<Groom> loadDocument(const std::string& path) {
+Result<Groom> openGroom(const std::string& path) {
     if (looksLikeProject(path)) return openProject(path);
     auto imported = importStrands(path, {});
     if (!imported) return tl::unexpected(imported.error());

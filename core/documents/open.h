@@ -23,7 +23,7 @@ Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportO
 Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit);
 
 /// A groom from a project, or from a hair file of any supported format.
-Result<Groom> loadDocument(const std::string& path);
+Result<Groom> openGroom(const std::string& path);
 
 /// What is in a file of any supported kind.
 struct Opened {

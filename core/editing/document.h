@@ -31,7 +31,7 @@ class Document {
     Document& operator=(const Document&) = delete;
     ~Document();
 
-    /// Errors: as loadProject() and saveProject().
+    /// Errors: as openProject() and saveProject().
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path);
     Status save(const std::filesystem::path& path);
     /// What was groom() at this state() has been saved by somebody else's hand.

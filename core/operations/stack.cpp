@@ -127,7 +127,7 @@ Status completeOperators(const std::string& file, Groom& groom) {
 }
 
 Result<Groom> openProject(const std::filesystem::path& path) {
-    auto groom = loadProject(path);
+    auto groom = readProjectFile(path);
     if (!groom) return groom;
     if (auto status = completeOperators(path.string(), *groom); !status)
         return tl::unexpected(status.error());

@@ -39,7 +39,7 @@ std::vector<Operator> readOperators(JsonReader& reader);
 /// The same for those of a groom that was loaded from `file`: settings that it lacks get their defaults.
 /// Error: the first that does not hold, with its JSON path.
 Status completeOperators(const std::string& file, Groom& groom);
-/// A project file with its operators complete. Errors: those of loadProject() and completeOperators().
+/// A project file with its operators complete. Errors: those of readProjectFile() and completeOperators().
 Result<Groom> openProject(const std::filesystem::path& path);
 
 /// Which of its fields: the operation's, scriptRegionFields() or scriptMaskFields().

@@ -66,7 +66,7 @@ class Autosave : public QObject {
     QtDocument& document_;
     const Preferences& preferences_;
     std::optional<RecoveryPlace> place_;
-    QTimer timer_;
+    QTimer timer_{this};
     std::thread writer_;
     std::mutex writing_;
     /// What is unsaved, while no stroke goes on, which would pay for a copy that is held, and the copy's

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -242,6 +243,23 @@ TEST(Words, ComeWithFewerThanFiveSemicolonsInAThousand) {
     }
     EXPECT_GT(words, 5000u);
     EXPECT_LT(1000 * semicolons, 5 * words) << semicolons << " in " << words;
+}
+
+/// Each page by itself: a few plain pages do not make up for one that is hard to read.
+TEST(Words, OfEachPageComeWithFewerThanFiveSemicolonsInAThousand) {
+    struct Count {
+        std::size_t words = 0, semicolons = 0;
+    };
+    std::map<std::string, Count> pages;
+    for (const Passage& passage : pagesForUsers()) {
+        Count& page = pages[passage.place.substr(0, passage.place.rfind(':'))];
+        page.words += static_cast<std::size_t>(std::ranges::count(passage.text, ' ')) + 1;
+        page.semicolons += static_cast<std::size_t>(std::ranges::count(passage.text, ';'));
+    }
+    EXPECT_GT(pages.size(), 25u);
+    for (const auto& [page, count] : pages)
+        EXPECT_LT(1000 * count.semicolons, 5 * count.words)
+            << page << ": " << count.semicolons << " in " << count.words;
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "core/groom/file/project_file.h"
 #include "core/operations/painted_maps.h"
+#include "core/operations/stack.h"
 #include "core/render/png.h"
 #include "tests/cli/command.h"
 
@@ -102,7 +102,7 @@ TEST_F(OperatorsCli, EachColourOfAnImageBecomesAMask) {
     }
     const int all = runJson("info hair.hairloom")["strands"];
     EXPECT_LT(strands, all) << "some roots are on black";
-    const auto groom = loadProject(folder / "regions.hairloom");
+    const auto groom = openProject(folder / "regions.hairloom");
     ASSERT_TRUE(groom) << groom.error().message();
     std::vector<int> in(groom->strandCount(), 0);
     for (const std::uint32_t number : {1u, 2u, 3u}) {

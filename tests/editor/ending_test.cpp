@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "core/documents/recovery.h"
-#include "core/groom/file/project_file.h"
+#include "core/operations/stack.h"
 #include "editor/document/end_signals.h"
 #include "tests/editor/window_fixture.h"
 
@@ -36,7 +36,7 @@ class EndingDeathTest : public WindowTest {
         change("Air drag", changed);
     }
     static float dragIn(const fs::path& path) {
-        const auto saved = loadProject(path);
+        const auto saved = openProject(path);
         return saved ? saved->simulation.airDrag : -1;
     }
     /// As main() does; `doing` is what the window is at when the signal comes.

@@ -15,6 +15,7 @@
 #include <QSlider>
 #include <QSpinBox>
 #include <QTreeWidget>
+#include <cmath>
 #include <set>
 
 #include "core/editing/stack_commands.h"
@@ -344,12 +345,10 @@ TEST_F(HabitsTest, TheViewShowsAsMuchAcrossWhenTheWindowShrinksAndComesBack) {
     const double wide = share();
     for (const QSize size : {QSize(900, 1000), QSize(1280, 700)}) {
         window->resize(size);
-        QTest::qWait(50);
-        const auto seen = across();
-        EXPECT_GT(seen.first, 0) << size.width();
-        EXPECT_LT(seen.second, viewport().width()) << size.width();
+        const auto isSeenWhole = [&] { return across().first > 0 && across().second < viewport().width(); };
+        EXPECT_TRUE(QTest::qWaitFor(isSeenWhole, 20'000)) << size.width();
     }
-    EXPECT_NEAR(share(), wide, 0.005);
+    EXPECT_TRUE(QTest::qWaitFor([&] { return std::abs(share() - wide) < 0.005; }, 20'000)) << share();
     EXPECT_NEAR(0.5 * (across().first + across().second), 0.5 * viewport().width(), 2);
 }
 

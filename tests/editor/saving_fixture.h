@@ -11,6 +11,7 @@
 #include "core/base/file_version.h"
 #include "core/documents/recovery.h"
 #include "core/groom/file/project_file.h"
+#include "core/operations/stack.h"
 #include "editor/shell/start_page.h"
 #include "tests/editor/window_fixture.h"
 
@@ -34,7 +35,7 @@ class SavingTest : public WindowTest {
     }
     /// As another program saves: a new file takes the name.
     void saveElsewhere(const std::filesystem::path& path, float drag) const {
-        auto theirs = loadProject(path);
+        auto theirs = openProject(path);
         ASSERT_TRUE(theirs) << theirs.error().message();
         theirs->simulation.airDrag = drag;
         const std::filesystem::path beside = path.parent_path() / "theirs.hairloom";
@@ -42,7 +43,7 @@ class SavingTest : public WindowTest {
         std::filesystem::rename(beside, path);
     }
     static float dragIn(const std::filesystem::path& path) {
-        const auto saved = loadProject(path);
+        const auto saved = openProject(path);
         return saved ? saved->simulation.airDrag : -1;
     }
     /// Presses a button of the question that comes, and says whether one came.

@@ -19,6 +19,7 @@
 #include "core/base/file.h"
 #include "core/documents/hair_import.h"
 #include "core/groom/file/project_file.h"
+#include "core/operations/stack.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/import_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
@@ -187,7 +188,7 @@ TEST_F(ShellTest, UnsavedChangesAreGuarded) {
     window->setUnsavedAnswer(MainWindow::Unsaved::Save);
     trigger("file.new");
     EXPECT_TRUE(document().isEmpty());
-    const auto saved = loadProject(inFolder("guarded.hairloom").toStdString());
+    const auto saved = openProject(inFolder("guarded.hairloom").toStdString());
     ASSERT_TRUE(saved);
     EXPECT_EQ(contentHash(*saved), unsaved);
 }
@@ -248,7 +249,7 @@ TEST_F(ShellTest, AutosaveKeepsWhatIsUnsavedUntilTheProgramEndsProperly) {
         edited.perform(editing::setMaterial(edited.editing().model(), changed.material));
         autosave.saveNow();
         autosave.finish();
-        const auto copy = loadProject(file.toStdString());
+        const auto copy = openProject(file.toStdString());
         ASSERT_TRUE(copy) << copy.error().message();
         EXPECT_EQ(contentHash(*copy), contentHash(edited.groom()));
         EXPECT_TRUE(recoveryCopies().empty()) << "the program still runs";

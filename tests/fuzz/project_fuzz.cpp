@@ -10,7 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace hairloom;
     const FileOfBytes file(data, size);
-    const auto groom = loadProject(file.path());
+    const auto groom = readProjectFile(file.path());
     if (!groom) return groom.error().problem.empty() ? std::abort(), 0 : 0;
     if (!checkStructure(*groom)) std::abort();
     static_cast<void>(validate(*groom));

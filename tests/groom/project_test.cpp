@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
 std::string loadError(const std::filesystem::path& path) {
-    const auto loaded = loadProject(path);
+    const auto loaded = readProjectFile(path);
     return loaded ? "it was loaded" : loaded.error().message();
 }
 
@@ -28,7 +28,7 @@ TEST(Project, SavesAndLoadsEverything) {
     const TemporaryFolder folder;
     const Groom groom = fullGroom();
     ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
-    const auto loaded = loadProject(folder / "a.hairloom");
+    const auto loaded = readProjectFile(folder / "a.hairloom");
     ASSERT_TRUE(loaded) << loaded.error().message();
     EXPECT_TRUE(sameContent(*loaded, groom));
     EXPECT_EQ(loaded->layers[1].name, "Fringe \"β\"");
@@ -45,7 +45,7 @@ TEST(Project, KeepsAnEmptyGroomAndOneWithoutScalp) {
     Groom bare = makeGroom({0, 2}, {Vec3f(0, 0, 0), Vec3f(0, 0.1f, 0)});
     for (const Groom& groom : {Groom(), bare}) {
         ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
-        const auto loaded = loadProject(folder / "a.hairloom");
+        const auto loaded = readProjectFile(folder / "a.hairloom");
         ASSERT_TRUE(loaded) << loaded.error().message();
         EXPECT_TRUE(sameContent(*loaded, groom));
     }
@@ -56,7 +56,7 @@ TEST(Project, SavesFlawedValuesButNoFileThatCouldNotBeLoaded) {
     Groom groom = fullGroom();
     groom.pointAttributes.edit<Vec3f>(attribute::kPosition)[3].x() = std::numeric_limits<float>::infinity();
     ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
-    EXPECT_TRUE(sameContent(*loadProject(folder / "a.hairloom"), groom));
+    EXPECT_TRUE(sameContent(*readProjectFile(folder / "a.hairloom"), groom));
     const auto before = readFile(folder / "a.hairloom").value();
     groom.material.shininess = 0;
     const auto refused = saveProject(groom, folder / "a.hairloom");
@@ -83,7 +83,7 @@ class OlderProject {
             if (name != without) writer.add(name, arrays.emplace_back(now_->readAny(name).value()));
         }
         EXPECT_TRUE(writeFileAtomically(path_, writer.finish(head).value()));
-        return loadProject(path_);
+        return readProjectFile(path_);
     }
 
     nlohmann::ordered_json head;
@@ -185,7 +185,7 @@ TEST(Project, TruncatedAnywhereIsRefused) {
     for (const std::size_t length :
          {std::size_t{0}, std::size_t{7}, std::size_t{31}, whole.size() / 2, whole.size() - 1}) {
         ASSERT_TRUE(writeFileAtomically(path, std::span(whole).first(length), Replacing::Anything));
-        EXPECT_FALSE(loadProject(path));
+        EXPECT_FALSE(readProjectFile(path));
     }
     auto longer = whole;
     longer.push_back(std::byte{0});
@@ -263,7 +263,7 @@ TEST(Project, OfBeforeThereWereMaterialsOfLayersIsReadAsItWasMeant) {
         layer.erase("material");
     }
     ASSERT_EQ(older.error(), "it was loaded");
-    const auto loaded = loadProject(older.path);
+    const auto loaded = readProjectFile(older.path);
     EXPECT_EQ(loaded->material.shadingModel, ShadingModel::kajiya);
     for (const Layer& layer : loaded->layers) {
         EXPECT_EQ(layer.density, 1);

@@ -324,7 +324,7 @@ TEST(Stack, IsSavedAndLoadedWithItsBaseShape) {
     groom.operators.back().number = 4;
     groom.pointAttributes.set(sculptAttribute(4), std::vector<Vec3f>(groom.pointCount(), Vec3f(0.1f, 0, 0)));
     ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
-    auto loaded = loadProject(folder / "a.hairloom");
+    auto loaded = readProjectFile(folder / "a.hairloom");
     ASSERT_TRUE(loaded) << loaded.error().message();
     ASSERT_TRUE(completeOperators("a.hairloom", *loaded));
     EXPECT_TRUE(sameContent(*loaded, groom));
@@ -346,7 +346,7 @@ TEST(Stack, FilesWithoutItsArraysOrWithOtherSettingsAreRefused) {
     EXPECT_THAT(saveProject(twice, folder / "a.hairloom").error().message(), HasSubstr("(operator 1)"));
     groom.operators[1].settings = R"({"radius": 7})";
     ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
-    auto loaded = loadProject(folder / "a.hairloom");
+    auto loaded = readProjectFile(folder / "a.hairloom");
     ASSERT_TRUE(loaded);
     EXPECT_THAT(completeOperators("a.hairloom", *loaded).error().message(),
                 HasSubstr("a.hairloom: /operators/1/radius is 7; expected a number from 0 to 0.1 m"));

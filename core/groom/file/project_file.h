@@ -17,8 +17,11 @@ bool looksLikeProject(const std::filesystem::path& path);
 /// Replaces `path` atomically; on error the old file stands.
 Status saveProject(const Groom& groom, const std::filesystem::path& path);
 
+/// The file as it is: settings of its operators are still JSON, since core/groom does not know operations. To
+/// open a project use openProject() (core/operations/stack.h), and for a hair file of any format openGroom()
+/// (core/documents/open.h).
 /// Errors: not a project, a newer version (named, with the version this program reads), and any damage with
 /// its place: a short file, a checksum that does not match, offsets or counts that contradict each other.
-Result<Groom> loadProject(const std::filesystem::path& path);
+Result<Groom> readProjectFile(const std::filesystem::path& path);
 
 }  // namespace hairloom

@@ -176,7 +176,7 @@ bool looksLikeProject(const std::filesystem::path& path) {
     return startsAsArchive(readBeginning(path, 8));
 }
 
-Result<Groom> loadProject(const std::filesystem::path& path) {
+Result<Groom> readProjectFile(const std::filesystem::path& path) {
     HAIRLOOM_PROFILE("groom: load project");
     const std::string name = path.string();
     auto bytes = readFile(path);

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What `render` is asked for: its options, and what they mean for images and their sequence.
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/live/view_file.h"
+#include "core/render/options.h"
+
+namespace hairloom::cli {
+
+struct RenderJobOptions {
+    std::string input;
+    std::string size;
+    std::string camera = "three-quarter";
+    std::string view;
+    std::string material;
+    std::string shading;
+    std::string scatter = "dual";
+    std::string shadow = "dom";
+    std::uint32_t shadowLights = render::RenderOptions().shadowLights;
+    std::string antiAliasing = "auto";
+    std::string ribbons = "auto";
+    std::string transparency = "auto";
+    float detail = 0;
+    std::optional<float> headAbsorption;
+    std::optional<float> shadowBlur;
+    std::string record;
+    std::string motion;
+    std::string character;
+    std::string wind;
+    std::string engine;
+    std::vector<std::string> hiddenGroups;
+    std::uint64_t frame = 0;
+    std::vector<std::uint64_t> frames;  ///< first, last, step
+    std::uint32_t turntable = 0;
+    std::uint32_t device = 0;
+    bool chooseDevice = false;
+    std::string backend = "any";
+    float exposure = 1;
+    std::uint32_t passes = 8;
+    bool temporal = false;
+    std::string exr;
+    std::vector<std::string> aovs;
+    std::vector<std::string> imageFolders;
+    std::string animation;
+    std::string strip;
+    std::uint32_t milliseconds = 40;
+    std::string output;
+
+    bool sequence() const { return !frames.empty() || turntable > 0; }
+};
+
+/// Adds the options of `render` to `job`. They live as long as what is returned.
+std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job);
+
+/// How each image is drawn. Throws WrongUsage for a size that is none.
+Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view);
+
+/// One picture of a sequence.
+struct Shot {
+    std::uint64_t frame = 0;
+    float turn = 0;  ///< degrees around the upright axis through the camera's target
+};
+
+/// The images that are asked for, at most 10,000. Throws WrongUsage for frames that are no sequence.
+Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options);
+
+}  // namespace hairloom::cli

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Jobs that change a project: settings by name, presets, scripts and the stack.
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <map>
+
+#include "tests/cli/command.h"
+
+namespace hairloom::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class CliSettings : public CommandLineTest {};
+
+TEST_F(CliSettings, AStrokeOfDyeIsReplayed) {
+    runJson(createArguments());
+    std::ofstream(folder / "dye.json") << R"({"hairloom_script": 1, "operations": [{"op": "stroke",
+        "tool": "dye_paint", "radius": 0.5, "profile": [0, 1], "falloff": [],
+        "dabs": [{"at": [0, 1.7, 0], "strength": 1}]}]})";
+    const auto first = runJson("groom hair.hairloom --script dye.json -o dyed.hairloom");
+    EXPECT_EQ(first["strokes"], 1);
+    EXPECT_EQ(first["touched_strands"], 0) << "none has moved";
+    runJson("groom hair.hairloom --script dye.json -o again.hairloom --threads 4");
+    EXPECT_EQ(readText(folder / "dyed.hairloom"), readText(folder / "again.hairloom"));
+    EXPECT_NE(readText(folder / "dyed.hairloom").find("\"point/dye\""), std::string::npos);
+    EXPECT_TRUE(runJson("validate dyed.hairloom")["valid"].get<bool>());
+}
+
+TEST_F(CliSettings, AStackIsShownSetChangedAndBaked) {
+    runJson(createArguments());
+    EXPECT_TRUE(runJson("stack hair.hairloom")["operators"].empty());
+    std::ofstream(folder / "stack.json") << R"({"operators": [
+        {"op": "flow", "gravity": 0.9}, {"op": "clump", "weight": 0.5}, {"op": "noise", "enabled": false}]})";
+    const auto made = runJson("stack hair.hairloom --from stack.json -o styled.hairloom");
+    ASSERT_EQ(made["operators"].size(), 3u);
+    EXPECT_FLOAT_EQ(made["operators"][0]["gravity"], 0.9f);
+    EXPECT_TRUE(made["operators"][1].contains("spacing")) << "all settings are written out";
+    EXPECT_TRUE(runJson("validate styled.hairloom")["valid"].get<bool>());
+    // What the job prints is what it takes.
+    std::ofstream(folder / "again.json") << nlohmann::json{{"operators", made["operators"]}}.dump();
+    runJson("stack hair.hairloom --from again.json -o again.hairloom --threads 1");
+    EXPECT_EQ(readText(folder / "styled.hairloom"), readText(folder / "again.hairloom"));
+    // An empty stack leads back to the base shape.
+    std::ofstream(folder / "none.json") << R"({"operators": []})";
+    runJson("stack styled.hairloom --from none.json -o bare.hairloom");
+    EXPECT_EQ(readText(folder / "bare.hairloom"), readText(folder / "hair.hairloom"));
+    // Baked, the hair stays as it is.
+    runJson("stack styled.hairloom --bake -o baked.hairloom");
+    EXPECT_TRUE(runJson("stack baked.hairloom")["operators"].empty());
+    runJson("export styled.hairloom --format ply -o styled.ply");
+    runJson("export baked.hairloom --format ply -o baked.ply");
+    EXPECT_EQ(readText(folder / "styled.ply"), readText(folder / "baked.ply"));
+}
+
+TEST_F(CliSettings, AStackThatCannotBeIsRefusedWithItsPlace) {
+    runJson(createArguments());
+    std::ofstream(folder / "stack.json")
+        << R"({"operators": [{"op": "flow"}, {"op": "clump", "spacing": -1}]})";
+    const Outcome outcome = run("stack hair.hairloom --from stack.json -o out.hairloom");
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.errors, StartsWith("error: stack.json"));
+    EXPECT_THAT(outcome.errors, HasSubstr("/operators/1/spacing"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.hairloom"));
+    EXPECT_EQ(run("stack hair.hairloom --bake").exitCode, 2) << "needs -o";
+}
+
+TEST_F(CliSettings, SettingsAreCheckedByNameAndRange) {
+    runJson(createArguments());
+    const auto set =
+        runJson("set hair.hairloom simulation.windSpeed=4 material.shininess=90 -o hair.hairloom");
+    EXPECT_EQ(set["changed"], 2);
+    const Outcome range = run("set hair.hairloom simulation.friction=7 -o hair.hairloom");
+    EXPECT_EQ(range.exitCode, 2);
+    EXPECT_THAT(range.errors, HasSubstr("0 to 1"));
+    const Outcome name = run("set hair.hairloom simulation.wobble=1 -o hair.hairloom");
+    EXPECT_EQ(name.exitCode, 2);
+    EXPECT_THAT(name.errors, HasSubstr("friction")) << "the fields there are";
+}
+
+TEST_F(CliSettings, SettingsAreKnownByTheirFormerNames) {
+    runJson(createArguments());
+    const auto hashWith = [&](const std::string& settings) {
+        runJson("set hair.hairloom " + settings + " -o named.hairloom");
+        return readText(folder / "named.hairloom");
+    };
+    const std::string now = hashWith(
+        "simulation.collisionRadiusRoot=0.002 simulation.collisionRadiusTip=0.006 "
+        "simulation.angularMethod=smallAngle material.colourSource=colours");
+    EXPECT_EQ(hashWith("simulation.pearlRadiusRoot=0.002 simulation.pearlRadiusTip=0.006 "
+                       "simulation.angularMethod=cheap material.dyed=true"),
+              now);
+    EXPECT_NE(now.find("collisionRadiusTip"), std::string::npos);
+    EXPECT_EQ(now.find("pearl"), std::string::npos) << "what is written has the names of now";
+
+    std::ofstream(folder / "former.json") << R"({"hairloom_script": 1, "operations": [
+        {"op": "simulation", "settings": {"pearlRadiusTip": 0.004, "angularMethod": "cheap"}},
+        {"op": "placement", "settings": {"darts": false}}]})";
+    std::ofstream(folder / "now.json") << R"({"hairloom_script": 1, "operations": [
+        {"op": "simulation", "settings": {"collisionRadiusTip": 0.004, "angularMethod": "smallAngle"}},
+        {"op": "placement", "settings": {"placement": "random"}}]})";
+    runJson("groom hair.hairloom --script former.json -o former.hairloom");
+    runJson("groom hair.hairloom --script now.json -o now.hairloom");
+    EXPECT_EQ(readText(folder / "former.hairloom"), readText(folder / "now.hairloom"));
+}
+
+TEST_F(CliSettings, PoissonDiskPlacementHasTwoNames) {
+    std::string arguments = createArguments();
+    runJson(arguments);
+    const std::string darts = readText(folder / "hair.hairloom");
+    const std::string former = "--placement dart";
+    arguments.replace(arguments.find(former), former.size(), "--placement poissonDisk");
+    runJson(arguments);
+    EXPECT_EQ(readText(folder / "hair.hairloom"), darts);
+    EXPECT_NE(darts.find("\"placement\": \"poissonDisk\""), std::string::npos);
+}
+
+TEST_F(CliSettings, TheStiffnessFollowsACurveOfKeys) {
+    runJson(createArguments());
+    const auto hashWith = [&](const std::string& settings) {
+        runJson("set hair.hairloom simulation.angularStiffness=0.6 " + settings + " -o curved.hairloom");
+        return runJson("simulate curved.hairloom --frames 5 --motion nod")["state_hash"].get<std::string>();
+    };
+    const std::string straight = hashWith("simulation.angularCurve=[[0,1],[1,0.25]]");
+    EXPECT_EQ(hashWith("simulation.angularTipShare=0.25"), straight) << "as it was called before";
+    EXPECT_NE(hashWith("simulation.angularCurve=[[0,1],[0.5,0.05],[1,0.25]]"), straight);
+    const Outcome order =
+        run("set hair.hairloom simulation.angularCurve=[[0,1],[0.5,1],[0.4,1],[1,1]] -o x.hairloom");
+    EXPECT_EQ(order.exitCode, 2);
+    EXPECT_THAT(order.errors, HasSubstr("angularCurve has key 2 at 0.4"));
+    const nlohmann::json listed = runJson("set --list");
+    bool isListed = false;
+    for (const auto& field : listed["fields"]) {
+        isListed |= field["field"] == "simulation.angularCurve" &&
+                    field["default"] == nlohmann::json::parse("[[0,1],[1,0.5]]");
+    }
+    EXPECT_TRUE(isListed);
+}
+
+TEST_F(CliSettings, PresetsSetWhatAFibreIsMadeOf) {
+    runJson(createArguments());
+    std::map<std::string, std::string> hashes;
+    const auto listed = runJson("set --list");
+    for (const auto& preset : listed["presets"]) {
+        const auto name = preset["preset"].get<std::string>();
+        EXPECT_EQ(runJson("set hair.hairloom --preset " + name + " -o " + name + ".hairloom")["changed"], 8);
+        EXPECT_GE(preset["eccentricity"], 0.6) << name;
+        const std::string eccentricity = "\"eccentricity\": " + preset["eccentricity"].dump();
+        EXPECT_NE(readText(folder / (name + ".hairloom")).find(eccentricity), std::string::npos) << name;
+        hashes[runJson("simulate " + name + ".hairloom --frames 5 --motion nod")["state_hash"]] = name;
+    }
+    EXPECT_EQ(hashes.size(), 3u) << "fibres of other stiffness should move otherwise";
+    // Fields come after the preset.
+    runJson("set hair.hairloom --preset caucasian simulation.angularStiffness=0.5 -o a.hairloom");
+    runJson("set hair.hairloom --preset mongolian simulation.angularStiffness=0.5 -o b.hairloom");
+    EXPECT_EQ(runJson("simulate a.hairloom --frames 5 --motion nod")["state_hash"],
+              runJson("simulate b.hairloom --frames 5 --motion nod")["state_hash"]);
+    EXPECT_EQ(run("set hair.hairloom --preset angora -o hair.hairloom").exitCode, 2);
+}
+
+}  // namespace
+}  // namespace hairloom::test
