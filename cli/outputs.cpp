@@ -150,11 +150,6 @@ void reportsAsJson(bool json) {
     streams().json = json;
 }
 
-fs::path numbered(const fs::path& path, std::size_t number) {
-    return path.parent_path() /
-           (path.stem().string() + fmt::format("_{:04}", number) + path.extension().string());
-}
-
 Result<Report> withOutputs(const std::vector<Output>& outputs, const std::function<Result<Report>()>& run,
                            ReadBack readBack) {
     const auto count = static_cast<std::size_t>(

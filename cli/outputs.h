@@ -26,9 +26,6 @@ struct Output {
     std::size_t files = 0;       ///< of a sequence, whose names are numbered; 0 where there is none
 };
 
-/// "hair.png" and 7 give "hair_0007.png".
-std::filesystem::path numbered(const std::filesystem::path& path, std::size_t number);
-
 /// Errors: as OutputFile::open() for any of them, before `run` is called. Throws WrongUsage for a pipe where
 /// none will do.
 Result<Report> withOutputs(const std::vector<Output>& outputs, const std::function<Result<Report>()>& run,

@@ -18,14 +18,15 @@
 #include "cli/progress.h"
 #include "cli/render_options.h"
 #include "core/base/content_kind.h"
+#include "core/base/output_batch.h"
 #include "core/documents/sample.h"
 #include "core/documents/sample_material.h"
+#include "core/live/film.h"
 #include "core/live/groom_scene.h"
 #include "core/live/moving_picture.h"
 #include "core/live/view_file.h"
 #include "core/render/aov.h"
 #include "core/render/png.h"
-#include "core/render/webp.h"
 #include "core/simulation/frame_record.h"
 #include "core/software/device.h"
 #include "importers/child_process.h"
@@ -49,12 +50,6 @@ Result<GroomScene> loadScene(const RenderJobOptions& options, const Groom& groom
     }
     scene->pose(frame->positions_ws, velocities, frame->pose);
     return scene;
-}
-
-void turn(render::Camera& camera, float degrees) {
-    const Eigen::AngleAxisf rotation(radians(degrees), Vec3f::UnitY());
-    camera.eye_ws = camera.target_ws + rotation * (camera.eye_ws - camera.target_ws);
-    camera.up_ws = rotation * camera.up_ws;
 }
 
 /// Side by side, all of the first's size.
@@ -106,7 +101,7 @@ class Photographer {
             lights_ = view_.hasLights ? view_.lights : render::studioLights(*camera_);
         }
         scene.camera = *camera_;
-        turn(scene.camera, shot.turn);
+        scene.camera = turned(scene.camera, shot.turn);
         scene.lights = lights_;
         if (view_.hasLights) {
             scene.environment = view_.environment;
@@ -271,9 +266,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     reportNotes(notes, report);
     if (options.sequence()) report["pictures"] = shots->size();
     if (!options.animation.empty()) {
-        const bool isWebp = std::filesystem::path(options.animation).extension() == ".webp";
-        auto written = isWebp ? render::writeAnimatedWebp(options.animation, images, options.milliseconds)
-                              : render::writeAnimatedPng(options.animation, images, options.milliseconds);
+        auto written = writeAnimation(options.animation, images, options.milliseconds);
         if (!written) return tl::unexpected(written.error());
     }
     if (!options.strip.empty()) {

@@ -26,4 +26,7 @@ class OutputBatch {
 /// Where what this thread has written to that name can be read: there, unless it waits for its batch.
 std::filesystem::path whereWritten(const std::filesystem::path& path);
 
+/// One of a sequence: "hair.png" and 7 give "hair_0007.png".
+std::filesystem::path numbered(const std::filesystem::path& path, std::size_t number);
+
 }  // namespace hairloom

@@ -236,6 +236,11 @@ fs::path whereWritten(const fs::path& path) {
     return last == files.rend() ? path : (*last)->temporary->path();
 }
 
+fs::path numbered(const fs::path& path, std::size_t number) {
+    return path.parent_path() /
+           (path.stem().string() + fmt::format("_{:04}", number) + path.extension().string());
+}
+
 Status OutputBatch::commit() {
     if (!isOuter_) return {};
     const EndsLater whole;

@@ -5,28 +5,52 @@
 
 namespace hairloom {
 
-Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMotion& motion,
-                                              std::uint32_t count, float framesPerSecond,
-                                              const std::function<bool(std::uint32_t)>& progress,
-                                              std::uint32_t preRoll) {
+namespace {
+
+/// As visitFrames(); `before` is told of every frame before it is simulated, those of the run-up among them.
+Status play(const Groom& groom, const HeadMotion& motion, std::uint32_t count, float framesPerSecond,
+            std::uint32_t preRoll, const std::function<bool(std::uint32_t)>& before,
+            const std::function<Status(std::uint32_t, RecordedFrame)>& take) {
     HeadPose pose = inWorld(motion.poseAt(0));
     auto simulation = Simulation::make(groom, pose);
     if (!simulation) return tl::unexpected(simulation.error());
-    std::vector<RecordedFrame> frames;
     for (std::uint32_t frame = 0; frame < preRoll; ++frame) {
-        if (!progress(frame)) return fail("it was cancelled");
+        if (!before(frame)) return fail("it was cancelled");
         simulation->step(1 / framesPerSecond, pose);
     }
     for (std::uint32_t frame = 0; frame < count; ++frame) {
-        if (!progress(preRoll + frame)) return fail("it was cancelled");
+        if (!before(preRoll + frame)) return fail("it was cancelled");
         if (frame > 0) {
             pose = inWorld(motion.poseAt(static_cast<float>(frame) / framesPerSecond));
             simulation->step(1 / framesPerSecond, pose);
         }
         const auto positions_ws = simulation->positions_ws();
-        frames.push_back({{positions_ws.begin(), positions_ws.end()}, pose, framesPerSecond});
+        auto taken = take(frame, {{positions_ws.begin(), positions_ws.end()}, pose, framesPerSecond});
+        if (!taken) return taken;
     }
+    return {};
+}
+
+}  // namespace
+
+Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMotion& motion,
+                                              std::uint32_t count, float framesPerSecond,
+                                              const std::function<bool(std::uint32_t)>& progress,
+                                              std::uint32_t preRoll) {
+    std::vector<RecordedFrame> frames;
+    auto played = play(groom, motion, count, framesPerSecond, preRoll, progress,
+                       [&](std::uint32_t, RecordedFrame frame) -> Status {
+                           frames.push_back(std::move(frame));
+                           return {};
+                       });
+    if (!played) return tl::unexpected(played.error());
     return frames;
+}
+
+Status visitFrames(const Groom& groom, const HeadMotion& motion, std::uint32_t count, float framesPerSecond,
+                   const std::function<Status(std::uint32_t, RecordedFrame)>& take) {
+    return play(
+        groom, motion, count, framesPerSecond, 0, [](std::uint32_t) { return true; }, take);
 }
 
 }  // namespace hairloom

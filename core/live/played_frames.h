@@ -16,4 +16,8 @@ Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMoti
                                               const std::function<bool(std::uint32_t)>& progress,
                                               std::uint32_t preRoll = 0);
 
+/// The same, one frame after another: each goes to `take` with its number, and an error of that ends it.
+Status visitFrames(const Groom& groom, const HeadMotion& motion, std::uint32_t count, float framesPerSecond,
+                   const std::function<Status(std::uint32_t, RecordedFrame)>& take);
+
 }  // namespace hairloom

@@ -2,6 +2,7 @@
 #include "editor/document/tasks.h"
 
 #include <QMetaObject>
+#include <utility>
 
 namespace hairloom::editor {
 
@@ -39,10 +40,16 @@ void Tasks::finish() {
     thread_ = std::thread();
     const Finish finish = std::exchange(finish_, nullptr);
     const bool dropped = control_->isCancelled();
+    const std::optional<ProcessorWatch> watch = std::exchange(watch_, std::nullopt);
+    const double others = watch ? watch->othersShare().value_or(0) : 0;
     control_.reset();
     ready_ = false;
     Q_EMIT stopped();
-    if (finish && !dropped) finish(*this);
+    if (!finish || dropped) return;
+    finish(*this);
+    if (others > kBusyShare)
+        Q_EMIT disturbed(tr("Other programs used %1 % of the processors meanwhile: the times may be too high")
+                             .arg(100 * others, 0, 'f', 0));
 }
 
 void Tasks::end() {

@@ -7,8 +7,10 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 
+#include "core/base/processor_watch.h"
 #include "core/base/result.h"
 #include "editor/document/words.h"
 
@@ -60,6 +62,16 @@ class Tasks : public QObject {
         });
     }
 
+    /// The same for work that measures times: where other programs took the processors meanwhile,
+    /// disturbed() says so after `done`.
+    template <class T>
+    bool measure(const QString& name, std::function<Result<T>(TaskControl&)> work,
+                 std::function<void(T)> done) {
+        if (!run<T>(name, std::move(work), std::move(done))) return false;
+        watch_.emplace();
+        return true;
+    }
+
     /// Asks the work to stop; what it finds is dropped in any case.
     void cancel();
     /// Waits for the work and its `done`; for tests and for leaving the program.
@@ -69,6 +81,7 @@ class Tasks : public QObject {
     void started(const QString& name);
     void stopped();
     void failed(const QString& message);
+    void disturbed(const QString& warning);
 
   private:
     using Finish = std::function<void(Tasks&)>;
@@ -80,6 +93,7 @@ class Tasks : public QObject {
     QString name_;
     Finish finish_;
     std::atomic<bool> ready_{false};
+    std::optional<ProcessorWatch> watch_;  ///< of work that measures
 };
 
 }  // namespace hairloom::editor

@@ -61,7 +61,7 @@ class PicturePrices : public QWidget {
         options.view.camera = viewport_.camera().camera();
         options.view.fibre.scattering = quality.scattering;
         options.picture.exposure = viewport_.exposure();
-        tasks_.run<PictureCost>(
+        tasks_.measure<PictureCost>(
             tr("Measuring render settings"),
             [groom, quality, size_px, options](TaskControl& control) mutable -> Result<PictureCost> {
                 const auto device = gpu::createDevice();

@@ -209,7 +209,7 @@ class AccuracyPanel : public QWidget {
             measuredChange_ = change;
             refresh();
         };
-        const bool began = tasks_.run<WorkPrecision>(
+        const bool began = tasks_.measure<WorkPrecision>(
             tr("Measuring accuracy"),
             [this, groom, moves, keep](TaskControl& control) {
                 return measureGrid(*groom, *moves, control, [&](const WorkPrecision& result) {

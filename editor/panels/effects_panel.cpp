@@ -137,7 +137,7 @@ class EffectsPanel : public QWidget {
         if (!motion) return;
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
-        tasks_.run<EffectCosts>(
+        tasks_.measure<EffectCosts>(
             tr("Measuring effects"),
             [groom, moves](TaskControl& control) {
                 EffectCostOptions options;

@@ -18,6 +18,8 @@
 
 namespace hairloom::editor {
 
+class ManualWindow;
+
 class MainWindow : public QMainWindow {
     Q_OBJECT
 
@@ -100,6 +102,8 @@ class MainWindow : public QMainWindow {
 
     void frameSelection();
     void showSecurity();
+    /// The manual, at the section on the panel or the tool that is used.
+    void showManual();
 
     Preferences preferences_;
     Prices prices_;
@@ -119,6 +123,7 @@ class MainWindow : public QMainWindow {
     QMenu* panelMenu_ = nullptr;
     QMenu* groupMenu_ = nullptr;
     QActionGroup* toolGroup_;
+    ManualWindow* manual_ = nullptr;  ///< made when it is first asked for
     QByteArray firstLayout_;
     Unsaved unsaved_ = Unsaved::Ask;
     bool isSaving_ = false;

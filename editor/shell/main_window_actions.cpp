@@ -2,6 +2,7 @@
 // The commands of the window: menus, shortcuts, tooltips.
 #include <QApplication>
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <algorithm>
@@ -11,7 +12,9 @@
 #include "core/editing/take_shape.h"
 #include "core/simulation/rest_positions.h"
 #include "editor/dialogs/export_dialog.h"
+#include "editor/dialogs/manual_window.h"
 #include "editor/dialogs/preferences_dialog.h"
+#include "editor/dialogs/render_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
 #include "editor/document/words.h"
 #include "editor/overlays/overlay_mode.h"
@@ -119,6 +122,13 @@ void MainWindow::addFileActions() {
         [this] {
             ExportDialog dialog(document_, preferences_, tasks_, messages_, player_, this);
             if (dialog.exec() == ExportDialog::kWantsClustering) chooseGuidesByClustering();
+        });
+    add({"file.render", tr("Re&nder…"), "",
+         tr("Render the view, a turntable or the simulation to images or an animation"), QKeySequence("F12")},
+        [this] {
+            RenderDialog dialog(*viewport_, player_, tasks_, messages_,
+                                QFileInfo(document_.title()).completeBaseName(), this);
+            dialog.exec();
         });
     menu->addSeparator();
     add({"file.quit", tr("&Quit"), "", tr("Quit Hairloom"), QKeySequence("Ctrl+Q")}, [this] { close(); });
@@ -316,6 +326,11 @@ void MainWindow::addToolActions() {
 
 void MainWindow::addHelpActions() {
     QMenu* menu = menuBar()->addMenu(tr("&Help"));
+    menu->setToolTipsVisible(true);
+    menu->addAction(&actions_->add(
+        {"help.manual", tr("&Manual"), "",
+         tr("Open the manual at the section on the panel that has the focus"), QKeySequence::HelpContents},
+        [this] { showManual(); }));
     menu->addAction(&actions_->add(
         {"help.about", tr("&About Hairloom"), "hairloom", tr("Version and licence"), {}}, [this] {
             QMessageBox::about(this, tr("Hairloom"),
@@ -328,6 +343,18 @@ void MainWindow::addHelpActions() {
                                     tr("Tests what the process that reads foreign files cannot do"),
                                     {}},
                                    [this] { showSecurity(); }));
+}
+
+void MainWindow::showManual() {
+    QString section;
+    for (const QWidget* at = QApplication::focusWidget(); at && section.isEmpty(); at = at->parentWidget()) {
+        for (const PanelInfo& info : panels()) {
+            if (at == panel(info.id)) section = manualSection(info.id);
+        }
+    }
+    if (section.isEmpty() && tools_.active()) section = manualSection("tool");
+    if (!manual_) manual_ = new ManualWindow(this);
+    manual_->open("manual.md", section);
 }
 
 void MainWindow::showSecurity() {

@@ -2,10 +2,13 @@
 #include "editor/shell/start_page.h"
 
 #include <QFileInfo>
+#include <QImage>
 #include <QLabel>
 #include <QLocale>
+#include <QPixmap>
 #include <QPushButton>
 #include <QScrollArea>
+#include <algorithm>
 
 #include "core/documents/sample.h"
 #include "editor/document/words.h"
@@ -25,6 +28,43 @@ QPushButton* card(const QString& title, const QString& iconName, const QString& 
     button->setToolTip(tip);
     button->setCursor(Qt::PointingHandCursor);
     return button;
+}
+
+/// What a sample shows, in the order in which they are learned from; so are they on the picture of the
+/// manual.
+struct SampleLesson {
+    const char *name, *shows;
+};
+constexpr SampleLesson kLessons[] = {
+    {"short", QT_TRANSLATE_NOOP("hairloom::editor::StartPage",
+                                "Flow, length, clumps and noise: the first stack to read")},
+    {"shoulder",
+     QT_TRANSLATE_NOOP("hairloom::editor::StartPage", "A parting, a trimmed line and ends that bend in")},
+    {"long", QT_TRANSLATE_NOOP("hairloom::editor::StartPage", "Locks with curls towards the tips")},
+    {"bob", QT_TRANSLATE_NOOP("hairloom::editor::StartPage", "A fringe and two trim planes")},
+    {"afro", QT_TRANSLATE_NOOP("hairloom::editor::StartPage", "Tight curls and frizz on every strand")},
+    {"braid", QT_TRANSLATE_NOOP("hairloom::editor::StartPage", "Hair gathered along a curve")}};
+constexpr int kLessonColumns = 3;
+
+/// Names of samples as lessons; those that are none come last.
+std::vector<std::string> inOrderOfLessons(std::vector<std::string> names) {
+    std::ranges::stable_sort(names, {}, [](const std::string& name) {
+        return std::ranges::find(kLessons, name, &SampleLesson::name) - std::begin(kLessons);
+    });
+    return names;
+}
+
+/// Its part of the manual's picture of all samples; null where it is not on it.
+QPixmap pictureOf(const std::string& name) {
+    constexpr int kHeight_px = 84;
+    static const QImage all(":/docs/pictures/samples.png");
+    const auto at = std::ranges::find(kLessons, name, &SampleLesson::name) - std::begin(kLessons);
+    if (all.isNull() || at == std::ssize(kLessons)) return {};
+    const int rows = static_cast<int>(std::size(kLessons)) / kLessonColumns;
+    const QSize cell(all.width() / kLessonColumns, all.height() / rows);
+    const auto column = static_cast<int>(at) % kLessonColumns, row = static_cast<int>(at) / kLessonColumns;
+    const QImage part = all.copy(QRect(QPoint(column * cell.width(), row * cell.height()), cell));
+    return QPixmap::fromImage(part.scaledToHeight(kHeight_px, Qt::SmoothTransformation));
 }
 
 void clear(QLayout& layout) {
@@ -88,23 +128,34 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     page->addWidget(heading(tr("Samples")));
     auto* samples = new QGridLayout;
     samples->setSpacing(8);
-    constexpr int kColumns = 3;
     page->addLayout(samples);
     const auto folder = samplesFolder();
     const auto addSample = [&](const QString& name, const QString& label, const QString& tip) {
         auto* button = card(label, "hairloom", tip);
         button->setObjectName("sample:" + name);
         connect(button, &QPushButton::clicked, this, [this, name] { files_.openSample(name); });
-        samples->addWidget(button, samples->count() / kColumns, samples->count() % kColumns);
+        const int place = samples->count();
+        // The bare head stands alone above the hairstyles.
+        if (name.isEmpty())
+            samples->addWidget(button, 0, 0, 1, kLessonColumns);
+        else
+            samples->addWidget(button, 1 + (place - 1) / kLessonColumns, (place - 1) % kLessonColumns);
+        return button;
     };
     if (folder.empty()) {
         samples->addWidget(dim(tr("The samples folder was not found next to the program.")));
     } else {
         addSample({}, tr("Bare head"), tr("A bust with a skeleton and clips, no hair"));
-        for (const std::string& name : sampleNames(folder)) {
+        for (const std::string& name : inOrderOfLessons(sampleNames(folder))) {
             const QString sample = QString::fromStdString(name);
-            addSample(sample, labelOf(sample),
-                      tr("Creates the hairstyle “%1” on the bust in a few seconds").arg(sample));
+            const auto lesson = std::ranges::find(kLessons, name, &SampleLesson::name);
+            const QString tip = tr("Creates the hairstyle “%1” on the bust in a few seconds").arg(sample);
+            QPushButton* button = addSample(
+                sample, labelOf(sample), lesson == std::end(kLessons) ? tip : tr(lesson->shows) + ". " + tip);
+            const QPixmap picture = pictureOf(name);
+            if (picture.isNull()) continue;
+            button->setIcon(picture);
+            button->setIconSize(picture.size());
         }
     }
     page->addWidget(heading(tr("Recent files")));

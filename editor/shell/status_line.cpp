@@ -81,6 +81,7 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
         cancel_->hide();
         fade_.start(0);
     });
+    connect(&tasks_, &Tasks::disturbed, this, [this](const QString& text) { say(text, true); });
     connect(&tasks_, &Tasks::failed, this, [this](const QString& text) { say(text, true); });
     connect(&player_, &Player::failed, this, [this](const QString& text) { say(text, true); });
     connect(cancel_, &QToolButton::clicked, &tasks_, &Tasks::cancel);

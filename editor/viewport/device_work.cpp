@@ -102,11 +102,12 @@ DeviceWork::DeviceWork(std::shared_ptr<const std::atomic<bool>> drop, std::strin
 
 DeviceWork::DeviceWork(std::shared_ptr<const std::atomic<bool>> drop, software::DeviceChoice choice)
     : note_(std::move(choice.why)),
+      drop_(std::move(drop)),
       device_(std::move(choice.device)),
       live_(*device_),
       shown_(*device_, &live_) {
     if (!software::isSoftware(*device_)) return;
-    stillDevice_ = software::makeDevice(std::move(drop));
+    stillDevice_ = software::makeDevice(drop_);
     still_.emplace(*stillDevice_, nullptr);
 }
 
@@ -170,10 +171,11 @@ void DeviceWork::forget() {
 }
 
 Result<QImage> DeviceWork::drawAlone(PictureRequest request) {
-    RenderWork work(stillDevice_ ? *stillDevice_ : *device_, nullptr);
+    RenderWork work(stillDevice_ ? *stillDevice_ : *device_, stillDevice_ ? nullptr : &live_);
     if (auto taken = work.take(std::move(request)); !taken) return tl::unexpected(taken.error());
     QImage picture;
     while (!work.isComplete()) {
+        if (*drop_) return fail("the picture was dropped");
         auto drawn = work.draw();
         if (!drawn) return tl::unexpected(drawn.error());
         picture = std::move(drawn->first);

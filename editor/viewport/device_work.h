@@ -67,7 +67,8 @@ class DeviceWork {
     void forget();
     /// The device refuses all, and will.
     bool isLost() const { return !device_->createCommandList(); }
-    /// All frames of a picture of something else, with a renderer of its own. `drop` stops it.
+    /// All frames of a picture of something else, with a renderer of its own. `drop` stops it: the software
+    /// renderer at once, another after a frame.
     Result<QImage> drawAlone(PictureRequest request);
 
   private:
@@ -76,6 +77,7 @@ class DeviceWork {
     void joinMoves(PictureRequest& request);
 
     std::string note_;
+    std::shared_ptr<const std::atomic<bool>> drop_;
     std::unique_ptr<gpu::Device> device_, stillDevice_;
     LiveWork live_;
     Looks shown_;  ///< of the software renderer: what is quick

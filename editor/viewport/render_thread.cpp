@@ -2,6 +2,7 @@
 #include "editor/viewport/render_thread.h"
 
 #include <chrono>
+#include <future>
 #include <utility>
 
 #include "editor/document/words.h"
@@ -59,11 +60,40 @@ std::shared_ptr<const StrandMoves> RenderThread::withdrawMoves() {
 }
 
 void RenderThread::postSide(const QString& name, PictureRequest request) {
+    postSide(name, Side{std::move(request), [this, name](const Result<QImage>& picture) {
+                            if (picture) Q_EMIT sidePictureReady(name, *picture);
+                        }});
+}
+
+void RenderThread::postSide(const QString& name, Side side) {
     {
         const std::lock_guard lock(mutex_);
-        side_.insert_or_assign(name, std::move(request));
+        side_.insert_or_assign(name, std::move(side));
     }
     wake_.notify_all();
+}
+
+void RenderThread::withdrawSide(const QString& name) {
+    const std::lock_guard lock(mutex_);
+    side_.erase(name);
+    if (drawingSide_ != name) return;
+    sideWithdrawn_ = true;
+    dropStill();
+}
+
+Result<QImage> RenderThread::drawAside(PictureRequest request, const std::function<bool()>& isCancelled) {
+    constexpr std::chrono::milliseconds kPatience(50);
+    const QString name = "!aside";  // before all thumbnails
+    const auto made = std::make_shared<std::promise<Result<QImage>>>();
+    std::future<Result<QImage>> picture = made->get_future();
+    postSide(name,
+             Side{std::move(request), [made](Result<QImage> drawn) { made->set_value(std::move(drawn)); }});
+    while (picture.wait_for(kPatience) != std::future_status::ready) {
+        if (!isCancelled() && !hasEnded()) continue;
+        withdrawSide(name);
+        return fail("the picture was cancelled");
+    }
+    return picture.get();
 }
 
 bool RenderThread::isIdle() const {
@@ -138,16 +168,25 @@ bool RenderThread::endDroppable() {
     return drop_->exchange(false);
 }
 
-void RenderThread::drawSide(DeviceWork& on, const QString& name, PictureRequest request) {
-    beginDroppable(on.isSoftware());
-    const auto picture = on.drawAlone(request);
-    const bool dropped = endDroppable();
-    if (picture) {
-        Q_EMIT sidePictureReady(name, *picture);
-    } else if (dropped) {
+void RenderThread::drawSide(DeviceWork& on, const QString& name, Side side) {
+    {
         const std::lock_guard lock(mutex_);
-        side_.try_emplace(name, std::move(request));
+        drawingSide_ = name;
+        sideWithdrawn_ = false;
     }
+    beginDroppable(true);
+    auto picture = on.drawAlone(side.request);
+    const bool dropped = endDroppable();
+    {
+        const std::lock_guard lock(mutex_);
+        drawingSide_.clear();
+        if (sideWithdrawn_) return;
+        if (!picture && dropped) {
+            side_.try_emplace(name, std::move(side));
+            return;
+        }
+    }
+    side.done(std::move(picture));
 }
 
 void RenderThread::run() {

@@ -7,11 +7,13 @@
 #include <QImage>
 #include <QObject>
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
 
+#include "core/base/result.h"
 #include "core/gpu/device.h"
 #include "editor/viewport/live_link.h"
 #include "editor/viewport/picture_request.h"
@@ -32,6 +34,9 @@ class RenderThread : public QObject {
     std::shared_ptr<const StrandMoves> withdrawMoves();
     /// A small picture of something else, drawn when nothing waits; of two of one name the later counts.
     void postSide(const QString& name, PictureRequest request);
+    /// The same, and waits for it: for work off the interface thread. Errors: it cannot be drawn,
+    /// `isCancelled` says so, the thread has ended.
+    Result<QImage> drawAside(PictureRequest request, const std::function<bool()>& isCancelled);
     /// Nothing is being drawn or waits to be, the average is complete.
     bool isIdle() const;
     /// No picture will come any more.
@@ -60,7 +65,14 @@ class RenderThread : public QObject {
   private:
     void run();
     void draw(std::unique_ptr<DeviceWork>& on, std::optional<PictureRequest> request);
-    void drawSide(DeviceWork& on, const QString& name, PictureRequest request);
+    /// A picture of something else, and who is told of it, on this thread.
+    struct Side {
+        PictureRequest request;
+        std::function<void(Result<QImage>)> done;
+    };
+    void postSide(const QString& name, Side side);
+    void withdrawSide(const QString& name);
+    void drawSide(DeviceWork& on, const QString& name, Side side);
     void beginDroppable(bool can);
     /// Whether it was dropped.
     bool endDroppable();
@@ -73,7 +85,9 @@ class RenderThread : public QObject {
     std::condition_variable wake_;
     std::condition_variable windowTaken_;
     std::optional<PictureRequest> next_;
-    std::map<QString, PictureRequest> side_;
+    std::map<QString, Side> side_;
+    QString drawingSide_;         ///< name of what drawSide() draws
+    bool sideWithdrawn_ = false;  ///< nobody wants that any more
     std::optional<gpu::NativeWindow> window_;
     bool windowChanged_ = false;
     bool idle_ = true;

@@ -355,6 +355,20 @@ std::shared_ptr<const StrandMoves> Viewport::movesSinceHandedOver() {
     return moves;
 }
 
+PictureRequest Viewport::requestOfView() const {
+    PictureRequest request;
+    request.groom = std::make_shared<const Groom>(document_.groom());
+    request.pose = pose_;
+    finishRequest(request);
+    request.moving = false;
+    return request;
+}
+
+void Viewport::setHeld(bool on) {
+    isHeld_ = on;
+    if (!on) redraw();
+}
+
 void Viewport::postHead() {
     const Groom& groom = document_.groom();
     auto bald = std::make_shared<Groom>();
@@ -369,7 +383,7 @@ void Viewport::postHead() {
 }
 
 void Viewport::post() {
-    if (document_.isEmpty() || wishedSurface() == "none") return;
+    if (document_.isEmpty() || isHeld_ || wishedSurface() == "none") return;
     headFirst_ = headFirst_ && document_.groom().scalp && document_.groom().strandCount() > 0;
     if (headFirst_) return postHead();
     const bool anew = !groom_;

@@ -67,6 +67,15 @@ class Viewport : public QWidget {
         renderer_.postSide(name, std::move(request));
     }
 
+    /// What is shown, without marks: for pictures and films.
+    PictureRequest requestOfView() const;
+    /// Draws a picture of it and waits; not on the interface thread. As RenderThread::drawAside().
+    Result<QImage> drawAside(PictureRequest request, const std::function<bool()>& isCancelled) {
+        return renderer_.drawAside(std::move(request), isCancelled);
+    }
+    /// While true nothing is drawn anew, so that other pictures come.
+    void setHeld(bool on);
+
     // What is shown. Each redraws.
     void setPose(std::shared_ptr<const HairPose> pose);
     const std::shared_ptr<const HairPose>& pose() const { return pose_; }
@@ -166,6 +175,7 @@ class Viewport : public QWidget {
     QTimer turntable_;
     QTimer postSoon_;
     bool moving_ = false;
+    bool isHeld_ = false;
     bool showHair_ = true, showHead_ = true;
     float lightTurn_ = 0;
     float exposure_ = 1.6f;

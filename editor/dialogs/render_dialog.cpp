@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/dialogs/render_dialog.h"
+
+#include <QDialogButtonBox>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QMessageBox>
+#include <QPointer>
+#include <QStyle>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "core/base/output_batch.h"
+#include "editor/document/words.h"
+#include "editor/fields/number_spin.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr int kMostPixels = 8192;  // along a side
+constexpr int kMostImages = 3600;
+
+QSpinBox* pixels(const char* name, int value, const QString& tip) {
+    auto* box = new QSpinBox;
+    box->setObjectName(name);
+    box->setRange(16, kMostPixels);
+    box->setValue(value);
+    box->setToolTip(tip);
+    box->setAccessibleName(tip);
+    return box;
+}
+
+}  // namespace
+
+RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Messages& messages,
+                           const QString& title, QWidget* parent)
+    : QDialog(parent),
+      viewport_(viewport),
+      player_(player),
+      tasks_(tasks),
+      messages_(messages),
+      title_(title),
+      form_(new QFormLayout),
+      rows_(new QWidget),
+      of_(new QComboBox),
+      images_(new QSpinBox),
+      passes_(new QSpinBox),
+      rate_(new QComboBox),
+      files_(new QComboBox),
+      transparent_(new QCheckBox(tr("Transparent"))),
+      note_(new QLabel),
+      progress_(new QProgressBar) {
+    setWindowTitle(tr("Render"));
+    resize(440, 0);
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(20, 20, 20, 16);
+    layout->setSpacing(12);
+    rows_->setLayout(form_);
+    form_->setContentsMargins(0, 0, 0, 0);
+    form_->setHorizontalSpacing(16);
+    form_->setVerticalSpacing(8);
+    form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+    layout->addWidget(rows_);
+
+    of_->setObjectName("renderOf");
+    of_->addItems({tr("Image of the current view"), tr("Turntable: the camera circles the head"),
+                   tr("Animation: the simulation from rest")});
+    of_->setToolTip(tr("The animation has the motion of the viewport, or a nod if the head is at rest"));
+    form_->addRow(tr("Render"), of_);
+    const PictureRequest view = viewport_.requestOfView();
+    width_ = pixels("renderWidth", static_cast<int>(view.width), tr("Width in pixels"));
+    height_ = pixels("renderHeight", static_cast<int>(view.height), tr("Height in pixels"));
+    auto* size = new QWidget;
+    auto* sides = new QHBoxLayout(size);
+    sides->setContentsMargins(0, 0, 0, 0);
+    sides->addWidget(width_, 1);
+    sides->addWidget(new QLabel(QStringLiteral("×")));
+    sides->addWidget(height_, 1);
+    form_->addRow(tr("Size"), size);
+    passes_->setObjectName("renderPasses");
+    passes_->setRange(1, 256);
+    passes_->setValue(static_cast<int>(viewport_.quality().frames));
+    passes_->setToolTip(tr("Frames averaged for each image. More frames resolve finer hair and take longer"));
+    form_->addRow(tr("Averaged frames"), passes_);
+    transparent_->setObjectName("renderTransparent");
+    transparent_->setToolTip(tr("Saves the background as transparent, to composite the hair elsewhere"));
+    form_->addRow(tr("Background"), transparent_);
+    images_->setObjectName("renderImages");
+    images_->setRange(2, kMostImages);
+    images_->setValue(72);
+    images_->setToolTip(tr("Number of images in the film"));
+    form_->addRow(tr("Images"), images_);
+    rate_->setObjectName("renderRate");
+    for (const int rate : {60, 30, 20, 15, 12, 10}) rate_->addItem(QString::number(rate), rate);
+    rate_->setCurrentIndex(1);
+    rate_->setToolTip(
+        tr("Images per second of the film. The hair is always simulated at 60 frames per second"));
+    form_->addRow(tr("Frame rate"), rate_);
+    files_->setObjectName("renderFiles");
+    files_->addItems({tr("Numbered PNG images"), tr("Animated PNG"), tr("Animated WebP")});
+    files_->setToolTip(
+        tr("Numbered images for editing, one animated file to show. WebP is lossy and a tenth "
+           "as large"));
+    form_->addRow(tr("Files"), files_);
+    note_->setObjectName("renderNote");
+    note_->setWordWrap(true);
+    layout->addWidget(note_);
+    progress_->setObjectName("renderProgress");
+    progress_->setRange(0, 1000);
+    progress_->setTextVisible(false);
+    progress_->hide();
+    layout->addWidget(progress_);
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+    close_ = buttons->button(QDialogButtonBox::Close);
+    close_->setObjectName("renderClose");
+    render_ = buttons->addButton(tr("Render…"), QDialogButtonBox::AcceptRole);
+    render_->setObjectName("render");
+    render_->setDefault(true);
+    render_->setToolTip(tr("Choose a file name and render"));
+    layout->addWidget(buttons);
+    connect(render_, &QPushButton::clicked, this, &RenderDialog::choosePath);
+    connect(buttons, &QDialogButtonBox::rejected, this, &RenderDialog::reject);
+    for (QComboBox* box : {of_, rate_, files_})
+        connect(box, &QComboBox::currentIndexChanged, this, &RenderDialog::showRows);
+    for (QSpinBox* box : {width_, height_, images_})
+        connect(box, &QSpinBox::valueChanged, this, &RenderDialog::showRows);
+    poll_.setInterval(100);
+    connect(&poll_, &QTimer::timeout, this, &RenderDialog::showWork);
+    connect(&tasks_, &Tasks::failed, this, [this](const QString& problem) {
+        if (isWorking()) end(problem, true);
+    });
+    connect(&tasks_, &Tasks::stopped, this, [this] {
+        if (work_ == Work::Cancels) end(tr("Cancelled. No file was written"), false);
+    });
+    showRows();
+}
+
+RenderDialog::~RenderDialog() {
+    if (!isWorking()) return;
+    tasks_.cancel();
+    viewport_.setHeld(false);
+}
+
+Film RenderDialog::filmAsked() const {
+    Film film;
+    film.of = static_cast<FilmOf>(of_->currentIndex());
+    film.files = static_cast<FilmFiles>(files_->currentIndex());
+    if (film.of != FilmOf::View) film.images = static_cast<std::uint32_t>(images_->value());
+    film.imagesPerSecond = static_cast<std::uint32_t>(rate_->currentData().toInt());
+    film.view.width = static_cast<std::uint32_t>(width_->value());
+    film.view.height = static_cast<std::uint32_t>(height_->value());
+    return film;
+}
+
+void RenderDialog::showRows() {
+    const Film film = filmAsked();
+    const bool isFilm = film.of != FilmOf::View;
+    for (QWidget* row :
+         {static_cast<QWidget*>(images_), static_cast<QWidget*>(rate_), static_cast<QWidget*>(files_)})
+        form_->setRowVisible(row, isFilm);
+    const bool fits = film.bytesHeld() <= kMostBytesOfFilm;
+    render_->setEnabled(fits && !isWorking());
+    note_->setProperty("role", fits ? "dim" : "problem");
+    note_->style()->polish(note_);
+    if (!fits) {
+        note_->setText(
+            tr("An animation of this size needs %1 of memory. Choose numbered images, fewer images "
+               "or a smaller size.")
+                .arg(numberLocale().formattedDataSize(static_cast<qint64>(film.bytesHeld()), 1,
+                                                      QLocale::DataSizeSIFormat)));
+    } else if (isFilm) {
+        note_->setText(tr("%1 images last %2 s.")
+                           .arg(film.images)
+                           .arg(static_cast<double>(film.images) / film.imagesPerSecond, 0, 'f', 1));
+    } else {
+        note_->setText(tr("Camera, lights and look are those of the viewport, without its overlays."));
+    }
+    // Rows that come or go change the height that is needed.
+    adjustSize();
+}
+
+bool RenderDialog::mayReplace(const QString& path, const Film& film) {
+    if (film.of == FilmOf::View || film.isAnimation()) return true;  // the dialog of files has asked
+    int there = 0;
+    for (std::uint32_t i = 0; i < film.images; ++i) {
+        std::error_code code;
+        if (std::filesystem::exists(numbered(path.toStdString(), i), code)) ++there;
+    }
+    return there == 0 || QMessageBox::question(this, tr("Replace images"),
+                                               tr("%Ln images of this name are there. Replace them?", nullptr,
+                                                  there)) == QMessageBox::Yes;
+}
+
+void RenderDialog::choosePath() {
+    const Film film = filmAsked();
+    const QString suffix = film.isAnimation() && film.files == FilmFiles::AnimatedWebp ? ".webp" : ".png";
+    const bool isSequence = film.of != FilmOf::View && !film.isAnimation();
+    QString path =
+        QFileDialog::getSaveFileName(this, windowTitle(), title_ + suffix, "*" + suffix, nullptr,
+                                     isSequence ? QFileDialog::DontConfirmOverwrite : QFileDialog::Options());
+    if (path.isEmpty()) return;
+    if (QFileInfo(path).suffix().isEmpty()) path += suffix;
+    if (mayReplace(path, film)) renderTo(path);
+}
+
+void RenderDialog::renderTo(const QString& path) {
+    Film film = filmAsked();
+    film.path = path.toStdString();
+    PictureRequest view = viewport_.requestOfView();
+    view.width = film.view.width;
+    view.height = film.view.height;
+    view.seeThrough = transparent_->isChecked();
+    view.quality.frames = static_cast<std::uint32_t>(passes_->value());
+    film.view = std::move(view);
+    if (film.of == FilmOf::Simulation) {
+        auto motion = player_.makeMeasuredMotion();
+        if (!motion) return end(errorText(motion.error()), true);
+        film.motion = std::move(*motion);
+    }
+    player_.pause();
+    work_ = Work::Runs;
+    path_ = path;
+    count_ = film.images;
+    clock_.start();
+    const bool started = tasks_.run<bool>(
+        tr("Rendering %1").arg(QFileInfo(path).fileName()),
+        [film = std::move(film), &viewport = viewport_](TaskControl& control) -> Result<bool> {
+            const auto isCancelled = [&control] { return control.isCancelled(); };
+            auto made = makeFilm(
+                film,
+                [&](PictureRequest request) { return viewport.drawAside(std::move(request), isCancelled); },
+                [&](float share) {
+                    control.setProgress(share);
+                    return !control.isCancelled();
+                });
+            if (!made) return tl::unexpected(made.error());
+            return true;
+        },
+        [self = QPointer(this), &messages = messages_, path](bool) {
+            const QString words = tr("Rendered %1").arg(QFileInfo(path).fileName());
+            messages.say(words);
+            if (self)
+                self->end(tr("%1 in %2 s")
+                              .arg(words)
+                              .arg(static_cast<double>(self->clock_.elapsed()) / 1000, 0, 'f', 1),
+                          false);
+        });
+    if (!started) return;  // failed() has said why
+    viewport_.setHeld(true);
+    rows_->setEnabled(false);
+    render_->setEnabled(false);
+    close_->setText(tr("Cancel"));
+    progress_->show();
+    poll_.start();
+    showWork();
+}
+
+void RenderDialog::showWork() {
+    const double share = std::max(0.0, static_cast<double>(tasks_.progress()));
+    progress_->setValue(static_cast<int>(std::lround(1000 * share)));
+    if (work_ == Work::Cancels) return note_->setText(tr("Cancelling…"));
+    const int image = std::min(static_cast<int>(count_), static_cast<int>(share * count_) + 1);
+    QString words = count_ > 1 ? tr("Rendering image %1 of %2").arg(image).arg(count_) : tr("Rendering");
+    const double elapsed = static_cast<double>(clock_.elapsed()) / 1000;
+    if (share > 0 && share < 1 && elapsed > 2)
+        words += ", " + tr("about %1 s left").arg(std::ceil(elapsed * (1 - share) / share), 0, 'f', 0);
+    note_->setText(words);
+}
+
+void RenderDialog::end(const QString& words, bool isWarning) {
+    work_ = Work::None;
+    poll_.stop();
+    viewport_.setHeld(false);
+    progress_->hide();
+    rows_->setEnabled(true);
+    close_->setText(tr("Close"));
+    showRows();
+    note_->setProperty("role", isWarning ? "problem" : "dim");
+    note_->style()->polish(note_);
+    note_->setText(words);
+    adjustSize();
+}
+
+void RenderDialog::reject() {
+    if (!isWorking()) return QDialog::reject();
+    work_ = Work::Cancels;
+    tasks_.cancel();
+    showWork();
+}
+
+}  // namespace hairloom::editor

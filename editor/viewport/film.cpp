@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/viewport/film.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "core/base/content_kind.h"
+#include "core/base/output_batch.h"
+#include "core/live/film.h"
+#include "core/live/played_frames.h"
+#include "core/render/png.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr std::uint32_t kFramesPerSecond = 60;
+
+render::Image imageOf(const QImage& picture) {
+    const QImage rgba = picture.convertToFormat(QImage::Format_RGBA8888);
+    render::Image image{
+        static_cast<std::uint32_t>(rgba.width()), static_cast<std::uint32_t>(rgba.height()), {}};
+    const std::size_t row = std::size_t{4} * image.width;
+    image.rgba.resize(row * image.height);
+    for (int y = 0; y < rgba.height(); ++y)
+        std::memcpy(image.rgba.data() + row * static_cast<std::size_t>(y), rgba.constScanLine(y), row);
+    return image;
+}
+
+class FilmMaker {
+  public:
+    FilmMaker(const Film& film, const std::function<Result<QImage>(PictureRequest)>& draw,
+              const std::function<bool(float)>& progress)
+        : film_(film), draw_(draw), progress_(progress) {}
+
+    Status run() {
+        if (auto possible = check(); !possible) return possible;
+        OutputBatch batch;
+        Status made = film_.of == FilmOf::Simulation ? simulate() : turn();
+        if (made && film_.isAnimation())
+            made = writeAnimation(film_.path, images_, std::max(1u, 1000 / film_.imagesPerSecond));
+        return made ? batch.commit() : made;
+    }
+
+  private:
+    std::filesystem::path nameOf(std::uint32_t number) const {
+        return film_.of == FilmOf::View ? film_.path : numbered(film_.path, number);
+    }
+
+    /// What can be known before anything is drawn.
+    Status check() const {
+        if (film_.bytesHeld() > kMostBytesOfFilm)
+            return fail("an animation of this size needs more than 2 GiB of memory",
+                        "numbered PNG images, fewer images or a smaller size");
+        if (film_.isAnimation()) return tryPlace(film_.path, {});
+        for (std::uint32_t i = 1; i < film_.images; ++i) {
+            if (auto may = OutputFile::check(nameOf(i), content::kPng); !may) return may;
+        }
+        return tryPlace(nameOf(0), content::kPng);
+    }
+    static Status tryPlace(const std::filesystem::path& path, std::string_view kind) {
+        auto file = OutputFile::open(path, kind);
+        if (!file) return tl::unexpected(file.error());
+        return file->tryOut();
+    }
+
+    Status turn() {
+        for (std::uint32_t i = 0; i < film_.images; ++i) {
+            PictureRequest request = film_.view;
+            request.camera =
+                turned(request.camera, 360 * static_cast<float>(i) / static_cast<float>(film_.images));
+            if (auto taken = take(i, std::move(request)); !taken) return taken;
+        }
+        return {};
+    }
+
+    Status simulate() {
+        const std::uint32_t step = kFramesPerSecond / film_.imagesPerSecond;
+        std::vector<Vec3f> before_ws;
+        return visitFrames(
+            *film_.view.groom, *film_.motion, (film_.images - 1) * step + 1, kFramesPerSecond,
+            [&](std::uint32_t number, RecordedFrame frame) -> Status {
+                const float share = static_cast<float>(number) / static_cast<float>(film_.images * step);
+                if (!progress_(share)) return fail("it was cancelled");
+                const std::vector<Vec3f> last_ws = std::exchange(before_ws, frame.positions_ws);
+                if (number % step != 0) return {};
+                auto pose = std::make_shared<HairPose>();
+                for (std::size_t p = 0; p < last_ws.size(); ++p)
+                    pose->velocities_ws.push_back((frame.positions_ws[p] - last_ws[p]) * kFramesPerSecond);
+                pose->positions_ws = std::move(frame.positions_ws);
+                pose->head = std::move(frame.pose);
+                PictureRequest request = film_.view;
+                request.pose = std::move(pose);
+                return take(number / step, std::move(request));
+            });
+    }
+
+    Status take(std::uint32_t number, PictureRequest request) {
+        const auto picture = draw_(std::move(request));
+        if (!picture) return tl::unexpected(picture.error());
+        render::Image image = imageOf(*picture);
+        if (film_.isAnimation()) {
+            images_.push_back(std::move(image));
+        } else if (auto written = render::writePng(nameOf(number), image); !written) {
+            return written;
+        }
+        const float share = static_cast<float>(number + 1) / static_cast<float>(film_.images);
+        return progress_(share) ? Status() : fail("it was cancelled");
+    }
+
+    const Film& film_;
+    const std::function<Result<QImage>(PictureRequest)>& draw_;
+    const std::function<bool(float)>& progress_;
+    std::vector<render::Image> images_;
+};
+
+}  // namespace
+
+std::uint64_t Film::bytesHeld() const {
+    return isAnimation() ? std::uint64_t{4} * images * view.width * view.height : 0;
+}
+
+Status makeFilm(const Film& film, const std::function<Result<QImage>(PictureRequest)>& draw,
+                const std::function<bool(float)>& progress) {
+    return FilmMaker(film, draw, progress).run();
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Images and films of what the viewport shows.
+
+#include <gtest/gtest.h>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDir>
+#include <QFile>
+#include <QLabel>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QSpinBox>
+
+#include "editor/dialogs/render_dialog.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class RenderTest : public WindowTest {
+  protected:
+    RenderTest() : WindowTest(true) {}
+    void SetUp() override {
+        WindowTest::SetUp();
+        openSampleHair("short");
+        openFirstStrands(200);
+        drawQuickly();
+        viewport().look(render::View::Front);
+        viewport().frameAll();
+        ASSERT_TRUE(viewport().waitForPicture(120'000));
+    }
+    /// Opens the dialog by its action and gives it to `use`, which closes it.
+    void inDialog(std::function<void(RenderDialog&)> use) {
+        onceAsked<RenderDialog>(std::move(use));
+        trigger("file.render");
+    }
+    static void set(RenderDialog& dialog, FilmOf of, int width, int height) {
+        dialog.findChild<QComboBox*>("renderOf")->setCurrentIndex(static_cast<int>(of));
+        dialog.findChild<QSpinBox*>("renderWidth")->setValue(width);
+        dialog.findChild<QSpinBox*>("renderHeight")->setValue(height);
+    }
+    static QPushButton* button(RenderDialog& dialog, const char* name) {
+        return dialog.findChild<QPushButton*>(name);
+    }
+    static QString note(RenderDialog& dialog) { return dialog.findChild<QLabel*>("renderNote")->text(); }
+    /// Presses *Render*, answers with that name, and waits for the end.
+    void renderAs(RenderDialog& dialog, const char* name) {
+        onceAskedForAFile(inFolder(name));
+        QTest::mouseClick(button(dialog, "render"), Qt::LeftButton);
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 120'000));
+        QCoreApplication::processEvents();
+    }
+    QStringList written() const { return QDir(folder.path()).entryList(QDir::Files, QDir::Name); }
+};
+
+TEST_F(RenderTest, AnImageHasTheSizeAndBackgroundThatWereAskedFor) {
+    inDialog([&](RenderDialog& dialog) {
+        EXPECT_EQ(dialog.findChild<QSpinBox*>("renderWidth")->value(),
+                  static_cast<int>(std::lround(viewport().width() * viewport().devicePixelRatioF())));
+        EXPECT_FALSE(dialog.findChild<QSpinBox*>("renderImages")->isVisible());
+        set(dialog, FilmOf::View, 160, 120);
+        renderAs(dialog, "opaque.png");
+        EXPECT_TRUE(note(dialog).startsWith("Rendered opaque.png")) << note(dialog).toStdString();
+        dialog.findChild<QCheckBox*>("renderTransparent")->setChecked(true);
+        renderAs(dialog, "transparent.png");
+        dialog.reject();
+    });
+    const QImage opaque(inFolder("opaque.png")), clear(inFolder("transparent.png"));
+    ASSERT_EQ(opaque.size(), QSize(160, 120));
+    ASSERT_EQ(clear.size(), QSize(160, 120));
+    EXPECT_EQ(opaque.pixelColor(0, 0).alpha(), 255);
+    EXPECT_EQ(clear.pixelColor(0, 0).alpha(), 0);
+    int covered = 0;
+    for (int y = 0; y < 120; ++y)
+        for (int x = 0; x < 160; ++x) covered += clear.pixelColor(x, y).alpha() > 128;
+    EXPECT_GT(covered, 50) << "hair is in it";
+    EXPECT_TRUE(viewport().waitForPicture(120'000)) << "the view goes on";
+}
+
+TEST_F(RenderTest, ATurntableIsNumberedImagesFromAllSides) {
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Turntable, 96, 96);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(4);
+        EXPECT_TRUE(note(dialog).startsWith("4 images")) << note(dialog).toStdString();
+        renderAs(dialog, "turn.png");
+        dialog.reject();
+    });
+    ASSERT_EQ(written(), QStringList({"turn_0000.png", "turn_0001.png", "turn_0002.png", "turn_0003.png"}));
+    const QImage front(inFolder("turn_0000.png")), side(inFolder("turn_0001.png"));
+    EXPECT_NE(front, side);
+    EXPECT_EQ(front.size(), QSize(96, 96));
+}
+
+TEST_F(RenderTest, ImagesThatAreThereAreReplacedOnlyWhenToldTo) {
+    QFile there(inFolder("turn_0001.png"));
+    ASSERT_TRUE(QImage(4, 4, QImage::Format_RGB32).save(there.fileName()));
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Turntable, 32, 32);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(2);
+        onceAsked<QMessageBox>([](QMessageBox& question) {
+            QTest::mouseClick(question.button(QMessageBox::No), Qt::LeftButton);
+        });
+        renderAs(dialog, "turn.png");
+        dialog.reject();
+    });
+    EXPECT_EQ(written(), QStringList({"turn_0001.png"}));
+    EXPECT_EQ(QImage(there.fileName()).width(), 4);
+}
+
+TEST_F(RenderTest, AFilmOfTheSimulationMoves) {
+    ASSERT_TRUE(parts().player.setMotion("spin"));
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Simulation, 64, 64);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(3);
+        dialog.findChild<QComboBox*>("renderRate")->setCurrentText("10");
+        renderAs(dialog, "move.png");
+        dialog.findChild<QComboBox*>("renderFiles")
+            ->setCurrentIndex(static_cast<int>(FilmFiles::AnimatedPng));
+        renderAs(dialog, "film.png");
+        dialog.reject();
+    });
+    EXPECT_NE(QImage(inFolder("move_0000.png")), QImage(inFolder("move_0002.png")));
+    QFile film(inFolder("film.png"));
+    ASSERT_TRUE(film.open(QIODevice::ReadOnly));
+    EXPECT_EQ(film.readAll().count("fcTL"), 3) << "three frames";
+    EXPECT_FALSE(parts().player.hasFrame()) << "what the window plays is as it was";
+}
+
+TEST_F(RenderTest, CancelLeavesNoFileAndTheDialogGoesOn) {
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Turntable, 64, 64);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(2000);
+        onceAskedForAFile(inFolder("turn.png"));
+        QTest::mouseClick(button(dialog, "render"), Qt::LeftButton);
+        EXPECT_TRUE(QTest::qWaitFor([&] { return parts().tasks.progress() > 0; }, 120'000));
+        EXPECT_FALSE(button(dialog, "render")->isEnabled());
+        QTest::qWait(150);
+        EXPECT_TRUE(note(dialog).contains("of 2000")) << note(dialog).toStdString();
+        QTest::keyClick(&dialog, Qt::Key_Escape);
+        EXPECT_TRUE(dialog.isVisible()) << "the first press cancels the work";
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
+        EXPECT_TRUE(note(dialog).startsWith("Cancelled")) << note(dialog).toStdString();
+        EXPECT_TRUE(written().isEmpty()) << written().join(' ').toStdString();
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(2);
+        renderAs(dialog, "again.png");
+        EXPECT_EQ(written().size(), 2);
+        QTest::keyClick(&dialog, Qt::Key_Escape);
+        EXPECT_FALSE(dialog.isVisible());
+    });
+    EXPECT_TRUE(viewport().waitForPicture(120'000));
+}
+
+TEST_F(RenderTest, WhatCannotBeIsSaidBeforeAnythingIsDrawn) {
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Turntable, 8192, 8192);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(3600);
+        EXPECT_TRUE(button(dialog, "render")->isEnabled()) << "numbered images are written as they come";
+        dialog.findChild<QComboBox*>("renderFiles")
+            ->setCurrentIndex(static_cast<int>(FilmFiles::AnimatedWebp));
+        EXPECT_FALSE(button(dialog, "render")->isEnabled());
+        EXPECT_TRUE(note(dialog).contains("memory")) << note(dialog).toStdString();
+        set(dialog, FilmOf::View, 32, 32);
+        EXPECT_TRUE(button(dialog, "render")->isEnabled());
+        dialog.renderTo(inFolder("no/such/folder.png"));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
+        QCoreApplication::processEvents();
+        EXPECT_TRUE(note(dialog).contains("folder")) << note(dialog).toStdString();
+        dialog.reject();
+    });
+    EXPECT_TRUE(written().isEmpty());
+}
+
+}  // namespace
+}  // namespace hairloom::editor
