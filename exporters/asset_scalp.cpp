@@ -9,12 +9,15 @@
 #include <optional>
 
 #include "exporters/character.h"
+#include "hairloom/body_bytes.h"
 
 namespace hairloom {
 namespace {
 
 constexpr float kShares = 65535.0f;
 constexpr std::size_t kMaxBones = asset::kNoBone;
+/// More of a skin collider is told as a warning.
+constexpr std::size_t kLargeBody = 300'000;
 
 std::uint16_t toShare(float value) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * kShares));
@@ -39,9 +42,10 @@ class Collector {
         const auto bindings = groom_.rootBindings();
         const bool bound = groom_.scalp && bindings.size() == groom_.strandCount();
         const bool boned = std::ranges::any_of(groom_.spheres, [](const auto& s) { return !s.bone.empty(); });
-        if (bound || boned) openCharacter();
+        if (bound || boned || (groom_.body && !groom_.body->bones.empty())) openCharacter();
         if (bound) addRoots(bindings);
         addSpheres();
+        addBody();
         return std::move(result_);
     }
 
@@ -128,6 +132,30 @@ class Collector {
             }
             result_.spheres.push_back(record);
         }
+    }
+
+    void addBody() {
+        if (!groom_.body) return;
+        for (const std::string& name : groom_.body->bones) {
+            const auto bone = scene_ ? scene_->skeleton.find(name) : std::nullopt;
+            if (!bone) {
+                result_.findings.push_back(
+                    {Severity::Warning,
+                     fmt::format(
+                         "the skin collider is left out: the head's file has no bone '{}'. Hair meets "
+                         "{} spheres",
+                         name, groom_.spheres.size()),
+                     "body", "fit it again on the character (colliders --fit field)"});
+                return;
+            }
+            boneOf(*bone);
+        }
+        result_.body = runtime::packBody(*groom_.body);
+        const bool isLarge = result_.body.size() > kLargeBody;
+        result_.findings.push_back(
+            {isLarge ? Severity::Warning : Severity::Info,
+             fmt::format("the skin collider takes {:.0f} kB", static_cast<double>(result_.body.size()) / 1e3),
+             "body", isLarge ? "fit it with fewer --kilobytes" : ""});
     }
 
     const Groom& groom_;

@@ -17,7 +17,8 @@ struct AssetScalp {
     std::vector<asset::ScalpTriangle> triangles;
     std::vector<asset::Bone> bones;
     std::vector<asset::Sphere> spheres;
-    std::vector<Finding> findings;  ///< what there is of the head and could not be had
+    std::vector<std::uint8_t> body;  ///< the skin collider, packed; empty: none
+    std::vector<Finding> findings;   ///< what there is of the head and could not be had
 };
 
 /// Of these strands of the groom. The skin comes from the groom's character file, where that has one.

@@ -272,6 +272,7 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     builder.add<asset::ScalpTriangle>(asset::kScalpTriangles, scalp.triangles);
     builder.add<asset::Bone>(asset::kBones, scalp.bones);
     builder.add<asset::Sphere>(asset::kSpheres, scalp.spheres);
+    builder.add<std::uint8_t>(asset::kBody, scalp.body);
     strands.findings.insert(strands.findings.end(), scalp.findings.begin(), scalp.findings.end());
     if (follow.bindings) {
         builder.add<asset::Recipe>(asset::kRecipe, std::span(&follow.recipe, 1));
@@ -325,7 +326,8 @@ HairWriter runtimeWriter() {
     return {
         "runtime",
         "Hairloom runtime asset .hairrt",
-        "root bindings, the head's bones, spheres, settings, layers, materials, attributes of strands "
+        "root bindings, the head's bones, spheres, the skin collider, settings, layers, materials, "
+        "attributes of strands "
         "and how "
         "follow hairs come from guides",
         "512 points per strand",

@@ -204,8 +204,6 @@ Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand
                       static_cast<std::uint32_t>(made->failed.size())};
 }
 
-constexpr std::string_view kRuntimeFormat = "runtime";
-
 }  // namespace
 
 Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
@@ -240,8 +238,8 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         strands = std::move(*found);
     }
     Groom guides = wanted.layers.empty() ? groom : strandsOf(groom, strands);
-    // What simulates the file meets its spheres alone, and so does what measures it.
-    const bool losesBody = groom.body && (writer.holdsCards() || writer.name == kRuntimeFormat);
+    // What simulates cards meets their spheres alone, and so does what measures them.
+    const bool losesBody = groom.body && writer.holdsCards();
     if (losesBody) guides.body.reset();
     const std::uint32_t perGuide = guides.interpolation.followPerGuide;
     const bool isBaked = wanted.hair != ExportedHair::guides && perGuide > 0 && !writer.holdsCards();
@@ -276,6 +274,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         // Hairs are written, and settings beside them where a format has these.
         shown.simulation = guides.simulation;
         shown.spheres = guides.spheres;
+        shown.body = guides.body;
         shown.placement = guides.placement;
     }
     if (wanted.storms > 0) {

@@ -145,7 +145,8 @@ Result<Fitting> fittingTable(const ScalpMesh& mesh, const Body& body, const Box3
     }
     const Table table(bounds, kCoarsest * kBlockCells);
     return fail(fmt::format("the body is {:.1f} m large and takes {:.0f} kB in cells of {:.0f} mm",
-                            static_cast<double>(bounds.sizes().maxCoeff()), 1e-3 * bytesOf(table, 0),
+                            static_cast<double>(bounds.sizes().maxCoeff()),
+                            1e-3 * (bytesOf(table, cellsNearSkin(table, body).size()) + kForBones),
                             1e3 * static_cast<double>(kCoarsest)),
                 fmt::format("{:.0f} kB at most: import a head in metres, without what hair never reaches",
                             1e-3 * most));

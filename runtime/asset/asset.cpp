@@ -157,7 +157,7 @@ std::optional<AssetError> Asset::takeSection(const Section& section) {
         take(section, kText, texts, problem) || isSound<Attribute>(section, kAttributes, problem) ||
         isSound<std::byte>(section, kAttributeValues, problem) ||
         isSound<MeasuredLevel>(section, kLevelErrors, problem) ||
-        isSound<MeasuredLevel>(section, kSeenErrors, problem);
+        isSound<MeasuredLevel>(section, kSeenErrors, problem) || isSound<std::byte>(section, kBody, problem);
     if (!problem.empty()) return wrong(problem);
     if (!known && (section.flags & kRequired) != 0) {
         AssetError error = wrong("is needed and not known to this library");

@@ -41,9 +41,9 @@ constexpr float kLargestArea = 1e12f;
 }  // namespace
 
 Problem Asset::checkContent() const {
-    for (const auto& check :
-         {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp, &Asset::checkFollowHairs,
-          &Asset::checkLayers, &Asset::checkSettings, &Asset::checkAttributes, &Asset::checkLevels}) {
+    for (const auto& check : {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp,
+                              &Asset::checkFollowHairs, &Asset::checkLayers, &Asset::checkSettings,
+                              &Asset::checkAttributes, &Asset::checkLevels, &Asset::checkBody}) {
         if (Problem problem = (this->*check)()) return problem;
     }
     return std::nullopt;
@@ -136,6 +136,15 @@ Problem Asset::checkScalp() const {
             sphere.radius > kFarthest)
             return damaged(placeOf(&sphere), "a sphere without name, place or bone");
     }
+    return std::nullopt;
+}
+
+Problem Asset::checkBody() const {
+    if (body().empty()) return std::nullopt;
+    const BodyFieldRead read = readBody();
+    if (!read.field) return damaged(placeOf(body().data()), "the skin collider: " + read.error);
+    if (bonesOf(*read.field).size() != read.field->bones.size())
+        return damaged(placeOf(body().data()), "a skin collider on a bone that the file does not have");
     return std::nullopt;
 }
 

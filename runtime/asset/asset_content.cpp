@@ -157,6 +157,21 @@ const Attribute* Asset::findAttribute(std::string_view name) const {
     return found == all.end() ? nullptr : &*found;
 }
 
+BodyFieldRead Asset::readBody() const {
+    const std::span<const std::byte> bytes = body();
+    return bodyFieldFromBytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+std::vector<std::size_t> Asset::bonesOf(const BodyField& field) const {
+    std::vector<std::size_t> numbers;
+    for (const std::string& name : field.bones) {
+        const auto found = std::find_if(bones.begin(), bones.end(),
+                                        [&](const Bone& bone) { return text(bone.name) == name; });
+        if (found != bones.end()) numbers.push_back(static_cast<std::size_t>(found - bones.begin()));
+    }
+    return numbers;
+}
+
 DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
     const Recipe& r = recipe[0];
     std::vector<std::uint32_t> ids;

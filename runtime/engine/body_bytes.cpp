@@ -6,14 +6,15 @@
 #include <cstring>
 #include <type_traits>
 
-#include "hairloom/body_field.h"
+#include "engine/body_packing.h"
+#include "hairloom/body_bytes.h"
 
 namespace hairloom::runtime {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian, and copied as they are");
 
-constexpr std::uint32_t kBodyVersion = 1;
+constexpr std::uint32_t kBodyVersion = 1, kPackedBodyVersion = 2;
 
 /// What comes first, in this order and without gaps.
 struct BodyHead {
@@ -55,6 +56,11 @@ class BodyReader {
         at_ += count;
         return true;
     }
+    std::span<const std::uint8_t> rest() {
+        const auto left = bytes_.subspan(at_);
+        at_ = bytes_.size();
+        return left;
+    }
     std::size_t at() const { return at_; }
     bool finished() const { return at_ == bytes_.size(); }
 
@@ -90,20 +96,39 @@ bool takeNames(BodyReader& reader, std::uint32_t count, std::vector<std::string>
     return true;
 }
 
+bool takePacked(BodyReader& reader, const BodyHead& head, BodyField& field) {
+    return reader.take(field.palette, head.palette) && reader.take(field.boxes, head.bones) &&
+           takeNames(reader, head.bones, field.bones) && unpackBodyNumbers(reader.rest(), head.blocks, field);
+}
+
+BodyHead headOf(const BodyField& field, std::uint32_t version) {
+    BodyHead head{};
+    std::memcpy(head.magic, kBodyMagic, sizeof(head.magic));
+    head.version = version;
+    const float numbers[] = {field.low_ss.x, field.low_ss.y, field.low_ss.z};
+    std::memcpy(head.low, numbers, sizeof(head.low));
+    head.cell = field.cell;
+    head.unit = field.unit;
+    std::memcpy(head.size, field.size.data(), sizeof(head.size));
+    head.palette = static_cast<std::uint32_t>(field.palette.size());
+    head.blocks = static_cast<std::uint32_t>(field.values.size() / BodyField::kBlockValues);
+    head.bones = static_cast<std::uint32_t>(field.bones.size());
+    return head;
+}
+
+void putNames(BodyWriter& writer, const std::vector<std::string>& bones) {
+    for (const std::string& bone : bones) {
+        constexpr std::size_t kLongest = 0xffff;
+        const auto length = static_cast<std::uint16_t>(bone.size() < kLongest ? bone.size() : kLongest);
+        writer.put(&length, 1);
+        writer.put(bone.data(), length);
+    }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> BodyField::toBytes() const {
-    BodyHead head{};
-    std::memcpy(head.magic, kBodyMagic, sizeof(head.magic));
-    head.version = kBodyVersion;
-    const float numbers[] = {low_ss.x, low_ss.y, low_ss.z};
-    std::memcpy(head.low, numbers, sizeof(head.low));
-    head.cell = cell;
-    head.unit = unit;
-    std::memcpy(head.size, size.data(), sizeof(head.size));
-    head.palette = static_cast<std::uint32_t>(palette.size());
-    head.blocks = static_cast<std::uint32_t>(values.size() / kBlockValues);
-    head.bones = static_cast<std::uint32_t>(bones.size());
+    const BodyHead head = headOf(*this, kBodyVersion);
     BodyWriter writer;
     writer.put(&head, 1);
     writer.put(distances.data(), distances.size());
@@ -112,12 +137,19 @@ std::vector<std::uint8_t> BodyField::toBytes() const {
     writer.put(blocks.data(), blocks.size());
     writer.put(values.data(), values.size());
     writer.put(boxes.data(), boxes.size());
-    for (const std::string& bone : bones) {
-        constexpr std::size_t kLongest = 0xffff;
-        const auto length = static_cast<std::uint16_t>(bone.size() < kLongest ? bone.size() : kLongest);
-        writer.put(&length, 1);
-        writer.put(bone.data(), length);
-    }
+    putNames(writer, bones);
+    return std::move(writer.bytes);
+}
+
+std::vector<std::uint8_t> packBody(const BodyField& field) {
+    const BodyHead head = headOf(field, kPackedBodyVersion);
+    const std::vector<std::uint8_t> numbers = packBodyNumbers(field);
+    BodyWriter writer;
+    writer.put(&head, 1);
+    writer.put(field.palette.data(), field.palette.size());
+    writer.put(field.boxes.data(), field.boxes.size());
+    putNames(writer, field.bones);
+    writer.put(numbers.data(), numbers.size());
     return std::move(writer.bytes);
 }
 
@@ -129,15 +161,19 @@ BodyFieldRead bodyFieldFromBytes(std::span<const std::uint8_t> bytes) {
     BodyHead head;
     if (!reader.copy(&head, sizeof(head))) return refuse(0, "too short for a body");
     if (std::memcmp(head.magic, kBodyMagic, sizeof(head.magic)) != 0) return refuse(0, "is no body");
-    if (head.version != kBodyVersion) return refuse(4, "a body of a version that this program does not read");
+    const bool isPacked = head.version == kPackedBodyVersion;
+    if (head.version != kBodyVersion && !isPacked)
+        return refuse(4, "a body of a version that this program does not read");
     BodyField field;
     field.low_ss = {head.low[0], head.low[1], head.low[2]};
     field.cell = head.cell;
     field.unit = head.unit;
     std::memcpy(field.size.data(), head.size, sizeof(head.size));
     if (head.bones > 255) return refuse(48, "a body with more than 255 bones");
-    if (!takeArrays(reader, head, field) || !takeNames(reader, head.bones, field.bones))
-        return refuse(reader.at(), "the body is cut short");
+    const bool isWhole = isPacked
+                             ? takePacked(reader, head, field)
+                             : takeArrays(reader, head, field) && takeNames(reader, head.bones, field.bones);
+    if (!isWhole) return refuse(reader.at(), "the body is cut short");
     if (!reader.finished()) return refuse(reader.at(), "more follows than the body needs");
     if (std::string problem = field.problem(); !problem.empty()) return {std::nullopt, std::move(problem)};
     return {std::move(field), {}};

@@ -130,7 +130,8 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
 std::size_t Engine::Impl::baseBytes() const {
     return shape_->bytes() + (state_.planes.size() + state_.roots.size()) * sizeof(float) +
            strands_->baseBytes(state_) + (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
-           state_.rests.size() * sizeof(Rest) + nextRoots_.size() * sizeof(float) +
+           state_.rests.size() * sizeof(Rest) +
+           (nextRoots_.size() + clearances_.size() + bodySeen_.size()) * sizeof(float) + bodyTable_.bytes() +
            blockReports_.size() * sizeof(BlockReport) + scratch_.bytes();
 }
 

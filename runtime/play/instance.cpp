@@ -6,6 +6,8 @@
 #include <cstring>
 #include <map>
 
+#include "engine/body_table.h"
+#include "engine/moving_body.h"
 #include "engine/state.h"
 #include "engine/strand_model.h"
 #include "follow/follow_kernels.h"
@@ -63,7 +65,7 @@ std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t veloci
 }
 
 /// Of an engine at most, beside what threads work in; `strandsOf` counts strands by their points.
-std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf) {
+std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf, bool hasBody) {
     // Strands of one point count fill blocks; straight ones and others are apart, and the last of each has
     // room to spare.
     std::size_t planeFloats = 0, blocks = 0, strands = 0;
@@ -80,7 +82,7 @@ std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf) {
         for (const OwnArray& array : model->own) rows += array.laneRows;
         laneRows = std::max(laneRows, rows);
     }
-    const std::size_t planes = kRestPlanes + kStatePlanes + most;
+    const std::size_t planes = kRestPlanes + kStatePlanes + most + (hasBody ? kBodyPlanes + 1 : 0);
     const std::size_t lanes =
         (2 * kRootRows + laneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
     return planeFloats * planes * sizeof(float) + blocks * lanes +
@@ -94,7 +96,7 @@ std::map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset) {
 }
 
 /// What HL_LEVELS adds; strands of a level have at most the points of the longest.
-std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread) {
+std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread, std::size_t bodyTable) {
     const std::size_t strands = asset.strandCount(), points = asset.pointCount();
     std::size_t bytes = 2 * points * sizeof(Float3) + 2 * strands * sizeof(RootFrame) +
                         (strands + asset.guides.size() + 3) * sizeof(std::uint32_t) + sizeof(LevelSet);
@@ -104,9 +106,11 @@ std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t th
         // Whichever guides are taken, they have no more points than as many of the longest.
         strandsOf[pointsOfLevel(level, longest)] = guides;
         const std::size_t blocksMore = strandsByPoints(asset).size() * 2;
-        bytes += engineBytes(strandsOf) + thread + blocksMore * engineBytes({{longest, 1}}) +
-                 strands * sizeof(Level::Sources) + guides * 2 * sizeof(std::uint32_t) +
-                 3 * std::size_t{guides} * longest * sizeof(Float3) + sizeof(Level) + sizeof(Engine);
+        const bool hasBody = bodyTable > 0;
+        bytes += engineBytes(strandsOf, hasBody) + bodyTable + thread +
+                 blocksMore * engineBytes({{longest, 1}}, hasBody) + strands * sizeof(Level::Sources) +
+                 guides * 2 * sizeof(std::uint32_t) + 3 * std::size_t{guides} * longest * sizeof(Float3) +
+                 sizeof(Level) + sizeof(Engine);
         bytes += asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere));
     }
     return bytes;
@@ -122,12 +126,14 @@ InstanceMemory instanceMemory(const Asset& asset) {
         work = std::max(work, model->laneFloats + model->mostSolverFloats() * std::size_t{longest});
     const std::size_t thread = sizeof(LaneFrame) + (work + kSolverPadding) * sizeof(float);
     const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
-    const std::size_t guides = engineBytes(strandsOf) + thread +
-                               asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
-                               ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) +
-                               RootPoses::bytesFor(asset);
+    const BodyFieldRead body = asset.readBody();
+    const std::size_t bodyTable = body.field ? BodyTable(*body.field).bytes() : 0;
+    const std::size_t guides =
+        engineBytes(strandsOf, bodyTable > 0) + bodyTable + thread + (body.field ? body.field->bytes() : 0) +
+        asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
+        ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) + RootPoses::bytesFor(asset);
     // Speeds are kept for follow hairs and for levels.
-    const std::size_t levels = levelBytes(asset, longest, thread) + points * sizeof(Float3);
+    const std::size_t levels = levelBytes(asset, longest, thread, bodyTable) + points * sizeof(Float3);
     if (hairs == 0) return {guides, 0, levels, thread};
     const std::uint32_t pointsPerHair = asset.recipe[0].pointsPerHair;
     return {guides,
@@ -177,6 +183,12 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     instance.poses_.followHead(kIdentity34, instance.roots_);
     instance.engine_.reset(instance.roots_);
     instance.offsets_ = strands.offsets;
+    if (BodyFieldRead body = asset.readBody(); body.field) {
+        instance.bodyBones_ = asset.bonesOf(*body.field);
+        instance.body_ = std::make_shared<const BodyField>(std::move(*body.field));
+        instance.bodyPose_.resize(std::max<std::size_t>(instance.bodyBones_.size(), 1));
+        instance.engine_.setBody(instance.body_);
+    }
     if (wantsLevels) instance.makeLevels(asset, strands);
     return {std::move(instance), {}};
 }
@@ -233,12 +245,29 @@ Outcome Instance::placeSpheres(const hl_frame& frame, FrameInput& input) {
     return std::nullopt;
 }
 
+/// Roots alone do not say where the skin is: it stays where it was.
+void Instance::placeBody(const hl_frame& frame, FrameInput& input) {
+    if (!body_) return;
+    const auto poseOf = [](const Matrix34& m) {
+        return BonePose{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
+    };
+    if (frame.bones && !bodyBones_.empty()) {
+        for (std::size_t b = 0; b < bodyBones_.size(); ++b)
+            bodyPose_[b] = poseOf(matrixAt(frame.bones, bodyBones_[b]));
+        input.body_ws = bodyPose_;
+    } else if (frame.head || !(frame.roots || frame.scalp)) {
+        bodyPose_[0] = poseOf(frame.head ? matrixAt(frame.head, 0) : kIdentity34);
+        input.body_ws = std::span(bodyPose_).first(1);
+    }
+}
+
 Outcome Instance::place(const hl_frame& frame, FrameInput& input) {
     if (frame.bones && frame.bone_count != poses_.boneCount())
         return wrongSize("bones", frame.bone_count, poses_.boneCount());
     // Last, since it is what read-outs look at: nothing is refused any more once it has begun to write.
     if (Outcome refused = placeSpheres(frame, input)) return refused;
     if (Outcome refused = placeRoots(frame)) return refused;
+    placeBody(frame, input);
     input.dt = frame.dt;
     input.time = frame.time;
     input.roots_ws = roots_;
@@ -365,7 +394,7 @@ hl_instance_info Instance::describe() const {
                  ownBytes(roots_.size(), positions_.size(), hairs_ ? velocities_.size() : 0) +
                  hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
-                 spheres_.size() * sizeof(Sphere) + bytesOfLevels() +
+                 (body_ ? body_->bytes() : 0) + spheres_.size() * sizeof(Sphere) + bytesOfLevels() +
                  (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3);
     return info;
 }

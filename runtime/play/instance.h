@@ -125,6 +125,7 @@ class Instance {
 
     Outcome place(const hl_frame& frame, FrameInput& input);
     Outcome placeRoots(const hl_frame& frame);
+    void placeBody(const hl_frame& frame, FrameInput& input);
     Outcome placeSpheres(const hl_frame& frame, FrameInput& input);
     void takeTurns();
     void takeOrigin(const hl_frame& frame);
@@ -141,6 +142,9 @@ class Instance {
     std::vector<std::uint32_t> offsets_;
     std::vector<asset::Sphere> restSpheres_;
     std::vector<Sphere> spheres_;
+    std::shared_ptr<const BodyField> body_;  ///< null: none
+    std::vector<std::size_t> bodyBones_;     // of a frame's bones
+    std::vector<BonePose> bodyPose_;
     std::vector<RootFrame> roots_;
     std::vector<Quat> turns_;
     /// What the last step was given, where all of it is a head or bones; hair that sleeps needs no other.

@@ -38,6 +38,7 @@ void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
         settings.substeps = level.substepsUnder(settings);
         levels_->engines.push_back(
             std::move(*Engine::make({level.offsets, level.positions_ss}, settings, host_).engine));
+        if (body_) levels_->engines.back().setBody(body_);
     }
     levels_->placed.resize(roots_.size());
     levels_->fade.resize(positions_.size());

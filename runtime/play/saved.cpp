@@ -12,8 +12,8 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x53494c48;  // "HLIS"
-constexpr std::uint32_t kSavedVersion = 2;
-constexpr std::size_t kMostSpheres = 4096;
+constexpr std::uint32_t kSavedVersion = 3;
+constexpr std::size_t kMostSpheres = 4096, kMostBodyBones = 255;
 
 struct Head {
     std::uint32_t magic, version;
@@ -90,6 +90,7 @@ void writeState(Writer& writer, const State& state) {
         writer.value(std::uint32_t{rest.asleep});
     }
     writer.all<Sphere>(state.spheres);
+    writer.all<BonePose>(state.body);
     writer.value(state.rootsMin_ws);
     writer.value(state.rootsMax_ws);
     writer.value(state.substep);
@@ -119,6 +120,9 @@ State readState(Reader& reader, const State& like) {
     const std::uint64_t spheres = reader.peekCount();
     if (spheres > kMostSpheres) reader.good = false;
     reader.all(state.spheres, static_cast<std::size_t>(std::min<std::uint64_t>(spheres, kMostSpheres)));
+    const std::uint64_t bones = reader.peekCount();
+    if (bones > kMostBodyBones) reader.good = false;
+    reader.all(state.body, static_cast<std::size_t>(std::min<std::uint64_t>(bones, kMostBodyBones)));
     state.rootsMin_ws = reader.value<Float3>();
     state.rootsMax_ws = reader.value<Float3>();
     state.substep = reader.value<float>();

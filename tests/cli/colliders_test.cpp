@@ -79,9 +79,13 @@ TEST_F(Colliders, WhatPassesThroughTheSkinOrLosesItIsTold) {
     noted("simulate on.hairloom --frames 2 --method lattice", "pass through the skin collider");
     const auto taken = runJson("simulate on.hairloom --frames 2 -o taken.hairloom --take");
     EXPECT_FALSE(taken.contains("notes")) << "is of the head at rest";
-    const Outcome asset = run("export on.hairloom --format runtime -o hair.hairrt --json");
-    EXPECT_THAT(asset.errors, HasSubstr("skin collider"));
-    EXPECT_THAT(asset.json()["findings"].dump(), HasSubstr("skin collider"));
+    // Games have it, and are told how much it takes.
+    const auto asset = runJson("export on.hairloom --format runtime -o hair.hairrt");
+    EXPECT_THAT(asset["findings"].dump(), HasSubstr("the skin collider takes"));
+    EXPECT_EQ(asset["findings"].dump().find("left out: hair meets"), std::string::npos);
+    const Outcome cards =
+        run("export on.hairloom --format gltf -o hair.glb --levels 20 --texture-size 64 --json");
+    EXPECT_THAT(cards.json()["findings"].dump(), HasSubstr("the skin collider is left out"));
     EXPECT_EQ(runJson("export soft.hairloom --format runtime -o bare.hairrt")["findings"].dump().find(
                   "skin collider"),
               std::string::npos);

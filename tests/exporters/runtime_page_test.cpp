@@ -177,7 +177,8 @@ TEST_F(RuntimePage, IsEnoughToReadAFileBy) {
         if (page.contains(kind))
             EXPECT_EQ(reader.recordBytes(kind), reader.table(kind, "recordBytes")) << kind;
         else
-            EXPECT_THAT(kind, testing::AnyOf("PNTS", "GHRS", "SHFT", "RADI", "SLYR", "ATTV", "VALS", "TEXT"));
+            EXPECT_THAT(
+                kind, testing::AnyOf("PNTS", "GHRS", "BODY", "SHFT", "RADI", "SLYR", "ATTV", "VALS", "TEXT"));
     }
     const auto positions = positionsBy(reader);
     const auto strands = opened.asset->strandsAtRest();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hairloom/asset_format.h"
+#include "hairloom/body_field.h"
 #include "hairloom/follow.h"
 #include "hairloom/follow_recipe.h"
 #include "hairloom/settings.h"
@@ -126,6 +127,11 @@ class Asset {
     std::span<const std::byte> attributeValues() const {
         return recordsOf<std::byte>(asset::kAttributeValues);
     }
+    /// Of the skin that hair collides with, as packBody() gives them, or none.
+    std::span<const std::byte> body() const { return recordsOf<std::byte>(asset::kBody); }
+    /// Of all bones of body(), in its order: their numbers among `bones`.
+    std::vector<std::size_t> bonesOf(const BodyField& field) const;
+    BodyFieldRead readBody() const;
     /// Of asset::kLevels levels, or none: nobody has measured them.
     std::span<const asset::MeasuredLevel> levelErrors() const {
         return recordsOf<asset::MeasuredLevel>(asset::kLevelErrors);
@@ -160,6 +166,7 @@ class Asset {
     std::optional<AssetError> checkSettings() const;
     std::optional<AssetError> checkAttributes() const;
     std::optional<AssetError> checkLevels() const;
+    std::optional<AssetError> checkBody() const;
 
     std::span<const std::byte> bytes_;
 };

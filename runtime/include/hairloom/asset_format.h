@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "assets are used in pl
 /// As PNG's: a copy that changed line ends or lost the eighth bit is found out.
 inline constexpr std::array<char, 8> kMagic{'\x89', 'H', 'R', 'T', '\r', '\n', '\x1a', '\n'};
 /// A reader refuses another major version, and takes any minor one.
-inline constexpr std::uint16_t kMajor = 1, kMinor = 0;
+inline constexpr std::uint16_t kMajor = 1, kMinor = 1;
 /// Sections begin at multiples of it, and so does the memory that the file lies in.
 inline constexpr std::size_t kAlignment = 16;
 inline constexpr std::uint32_t kMaxSections = 4096;
@@ -54,8 +54,8 @@ inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots
                                   kGuideTriangles = "GTRI", kRootShifts = "SHFT", kFarRootShifts = "SHFX",
                                   kRadii = "RADI", kLayers = "LAYR", kStrandLayers = "SLYR",
                                   kSettings = "SETT", kValues = "VALS", kText = "TEXT", kAttributes = "ATTR",
-                                  kAttributeValues = "ATTV", kLevelErrors = "LVLE",
-                                  kSeenErrors = "LVLS";
+                                  kAttributeValues = "ATTV", kLevelErrors = "LVLE", kSeenErrors = "LVLS",
+                                  kBody = "BODY";
 
 /// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
 inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;
