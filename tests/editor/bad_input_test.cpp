@@ -52,9 +52,10 @@ TEST_F(BadInputTest, NumberFieldsOfEveryPanelKeepWhatTheyHadWhereNoNumberIsTyped
                 EXPECT_GE(spin.value(), spin.minimum());
                 EXPECT_LE(spin.value(), spin.maximum());
                 // What is left of it may be a number ("5", "0", "10"): else all is as before.
-                if (!QString(typed).contains(QRegularExpression("[0-9]")))
+                if (!QString(typed).contains(QRegularExpression("[0-9]"))) {
                     EXPECT_DOUBLE_EQ(box->value(), before)
                         << box->objectName().toStdString() << ": " << typed;
+                }
             }
         }
     }

@@ -114,8 +114,9 @@ TEST_F(HelpTest, EveryPageIsInTheProgramAndSoAreThePicturesOfTheManual) {
             const bool isPage = to.endsWith(".md") && !to.contains("://");
             const bool isPicture = name == "manual.md" && to.startsWith("pictures/");
             const QString target = QUrl("qrc:/docs/" + name).resolved(QUrl(to)).path();
-            if (isPicture || (isPage && target.startsWith("/docs/")))
+            if (isPicture || (isPage && target.startsWith("/docs/"))) {
                 EXPECT_TRUE(QFile::exists(":" + target)) << name.toStdString() << ": " << to.toStdString();
+            }
         }
     }
 }
