@@ -3,65 +3,22 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <vector>
 
 #include "core/gpu_simulation/compiled_kernel.h"
 #include "core/gpu_simulation/strand_batch.h"
-#include "runtime/shaders/follow_types.h"
+#include "follow/follow_gpu.h"
 
 namespace hairloom::gpu_simulation {
 namespace {
 
 using gpu::Usage;
-using runtime::Float3;
 
 constexpr std::uint32_t kGuidesPerGroup = 32;  // as in follow_wisps.comp.hlsl
 constexpr std::uint32_t kPointsPerGroup = 64;  // as in follow_hairs.comp.hlsl
 constexpr std::uint32_t kMaxGroups = 65535;    // of one dimension, on every device
 constexpr std::size_t kRows = 4;
-
-shaders::float4 quad(Float3 v, float w = 0.0f) {
-    return {v.x, v.y, v.z, w};
-}
-
-shaders::FollowBinding bindingOf(const runtime::FollowView& view, std::size_t hair) {
-    const float blend = view.blends[hair];
-    const Float3 weights = view.weights[hair] * blend;
-    const Float3 roots = (view.rootWeights[hair] - view.weights[hair]) * blend;
-    auto guides = view.guides[hair];
-    // What is no number would show even through a weight of 0.
-    if (weights.y == 0.0f && roots.y == 0.0f) guides[1] = guides[0];
-    if (weights.z == 0.0f && roots.z == 0.0f) guides[2] = guides[0];
-    shaders::FollowBinding binding;
-    binding.guides = {guides[0], guides[1], guides[2], 0};
-    binding.weights = quad(weights, 1.0f - blend);
-    binding.roots = quad(roots);
-    binding.shift = quad(view.rootShifts[hair]);
-    binding.wisp = {(1.0f - blend) * view.wispOffsets[hair][0], (1.0f - blend) * view.wispOffsets[hair][1], 0,
-                    0};
-    return binding;
-}
-
-/// Point and share of each point of a hair along each guide.
-std::vector<std::array<float, 2>> samplesOf(const runtime::FollowView& view) {
-    std::vector<std::array<float, 2>> all;
-    std::vector<runtime::GuideSample> samples;
-    for (std::size_t g = 0; g + 1 < view.guideOffsets.size(); ++g) {
-        const std::uint32_t first = view.guideOffsets[g], count = view.guideOffsets[g + 1] - first;
-        samples.clear();
-        if (count == view.pointsPerHair) {
-            for (std::uint32_t p = 0; p < count; ++p) samples.push_back({p, 0.0f});
-        } else {
-            runtime::sampleEvenly(view.guideRestPositions_ss.subspan(first, count), view.pointsPerHair,
-                                  samples);
-        }
-        for (const runtime::GuideSample& sample : samples)
-            all.push_back({std::bit_cast<float>(first + sample.segment), sample.share});
-    }
-    return all;
-}
 
 }  // namespace
 
@@ -86,8 +43,9 @@ Status GpuFollowHairs::Impl::makeBuffers(gpu::Device& device, const runtime::Fol
         }
     };
     std::vector<shaders::FollowBinding> all;
-    for (std::size_t hair = 0; hair < view.guides.size(); ++hair) all.push_back(bindingOf(view, hair));
-    const auto samplesAll = samplesOf(view);
+    for (std::size_t hair = 0; hair < view.guides.size(); ++hair)
+        all.push_back(runtime::followBinding(view, hair));
+    const auto samplesAll = runtime::followSamples(view);
     const std::size_t points = constants.points;
     keep(samples, makeBuffer<std::array<float, 2>>(device, "guide samples", Usage::ShaderRead,
                                                    samplesAll.size(), samplesAll));
@@ -112,7 +70,7 @@ Result<GpuFollowHairs> GpuFollowHairs::make(gpu::Device& device, const runtime::
     impl->constants.hairs = static_cast<std::uint32_t>(view.guides.size());
     impl->constants.points = view.pointsPerHair;
     for (const runtime::RootPlane& plane : view.rootPlanes_ss)
-        impl->planes.push_back({quad(plane.x), quad(plane.y), quad(plane.normal)});
+        impl->planes.push_back(runtime::followPlane(plane));
     for (std::size_t g = 0; g < impl->planes.size(); ++g)
         impl->frames.insert(impl->frames.end(), {{}, {0, 0, 0, 1}});
     if (auto made = impl->makeBuffers(device, view); !made) return tl::unexpected(made.error());

@@ -211,37 +211,48 @@ DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
     return drawn;
 }
 
-FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) const {
-    if (hairCount() == 0) return {std::nullopt, "the asset has no follow hairs"};
+Asset::FollowArrays Asset::followArrays(const Strands& rest, const Host& host) const {
     const Recipe& r = recipe[0];
-    std::vector<RootPlane> planes(strands.size(), RootPlane{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    FollowArrays arrays;
+    arrays.planes.assign(strands.size(), RootPlane{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
     for (const Guide& guide : guides) {
         const Float3 normal = toFloat3(guide.normal), axis = toFloat3(guide.axis);
-        planes[guide.strand] = {axis, cross(normal, axis), normal};
+        arrays.planes[guide.strand] = {axis, cross(normal, axis), normal};
     }
-    const DrawnHairs drawn = drawnHairs(rest, host);
-    std::vector<Float3> shifts(hairCount());
+    arrays.drawn = drawnHairs(rest, host);
+    arrays.shifts.resize(hairCount());
     for (std::size_t hair = 0; hair < rootShifts.size(); ++hair)
-        shifts[hair] = shiftDirection(planes, drawn.guides[hair], drawn.rootWeights[hair]) *
-                       (static_cast<float>(rootShifts[hair]) * r.shiftStep);
+        arrays.shifts[hair] =
+            shiftDirection(arrays.planes, arrays.drawn.guides[hair], arrays.drawn.rootWeights[hair]) *
+            (static_cast<float>(rootShifts[hair]) * r.shiftStep);
     for (const FarRootShift& far : farRootShifts)
-        shifts[far.hair] = Float3{static_cast<float>(far.shift[0]), static_cast<float>(far.shift[1]),
-                                  static_cast<float>(far.shift[2])} *
-                           kFarShiftStep;
-    const std::vector<float> wisps = wispRadii(r.radiusRoot, r.radiusTip, r.pointsPerHair);
+        arrays.shifts[far.hair] = Float3{static_cast<float>(far.shift[0]), static_cast<float>(far.shift[1]),
+                                         static_cast<float>(far.shift[2])} *
+                                  kFarShiftStep;
+    arrays.radii = wispRadii(r.radiusRoot, r.radiusTip, r.pointsPerHair);
+    return arrays;
+}
+
+FollowView Asset::followView(const Strands& rest, const FollowArrays& arrays) const {
     FollowView view;
     view.guideOffsets = rest.offsets;
     view.guideRestPositions_ss = rest.positions_ss;
-    view.rootPlanes_ss = planes;
-    view.pointsPerHair = r.pointsPerHair;
-    view.radii = wisps;
-    view.guides = drawn.guides;
-    view.weights = drawn.weights;
-    view.rootWeights = drawn.rootWeights;
-    view.wispOffsets = drawn.wispOffsets;
-    view.blends = drawn.blends;
-    view.rootShifts = shifts;
-    return FollowHairs::make(view);
+    view.rootPlanes_ss = arrays.planes;
+    view.pointsPerHair = recipe[0].pointsPerHair;
+    view.radii = arrays.radii;
+    view.guides = arrays.drawn.guides;
+    view.weights = arrays.drawn.weights;
+    view.rootWeights = arrays.drawn.rootWeights;
+    view.wispOffsets = arrays.drawn.wispOffsets;
+    view.blends = arrays.drawn.blends;
+    view.rootShifts = arrays.shifts;
+    return view;
+}
+
+FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) const {
+    if (hairCount() == 0) return {std::nullopt, "the asset has no follow hairs"};
+    const FollowArrays arrays = followArrays(rest, host);
+    return FollowHairs::make(followView(rest, arrays));
 }
 
 }  // namespace hairloom::runtime

@@ -47,6 +47,7 @@ awk -v runtime="$runtime" '
     }
     BEGIN {
         emit(runtime "/include/hairloom/hairloom.h")
+        emit(runtime "/include/hairloom/gpu.h")
         print "#if defined(HAIRLOOM_IMPLEMENTATION) && !defined(HAIRLOOM_IMPLEMENTED)"
         print "#define HAIRLOOM_IMPLEMENTED"
         print "#if defined(__FAST_MATH__)"

@@ -86,6 +86,10 @@ std::shared_ptr<const State> Engine::state() const {
     return std::make_shared<const State>(impl_->state_);
 }
 
+void Engine::keepMemory() {
+    impl_->keepsMemory_ = true;
+}
+
 bool Engine::setState(const State& state) {
     return impl_->setState(state);
 }

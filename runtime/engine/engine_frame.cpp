@@ -179,6 +179,9 @@ void Engine::Impl::plan(std::span<const Sphere> spheres, std::span<const Float3>
 
 void Engine::Impl::allocateForPlan() {
     strands_->allocate(*shape_, settings_, plan_, plan_.on(Effect::collision) || meetsBody(), state_);
+    for (Floats& own : state_.own) {
+        if (own.empty() && !keepsMemory_) own = Floats();
+    }
     // Sleeping strands keep theirs, so that they wake up without asking for memory.
     const std::size_t jobs = (shape_->blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
     const std::size_t perPoint = model().solverFloats(plan_.stages());

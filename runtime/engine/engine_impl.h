@@ -88,6 +88,7 @@ struct Engine::Impl {
     FrameWind wind_;
     State state_;
     Scratch scratch_;
+    bool keepsMemory_ = false;  // of effects that are off
     StepReport report_;
     std::vector<BlockReport> blockReports_;
     // Of the frame under way.

@@ -165,9 +165,14 @@ class OwnedStrands {
 void listTouchable(const RestShape& shape, const SimulationSettings& settings, const SubstepContext& context,
                    std::size_t block, LaneFrame& lanes);
 
-/// `floats` of them, which are 0 where they are new; as they are where there are so many.
+/// `floats` of them, which are 0 where they are new; as they are where there are so many. What becomes empty
+/// keeps its memory, which the engine gives back unless it was told to keep it.
 inline void keepFloats(Floats& values, std::size_t floats, const Host& host = {}) {
-    if (values.size() != floats) values = zeroFloats(floats, host);
+    if (values.size() == floats) return;
+    if (floats <= values.capacity())
+        values.assign(floats, 0.0f);
+    else
+        values = zeroFloats(floats, host);
 }
 
 }  // namespace hairloom::runtime

@@ -159,6 +159,22 @@ hl_code hl_instance_set(hl_instance* instance, const char* name, const double* v
     return guarded(error, [&] { return say(error, instance->instance.set(name, {values, count})); });
 }
 
+void hl_reserve_init(hl_reserve* reserve) {
+    if (!reserve) return;
+    *reserve = {};
+    reserve->size = sizeof(hl_reserve);
+}
+
+hl_code hl_instance_reserve(hl_instance* instance, const hl_reserve* given, hl_error* error) {
+    if (!instance || !given) return nullRefused(error, "no instance or nothing to reserve");
+    return guarded(error, [&] {
+        hl_reserve wanted{};
+        if (const Outcome refused = takeIn(given, "hl_reserve", sizeof(hl_reserve), wanted))
+            return say(error, refused);
+        return say(error, instance->instance.reserve(wanted));
+    });
+}
+
 hl_code hl_instance_describe_sized(const hl_instance* instance, hl_instance_info* out, size_t size,
                                    hl_error* error) {
     if (!instance || !out) return nullRefused(error, "no instance or no place for its description");

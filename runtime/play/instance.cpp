@@ -150,6 +150,8 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     Instance instance(std::move(*made.engine), RootPoses(asset, strands), std::move(host));
     instance.asset_ = std::uint64_t{asset::checksum(std::as_bytes(asset.strands))} << 32u |
                       asset::checksum(asset.residuals);
+    instance.gpuHairs_ = static_cast<std::uint32_t>(asset.hairCount());
+    if (instance.gpuHairs_ > 0) instance.gpuPoints_ = asset.recipe[0].pointsPerHair;
     const Float3 low = asset.boundsMin_ss(), high = asset.boundsMax_ss();
     instance.pivot_ = {0, 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)};
     instance.roots_.resize(asset.strands.size());
@@ -391,7 +393,7 @@ hl_instance_info Instance::describe() const {
     info.left_roots = report.rejectedRoots;
     info.left_spheres = report.rejectedSpheres;
     info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() + (hairs_ ? hairs_->bytes() : 0) +
-                 ownBytes(roots_.size(), positions_.size(), hairs_ ? velocities_.size() : 0) +
+                 ownBytes(roots_.size(), positions_.size(), hairs_ || !levels_ ? velocities_.size() : 0) +
                  hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
                  (body_ ? body_->bytes() : 0) + spheres_.size() * sizeof(Sphere) + bytesOfLevels() +

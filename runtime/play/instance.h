@@ -43,6 +43,10 @@ class Instance {
     Outcome step(const hl_frame& frame);
     Outcome set(std::string_view name, std::span<const double> values);
     Outcome read(hl_read& read, bool wantsBounds = true);
+    /// What the kernels of hairs are given each frame (gpu.cpp): number HL_GPU_BUFFER_… into `bytes`.
+    bool hasGpuHairs() const { return gpuHairs_ > 0; }
+    std::size_t gpuBytes(std::uint32_t buffer) const;
+    void fillGpu(std::uint32_t buffer, void* data);
     Outcome readHairNumbers(std::span<std::uint32_t> numbers) const;
     Outcome readOffsets(std::span<std::uint32_t> offsets) const;
     hl_instance_info describe() const;
@@ -50,6 +54,8 @@ class Instance {
     /// What steps change, as bytes, and back (saved.cpp).
     std::vector<std::byte> save() const;
     Outcome load(std::span<const std::byte> bytes);
+    /// All memory that frames may come to ask for (reserve.cpp).
+    Outcome reserve(const hl_reserve& wanted);
     void setClock(const std::function<std::uint64_t()>& nanoseconds);
     hl_effect describeEffect(std::uint32_t effect) const;
 
@@ -123,6 +129,7 @@ class Instance {
     void keepShown(Reading& reading);
     std::size_t hairPoints() const;
 
+    void grow(const hl_reserve& wanted);
     Outcome place(const hl_frame& frame, FrameInput& input);
     Outcome placeRoots(const hl_frame& frame);
     void placeBody(const hl_frame& frame, FrameInput& input);
@@ -158,10 +165,11 @@ class Instance {
     } last_;
     bool asleep_ = false;
     std::vector<Float3> positions_, velocities_;
-    std::array<double, 3> origin_{};  // of the last frame
-    Float3 pivot_{};                  // that heads nod about where something is measured
-    std::uint64_t asset_ = 0;         // tells assets apart
-    std::uint64_t changes_ = 1;       // grows with all that changes what is read
+    std::array<double, 3> origin_{};              // of the last frame
+    Float3 pivot_{};                              // that heads nod about where something is measured
+    std::uint32_t gpuHairs_ = 0, gpuPoints_ = 0;  // of the asset, read or not, and of each
+    std::uint64_t asset_ = 0;                     // tells assets apart
+    std::uint64_t changes_ = 1;                   // grows with all that changes what is read
     /// What the last reads have shown, of guides and of hairs.
     struct Shown {
         std::uint64_t boundsOf = 0;  // state that the bounds are of

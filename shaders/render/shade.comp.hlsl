@@ -2,7 +2,7 @@
 // Light leaving each curve point towards the camera. Kajiya-Kay does not change across a ribbon, so shading once per
 // point, not per pixel and frame, loses nothing.
 #include "shaders/render/curve.hlsli"
-#include "shaders/render/kajiya.hlsli"
+#include "kajiya.hlsli"
 #include "shaders/render/shadows.hlsli"
 #include "shaders/render/sky_in_hair.hlsli"
 #ifdef HAIRLOOM_LOOK

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Evaluates the shading functions on given cases: x diffuse, y specular times the normalisation.
-#include "shaders/render/kajiya.hlsli"
+#include "kajiya.hlsli"
 #include "shaders/shared/render_types.h"
 
 StructuredBuffer<KajiyaCase> gCases : register(t0);

@@ -97,6 +97,15 @@ class Asset {
     /// Which guides follow hairs take part of, by their numbers among the strands. Of an asset that has
     /// hairs.
     DrawnHairs drawnHairs(const Strands& strands, const Host& host = {}) const;
+    /// What follow hairs are made of, of an asset that has hairs. The view is of these arrays and `rest`.
+    struct FollowArrays {
+        std::vector<RootPlane> planes;
+        DrawnHairs drawn;
+        std::vector<Float3> shifts;
+        std::vector<float> radii;
+    };
+    FollowArrays followArrays(const Strands& rest, const Host& host = {}) const;
+    FollowView followView(const Strands& rest, const FollowArrays& arrays) const;
     /// Follow hairs, ready to be evaluated from all strands of strandsAtRest(). The error says why there are
     /// none.
     FollowHairs::Result followHairs(const Strands& strands, const Host& host = {}) const;

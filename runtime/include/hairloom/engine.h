@@ -94,6 +94,9 @@ class Engine {
     /// Memory that the body and what is known of it take; 0 where there is none, or springs pass through it.
     std::size_t bodyBytes() const;
 
+    /// Memory of an effect that goes off stays, for the frame in which it comes back.
+    void keepMemory();
+
     /// Host::nanoseconds from the next step on.
     void setClock(std::function<std::uint64_t()> nanoseconds);
 

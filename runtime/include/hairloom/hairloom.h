@@ -255,6 +255,21 @@ HL_API hl_code hl_instance_step(hl_instance* instance, const hl_frame* frame, hl
 HL_API hl_code hl_instance_set(hl_instance* instance, const char* name, const double* values, size_t count,
                                hl_error* error);
 
+/* Memory ahead of time. hl_instance_make asks for what an instance holds, its first frames of new effects and
+ * of more spheres for more. After this call no step, reset, change of level or read asks for any, whatever
+ * head, bones and wind do, as long as frames have no more spheres and no setting is replaced. The state
+ * stays. Takes as long as some frames at each level, and the memory of a copy meanwhile. Copies of the
+ * instance have to be told again. */
+typedef struct hl_reserve {
+    size_t size;      /* sizeof(hl_reserve), set by hl_reserve_init() */
+    uint32_t spheres; /* that hl_frame.spheres will have at most, up to 4096; 0: the asset's own */
+    uint32_t previous_guides,
+        previous_hairs; /* 1 where reads of guides, of hairs will ask for hl_read.previous */
+    uint32_t unused;    /* 0 */
+} hl_reserve;
+HL_API void hl_reserve_init(hl_reserve* reserve);
+HL_API hl_code hl_instance_reserve(hl_instance* instance, const hl_reserve* reserve, hl_error* error);
+
 typedef struct hl_instance_info {
     uint32_t guides, guide_points;
     uint32_t hairs,

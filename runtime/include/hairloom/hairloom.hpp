@@ -88,6 +88,13 @@ class Instance {
     bool set(const char* name, double value, hl_error* error = nullptr) {
         return hl_instance_set(instance_.get(), name, &value, 1, error) == HL_OK;
     }
+    /// All memory that frames of up to so many spheres may come to ask for.
+    bool reserve(std::uint32_t spheres, hl_error* error = nullptr) {
+        hl_reserve wanted;
+        hl_reserve_init(&wanted);
+        wanted.spheres = spheres;
+        return hl_instance_reserve(instance_.get(), &wanted, error) == HL_OK;
+    }
     hl_instance_info describe() const {
         hl_instance_info info{};
         hl_instance_describe(instance_.get(), &info, nullptr);

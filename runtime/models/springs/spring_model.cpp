@@ -83,7 +83,8 @@ class SpringStrands final : public ModelStrands {
         evaluationPlanes_ = settings.integrator == Integrator::verlet ? 0
                             : settings.integrator == Integrator::rk4  ? kRungeKuttaPlanes
                                                                       : kEvaluationPlanes;
-        keepFloats(evaluation_, shape.planeFloats * evaluationPlanes_);
+        if (evaluation_.size() != shape.planeFloats * evaluationPlanes_)
+            evaluation_ = zeroFloats(shape.planeFloats * evaluationPlanes_, {});
         bends_ = angular;
     }
 

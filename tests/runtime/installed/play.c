@@ -6,6 +6,7 @@
 #ifdef SINGLE_HEADER
 #include "hairloom_single.h"
 #else
+#include <hairloom/gpu.h>
 #include <hairloom/hairloom.h>
 #endif
 

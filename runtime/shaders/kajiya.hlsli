@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Kajiya and Kay 1989 as Rünz 2012 condenses it, Eq. 25; core/shading/kajiya_kay.h is its reference.
+// SPDX-License-Identifier: MIT
+// Kajiya and Kay 1989 as Rünz 2012 condenses it, Eq. 25.
 
 // Keeps what the fibre sends out below what it gets, and its hue: by the channel that sends out the most.
 float kajiyaBound(float3 weights) { return 1.0 / max(1.0, max(weights.x, max(weights.y, weights.z))); }

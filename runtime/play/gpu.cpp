@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// hairloom/gpu.h: what a game's own GPU is given to make follow hairs and to draw them.
+#include "hairloom/gpu.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "follow/follow_gpu.h"
+#include "play/c_words.h"
+#include "shaders/ribbon_types.h"
+
+namespace hairloom::runtime {
+namespace {
+
+static_assert(sizeof(hl_gpu_view) == sizeof(shaders::RibbonView));
+static_assert(offsetof(hl_gpu_view, points) == offsetof(shaders::RibbonView, points));
+static_assert(HL_GPU_PASS_COUNT == 3 && HL_GPU_BUFFER_COUNT == 12);
+
+constexpr std::uint64_t kRowsOfPoint = 4;  // FOLLOW_ROWS of follow.hlsli
+constexpr std::uint64_t kMostGroups = 65535;
+
+/// Counts that buffers are measured by.
+struct GpuCounts {
+    std::uint64_t guides, guidePoints, hairs, points;
+};
+GpuCounts gpuCountsOf(const Asset& asset) {
+    return {asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair};
+}
+
+struct GpuBuffer {
+    const char* name;
+    std::uint32_t element;
+    std::uint64_t (*count)(const GpuCounts&);
+    std::uint32_t fill;
+};
+#define HAIRLOOM_GPU_COUNT(name, formula)                            \
+    std::uint64_t count##name([[maybe_unused]] const GpuCounts& c) { \
+        return formula;                                              \
+    }
+HAIRLOOM_GPU_COUNT(ONE, 1)
+HAIRLOOM_GPU_COUNT(GUIDES, c.guides)
+HAIRLOOM_GPU_COUNT(GUIDE_TURNS, 2 * c.guides)
+HAIRLOOM_GPU_COUNT(GUIDE_POINTS, c.guidePoints)
+HAIRLOOM_GPU_COUNT(GUIDE_SAMPLES, c.guides* c.points)
+HAIRLOOM_GPU_COUNT(GUIDE_ROWS, kRowsOfPoint* c.guides* c.points)
+HAIRLOOM_GPU_COUNT(HAIR_SAMPLES, c.points)
+HAIRLOOM_GPU_COUNT(HAIRS, c.hairs)
+HAIRLOOM_GPU_COUNT(HAIR_POINTS, c.hairs* c.points)
+#undef HAIRLOOM_GPU_COUNT
+
+#define HAIRLOOM_GPU_ROW(name, bytes, of, fill, words) {#name, bytes, count##of, HL_GPU_##fill},
+constexpr GpuBuffer kGpuBuffers[] = {HL_GPU_BUFFERS(HAIRLOOM_GPU_ROW)};
+#undef HAIRLOOM_GPU_ROW
+
+struct GpuPass {
+    const char* file;
+    std::uint32_t kind;
+    std::uint64_t threads;
+};
+#define HAIRLOOM_GPU_ROW(name, file, kind, threads, words) {file, HL_GPU_##kind, threads},
+constexpr GpuPass kGpuPasses[] = {HL_GPU_PASSES(HAIRLOOM_GPU_ROW)};
+#undef HAIRLOOM_GPU_ROW
+
+template <class Value>
+void writeGpu(void*& at, const Value& value) {
+    std::memcpy(at, &value, sizeof value);
+    at = static_cast<std::byte*>(at) + sizeof value;
+}
+
+void fillLooks(const hl_asset* asset, std::size_t count, void* out) {
+    std::vector<hl_hair> hairs(count);
+    hl_asset_hairs(asset, hairs.data(), sizeof(hl_hair), count, nullptr);
+    for (const hl_hair& hair : hairs)
+        writeGpu(out, shaders::RibbonLook{{hair.colour[0], hair.colour[1], hair.colour[2], hair.random},
+                                          {hair.root_radius, hair.tip_radius, 0, 0}});
+}
+
+void fillOnce(const hl_asset* opened, const Asset& asset, std::uint32_t buffer, void* out) {
+    if (buffer == HL_GPU_BUFFER_LOOKS) {
+        fillLooks(opened, asset.hairCount(), out);
+        return;
+    }
+    const Asset::Strands rest = asset.strandsAtRest();
+    const Asset::FollowArrays arrays = asset.followArrays(rest);
+    const FollowView view = asset.followView(rest, arrays);
+    if (buffer == HL_GPU_BUFFER_PLANES) {
+        for (const RootPlane& plane : view.rootPlanes_ss) writeGpu(out, followPlane(plane));
+    } else if (buffer == HL_GPU_BUFFER_SAMPLES) {
+        for (const auto& sample : followSamples(view)) writeGpu(out, sample);
+    } else if (buffer == HL_GPU_BUFFER_RADII) {
+        for (const float radius : view.radii) writeGpu(out, radius);
+    } else {
+        for (std::size_t hair = 0; hair < view.guides.size(); ++hair)
+            writeGpu(out, followBinding(view, hair));
+    }
+}
+
+/// Of a sound asset that has follow hairs.
+template <class Body>
+hl_code withHairs(const hl_asset* opened, hl_error* error, const Body& body) {
+    return withContent(opened, error, [&](const Asset& asset) {
+        if (asset.hairCount() == 0) return nullRefused(error, "an asset without follow hairs");
+        return body(asset, gpuCountsOf(asset));
+    });
+}
+
+Outcome checkGpuBytes(std::uint32_t buffer, std::uint64_t given, std::uint64_t wanted) {
+    if (given == wanted) return std::nullopt;
+    return Refusal{HL_WRONG_SIZE, std::to_string(given) + " bytes of buffer " + kGpuBuffers[buffer].name +
+                                      "; expected " + std::to_string(wanted)};
+}
+
+Outcome checkGpuFill(std::uint32_t buffer, std::uint32_t fill, const char* call) {
+    if (buffer < HL_GPU_BUFFER_COUNT && kGpuBuffers[buffer].fill == fill) return std::nullopt;
+    return Refusal{HL_BAD_VALUE, "buffer " +
+                                     (buffer < HL_GPU_BUFFER_COUNT ? std::string(kGpuBuffers[buffer].name)
+                                                                   : std::to_string(buffer)) +
+                                     " is none of those that " + call + " fills"};
+}
+
+}  // namespace
+
+std::size_t Instance::gpuBytes(std::uint32_t buffer) const {
+    // What a frame has is measured by guides alone.
+    return static_cast<std::size_t>(kGpuBuffers[buffer].count({roots_.size(), positions_.size(), 0, 0})) *
+           kGpuBuffers[buffer].element;
+}
+
+void Instance::fillGpu(std::uint32_t buffer, void* out) {
+    if (buffer == HL_GPU_BUFFER_CONSTANTS) {
+        writeGpu(out, shaders::FollowConstants{static_cast<std::uint32_t>(roots_.size()), gpuHairs_,
+                                               gpuPoints_, GuideMotion{}.wispSpread, 1, 0, 0, 0});
+    } else if (buffer == HL_GPU_BUFFER_TURNS) {
+        showPositions();
+        for (std::size_t s = 0; s < turns_.size(); ++s) {
+            Quat turn = turns_[s];
+            if (!normalize(turn)) turn = {};
+            const Float3 root = positions_[offsets_[s]];
+            writeGpu(out, shaders::float4{root.x, root.y, root.z, 1});
+            writeGpu(out, shaders::float4{turn.x, turn.y, turn.z, turn.w});
+        }
+    } else if (buffer == HL_GPU_BUFFER_POSITIONS) {
+        showPositions();
+        for (const Float3& at : positions_) writeGpu(out, shaders::float4{at.x, at.y, at.z, 1});
+    } else {
+        velocities_.resize(positions_.size());
+        showVelocities();
+        for (const Float3& v : velocities_) writeGpu(out, shaders::float4{v.x, v.y, v.z, 0});
+    }
+}
+
+}  // namespace hairloom::runtime
+
+using namespace hairloom::runtime;
+
+hl_code hl_gpu_buffer(const hl_asset* asset, uint32_t buffer, hl_gpu_buffer_info* out, hl_error* error) {
+    if (!asset || !out) return nullRefused(error, "no asset or no place for the buffer");
+    if (const Outcome refused =
+            checkSize<hl_gpu_buffer_info>("hl_gpu_buffer_info", out->size, sizeof(hl_gpu_buffer_info)))
+        return say(error, refused);
+    if (buffer >= HL_GPU_BUFFER_COUNT) return pastTheLast(error, "buffer", buffer, HL_GPU_BUFFER_COUNT);
+    return withHairs(asset, error, [&](const Asset&, const GpuCounts& counts) {
+        const GpuBuffer& known = kGpuBuffers[buffer];
+        const hl_gpu_buffer_info info{out->size, known.name,
+                                      static_cast<std::size_t>(known.count(counts)) * known.element,
+                                      known.element, known.fill};
+        giveBack(info, out, out->size);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_gpu_fill(const hl_asset* opened, uint32_t buffer, void* data, size_t bytes, hl_error* error) {
+    if (!opened || !data) return nullRefused(error, "no asset or no place for its numbers");
+    if (const Outcome refused = checkGpuFill(buffer, HL_GPU_ONCE, "hl_gpu_fill")) return say(error, refused);
+    return withHairs(opened, error, [&](const Asset& asset, const GpuCounts& counts) {
+        const std::uint64_t wanted = kGpuBuffers[buffer].count(counts) * kGpuBuffers[buffer].element;
+        if (const Outcome refused = checkGpuBytes(buffer, bytes, wanted)) return say(error, refused);
+        fillOnce(opened, asset, buffer, data);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_gpu_fill_frame(hl_instance* instance, uint32_t buffer, void* data, size_t bytes, hl_error* error) {
+    if (!instance || !data) return nullRefused(error, "no instance or no place for its numbers");
+    return guarded(error, [&] {
+        if (!instance->instance.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");
+        if (const Outcome refused = checkGpuFill(buffer, HL_GPU_FRAME, "hl_gpu_fill_frame"))
+            return say(error, refused);
+        if (const Outcome refused = checkGpuBytes(buffer, bytes, instance->instance.gpuBytes(buffer)))
+            return say(error, refused);
+        instance->instance.fillGpu(buffer, data);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_gpu_pass(const hl_asset* asset, uint32_t pass, hl_gpu_pass_info* out, hl_error* error) {
+    if (!asset || !out) return nullRefused(error, "no asset or no place for the pass");
+    if (const Outcome refused =
+            checkSize<hl_gpu_pass_info>("hl_gpu_pass_info", out->size, sizeof(hl_gpu_pass_info)))
+        return say(error, refused);
+    if (pass >= HL_GPU_PASS_COUNT) return pastTheLast(error, "pass", pass, HL_GPU_PASS_COUNT);
+    return withHairs(asset, error, [&](const Asset&, const GpuCounts& counts) {
+        hl_gpu_pass_info info{out->size, kGpuPasses[pass].file, kGpuPasses[pass].kind, {0, 0, 0}, 0, 0};
+        if (info.kind == HL_GPU_DRAW) {
+            info.vertices = static_cast<std::uint32_t>(2 * counts.points);
+            info.instances = static_cast<std::uint32_t>(counts.hairs);
+        } else {
+            const std::uint64_t threads =
+                pass == HL_GPU_PASS_WISPS ? counts.guides : counts.hairs * counts.points;
+            const std::uint64_t groups = (threads + kGpuPasses[pass].threads - 1) / kGpuPasses[pass].threads;
+            info.groups[0] = static_cast<std::uint32_t>(std::min(groups, kMostGroups));
+            info.groups[1] = static_cast<std::uint32_t>((groups + kMostGroups - 1) / kMostGroups);
+            info.groups[2] = 1;
+        }
+        giveBack(info, out, out->size);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_gpu_view_init(const hl_asset* asset, hl_gpu_view* view, hl_error* error) {
+    if (!asset || !view) return nullRefused(error, "no asset or no view");
+    return withHairs(asset, error, [&](const Asset&, const GpuCounts& counts) {
+        *view = {{},
+                 {},
+                 {0.5f, 0.70710678f, 0.5f, 40},
+                 {1, 1, 1, 0.15f},
+                 {0.25f, 0.25f, 0.25f, 0},
+                 0,
+                 1,
+                 static_cast<std::uint32_t>(counts.points),
+                 static_cast<std::uint32_t>(counts.hairs)};
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}

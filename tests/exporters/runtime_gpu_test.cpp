@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// hairloom/gpu.h: what a game's GPU is given, refused with words where it cannot be. samples/vulkan runs it.
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "core/groom/groom.h"
+#include "hairloom/gpu.h"
+#include "tests/exporters/levels_sample.h"
+#include "tests/runtime/allocations.h"
+
+namespace hairloom::test {
+namespace {
+
+using game::Error;
+using game::Instance;
+using testing::HasSubstr;
+
+class RuntimeGpu : public RuntimeLevels {
+  protected:
+    hl_gpu_buffer_info about(std::uint32_t buffer) const {
+        hl_gpu_buffer_info info{};
+        info.size = sizeof info;
+        Error error;
+        EXPECT_EQ(hl_gpu_buffer(asset_.get(), buffer, &info, &error), HL_OK) << error.what();
+        return info;
+    }
+    std::vector<float> filled(Instance& hair, std::uint32_t buffer) const {
+        std::vector<float> values(about(buffer).bytes / sizeof(float));
+        Error error;
+        EXPECT_EQ(hl_gpu_fill_frame(hair.get(), buffer, values.data(), 4 * values.size(), &error), HL_OK)
+            << error.what();
+        return values;
+    }
+};
+
+TEST_F(RuntimeGpu, BuffersHaveTheSizesOfWhatTheyHold) {
+    const hl_asset_info asset = asset_.describe();
+    const std::size_t hairs = asset.hairs, points = asset.points_per_hair, guides = asset.guides;
+    EXPECT_EQ(about(HL_GPU_BUFFER_POSITIONS).bytes, 16 * asset.guide_points);
+    EXPECT_EQ(about(HL_GPU_BUFFER_TURNS).bytes, 32 * guides);
+    EXPECT_EQ(about(HL_GPU_BUFFER_BINDINGS).bytes, 80 * hairs);
+    EXPECT_EQ(about(HL_GPU_BUFFER_ROWS).bytes, 64 * guides * points);
+    EXPECT_EQ(about(HL_GPU_BUFFER_POINTS).bytes, 16 * hairs * points);
+    EXPECT_EQ(about(HL_GPU_BUFFER_VIEW).bytes, sizeof(hl_gpu_view));
+    EXPECT_STREQ(about(HL_GPU_BUFFER_LOOKS).name, "LOOKS");
+    hl_gpu_pass_info pass{};
+    pass.size = sizeof pass;
+    ASSERT_EQ(hl_gpu_pass(asset_.get(), HL_GPU_PASS_HAIRS, &pass, nullptr), HL_OK);
+    EXPECT_EQ(pass.groups[0], (hairs * points + 63) / 64);
+    ASSERT_EQ(hl_gpu_pass(asset_.get(), HL_GPU_PASS_RIBBONS, &pass, nullptr), HL_OK);
+    EXPECT_EQ(pass.vertices, 2 * points);
+    EXPECT_EQ(pass.instances, hairs);
+}
+
+TEST_F(RuntimeGpu, LooksAreThoseOfTheHairs) {
+    std::vector<hl_hair> hairs(asset_.describe().hairs);
+    ASSERT_EQ(hl_asset_hairs(asset_.get(), hairs.data(), sizeof(hl_hair), hairs.size(), nullptr), HL_OK);
+    std::vector<float> looks(8 * hairs.size());
+    ASSERT_EQ(hl_gpu_fill(asset_.get(), HL_GPU_BUFFER_LOOKS, looks.data(), 4 * looks.size(), nullptr), HL_OK);
+    for (std::size_t h = 0; h < hairs.size(); ++h) {
+        EXPECT_EQ(std::memcmp(&looks[8 * h], hairs[h].colour, 12), 0);
+        EXPECT_EQ(looks[8 * h + 3], hairs[h].random);
+        EXPECT_EQ(looks[8 * h + 4], hairs[h].root_radius);
+        EXPECT_EQ(looks[8 * h + 5], hairs[h].tip_radius);
+    }
+}
+
+TEST_F(RuntimeGpu, FramesHaveTheGuidesAtEveryLevelAndAskForMemoryOnce) {
+    Instance alone;
+    ASSERT_TRUE(alone.make(asset_, HL_GUIDES));
+    for (int f = 1; f <= 10; ++f) ASSERT_TRUE(alone.step(Walk(f).frame));
+    const std::vector<Vec3f> seen = guides(alone);
+    const std::vector<float> positions = filled(alone, HL_GPU_BUFFER_POSITIONS);
+    float fastest = 0;
+    const std::vector<float> velocities = filled(alone, HL_GPU_BUFFER_VELOCITIES);
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+        EXPECT_EQ(std::memcmp(&positions[4 * p], &seen[p], 12), 0) << p;
+        EXPECT_EQ(positions[4 * p + 3], 1);
+        fastest = std::max(fastest, std::abs(velocities[4 * p]));
+    }
+    EXPECT_GT(fastest, 0.1f) << "m/s of a head that nods";
+    const std::vector<float> turns = filled(alone, HL_GPU_BUFFER_TURNS);
+    const float angle = 2 * std::asin(std::abs(turns[5]));
+    EXPECT_NEAR(angle, 0.3 * std::sin(1.0), 1e-3) << "Walk(10) about the axis of y";
+    std::vector<float> again(positions.size());
+    const std::size_t before = runtime::allocationCount();
+    for (const std::uint32_t buffer : {HL_GPU_BUFFER_POSITIONS, HL_GPU_BUFFER_VELOCITIES})
+        hl_gpu_fill_frame(alone.get(), buffer, again.data(), 4 * again.size(), nullptr);
+    EXPECT_EQ(runtime::allocationCount(), before);
+    Instance coarse = another();
+    for (std::uint32_t level = 0; level < HL_LEVEL_COUNT; ++level) {
+        ASSERT_TRUE(coarse.setLevel(level));
+        ASSERT_TRUE(coarse.step(Walk(11).frame));
+        const std::vector<Vec3f> shown = guides(coarse);
+        const std::vector<float> given = filled(coarse, HL_GPU_BUFFER_POSITIONS);
+        for (std::size_t p = 0; p < shown.size(); ++p)
+            ASSERT_EQ(std::memcmp(&given[4 * p], &shown[p], 12), 0);
+    }
+}
+
+TEST_F(RuntimeGpu, WrongWordsAreRefusedAndNothingIsWritten) {
+    std::vector<std::byte> room(1u << 20, std::byte{0x5a});
+    const std::vector<std::byte> untouched = room;
+    Error error;
+    const auto refused = [&](hl_code code, hl_code wanted, const char* words) {
+        EXPECT_EQ(code, wanted) << words;
+        EXPECT_THAT(error.words, HasSubstr(words));
+        EXPECT_EQ(room, untouched) << words;
+    };
+    const hl_asset* const asset = asset_.get();
+    hl_instance* const instance = first_.get();
+    const std::size_t bytes = about(HL_GPU_BUFFER_LOOKS).bytes, frame = about(HL_GPU_BUFFER_TURNS).bytes;
+    refused(hl_gpu_fill(asset, HL_GPU_BUFFER_LOOKS, room.data(), bytes - 1, &error), HL_WRONG_SIZE, "LOOKS");
+    refused(hl_gpu_fill(asset, HL_GPU_BUFFER_LOOKS, nullptr, bytes, &error), HL_BAD_VALUE, "no place");
+    refused(hl_gpu_fill(asset, HL_GPU_BUFFER_TURNS, room.data(), frame, &error), HL_BAD_VALUE, "TURNS");
+    refused(hl_gpu_fill(asset, 99, room.data(), bytes, &error), HL_BAD_VALUE, "99");
+    refused(hl_gpu_fill_frame(instance, HL_GPU_BUFFER_TURNS, room.data(), frame + 16, &error), HL_WRONG_SIZE,
+            "TURNS");
+    refused(hl_gpu_fill_frame(instance, HL_GPU_BUFFER_POINTS, room.data(), 16, &error), HL_BAD_VALUE,
+            "POINTS");
+    refused(hl_gpu_fill_frame(nullptr, HL_GPU_BUFFER_TURNS, room.data(), frame, &error), HL_BAD_VALUE,
+            "no instance");
+    hl_gpu_pass_info pass{};
+    refused(hl_gpu_pass(asset, 0, &pass, &error), HL_WRONG_SIZE, "hl_gpu_pass_info");
+    pass.size = sizeof pass;
+    refused(hl_gpu_pass(asset, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 3 of 3");
+    hl_gpu_buffer_info info{};
+    info.size = 7;
+    refused(hl_gpu_buffer(asset, 0, &info, &error), HL_WRONG_SIZE, "hl_gpu_buffer_info");
+    refused(hl_gpu_view_init(asset, nullptr, &error), HL_BAD_VALUE, "no view");
+    // Hair of guides alone.
+    Groom bald = hair();
+    bald.interpolation.followPerGuide = 0;
+    const std::vector<std::byte> plain = written(bald);
+    game::Asset guidesAlone;
+    ASSERT_TRUE(guidesAlone.open(plain.data(), plain.size()));
+    Instance few;
+    ASSERT_TRUE(few.make(guidesAlone, HL_GUIDES));
+    info.size = sizeof info;
+    refused(hl_gpu_buffer(guidesAlone.get(), 0, &info, &error), HL_BAD_VALUE, "without follow hairs");
+    refused(hl_gpu_fill_frame(few.get(), HL_GPU_BUFFER_TURNS, room.data(), frame, &error), HL_BAD_VALUE,
+            "without follow hairs");
+}
+
+}  // namespace
+}  // namespace hairloom::test

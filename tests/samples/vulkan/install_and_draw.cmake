@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs the runtime that is built, builds samples/vulkan against it, and has it play two samples: hairs of the GPU lie where
+# the CPU has them, the image has hair in it, Vulkan's validation layer has nothing to say, and the tables as JSON name what the
+# kernels bind.
+#   cmake -DSOURCE=DIR -DBINARY=DIR -DWORK=DIR -DPICTURES=DIR -DCLI=PROGRAM -DCXX=CXX -P install_and_draw.cmake
+file(REMOVE_RECURSE "${WORK}")
+file(MAKE_DIRECTORY "${WORK}" "${PICTURES}")
+include("${SOURCE}/tests/support/run.cmake")
+
+run(${CMAKE_COMMAND} --install "${BINARY}" --component runtime --prefix "${WORK}/prefix")
+run(${CMAKE_COMMAND} -S "${SOURCE}/samples/vulkan" -B "${WORK}/build" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${CXX}"
+    "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror -Wno-missing-field-initializers" "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
+run(${CMAKE_COMMAND} --build "${WORK}/build")
+set(shaders "${WORK}/prefix/share/hairloom-runtime/shaders")
+
+file(READ "${shaders}/gpu.json" json)
+string(JSON bindings LENGTH "${json}" bindings)
+set(listed "")
+math(EXPR last "${bindings} - 1")
+foreach(i RANGE ${last})
+    string(JSON pass GET "${json}" bindings ${i} pass)
+    string(JSON binding GET "${json}" bindings ${i} binding)
+    list(APPEND listed "${pass} ${binding}")
+endforeach()
+set(bound "")
+foreach(shader IN ITEMS "WISPS follow_wisps.comp" "HAIRS follow_hairs.comp" "RIBBONS ribbons.vert" "RIBBONS ribbons.frag")
+    string(REPLACE " " ";" shader "${shader}")
+    list(GET shader 0 pass)
+    list(GET shader 1 file)
+    run(spirv-val --target-env vulkan1.1 "${shaders}/${file}.spv")
+    run(spirv-dis "${shaders}/${file}.spv")
+    string(REGEX MATCHALL " Binding [0-9]+" found "${output}")
+    list(TRANSFORM found REPLACE " Binding" "${pass}")
+    list(APPEND bound ${found})
+endforeach()
+list(REMOVE_DUPLICATES bound)
+list(SORT bound)
+list(SORT listed)
+if(NOT "${bound}" STREQUAL "${listed}")
+    message(FATAL_ERROR "gpu.json lists ${listed}\nthe kernels bind ${bound}")
+endif()
+
+foreach(style IN ITEMS short shoulder)
+    run(${CMAKE_COMMAND} -E env "HAIRLOOM_CLI=${CLI}" "${SOURCE}/samples/make_hairstyle.sh" --project-only ${style} "${WORK}")
+    run("${CLI}" export "${WORK}/${style}.hairloom" --format runtime -o "${WORK}/${style}.hairrt")
+    set(image "${PICTURES}/vulkan-${style}.ppm")
+    run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${style}.hairrt"
+        "${shaders}" -o "${image}" --frames 20 --compare)
+    message("${style}: ${output}")
+    if(output MATCHES "VUID|Validation")
+        message(FATAL_ERROR "${style}: Vulkan's validation layer speaks")
+    endif()
+    # docs/gpu-simulation.md: 1e-6 m in hairs of 0.2 m.
+    if(NOT output MATCHES "36000 hairs, .*apart from the CPU's: ([0-9]\\.?[0-9]*e-0[6-9]|0) m at most")
+        message(FATAL_ERROR "${style}: expected 36000 hairs within 0.00001 m of the CPU's")
+    endif()
+    # All but hair is one grey.
+    run(convert "${image}" -fuzz 2% -fill white -opaque "srgb(188,188,188)" -fill black +opaque white -format "%[fx:int(1000*(1-mean))]" info:)
+    if(output LESS 60 OR output GREATER 900)
+        message(FATAL_ERROR "${image}: ${output} thousandths are hair; expected 60 to 900")
+    endif()
+endforeach()
