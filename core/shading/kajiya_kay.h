@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Kajiya and Kay's hair model (1989) as Rünz 2012, section 5.1, condenses and normalises it; the
-// double-precision reference of runtime/shaders/kajiya.hlsli. All vectors are unit vectors that point away from the
-// fibre; the tangent's sign does not matter.
+// double-precision reference of runtime/shaders/kajiya.hlsli. All vectors are unit vectors that point away
+// from the fibre; the tangent's sign does not matter.
 
 #include "core/base/math.h"
 

@@ -167,6 +167,7 @@ TEST(IncludeRules, GraphicsApisStayInTheirBackends) {
         "packaging/windows/hlslc.cpp includes d3dcompiler.h"};
     std::vector<std::string> broken;
     for (const Include& include : allIncludes()) {
+        if (include.file.rfind("samples/vulkan/", 0) == 0) continue;  // a game's own program
         if (std::regex_match(include.written, vulkan) && include.file.rfind("core/gpu/vulkan/", 0) != 0) {
             broken.push_back(describe(include));
         }
