@@ -15,12 +15,14 @@
 
 #include "benchmarks/combed_hair.h"
 #include "benchmarks/measurement.h"
+#include "core/documents/sample.h"
 #include "core/editing/brush_list.h"
 #include "core/editing/document.h"
 #include "editor/shell/files.h"
 #include "editor/shell/main_window.h"
 #include "editor/tools/brush_tool.h"
 #include "editor/viewport/render_work.h"
+#include "importers/child_process.h"
 
 namespace hairloom::editor {
 namespace {
@@ -131,11 +133,11 @@ PictureRequest smallPicture(const std::shared_ptr<const Groom>& groom) {
 }
 
 /// One strand in twenty moves, as under a brush. `whole`: the groom is handed over instead of what moved.
-Status sceneTakes(Rounds& rounds, bool whole) {
+Status sceneTakes(Rounds& rounds, const Groom& hair, bool whole) {
     auto device = gpu::createDevice();
     if (!device) return tl::unexpected(device.error());
     RenderWork work(**device, nullptr);
-    auto groom = std::make_shared<const Groom>(desk().document().groom());
+    auto groom = std::make_shared<const Groom>(hair);
     auto moves = std::make_shared<StrandMoves>();
     for (std::uint32_t s = 0; s < groom->strandCount(); s += 20) {
         moves->strands.push_back(s);
@@ -212,9 +214,17 @@ void measureAll(Timings& timings) {
         timings.measure("undo of a stroke, " + name,
                         [&](Rounds& rounds) { return undo(rounds, name.c_str()); });
     }
+    const auto hair = [] { return desk().document().groom(); };
     timings.measure("the scene updates moved strands",
-                    [](Rounds& rounds) { return sceneTakes(rounds, false); });
-    timings.measure("the scene takes the groom", [](Rounds& rounds) { return sceneTakes(rounds, true); });
+                    [&](Rounds& rounds) { return sceneTakes(rounds, hair(), false); });
+    timings.measure("the scene takes the groom",
+                    [&](Rounds& rounds) { return sceneTakes(rounds, hair(), true); });
+    const auto sample = makeSample(findSamples(programFolder()), "shoulder");
+    if (!sample) return;
+    timings.measure("the scene updates moved guides, shoulder sample",
+                    [&](Rounds& rounds) { return sceneTakes(rounds, *sample, false); });
+    timings.measure("the scene takes the groom, shoulder sample",
+                    [&](Rounds& rounds) { return sceneTakes(rounds, *sample, true); });
 }
 
 }  // namespace

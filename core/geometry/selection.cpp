@@ -276,21 +276,6 @@ FaceSet invertSelection(const ScalpMesh& mesh, const FaceSet& faces) {
     return members(member);
 }
 
-FaceSet connectedFaces(const ScalpMesh& mesh, const FaceSet& within, std::uint32_t seed) {
-    std::vector<bool> open = membership(mesh, within);
-    if (seed >= open.size() || !open[seed]) return {};
-    FaceSet reached{seed};
-    open[seed] = false;
-    for (std::size_t i = 0; i < reached.size(); ++i)
-        forEachNeighbour(mesh, reached[i], [&](std::uint32_t neighbour) {
-            if (!open[neighbour]) return;
-            open[neighbour] = false;
-            reached.push_back(neighbour);
-        });
-    std::sort(reached.begin(), reached.end());
-    return reached;
-}
-
 std::vector<FaceSet> connectedPieces(const ScalpMesh& mesh, const FaceSet& faces) {
     std::vector<bool> open = membership(mesh, faces);
     std::vector<std::pair<double, FaceSet>> pieces;

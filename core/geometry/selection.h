@@ -29,8 +29,6 @@ Result<FaceSet> facesOnSurface(const ScalpMesh& mesh, const FaceSet& faces, cons
 FaceSet growSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings);
 FaceSet shrinkSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings);
 FaceSet invertSelection(const ScalpMesh& mesh, const FaceSet& faces);
-/// All faces that can be reached from `seed` over edges without leaving `within`.
-FaceSet connectedFaces(const ScalpMesh& mesh, const FaceSet& within, std::uint32_t seed);
 /// The edge-connected pieces of a selection, the largest by area first.
 std::vector<FaceSet> connectedPieces(const ScalpMesh& mesh, const FaceSet& faces);
 

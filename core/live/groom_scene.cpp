@@ -2,7 +2,6 @@
 #include "core/live/groom_scene.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include "core/base/parallel.h"
 #include "core/geometry/selection.h"
@@ -103,9 +102,19 @@ void GroomScene::pose(std::span<const Vec3f> positions_ws, std::span<const Vec3f
     posed_.pointAttributes.set(attribute::kPosition, std::move(drawn));
 }
 
-void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
-    assert(!bindings_);
+bool GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
+    if (bindings_) {
+        std::size_t first = 0;
+        for (const std::uint32_t strand : strands) {
+            if (points_ws[first] != rest_.strand(strand).front()) return false;
+            first += rest_.strand(strand).size();
+        }
+    }
     hairloom::moveStrands(posed_, strands, points_ws);
+    if (!bindings_) return true;
+    bindingOld_ = true;
+    makeFollowHairs({}, {});
+    return true;
 }
 
 bool GroomScene::setMaterials(const Groom& groom, const ViewFile& view) {

@@ -43,9 +43,13 @@ class GroomScene {
     /// their velocities in m/s, by which wisps widen, or none.
     void pose(std::span<const Vec3f> positions_ws, std::span<const Vec3f> velocities_ws,
               const HeadPose& pose);
-    /// Puts the points of some strands elsewhere, one strand after the other; the rest stays. Not where there
-    /// are follow hairs, which are bound to guides at rest: these take make() anew.
-    void moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws);
+    /// Puts the points of some strands elsewhere, one strand after the other. The rest stays. Follow hairs
+    /// follow with the guides and weights that they have (isBindingOld()). False, and nothing changed, where
+    /// a root of a guide moves: its hairs take make() again.
+    bool moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws);
+    /// Guides have moved since follow hairs were bound to them. make() would bind some of them otherwise: at
+    /// partings, which depend on where guides point, and guides of another length.
+    bool isBindingOld() const { return bindingOld_; }
 
     /// The materials of another version of the same strands on the same layers. False, and nothing changed,
     /// where it takes make() anew: colours that stand in the head, the share of streaks and dye that each
@@ -96,6 +100,7 @@ class GroomScene {
     std::vector<float> widthChanges_;  ///< one a point of what is drawn; empty: none was painted
     std::vector<float> radii_;         ///< of all that is drawn, where there are changes
     render::Clumping clumping_;
+    bool bindingOld_ = false;
     bool matte_ = false;  ///< the head, where a view says what it is
 };
 

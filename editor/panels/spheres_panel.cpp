@@ -159,7 +159,7 @@ class SpheresPanel : public QWidget {
                            : springs
                                ? tr("Springs pass through the skin. Select rods as the strand model, or "
                                     "fit spheres")
-                               : tr("The method of playback passes through the skin. Select the strand "
+                               : tr("This simulation method ignores the skin. Select the strand "
                                     "engine, or fit spheres"));
     }
 

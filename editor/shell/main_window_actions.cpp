@@ -110,8 +110,8 @@ void MainWindow::addFileActions() {
     add({"file.blend",
          tr("&Blend with hair…"),
          "",
-         tr("Lead the hair halfway to the shape of another hairstyle on the same head. A sculpt holds it, "
-            "whose weight and mask you can change"),
+         tr("Blend the shape of the hair with another hairstyle on the same head. The blend is a Sculpt "
+            "operator: change its weight and mask to adjust it"),
          {}},
         [this] {
             const QString path = QFileDialog::getOpenFileName(this, tr("Blend with hair"), {}, blendFilter());
@@ -338,9 +338,9 @@ void MainWindow::addHelpActions() {
                                    .arg(QCoreApplication::applicationVersion()));
         }));
     menu->addAction(&actions_->add({"help.security",
-                                    tr("&Guard of foreign files…"),
+                                    tr("&File reader sandbox…"),
                                     "",
-                                    tr("Tests what the process that reads foreign files cannot do"),
+                                    tr("Test what the process that reads imported files is kept from doing"),
                                     {}},
                                    [this] { showSecurity(); }));
 }
@@ -360,11 +360,11 @@ void MainWindow::showManual() {
 void MainWindow::showSecurity() {
     using Rows = std::vector<std::pair<std::string, std::string>>;
     tasks_.run<Rows>(
-        tr("Trying the guard"), [](TaskControl&) { return readerSecurity(); },
+        tr("Testing the sandbox"), [](TaskControl&) { return readerSecurity(); },
         [this](const Rows& rows) {
-            auto* box = new QMessageBox(QMessageBox::Information, tr("Guard of foreign files"),
-                                        tr("A separate process reads meshes of other programs. This system "
-                                           "was tested for what that process cannot do:"),
+            auto* box = new QMessageBox(QMessageBox::Information, tr("File reader sandbox"),
+                                        tr("A separate process reads files from other programs. Tested "
+                                           "on this system:"),
                                         QMessageBox::Close, this);
             box->setObjectName("security");
             box->setInformativeText(securityText(rows));

@@ -118,9 +118,10 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     page->addSpacing(8);
     page->addLayout(recoveries_);
 
-    auto* open = card(tr("Open a head, hair or project…"), "open",
-                      tr("Meshes: OBJ, PLY, STL, FBX, glTF. Hair: .hair, .tfx, OBJ lines, Cinema 4D. You can "
-                         "also drop a file anywhere in this window."));
+    auto* open =
+        card(tr("Open a head, hair or project…"), "open",
+             tr("Heads: OBJ, PLY, STL, FBX, glTF, USD, Alembic. Hair: Alembic, USD, .hair, .tfx, PLY, "
+                "OBJ, Cinema 4D and more. You can also drop a file anywhere in this window."));
     open->setObjectName("open");
     connect(open, &QPushButton::clicked, this, &StartPage::openRequested);
     page->addWidget(open);

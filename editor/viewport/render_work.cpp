@@ -208,11 +208,13 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     const Groom& before = *last_->groom;
     const bool sameGroom = request.groom == last_->groom;
     const bool followed = !draft_ && now.interpolation.followPerGuide > 0;
-    // Follow hairs are bound to their guides at rest.
-    if (!sameGroom && (!sameStrands(now, before) || (followed && !samePoints(now, before)))) {
+    const bool wasHanded = last_->groom == handed_ || last_->groom == moved_;
+    const bool onlyMoves = request.moves && wasHanded && !request.pose && !last_->pose;
+    if (!sameGroom && !sameStrands(now, before)) return replaceScene(request, draft);
+    // Follow hairs are bound to their guides at rest: as they were before a stroke until it ends.
+    if (followed && !onlyMoves &&
+        (request.moves || !samePoints(now, before) || (scene_->isBindingOld() && !request.moving)))
         return replaceScene(request, draft);
-    }
-    if (followed && request.moves) return replaceScene(request, draft);
     if (!sameGroom || request.quality.scattering != last_->quality.scattering) {
         Groom looks = now;
         if (draft) widenMaterials(looks);
@@ -232,10 +234,7 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     if (scene_->hasPaintedWidths() && (!sameWidths || !sameGroom)) {
         if (auto set = showWidths(request); !set) return set;
     }
-    const bool wasHanded = last_->groom == handed_ || last_->groom == moved_;
-    if (request.moves && wasHanded && !request.pose && !last_->pose) {
-        return moveStrands(request, *request.moves);
-    }
+    if (onlyMoves) return moveStrands(request, *request.moves);
     const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
     return moved ? movePoints(request) : Status();
 }
@@ -289,7 +288,7 @@ Status RenderWork::movePoints(const PictureRequest& request) {
 }
 
 Status RenderWork::moveStrands(const PictureRequest& request, const StrandMoves& moves) {
-    scene_->moveStrands(moves.strands, moves.points_ws);
+    if (!scene_->moveStrands(moves.strands, moves.points_ws)) return replaceScene(request, draft_);
     const render::RenderScene shown = scene_->scene();
     if (!request.showHair || shown.strands.empty()) return {};
     // One copy of all is sooner on the device than thousands of small ones with a barrier between each.

@@ -94,7 +94,6 @@ TEST(Selection, PiecesAreSortedByArea) {
     EXPECT_NEAR(selectionArea(mesh, pieces[0]), 9, 1e-4);
     EXPECT_NEAR(selectionArea(mesh, pieces[1]), 4, 1e-4);
     EXPECT_NEAR(selectionArea(mesh, pieces[2]), 1, 1e-4);
-    EXPECT_EQ(connectedFaces(mesh, test::allFaces(mesh), pieces[1][3]), pieces[1]);
 }
 
 TEST(Selection, FaceListsNameFacesOfTheFile) {

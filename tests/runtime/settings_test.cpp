@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <fstream>
 #include <limits>
 #include <set>
+#include <sstream>
 #include <string>
+
+#include "tests/support/source_dir.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -124,6 +129,44 @@ TEST(Settings, SubstepsKeepTheStepWhateverTheFrame) {
     EXPECT_EQ(substepsIn(s, 1.0f), 120u);
     EXPECT_EQ(substepsIn(s, 1e9f), kMaxSubsteps);
     EXPECT_EQ(substepsIn(s, 1e-9f), 1u);
+}
+
+/// The comment above a member of SimulationSettings in the public header, in one line. Empty: it has none.
+std::string commentAbove(const std::string& member) {
+    std::ifstream header(hairloom::sourceDir() / "runtime/include/hairloom/settings.h");
+    std::string comment;
+    bool isInside = false;
+    for (std::string line; std::getline(header, line);) {
+        isInside = isInside || line.starts_with("struct SimulationSettings");
+        if (!isInside) continue;
+        const auto begin = line.find_first_not_of(' ');
+        if (begin != std::string::npos && line.compare(begin, 4, "/// ") == 0) {
+            comment += (comment.empty() ? "" : " ") + line.substr(begin + 4);
+            continue;
+        }
+        if (line.find(' ' + member + " =") != std::string::npos ||
+            line.find(' ' + member + '{') != std::string::npos)
+            return comment;
+        comment.clear();
+    }
+    return {};
+}
+
+TEST(Settings, ThePublicHeaderSaysWhatTheDescriptionSays) {
+    for (const auto& field : fields()) {
+        std::ostringstream described;
+        described.precision(10);
+        if (*field.unit) described << field.unit << ", ";
+        if (field.kind != FieldKind::Choice && field.kind != FieldKind::Ramp)
+            described << field.min << " … " << field.max << ". ";
+        std::string meaning = field.meaning;
+        meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
+        described << meaning << '.';
+        const std::string comment = commentAbove(field.name);
+        EXPECT_TRUE(comment.starts_with(described.str()))
+            << field.name << "\nheader:      " << comment << "\ndescription: " << described.str();
+    }
+    EXPECT_EQ(commentAbove("noSuchMember"), "");
 }
 
 }  // namespace

@@ -59,69 +59,98 @@ enum class CollisionResponse : std::uint32_t {
     penalty,   ///< a spring that pushes out; allows some penetration
 };
 
-/// Units, ranges and meanings stand in fieldsOf(); a value outside is refused by Engine::make, not clamped.
+/// Each member has its unit, range and meaning, as fieldsOf() describes it (a test compares). Engine::make()
+/// refuses a value outside and does not clamp it.
 struct SimulationSettings {
+    /// Strand model: an elastic rod, or masses and springs with the methods below.
     StrandModel strandModel = StrandModel::rods;
 
     // --- Time ---
+    /// Time integration of springs. With lengths held, verlet, velocityVerlet and rk4 are of order 2, the
+    /// others of order 1.
     Integrator integrator = Integrator::verlet;
-    /// In a frame of 1/60 s; frames of another length take as many as keep the step (substepsIn).
+    /// 1 … 256. Time steps per 1/60 s: more are more accurate and slower. A frame of another length takes as
+    /// many as keep the step (substepsIn()).
     std::uint32_t substeps = 2;
-    /// Does not depend on the frame rate or the substeps.
+    /// s, 0 … 100. Time in which motion decays to 1/e: lower is calmer, 0 is undamped. Does not depend on the
+    /// frame rate or the substeps.
     float dampingTime = 0.5f;
-    /// Also of spheres. What moves farther carries its strand along rigidly instead of whipping it.
+    /// m, 0.01 … 10000. A root that moves farther than this in a frame carries its strand along (teleport).
+    /// Spheres and bones do likewise.
     float teleportDistance = 2.0f;
+    /// m/s, 0 … 1. Strands slower than this fall asleep: 0 keeps all awake.
     float sleepSpeed = 0.002f;
+    /// s, 0 … 10. Time at rest before a strand falls asleep.
     float sleepDelay = 0.4f;
 
     // --- Length ---
+    /// 1 … 2. Points fixed to the scalp: 1 lets the strand hinge with a spring, 2 keeps the authored
+    /// direction.
     std::uint32_t clampedPoints = 2;
+    /// How segments keep their length.
     LengthMethod lengthMethod = LengthMethod::constraint;
-    /// Newton steps.
+    /// 0 … 16. Length constraint iterations per substep: 0 lets hair stretch freely. Newton steps.
     std::uint32_t lengthIterations = 1;
-    /// Only while lengthIterations is not 0; hair breaks at 0.48.
+    /// 0 … 0.48. Largest stretch of a segment, as a share of its length. Only while lengthIterations is not
+    /// 0. Hair breaks at 0.48.
     float maximalExtension = 0.005f;
+    /// Hz, 1 … 10000. Stiffness of coil springs: higher stretches less and needs shorter time steps.
     float springFrequency = 200.0f;
 
     // --- Shape ---
+    /// How strands keep their shape.
     AngularMethod angularMethod = AngularMethod::implicit;
-    /// The bending stiffness EI/(ρA) is kHairBendingStiffness · s/(1 − s), the same at any number of
-    /// segments.
+    /// 0 … 1. How strongly hair returns to its shape: 0 is off, 0.5 real hair, 1 rigid. The bending stiffness
+    /// EI/(ρA) is kHairBendingStiffness · s/(1 − s), the same at any number of segments.
     float angularStiffness = 0.3f;
+    /// Stiffness from root to tip, as keys [place, share]: lower is looser there.
     Ramp angularCurve = Ramp::straight(1.0f, 0.5f);
-    /// GJ/EI of rods; 0.75 is a round section whose Poisson ratio is 1/3.
+    /// 0.01 … 100. Ratio of torsional to bending stiffness of rods: 0.75 is a round fibre. GJ/EI. At 0.75
+    /// Poisson's ratio of a round section is 1/3.
     float torsionRatio = 0.75f;
-    /// Short over long diameter of the section of rods, an ellipse of the round one's area; its long diameter
-    /// is the axis that hair curls about.
+    /// 0.2 … 1. Ratio of the short to the long diameter of the rod's cross-section: 1 is round, 0.6 flat like
+    /// curly hair. An ellipse of the area of the round one. Hair curls about its long diameter.
     float sectionRatio = 1.0f;
-    /// Kelvin-Voigt.
+    /// s, 0 … 1. Bending waves faster than this are damped: 0 is undamped. Kelvin-Voigt.
     float bendDampingTime = 0.03f;
-    /// Of rods and projective equations. At 1 hair keeps its authored shape as far as its stiffness can carry
-    /// it.
+    /// 0 … 1. Share of gravity that the authored shape of rods already carries: 1 keeps the shape, 0 lets it
+    /// sag. Of rods and projective equations, as far as their stiffness can carry it.
     float restGravity = 1.0f;
 
     // --- Air and gravity ---
+    /// m/s², -1000 … 1000. Gravity, an acceleration.
     Float3 gravity{0.0f, -9.81f, 0.0f};
-    /// Of hair broadside to the air; falling hair reaches g/airDrag.
+    /// 1/s, 0 … 1000. Rate at which hair takes on the air's velocity: 0 feels no wind. Of hair broadside to
+    /// the air. Falling hair reaches g/airDrag.
     float airDrag = 2.0f;
+    /// How the wind varies in space and time.
     WindKind windKind = WindKind::turbulent;
-    /// Its length does not count.
+    /// -1 … 1. Direction in which the wind blows, or the vehicle drives. Its length does not count.
     Float3 windDirection{1.0f, 0.0f, 0.0f};
+    /// m/s, 0 … 200. Mean wind speed: 0 is still air.
     float windSpeed = 0.0f;
+    /// 0 … 1. Strength of gusts as a share of the wind speed.
     float windGustiness = 0.3f;
+    /// Hz, 0 … 20. How often gusts change.
     float windFrequency = 0.5f;
+    /// m, 0.01 … 100. Distance over which gusts vary: lower moves locks separately.
     float windGustSize = 0.5f;
+    /// 0 … 4294967295. Random seed of the gusts.
     std::uint32_t windSeed = 1;
 
     // --- Collision with spheres ---
+    /// How points are pushed out of a sphere.
     CollisionResponse collisionResponse = CollisionResponse::radial;
-    /// Of a strand: the distance that its points keep from spheres. Grows linearly to collisionRadiusTip. A
-    /// larger one keeps the middle of long segments out of a sphere.
+    /// m, 0 … 0.1. Distance from spheres at the root. Grows linearly to collisionRadiusTip. A larger one
+    /// keeps the middle of long segments out of a sphere.
     float collisionRadiusRoot = 0.0f;
+    /// m, 0 … 0.1. Distance from spheres at the tip.
     float collisionRadiusTip = 0.002f;
-    /// Coulomb.
+    /// 0 … 1. Friction on the skin: 0 slides freely, 1 sticks. Coulomb.
     float friction = 0.3f;
+    /// 0 … 1. Restitution: share of the approach speed that is kept after a bounce.
     float restitution = 0.0f;
+    /// Hz, 1 … 10000. Stiffness of penalty springs: higher penetrates less and needs shorter time steps.
     float penaltyFrequency = 100.0f;
 
     friend bool operator==(const SimulationSettings&, const SimulationSettings&) = default;

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Between the two sides of the player: the interface (player.cpp) asks, the thread (player_thread.cpp) takes.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/simulation/effect_switch.h"
+#include "editor/simulation/player.h"
+
+namespace hairloom::editor {
+
+inline bool leavesBodyOut(const QStringList& leftOut) {
+    return leftOut.contains(QLatin1String(kBodyEffect.data(), kBodyEffect.size()));
+}
+
+/// What the interface has asked of the thread and it has not taken up yet.
+struct Player::WorkerRequests {
+    bool stop = false;
+    bool playing = false;
+    int steps = 0;
+    bool restart = true;     ///< simulation and motion are made anew from `groom`
+    bool regroomed = false;  ///< the strands of `groom` stand elsewhere or are others in looks; they go on
+    std::shared_ptr<LiveLink> live;
+    EngineWish wish = EngineWish::cpu;
+    bool wishChanged = false;
+    PlayedMethod method;
+    std::shared_ptr<const Groom> groom;
+    std::shared_ptr<HeadMotion> motion;
+    Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
+    std::optional<runtime::SimulationSettings> settings;
+    std::optional<std::vector<CollisionSphere>> spheres;
+    QStringList leftOut;
+    std::shared_ptr<const Groom> planPreview;  ///< whose plan is asked for
+    quint64 epoch = 0;
+    std::shared_ptr<const PlayedFrame> delivered;  ///< waits for the interface
+};
+
+}  // namespace hairloom::editor

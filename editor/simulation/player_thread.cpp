@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The thread of the player: it steps the hair, on the engine that was chosen.
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "core/documents/motions.h"
+#include "editor/document/words.h"
+#include "editor/simulation/live_engine.h"
+#include "editor/simulation/player_requests.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr float kFrameTime = 1.0f / 60.0f;
+
+/// The settings without the effects that are left out.
+runtime::SimulationSettings without(runtime::SimulationSettings settings, const QStringList& leftOut) {
+    for (const QString& effect : leftOut) turnEffectOff(settings, effect.toStdString());
+    return settings;
+}
+
+std::vector<CollisionSphere> without(std::vector<CollisionSphere> spheres, const QStringList& leftOut) {
+    if (leftOut.contains(QLatin1String(kCollisionEffect.data(), kCollisionEffect.size()))) spheres.clear();
+    return spheres;
+}
+
+/// The groom without the effects that are left out.
+Groom without(Groom groom, const QStringList& leftOut) {
+    groom.simulation = without(groom.simulation, leftOut);
+    groom.spheres = without(std::move(groom.spheres), leftOut);
+    if (leavesBodyOut(leftOut)) groom.body.reset();
+    return groom;
+}
+
+void apply(const Eigen::Isometry3f& offset, HeadPose& pose) {
+    pose.head_ws = offset * pose.head_ws;
+    for (Vec3f& position : pose.scalpPositions_ws) position = offset * position;
+    for (Vec3f& centre : pose.sphereCentres_ws) centre = offset * centre;
+    for (auto* bones : {&pose.bones_ws, &pose.body_ws}) {
+        for (Eigen::Affine3f& bone : *bones) bone = offset * bone;
+    }
+}
+
+}  // namespace
+
+/// What the thread has of its own.
+struct Player::Playing {
+    std::unique_ptr<LiveEngine> engine;
+    EngineChoice choice;
+    bool deviceFailed = false;  ///< until another wish
+    std::shared_ptr<const Groom> groom;
+    std::shared_ptr<HeadMotion> motion;
+    std::shared_ptr<const HairPose> before;
+    double time = 0;
+};
+
+void Player::refuse(const Error& error) {
+    QMetaObject::invokeMethod(this, [this, words = QString::fromStdString(error.message())] {
+        pause();
+        Q_EMIT failed(words);
+    });
+}
+
+void Player::setEngineShown(const EngineChoice& choice) {
+    QMetaObject::invokeMethod(this, [this, choice] {
+        if (engine_ == choice) return;
+        engine_ = choice;
+        Q_EMIT engineChanged();
+    });
+}
+
+bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
+    if (taken.wishChanged) playing.deviceFailed = false;
+    const bool begins = taken.restart || !playing.engine;
+    if (!begins && !taken.regroomed && !taken.wishChanged) return true;
+    LiveStart start;
+    if (begins) {
+        playing.engine.reset();
+        playing.before.reset();
+        playing.time = 0;
+    } else {
+        start.state = playing.engine->state();
+    }
+    if (!playing.groom || !playing.motion) return false;
+    const auto tried = std::make_shared<const Groom>(without(*playing.groom, taken.leftOut));
+    start.groom = tried;
+    start.motion = playing.motion;
+    start.pose = playing.motion->poseAt(static_cast<float>(playing.time));
+    apply(taken.offset, start.pose);
+
+    EngineChoice choice{EngineKind::cpu, "selected in the preferences"};
+    if (playing.deviceFailed) {
+        choice = playing.choice;
+    } else if (const std::string why = taken.method.whyCpu(); !why.empty()) {
+        choice.why = why;
+    } else if (taken.wish != EngineWish::cpu) {
+        choice = taken.live
+                     ->post([&](LiveWork* work) {
+                         return work ? work->choose(taken.wish, *tried)
+                                     : EngineChoice{EngineKind::cpu, "there is no graphics device"};
+                     })
+                     .get();
+    }
+    // The other engine goes first: the device has room for one hairstyle more.
+    playing.engine.reset();
+    if (choice.kind == EngineKind::gpu) {
+        auto made = makeDeviceEngine(taken.live, start);
+        if (made) playing.engine = std::move(*made);
+        if (!made) choice = {EngineKind::cpu, made.error().message()};
+    }
+    if (!playing.engine) {
+        auto made = makeCpuEngine(start, playing.time, taken.method);
+        if (!made) {
+            refuse(made.error());
+            return false;
+        }
+        playing.engine = std::move(*made);
+    }
+    playing.choice = choice;
+    setEngineShown(choice);
+    return true;
+}
+
+void Player::advance(Playing& playing, WorkerRequests& taken) {
+    const auto begin = std::chrono::steady_clock::now();
+    LiveChanges changes;
+    if (taken.settings) changes.settings = without(*taken.settings, taken.leftOut);
+    if (taken.spheres) changes.spheres = without(std::move(*taken.spheres), taken.leftOut);
+    playing.time += static_cast<double>(kFrameTime);
+    auto pose = std::make_shared<HairPose>();
+    pose->head = playing.motion->poseAt(static_cast<float>(playing.time));
+    apply(taken.offset, pose->head);
+    Status refused;
+    auto stepped = playing.engine->step(kFrameTime, playing.time, std::move(changes), *pose, refused);
+    if (!stepped && playing.choice.kind == EngineKind::gpu) {
+        // A device that was lost takes the motion of the hair along, and nothing else.
+        playing.deviceFailed = true;
+        playing.choice = {EngineKind::cpu, "the device failed: " + stepped.error().message()};
+        WorkerRequests again = taken;
+        again.regroomed = true;
+        Q_EMIT failed(
+            tr("The GPU stopped simulating (%1). The CPU continues").arg(errorText(stepped.error())));
+        if (!prepare(playing, again)) return;
+        stepped = playing.engine->step(kFrameTime, playing.time, {}, *pose, refused);
+    }
+    if (!stepped) refused = stepped;
+    if (!refused) refuse(refused.error());
+    auto frame = std::make_shared<PlayedFrame>();
+    // An engine that has just begun may have no positions yet, and the hair other points than before.
+    if (const auto last = std::exchange(playing.before, pose);
+        last && last->positions_ws.size() == pose->positions_ws.size()) {
+        frame->before = last;
+    }
+    frame->pose = std::move(pose);
+    frame->time = playing.time;
+    const double clock =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    const double device = playing.engine->milliseconds();
+    frame->milliseconds = device > 0 ? device : clock;
+    frame->stats = playing.engine->stats();
+    deliver(std::move(frame), taken.epoch);
+}
+
+void Player::run() {
+    Playing playing;
+    auto due = std::chrono::steady_clock::now();
+    while (true) {
+        WorkerRequests taken;
+        {
+            std::unique_lock lock(mutex_);
+            wake_.wait(lock, [&] {
+                const bool letGo = requests_->restart && playing.engine;
+                return requests_->stop || requests_->playing || requests_->steps > 0 || letGo ||
+                       requests_->planPreview;
+            });
+            if (requests_->steps == 0 && requests_->playing) {
+                wake_.wait_until(lock, due, [this] { return requests_->stop; });
+            }
+            if (requests_->stop) return;
+            if (requests_->planPreview) {
+                const auto planPreview = std::exchange(requests_->planPreview, nullptr);
+                const QStringList leftOut = requests_->leftOut;
+                lock.unlock();
+                computePlanPreview(*planPreview, leftOut);
+                continue;
+            }
+            if (!requests_->playing && requests_->steps == 0) {
+                if (requests_->restart) playing = {};
+                continue;
+            }
+            if (requests_->steps > 0) --requests_->steps;
+            taken = *requests_;
+            requests_->restart = requests_->regroomed = requests_->wishChanged = false;
+            requests_->settings.reset();
+            requests_->spheres.reset();
+        }
+        due = std::chrono::steady_clock::now() + std::chrono::microseconds(16'667);
+        playing.groom = taken.groom;
+        playing.motion = taken.motion;
+        if (prepare(playing, taken)) {
+            advance(playing, taken);
+        } else if (playing.groom && playing.motion) {
+            request([](WorkerRequests& requests) { requests.playing = false; });
+        }
+    }
+}
+
+void Player::deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch) {
+    bool isFirst = false;
+    {
+        const std::lock_guard lock(mutex_);
+        if (epoch != requests_->epoch) return;
+        isFirst = !requests_->delivered;
+        requests_->delivered = std::move(frame);
+    }
+    // One message under way is enough: it takes the newest frame.
+    if (!isFirst) return;
+    QMetaObject::invokeMethod(this, [this] {
+        std::shared_ptr<const PlayedFrame> newest;
+        {
+            const std::lock_guard lock(mutex_);
+            newest = std::exchange(requests_->delivered, nullptr);
+        }
+        if (!newest) return;
+        frame_ = std::move(newest);
+        Q_EMIT frameReady();
+    });
+}
+
+void Player::computePlanPreview(const Groom& groom, const QStringList& leftOut) {
+    const Groom tried = without(groom, leftOut);
+    const auto motion = makeRigidMotion("none", tried);
+    if (!motion) return;
+    const auto made = Simulation::make(tried, (*motion)->poseAt(0), {});
+    if (!made) return;
+    QMetaObject::invokeMethod(this, [this, effects = made->stats().effects] {
+        planPreview_ = effects;
+        Q_EMIT planPreviewChanged();
+    });
+}
+
+}  // namespace hairloom::editor
