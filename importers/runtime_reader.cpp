@@ -64,8 +64,6 @@ std::shared_ptr<const Groom> readAuthored(const runtime::Asset& from) {
         if (sphere.bone >= 0) read.bone = from.text(from.bones[static_cast<std::size_t>(sphere.bone)].name);
         authored->spheres.push_back(std::move(read));
     }
-    if (auto body = from.readBody(); body.field)
-        authored->body = std::make_shared<const runtime::BodyField>(std::move(*body.field));
     return authored;
 }
 
