@@ -333,9 +333,10 @@ JobRun declare(CLI::App& job) {
                    "Simulation method: the strand engine, projective equations, or a lattice around the head")
         ->check(CLI::IsMember({"strands", "projective", "lattice"}));
     job.add_flag("--hair-hair", options->hairHair, "Hair-hair collision, through a volume between frames");
-    job.add_flag("--sag", options->sag,
-                 "Let the authored shape hang under gravity and contact for two seconds. Reports how far "
-                 "each strand sags, as it is and as rods that carry their weight. -o saves the latter");
+    auto* sag =
+        job.add_flag("--sag", options->sag,
+                     "Let the authored shape hang under gravity and contact for two seconds. Reports how far "
+                     "each strand sags, as it is and as rods that carry their weight. -o saves the latter");
     job.add_option("--record", options->record, "File for all frames");
     job.add_option("--against", options->against,
                    "Record of the same groom and frames, to measure the distance from");
@@ -344,6 +345,11 @@ JobRun declare(CLI::App& job) {
                  "Makes the last frame the authored shape that -o writes, on the head at rest, as rods that "
                  "carry their weight. The operators stay, with a sculpt on top")
         ->needs(output);
+    // It has two seconds, the head at rest and a solver of its own.
+    for (const char* other :
+         {"--frames", "--pre-roll", "--fps", "--engine", "--backend", "--device", "--motion", "--character",
+          "--method", "--hair-hair", "--record", "--against", "--take"})
+        sag->excludes(other);
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},
                            [&] { return simulate(*options); });
