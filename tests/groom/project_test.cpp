@@ -117,7 +117,8 @@ TEST(Project, ReadsTheStiffnessAtTheTipOfVersion3AsAStraightCurve) {
     project.head["simulation"]["angularTipShare"] = 0.35;
     const auto both = project.load(3);
     ASSERT_FALSE(both);
-    EXPECT_THAT(both.error().message(), HasSubstr("/simulation/angularTipShare cannot be used together with angularCurve"));
+    EXPECT_THAT(both.error().message(),
+                HasSubstr("/simulation/angularTipShare cannot be used together with angularCurve"));
     project.head["simulation"].erase("angularCurve");
     const auto loaded = project.load(3);
     ASSERT_TRUE(loaded) << loaded.error().message();
