@@ -57,7 +57,8 @@ std::vector<std::string> inOrderOfLessons(std::vector<std::string> names) {
 /// Its part of the manual's picture of all samples; null where it is not on it.
 QPixmap pictureOf(const std::string& name) {
     constexpr int kHeight_px = 84;
-    static const QImage all(":/docs/pictures/samples.png");
+    // A picture of few colours would be dithered into them again when it is scaled.
+    static const QImage all = QImage(":/docs/pictures/samples.png").convertToFormat(QImage::Format_RGB32);
     const auto at = std::ranges::find(kLessons, name, &SampleLesson::name) - std::begin(kLessons);
     if (all.isNull() || at == std::ssize(kLessons)) return {};
     const int rows = static_cast<int>(std::size(kLessons)) / kLessonColumns;
@@ -129,6 +130,7 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     page->addWidget(heading(tr("Samples")));
     auto* samples = new QGridLayout;
     samples->setSpacing(8);
+    for (int column = 0; column < kLessonColumns; ++column) samples->setColumnStretch(column, 1);
     page->addLayout(samples);
     const auto folder = samplesFolder();
     const auto addSample = [&](const QString& name, const QString& label, const QString& tip) {
