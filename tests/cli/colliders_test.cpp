@@ -84,7 +84,7 @@ TEST_F(Colliders, WhatPassesThroughTheSkinOrLosesItIsTold) {
     EXPECT_THAT(asset["findings"].dump(), HasSubstr("the skin collider takes"));
     EXPECT_EQ(asset["findings"].dump().find("left out: hair meets"), std::string::npos);
     const Outcome cards =
-        run("export on.hairloom --format gltf -o hair.glb --levels 20 --texture-size 64 --json");
+        run("export on.hairloom --format gltf -o hair.glb --levels cards:20 --textures 2 --atlas 128 --json");
     EXPECT_THAT(cards.json()["findings"].dump(), HasSubstr("the skin collider is left out"));
     EXPECT_EQ(runJson("export soft.hairloom --format runtime -o bare.hairrt")["findings"].dump().find(
                   "skin collider"),
