@@ -133,20 +133,22 @@ Result<Fitting> fittingTable(const ScalpMesh& mesh, const Body& body, const Box3
             area += static_cast<double>(mesh.triangleArea(face));
     }
     const double most = static_cast<double>(options.mostBytes);
+    const auto expectedCells = [&](const Table& table) {
+        const double squares = area / static_cast<double>(table.cell * table.cell);
+        return squares * (kLayers + static_cast<double>(2 * kBand / table.cell));
+    };
     for (float fine = options.finest; fine <= kCoarsest; fine *= kGrowth) {
         const Table table(bounds, fine * kBlockCells);
         // Most sizes that do not fit need no counting.
-        const double squares = area / static_cast<double>(table.cell * table.cell);
-        const double expected = squares * (kLayers + static_cast<double>(2 * kBand / table.cell));
-        if (bytesOf(table, static_cast<std::size_t>(0.8 * expected)) + kForBones > most) continue;
+        if (bytesOf(table, static_cast<std::size_t>(0.8 * expectedCells(table))) + kForBones > most) continue;
         std::vector<std::size_t> near = cellsNearSkin(table, body);
         if (bytesOf(table, near.size()) + kForBones > most || near.size() >= BodyField::kNoBlock) continue;
         return Fitting{table, std::move(near), fine == options.finest};
     }
     const Table table(bounds, kCoarsest * kBlockCells);
-    return fail(fmt::format("the body is {:.1f} m large and takes {:.0f} kB in cells of {:.0f} mm",
-                            static_cast<double>(bounds.sizes().maxCoeff()),
-                            1e-3 * (bytesOf(table, cellsNearSkin(table, body).size()) + kForBones),
+    const double bytes = bytesOf(table, static_cast<std::size_t>(expectedCells(table))) + kForBones;
+    return fail(fmt::format("the body is {:.1f} m large and takes about {:.0f} kB in cells of {:.0f} mm",
+                            static_cast<double>(bounds.sizes().maxCoeff()), 1e-3 * bytes,
                             1e3 * static_cast<double>(kCoarsest)),
                 fmt::format("{:.0f} kB at most: import a head in metres, without what hair never reaches",
                             1e-3 * most));
