@@ -30,6 +30,10 @@ constexpr std::size_t kMaxBlocksInLanes = 100'000 / kBlockLanes;
 /// Blocks of strands up to which lanes have a point each, and not two: as measured there.
 constexpr std::size_t kMaxBlocksOfOne = 4'000 / kBlockLanes;
 
+/// Blocks of rods up to which some threads share a strand, and how many: as measured there.
+constexpr std::size_t kMaxBlocksOfMembers = 12'000 / kBlockLanes;
+constexpr std::uint32_t kMembers = 16;
+
 /// Of lanes: the memory of a group of more would be too much.
 constexpr std::uint32_t kMaxThreads = 256;
 
@@ -97,7 +101,8 @@ BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, con
 LayoutOptions layoutFor(gpu::DeviceType type) {
     // A driver that compiles for a CPU takes seconds for unrolled loops and gains nothing by them, and its
     // work groups are loops themselves.
-    if (type == gpu::DeviceType::Cpu) return {StrandStorage::threads, false};
+    if (type == gpu::DeviceType::Cpu)
+        return {.storage = StrandStorage::threads, .unroll = false, .members = 1};
     return {};
 }
 
@@ -122,6 +127,8 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
         StrandBatch batch;
         batch.shape =
             shapeFor(points, exact, storage, options, shape.blocks.size() <= kMaxBlocksOfOne, waves);
+        batch.shape.members =
+            options.members.value_or(shape.blocks.size() <= kMaxBlocksOfMembers ? kMembers : 1);
         batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
         batch.blocks = std::move(blocks);
         batches.push_back(std::move(batch));

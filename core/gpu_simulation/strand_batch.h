@@ -28,6 +28,9 @@ struct LayoutOptions {
     /// Threads of StrandStorage::lanes read each other's registers, where a work group is made of waves that
     /// the device has and each holds whole strands; else they use the memory of the group.
     bool waves = true;
+    /// Threads that share a rod, 1 to 16; absent: what was measured to be fastest for as many strands.
+    /// Direct3D 11 has 1.
+    std::optional<std::uint32_t> members = {};
 };
 
 /// For such a device.

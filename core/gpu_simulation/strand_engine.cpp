@@ -52,6 +52,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
     if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
         layout.storage = StrandStorage::threads;
+    if (direct3d) layout.members = 1;
     // A thread takes a rod, and finds those of its neighbours beside it.
     if (settings.strandModel == runtime::StrandModel::rods && !layout.storage)
         layout.storage = StrandStorage::threads;
@@ -147,7 +148,7 @@ Status StrandEngine::Impl::allocate() {
         bool fresh = have(batch.bend, "angular springs", plane * bendFloats(key), key.bend == 1 ? 4 : 16);
         fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
         if (fresh) bendSubstep = 0.0f;
-        const bool gathers = key.sleep && sharesBlocks(key.shape.storage);
+        const bool gathers = key.sleep && (sharesBlocks(key.shape.storage) || key.shape.members > 1);
         have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
         const bool scratch = key.shape.storage == StrandStorage::buffers && !key.stages.empty();

@@ -307,7 +307,7 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(5, batch.rodState);
     write(6, rods ? velocities : nullptr);
     write(7, inBuffers ? batch.scratch : velocities);
-    write(8, rods ? nullptr : inBuffers ? velocities : batch.gathered);
+    write(8, inBuffers && !rods ? velocities : batch.gathered);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
     if (rods) list.setConstants(2, gpu::bytesOf(ofRods));
