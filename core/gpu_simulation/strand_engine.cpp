@@ -58,7 +58,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
         layout.storage = StrandStorage::threads;
     impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
     if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
-    impl->roots.resize(impl->shape->restRoots.size());
+    impl->placed.roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (auto taken = impl->takeRods(settings); !taken) return tl::unexpected(taken.error());
     if (options.hairHair) {
@@ -174,7 +174,7 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
     planInput.straight = shape->straight;
     planInput.rootsMin_ws = low;
     planInput.rootsMax_ws = high;
-    planInput.rootMotion = rootMotion;
+    planInput.rootMotion = placed.motion;
     planInput.fastest = std::numeric_limits<float>::infinity();
     next.plan = runtime::planFrame(settings, planInput, next.wind, frameSpheres.usable, frameSpheres.motion,
                                    input.dt);

@@ -84,7 +84,8 @@ RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  //
 #endif
 
 static uint gSlot;
-float rootRow(uint row) { return gRoots[row * gFrame.slots + gSlot]; }
+/// Seen from the origin of this frame. Where that moves nothing sleeps, so that all roots are written anew.
+float rootRow(uint row) { return gRoots[row * gFrame.slots + gSlot] + gFrame.originShift[min(row, 3u)]; }
 #if HAIR_EXACT
 #define POINTS HAIR_POINTS
 #else
