@@ -42,7 +42,8 @@ def type_of(option: dict[str, Any]) -> str:
     if option["type"] == "FLAG":
         return "bool"
     if option["choices"] and not option["many"]:
-        one = "Literal[" + ", ".join(f'"{choice}"' for choice in option["choices"]) + "]"
+        quote = "" if option["type"] in TYPES else '"'
+        one = "Literal[" + ", ".join(f"{quote}{choice}{quote}" for choice in option["choices"]) + "]"
     else:
         one = TYPES.get(option["type"], "Value")
     return f"{one} | Sequence[{one}]" if option["many"] and one in TYPES.values() else one

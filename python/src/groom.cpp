@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 #include <nanobind/make_iterator.h>
-#include <nanobind/stl/optional.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
@@ -170,8 +170,8 @@ nb::dict apply(PyGroom& groom, const std::string& operation, const nb::kwargs& f
     return runSteps(groom, steps);
 }
 
-nb::dict runFile(PyGroom& groom, const std::string& path) {
-    return runText(groom, unwrap(readTextFile(path, kMaxJsonBytes)), path);
+nb::dict runFile(PyGroom& groom, const std::filesystem::path& path) {
+    return runText(groom, unwrap(readTextFile(path, kMaxJsonBytes)), path.string());
 }
 
 nb::object settings(PyGroom& groom) {
@@ -253,20 +253,20 @@ void bindGroom(nb::module_& module) {
              "not finite, and offsets that do not ascend from 0 to n.")
         .def_static(
             "open",
-            [](const std::string& path) {
-                auto groom = withoutGil([&] { return openGroom(path); });
+            [](const std::filesystem::path& path) {
+                auto groom = withoutGil([&] { return openGroom(path.string()); });
                 return std::make_unique<PyGroom>(unwrap(std::move(groom)));
             },
-            "path"_a,
+            "path"_a, nb::sig("def open(path: str | os.PathLike[str]) -> Groom"),
             "A project, or a hair file of any supported format.\n\nRaises Error with file and place for a "
             "file that cannot be read.")
         .def(
             "save",
-            [](PyGroom& groom, const std::string& path) {
+            [](PyGroom& groom, const std::filesystem::path& path) {
                 const Use use(groom.inUse, kTheGroom);
                 unwrap(withoutGil([&] { return saveProject(groom.groom, path); }));
             },
-            "path"_a,
+            "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
             "Writes a project. Replaces the file at once or not at all.\n\nRaises Error where it cannot be "
             "written.")
         .def(
@@ -321,7 +321,8 @@ void bindGroom(nb::module_& module) {
                      "typing.Any]]) -> dict[str, "
                      "int]"),
              "Runs operations in order, each a dict with 'op'. All of them or, on Error, none.")
-        .def("run_script", &runFile, "path"_a, nb::sig("def run_script(self, path: str) -> dict[str, int]"),
+        .def("run_script", &runFile, "path"_a,
+             nb::sig("def run_script(self, path: str | os.PathLike[str]) -> dict[str, int]"),
              "Runs a script file (docs/formats/script.md).")
         .def_prop_ro("settings", &settings, nb::sig("def settings(self) -> dict[str, dict[str, typing.Any]]"),
                      "A copy of the settings: 'simulation', 'material' and 'interpolation', with units as "

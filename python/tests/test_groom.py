@@ -5,8 +5,11 @@ import gc
 import threading
 import time
 import unittest
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from support import InFolder, rows
 
 import hairloom
@@ -54,7 +57,7 @@ class Arrays(unittest.TestCase):
         np.testing.assert_array_equal(self.groom.positions, self.positions)
 
     def test_attributes_of_every_type(self) -> None:
-        for name, values in {
+        arrays: dict[str, NDArray[Any]] = {
             "a": np.arange(40, dtype=np.float32),
             "b": np.zeros((40, 2), np.float32),
             "colour": np.ones((40, 3), np.float32),
@@ -62,7 +65,8 @@ class Arrays(unittest.TestCase):
             "e": np.arange(40, dtype=np.int32),
             "f": np.arange(40, dtype=np.uint32),
             "g": np.arange(40, dtype=np.uint8),
-        }.items():
+        }
+        for name, values in arrays.items():
             self.groom.points[name] = values
             self.assertEqual(self.groom.points[name].dtype, values.dtype)
             np.testing.assert_array_equal(self.groom.points[name], values)
@@ -78,7 +82,7 @@ class Arrays(unittest.TestCase):
         class Foreign:
             """An array of a program that speaks DLPack and nothing else."""
 
-            def __init__(self, values: np.ndarray) -> None:  # type: ignore[type-arg]
+            def __init__(self, values: NDArray[Any]) -> None:
                 self._values = values
 
             def __dlpack__(self, **options: object) -> object:
@@ -88,14 +92,14 @@ class Arrays(unittest.TestCase):
                 return self._values.__dlpack_device__()
 
         moved = self.positions + np.float32(0.5)
-        self.groom.positions = Foreign(moved)  # type: ignore[assignment]
+        self.groom.positions = Foreign(moved)
         np.testing.assert_array_equal(self.groom.positions, moved)
-        out = np.from_dlpack(self.groom.positions)  # type: ignore[arg-type]
+        out = np.from_dlpack(self.groom.positions)
         self.assertTrue(np.shares_memory(out, self.groom.positions))
 
     def assertRefused(self, values: object, *words: str) -> None:
         with self.assertRaises(hairloom.ArgumentError) as caught:
-            self.groom.positions = values  # type: ignore[assignment]
+            self.groom.positions = values
         for word in words:
             self.assertIn(word, str(caught.exception))
         np.testing.assert_array_equal(self.groom.positions, self.positions)
@@ -148,13 +152,14 @@ class Edits(InFolder):
     def test_a_failed_script_changes_nothing(self) -> None:
         groom = self.create()
         before = groom.positions
-        for operations in (
-            [{"op": "noise"}, {"op": "curll"}],
-            [{"op": "noise"}, {"op": "curl", "radius": 1e9}],
-            [{"op": "noise"}, {"op": "curl", "rdius": 0.1}],
-        ):
+        wrong: list[dict[str, Any]] = [
+            {"op": "curll"},
+            {"op": "curl", "radius": 1e9},
+            {"op": "curl", "rdius": 0.1},
+        ]
+        for operation in wrong:
             with self.assertRaises(hairloom.Error) as caught:
-                groom.run(operations)
+                groom.run([{"op": "noise"}, operation])
             self.assertIn("operations/1", caught.exception.what)
         with self.assertRaises(hairloom.ArgumentError):
             groom.apply("curl", radius=float("nan"))
@@ -180,7 +185,12 @@ class Edits(InFolder):
         groom = self.create()
         groom.configure({"simulation": {"windSpeed": np.float32(4)}, "material": {"eumelanin": 0.3}})
         self.assertEqual(groom.settings["simulation"]["windSpeed"], 4)
-        for wrong in ({"simulation": {"windSpeed": 1e6}}, {"simulation": {"wind": 1}}, {"simulatoin": {}}):
+        refused: list[Mapping[str, Mapping[str, Any]]] = [
+            {"simulation": {"windSpeed": 1e6}},
+            {"simulation": {"wind": 1}},
+            {"simulatoin": {}},
+        ]
+        for wrong in refused:
             with self.assertRaises(hairloom.Error):
                 groom.configure(wrong)
         self.assertEqual(groom.settings["simulation"]["windSpeed"], 4)
@@ -236,9 +246,10 @@ class Motion(InFolder):
             groom.simulate("jump")
         with self.assertRaises(hairloom.Error):
             groom.simulate({"keys": [{"t": -1}]})
-        for wrong in ({"frames": 0}, {"fps": 1}, {"fps": float("nan")}, {"pre_roll": -1}):
+        refused: list[dict[str, Any]] = [{"frames": 0}, {"fps": 1}, {"fps": float("nan")}, {"pre_roll": -1}]
+        for wrong in refused:
             with self.assertRaises(hairloom.ArgumentError):
-                groom.simulate("none", **wrong)  # type: ignore[arg-type]
+                groom.simulate("none", **wrong)
         with self.assertRaises(hairloom.ArgumentError):
             groom.simulate(7)  # type: ignore[arg-type]
         with self.assertRaises(hairloom.Error):
