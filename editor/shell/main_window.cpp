@@ -139,7 +139,7 @@ MainWindow::MainWindow()
     const auto chooseEngine = [this] {
         player_.setEngine(static_cast<EngineWish>(preferences_.simulateOn()));
     };
-    player_.setLive(viewport_->live());
+    player_.setRenderJobs(viewport_->renderJobs());
     chooseEngine();
     connect(&preferences_, &Preferences::changed, this, chooseEngine);
     connect(&tools_, &ToolBox::activeChanged, viewport_, &Viewport::setTool);
