@@ -12,9 +12,10 @@ Result<std::unique_ptr<LiveShots>> LiveShots::make(gpu::Device& device,
                                                    std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                                                    GroomScene scene, const HeadMotion& motion,
                                                    EngineKind engine) {
-    auto live = LiveHair::make(device, std::move(kernels), std::move(scene), motion, engine);
-    if (!live) return tl::unexpected(live.error());
-    return std::unique_ptr<LiveShots>(new LiveShots(device, std::move(*live)));
+    auto hair =
+        MovingHair::make(engine, device, std::move(kernels), scene, motion.skin(), {motion.poseAt(0)});
+    if (!hair) return tl::unexpected(hair.error());
+    return std::unique_ptr<LiveShots>(new LiveShots(device, std::move(scene), motion, std::move(*hair)));
 }
 
 Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::RenderScene& scene,
@@ -31,15 +32,15 @@ Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::Rende
         if (how.surface && !how.temporal && frame_ + 1 == frame) {
             if (auto past = renderer_.recordPast(**list, how); !past) return tl::unexpected(past.error());
         }
-        if (auto moved = live_.record(**list, renderer_, kFrame); !moved)
-            return tl::unexpected(moved.error());
+        if (auto moved = hair_.step(**list, kFrame, motion_); !moved) return tl::unexpected(moved.error());
+        if (auto shown = hair_.show(renderer_, scene_); !shown) return tl::unexpected(shown.error());
         if (how.temporal && frame_ + 1 < frame) {
             if (auto drawn = renderer_.record(**list, how, nullptr); !drawn)
                 return tl::unexpected(drawn.error());
         }
         auto submission = device_.submit(std::move(*list));
         if (!submission) return tl::unexpected(submission.error());
-        live_.submitted(*submission);
+        hair_.submitted(*submission);
         // No more than a frame ahead of the device.
         if (last) {
             if (auto done = last->wait(); !done) return tl::unexpected(done.error());

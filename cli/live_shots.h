@@ -2,7 +2,7 @@
 #pragma once
 // Pictures of hair while it is simulated, without a record between.
 
-#include "core/live/live_hair.h"
+#include "core/live/moving_hair.h"
 #include "core/render/picture.h"
 
 namespace hairloom::cli {
@@ -16,18 +16,24 @@ class LiveShots {
                                                    EngineKind engine);
 
     /// Strands at rest.
-    const GroomScene& scene() const { return live_.scene(); }
+    const GroomScene& scene() const { return scene_; }
     /// After so many frames of 1/60 s, not fewer than at the last call; `scene` says camera, lights and
     /// background. Of a temporal picture all frames before are drawn as well.
     Result<render::Picture> take(std::uint64_t frame, const render::RenderScene& scene,
                                  const render::RenderOptions& how);
 
   private:
-    LiveShots(gpu::Device& device, LiveHair live)
-        : device_(device), live_(std::move(live)), renderer_(device) {}
+    LiveShots(gpu::Device& device, GroomScene scene, const HeadMotion& motion, MovingHair hair)
+        : device_(device),
+          scene_(std::move(scene)),
+          motion_(motion),
+          hair_(std::move(hair)),
+          renderer_(device) {}
 
     gpu::Device& device_;
-    LiveHair live_;
+    GroomScene scene_;
+    const HeadMotion& motion_;
+    MovingHair hair_;
     render::Renderer renderer_;
     bool shown_ = false;
     std::uint64_t frame_ = 0;

@@ -43,18 +43,6 @@ Vec3f catmullRom(std::span<const Vec3f> points, float x) {
            (t3 - t2) * h.endTangent;
 }
 
-Vec3f catmullRomDerivative(std::span<const Vec3f> points, float x) {
-    assert(points.size() >= 2);
-    const std::size_t segments = points.size() - 1;
-    const auto [segment, t] = localParameter(segments, x);
-    const Hermite h = hermiteSegment(points, segment);
-    const float t2 = t * t;
-    // Thesis Eq. 56; h₂' is 3t² − 4t + 1. dt/dx is the number of segments.
-    const Vec3f perT = (6 * t2 - 6 * t) * h.start + (3 * t2 - 4 * t + 1) * h.startTangent +
-                       (6 * t - 6 * t2) * h.end + (3 * t2 - 2 * t) * h.endTangent;
-    return static_cast<float>(segments) * perT;
-}
-
 float polylineLength(std::span<const Vec3f> points) {
     double length = 0;
     for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Curves through strand points: uniform Catmull-Rom (thesis Eq. 54–56), resampling, frames.
+// Curves through strand points: uniform Catmull-Rom (thesis Eq. 54 and 55), resampling, frames.
 
 #include <cstdint>
 #include <span>
@@ -10,10 +10,9 @@
 
 namespace hairloom {
 
-/// Position and derivative with respect to x in [0, 1] over the whole curve of points.size() ≥ 2. End
+/// Position at x in [0, 1] over the whole curve of points.size() ≥ 2. End
 /// segments repeat the end points. x = 1 is the last point (thesis erratum, Eq. 55).
 Vec3f catmullRom(std::span<const Vec3f> points, float x);
-Vec3f catmullRomDerivative(std::span<const Vec3f> points, float x);
 
 /// Sum of the segment lengths, metres.
 float polylineLength(std::span<const Vec3f> points);

@@ -56,18 +56,7 @@ class GpuEngineMethod final : public StrandMethod {
         keep(tl::unexpected(hash.error()));
         return 0;
     }
-    std::vector<EffectReport> effects() const override {
-        std::vector<EffectReport> effects;
-        for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
-            const auto effect = static_cast<runtime::Effect>(index);
-            const bool on = engine_.plan().on(effect);
-            effects.push_back({runtime::effectName(effect), on, reasonAlone(engine_.plan().why(effect)),
-                               on ? std::nullopt : std::optional(0.0), engine_.effectBytes(effect)});
-        }
-        if (engine_.volumeBytes() > 0)
-            effects.push_back({"hair-hair", true, "on, asked for", std::nullopt, engine_.volumeBytes()});
-        return effects;
-    }
+    std::vector<EffectReport> effects() const override { return effectReports(engine_); }
 
   private:
     /// The first error stays.
@@ -85,6 +74,19 @@ class GpuEngineMethod final : public StrandMethod {
 };
 
 }  // namespace
+
+std::vector<EffectReport> effectReports(const StrandEngine& engine) {
+    std::vector<EffectReport> effects;
+    for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
+        const auto effect = static_cast<runtime::Effect>(index);
+        const bool on = engine.plan().on(effect);
+        effects.push_back({runtime::effectName(effect), on, reasonAlone(engine.plan().why(effect)),
+                           on ? std::nullopt : std::optional(0.0), engine.effectBytes(effect)});
+    }
+    if (engine.volumeBytes() > 0)
+        effects.push_back({"hair-hair", true, "on, asked for", std::nullopt, engine.volumeBytes()});
+    return effects;
+}
 
 MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels) {
     return [&device, kernels = std::move(kernels)](const SceneInput& scene,

@@ -287,9 +287,6 @@ const runtime::RestShape& StrandEngine::restShape() const {
 const runtime::EffectPlan& StrandEngine::plan() const {
     return impl_->run.plan;
 }
-bool StrandEngine::isSwitching() const {
-    return impl_->switching;
-}
 
 std::size_t StrandEngine::effectBytes(Effect effect) const {
     std::size_t bytes = 0;

@@ -101,8 +101,6 @@ class StrandEngine {
 
     /// The plan that the last frame ran by.
     const runtime::EffectPlan& plan() const;
-    /// A plan waits for its kernel.
-    bool isSwitching() const;
     /// Bytes of buffers that exist because of this effect.
     std::size_t effectBytes(runtime::Effect effect) const;
     /// Of hair against hair.

@@ -2,9 +2,11 @@
 #include "core/live/groom_scene.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/base/parallel.h"
 #include "core/geometry/selection.h"
+#include "core/groom/file/fields.h"
 #include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
@@ -36,7 +38,31 @@ bool hasSameStreaksAndDye(const HairMaterial& a, const HairMaterial& b) {
            a.dyeStrength == b.dyeStrength;
 }
 
+bool sameFollowHairs(const InterpolationSettings& a, const InterpolationSettings& b) {
+    return std::ranges::all_of(fieldsOf(InterpolationSettings()),
+                               [&](const Field<InterpolationSettings>& field) {
+                                   for (std::uint32_t c = 0; c < field.components(); ++c) {
+                                       if (field.get(a, c) != field.get(b, c)) return false;
+                                   }
+                                   return true;
+                               });
+}
+
 }  // namespace
+
+bool drawSameHairs(const Groom& a, const Groom& b) {
+    const auto sameLayer = [](const Layer& x, const Layer& y) {
+        return x.visible == y.visible && x.density == y.density;
+    };
+    constexpr std::array kDeciding{attribute::kLayer, attribute::kGuide, attribute::kHidden,
+                                   attribute::kStrandId};
+    const bool sameStrands = std::ranges::all_of(kDeciding, [&](std::string_view name) {
+        return a.strandAttributes.version(name) == b.strandAttributes.version(name);
+    });
+    return a.offsets.version() == b.offsets.version() && sameStrands && a.scalp == b.scalp &&
+           sameFollowHairs(a.interpolation, b.interpolation) &&
+           std::ranges::equal(a.layers, b.layers, sameLayer);
+}
 
 Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
                                     const std::vector<std::string>& hiddenGroups) {

@@ -31,6 +31,10 @@ struct StreakAndDyeWeights {
     std::vector<float> pointDyes;  ///< one a point, shares of that; empty: nothing was painted
 };
 
+/// Whether scenes of the two draw the same hairs, one for one, on the same head: points, widths and materials
+/// may differ.
+bool drawSameHairs(const Groom& a, const Groom& b);
+
 /// Owns the arrays that a RenderScene looks at.
 class GroomScene {
   public:

@@ -25,6 +25,12 @@ render::RenderOptions viewportOptions(std::uint32_t width, std::uint32_t height)
 
 }  // namespace
 
+struct LiveLoop::Stage {
+    GroomScene scene;
+    const HeadMotion& motion;
+    MovingHair hair;
+};
+
 LiveLoop::LiveLoop(gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                    std::uint32_t width, std::uint32_t height)
     : device_(device),
@@ -36,14 +42,15 @@ Result<LiveCost> LiveLoop::run(const Groom& groom, const HeadMotion& motion, Eng
                                std::uint32_t frames) {
     auto scene = GroomScene::make(groom, {}, {});
     if (!scene) return tl::unexpected(scene.error());
-    auto live = LiveHair::make(device_, kernels_, std::move(*scene), motion, engine);
-    if (!live) return tl::unexpected(live.error());
-    if (auto status = setUp(live->scene()); !status) return tl::unexpected(status.error());
-    if (auto status = play(*live, kWarmUp); !status) return tl::unexpected(status.error());
+    auto hair = MovingHair::make(engine, device_, kernels_, *scene, motion.skin(), {motion.poseAt(0)});
+    if (!hair) return tl::unexpected(hair.error());
+    Stage stage{std::move(*scene), motion, std::move(*hair)};
+    if (auto status = setUp(stage.scene); !status) return tl::unexpected(status.error());
+    if (auto status = play(stage, kWarmUp); !status) return tl::unexpected(status.error());
     cost_ = {};
     const gpu::Traffic before = device_.traffic();
     const Stopwatch watch;
-    if (auto status = play(*live, frames); !status) return tl::unexpected(status.error());
+    if (auto status = play(stage, frames); !status) return tl::unexpected(status.error());
     cost_.wall = 1e3 * watch.seconds();
     const gpu::Traffic after = device_.traffic();
     cost_.toDevice = static_cast<double>(after.toDevice - before.toDevice);
@@ -52,7 +59,7 @@ Result<LiveCost> LiveLoop::run(const Groom& groom, const HeadMotion& motion, Eng
                         &cost_.toDevice, &cost_.fromDevice})
         *sum /= frames;
     for (auto& [name, milliseconds] : cost_.passes) milliseconds /= frames;
-    const render::RenderScene drawn = live->scene().scene();
+    const render::RenderScene drawn = stage.scene.scene();
     cost_.hairs = drawn.strands.front().offsets.size() - 1;
     cost_.pointBytes = static_cast<double>(drawn.strands.front().positions_ws.size_bytes());
     return cost_;
@@ -74,18 +81,20 @@ Status LiveLoop::setUp(const GroomScene& groom) {
     return renderer_.setScene(scene);
 }
 
-Status LiveLoop::play(LiveHair& live, std::uint32_t count) {
+Status LiveLoop::play(Stage& stage, std::uint32_t count) {
+    MovingHair& hair = stage.hair;
     gpu::FramesUnderWay underWay(kUnderWay, [this](const auto& times) { add(times); });
     for (std::uint32_t frame = 0; frame < count; ++frame) {
         auto list = device_.createCommandList();
         if (!list) return tl::unexpected(list.error());
-        if (auto status = live.record(**list, renderer_, kFrame); !status) return status;
+        if (auto status = hair.step(**list, kFrame, stage.motion); !status) return status;
+        if (auto status = hair.show(renderer_, stage.scene); !status) return status;
         if (auto status = renderer_.record(**list, options_, target_); !status) return status;
         auto submission = device_.submit(std::move(*list));
         if (!submission) return tl::unexpected(submission.error());
-        live.submitted(*submission);
-        cost_.simulate += live.simulateMilliseconds();
-        cost_.follow += live.followMilliseconds();
+        hair.submitted(*submission);
+        cost_.simulate += hair.simulateMilliseconds();
+        cost_.follow += hair.followMilliseconds();
         if (auto status = underWay.add(std::move(*submission)); !status) return status;
     }
     return underWay.finish();

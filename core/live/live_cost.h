@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "core/live/live_hair.h"
+#include "core/live/moving_hair.h"
 #include "core/render/renderer.h"
 
 namespace hairloom {
@@ -29,13 +29,14 @@ class LiveLoop {
     LiveLoop(gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLibrary> kernels, std::uint32_t width,
              std::uint32_t height);
     /// Of `frames` ≥ 1 frames of 1/60 s after some that are not counted. Errors: those of GroomScene and
-    /// LiveHair.
+    /// MovingHair.
     Result<LiveCost> run(const Groom& groom, const HeadMotion& motion, EngineKind engine,
                          std::uint32_t frames);
 
   private:
+    struct Stage;
     Status setUp(const GroomScene& groom);
-    Status play(LiveHair& live, std::uint32_t count);
+    Status play(Stage& stage, std::uint32_t count);
     void add(const std::vector<gpu::PassTime>& times);
     double& sumOf(std::string_view pass);
 

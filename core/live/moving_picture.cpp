@@ -57,6 +57,10 @@ std::string_view frameCostName(FrameCost cost) {
     return "draw";
 }
 
+bool isSimulationCost(FrameCost cost) {
+    return cost != FrameCost::shadow && cost != FrameCost::shade && cost != FrameCost::draw;
+}
+
 FrameCost frameCostOf(std::string_view pass) {
     using render::Pass;
     using render::passName;

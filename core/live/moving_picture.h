@@ -23,6 +23,9 @@ enum class FrameCost { head, solve, hairHair, follow, measures, shadow, shade, d
 /// "solve", "followHairs": as effects are named.
 std::string_view frameCostName(FrameCost cost);
 
+/// Of moving the hair, not of drawing it.
+bool isSimulationCost(FrameCost cost);
+
 /// By the name of a pass of the device, of simulation or picture.
 FrameCost frameCostOf(std::string_view pass);
 

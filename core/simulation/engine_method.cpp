@@ -5,7 +5,6 @@
 
 #include "core/base/parallel.h"
 #include "core/simulation/effect_switch.h"
-#include "core/simulation/engine_control.h"
 #include "core/simulation/strand_method.h"
 
 namespace hairloom {
@@ -49,8 +48,9 @@ class EngineMethod : public StrandMethod {
         volumeMilliseconds_ += spent;
     }
 
-    std::string setSettings(const runtime::SimulationSettings& settings) {
-        return engine_.setSettings(settings);
+    Status setSettings(const runtime::SimulationSettings& settings) override {
+        if (const std::string problem = engine_.setSettings(settings); !problem.empty()) return fail(problem);
+        return {};
     }
 
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
@@ -105,13 +105,6 @@ class EngineMethod : public StrandMethod {
 std::string reasonAlone(const std::string& why) {
     const std::size_t colon = why.find(": ");
     return colon == std::string::npos ? why : why.substr(colon + 2);
-}
-
-Status setEngineSettings(StrandMethod& method, const runtime::SimulationSettings& settings) {
-    auto* engine = dynamic_cast<EngineMethod*>(&method);
-    if (!engine) return fail("this method cannot change settings while it runs");
-    if (const std::string problem = engine->setSettings(settings); !problem.empty()) return fail(problem);
-    return {};
 }
 
 runtime::Host applicationHost() {

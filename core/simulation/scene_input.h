@@ -22,6 +22,8 @@ class SceneInput {
     static Result<SceneInput> make(const Groom& groom);
 
     const Groom& groom() const { return groom_; }
+    void setSettings(const runtime::SimulationSettings& settings) { groom_.simulation = settings; }
+    void setSpheres(std::vector<CollisionSphere> spheres) { groom_.spheres = std::move(spheres); }
     /// Lives as long as this.
     runtime::StrandsView strands() const;
     /// One per strand; metres, world.

@@ -82,6 +82,16 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
+Status Simulation::setSettings(const runtime::SimulationSettings& settings) {
+    if (auto set = impl_->method->setSettings(settings); !set) return set;
+    impl_->scene.setSettings(settings);
+    return {};
+}
+
+void Simulation::setSpheres(std::vector<CollisionSphere> spheres) {
+    impl_->scene.setSpheres(std::move(spheres));
+}
+
 void Simulation::step(float dt, const HeadPose& given) {
     HAIRLOOM_PROFILE("simulation step");
     impl_->time += static_cast<double>(dt);

@@ -78,6 +78,12 @@ class Simulation {
     Simulation& operator=(Simulation&&) noexcept;
     ~Simulation();
 
+    /// Other settings from the next step on, without a jump; wind is one of them. Errors, which leave all as
+    /// it was: settings out of range, a method other than the strand engine on the CPU.
+    Status setSettings(const runtime::SimulationSettings& settings);
+    /// Collision spheres in place of the groom's, from the next step on.
+    void setSpheres(std::vector<CollisionSphere> spheres);
+
     /// Advances by `dt` seconds (0 < dt ≤ 0.1) to `pose`.
     void step(float dt, const HeadPose& pose);
 

@@ -41,6 +41,10 @@ class StrandMethod {
     virtual std::uint32_t restoredStrands() const { return 0; }
     /// Strands whose speeds the last step took back because no force explains them.
     virtual std::uint32_t guardedStrands() const { return 0; }
+    /// Other settings from the next step on, without a jump. An error leaves all as it was.
+    virtual Status setSettings(const runtime::SimulationSettings&) {
+        return fail("this method cannot change settings while it runs");
+    }
     /// All that changes from step to step, for another engine to go on from (runtime::Engine::state()); null
     /// where it cannot be had.
     virtual std::shared_ptr<const runtime::State> state() const { return nullptr; }

@@ -117,6 +117,17 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
     connect(autosave, &QSpinBox::valueChanged, &preferences, &Preferences::setAutosaveMinutes);
     form->addRow(tr("Autosave every"), autosave);
 
+    auto* undo = new QSpinBox;
+    undo->setObjectName("undoMemory");
+    undo->setRange(kLeastUndoMegabytes, kMostUndoMegabytes);
+    undo->setSingleStep(64);
+    undo->setSuffix(tr(" MB"));
+    undo->setKeyboardTracking(false);
+    undo->setValue(preferences.undoMegabytes());
+    undo->setToolTip(tr("Memory for undo steps. The oldest steps are dropped when it is full"));
+    connect(undo, &QSpinBox::valueChanged, &preferences, &Preferences::setUndoMegabytes);
+    form->addRow(tr("Undo memory"), undo);
+
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     layout->addWidget(buttons);

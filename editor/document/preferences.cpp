@@ -26,7 +26,9 @@ Preferences::Preferences(QObject* parent)
       orbitStyle_(readChoice("orbitStyle", OrbitStyle::Maya, 2)),
       tabletCurve_(std::clamp(QSettings().value("tabletCurve", 1.0).toDouble(), 0.25, 4.0)),
       simulateOn_(readChoice("simulateOn", SimulateOn::Automatic, 3)),
-      autosaveMinutes_(std::clamp(QSettings().value("autosaveMinutes", 1).toInt(), 0, 60)) {}
+      autosaveMinutes_(std::clamp(QSettings().value("autosaveMinutes", 1).toInt(), 0, 60)),
+      undoMegabytes_(std::clamp(QSettings().value("undoMegabytes", 512).toInt(), kLeastUndoMegabytes,
+                                kMostUndoMegabytes)) {}
 
 template <class T>
 void Preferences::store(const char* key, T& member, T value) {
@@ -57,6 +59,10 @@ void Preferences::setSimulateOn(SimulateOn where) {
 }
 void Preferences::setAutosaveMinutes(int minutes) {
     store("autosaveMinutes", autosaveMinutes_, std::clamp(minutes, 0, 60));
+}
+
+void Preferences::setUndoMegabytes(int megabytes) {
+    store("undoMegabytes", undoMegabytes_, std::clamp(megabytes, kLeastUndoMegabytes, kMostUndoMegabytes));
 }
 
 QStringList Preferences::recentFiles() const {

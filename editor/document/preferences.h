@@ -7,6 +7,8 @@
 
 namespace hairloom::editor {
 
+inline constexpr int kLeastUndoMegabytes = 64, kMostUndoMegabytes = 65536;
+
 enum class OrbitStyle { Maya, Blender };
 enum class Theme { Dark, Light };
 enum class SimulateOn { Automatic, Gpu, Cpu };
@@ -36,6 +38,10 @@ class Preferences : public QObject {
     int autosaveMinutes() const { return autosaveMinutes_; }
     void setAutosaveMinutes(int minutes);
 
+    /// Megabytes that undo steps of a document may hold, 64 … 65,536.
+    int undoMegabytes() const { return undoMegabytes_; }
+    void setUndoMegabytes(int megabytes);
+
     /// The most recent first; those that are gone are left out.
     QStringList recentFiles() const;
     void addRecentFile(const QString& path);
@@ -55,6 +61,7 @@ class Preferences : public QObject {
     double tabletCurve_;
     SimulateOn simulateOn_;
     int autosaveMinutes_;
+    int undoMegabytes_;
 };
 
 }  // namespace hairloom::editor

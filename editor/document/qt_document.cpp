@@ -33,6 +33,12 @@ std::size_t QtDocument::historyLimit() const {
     return editing_->history().limit();
 }
 
+void QtDocument::setHistoryLimit(std::size_t bytes) {
+    if (bytes == historyLimit()) return;
+    editing_->setHistoryLimit(bytes);
+    Q_EMIT historyChanged();
+}
+
 void QtDocument::watch() {
     subscription_ = std::make_unique<editing::Subscription>(
         editing_->observe([this](const editing::Change& change) { notify(change); }));
@@ -59,6 +65,7 @@ void QtDocument::open(Groom groom, const QString& path, const QString& name) {
     // What a head costs to prepare is kept while the head stays.
     const std::shared_ptr<const SkinField> held = editing_->heldSkin();
     if (held && &held->skin().mesh() == opened->groom().scalp.get()) opened->skin();
+    opened->setHistoryLimit(historyLimit());
     subscription_.reset();
     editing_ = std::move(opened);
     watch();

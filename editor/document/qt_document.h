@@ -76,6 +76,8 @@ class QtDocument : public QObject {
     /// Memory that the history holds beyond the groom itself, and how much it may hold; bytes.
     std::size_t historyBytes() const;
     std::size_t historyLimit() const;
+    /// Of this document and those opened later. The oldest steps go where there are too many.
+    void setHistoryLimit(std::size_t bytes);
 
   Q_SIGNALS:
     /// Parts of the groom; never none, and never the history.

@@ -7,6 +7,8 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
+#include <QStyledItemDelegate>
+#include <QTimer>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
@@ -23,6 +25,15 @@ namespace hairloom::editor {
 namespace {
 
 constexpr float kNearHair = 0.04f;  // metres: skin that spheres have to cover
+
+/// A column whose texts cannot be edited.
+class ShownOnly : public QStyledItemDelegate {
+  public:
+    using QStyledItemDelegate::QStyledItemDelegate;
+    QWidget* createEditor(QWidget*, const QStyleOptionViewItem&, const QModelIndex&) const override {
+        return nullptr;
+    }
+};
 
 class SpheresPanel : public QWidget {
   public:
@@ -52,7 +63,11 @@ class SpheresPanel : public QWidget {
         list_->header()->setStretchLastSection(false);
         list_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
         list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
-        list_->setToolTip(tr("Spheres that hair collides with"));
+        list_->setToolTip(
+            tr("Spheres that hair collides with. Double-click a name, or press F2, to change it"));
+        list_->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
+        for (const int column : {1, 2}) list_->setItemDelegateForColumn(column, new ShownOnly(list_));
+        connect(list_, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { rename(*item); });
         layout->addWidget(list_, 1);
 
         auto* row = new QHBoxLayout;
@@ -237,15 +252,28 @@ class SpheresPanel : public QWidget {
         const QSignalBlocker quiet(list_);
         list_->clear();
         for (const CollisionSphere& sphere : spheres()) {
-            list_->addTopLevelItem(new QTreeWidgetItem(
+            auto* item = new QTreeWidgetItem(
                 {QString::fromStdString(sphere.name),
                  lengthText(static_cast<double>(sphere.radius), preferences_),
-                 sphere.bone.empty() ? QStringLiteral("–") : QString::fromStdString(sphere.bone)}));
+                 sphere.bone.empty() ? QStringLiteral("–") : QString::fromStdString(sphere.bone)});
+            item->setFlags(item->flags() | Qt::ItemIsEditable);
+            list_->addTopLevelItem(item);
         }
         if (!spheres().empty()) {
             list_->setCurrentItem(list_->topLevelItem(std::clamp(row, 0, list_->topLevelItemCount() - 1)));
         }
         showNumbers();
+    }
+
+    void rename(QTreeWidgetItem& item) {
+        const auto index = static_cast<std::size_t>(list_->indexOfTopLevelItem(&item));
+        const std::string name = item.text(0).trimmed().toStdString();
+        // Not while the view still closes its editor: a refresh replaces all items.
+        QTimer::singleShot(0, this, [this, index, name] {
+            if (index >= spheres().size()) return;
+            if (name.empty() || name == spheres()[index].name) return refresh();
+            document_.perform(editing::renameSphere(document_.editing().model(), index, name));
+        });
     }
 
     void showNumbers() {

@@ -115,6 +115,11 @@ MainWindow::MainWindow()
     connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&document_, &QtDocument::changed, this, &MainWindow::showPage);
     connect(&preferences_, &Preferences::recentFilesChanged, this, &MainWindow::fillRecentMenu);
+    const auto limitHistory = [this] {
+        document_.setHistoryLimit(static_cast<std::size_t>(preferences_.undoMegabytes()) << 20u);
+    };
+    limitHistory();
+    connect(&preferences_, &Preferences::changed, this, limitHistory);
     connect(&preferences_, &Preferences::changed, this, [this, theme = preferences_.theme()]() mutable {
         if (theme == preferences_.theme()) return;
         theme = preferences_.theme();
@@ -134,7 +139,7 @@ MainWindow::MainWindow()
     const auto chooseEngine = [this] {
         player_.setEngine(static_cast<EngineWish>(preferences_.simulateOn()));
     };
-    player_.setLive(viewport_->live());
+    player_.setRenderJobs(viewport_->renderJobs());
     chooseEngine();
     connect(&preferences_, &Preferences::changed, this, chooseEngine);
     connect(&tools_, &ToolBox::activeChanged, viewport_, &Viewport::setTool);

@@ -160,8 +160,8 @@ void MainWindow::addEditActions() {
     connect(&document_, &QtDocument::replaced, this, enable);
     enable();
     menu->addSeparator();
-    add({"edit.preferences", tr("&Preferences…"), "settings", tr("Theme, units, navigation, pen, autosave"),
-         QKeySequence("Ctrl+,")},
+    add({"edit.preferences", tr("&Preferences…"), "settings",
+         tr("Theme, units, navigation, pen, autosave, undo memory"), QKeySequence("Ctrl+,")},
         [this] {
             PreferencesDialog dialog(preferences_, this);
             dialog.exec();

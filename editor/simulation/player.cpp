@@ -2,7 +2,6 @@
 #include "editor/simulation/player.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "core/documents/motions.h"
 #include "core/editing/document.h"
@@ -14,6 +13,10 @@ namespace {
 
 constexpr int kPlanPreviewMs = 300;
 constexpr QLatin1String kClip("clip:");
+
+bool isMadeWithSettings(const PlayedMethod& method) {
+    return method.method != SimulationMethod::strands;
+}
 
 Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::shared_ptr<const Actor>& actor,
                                              const Groom& groom) {
@@ -103,8 +106,7 @@ void Player::reset() {
         requests.groom.reset();
         requests.motion.reset();
         requests.offset.setIdentity();
-        requests.settings.reset();
-        requests.spheres.reset();
+        requests.changed = false;
         requests.epoch = epoch_;
         requests.delivered.reset();
     });
@@ -148,12 +150,10 @@ void Player::setActor(std::shared_ptr<const Actor> actor) {
 void Player::setLeftOut(const QStringList& effects) {
     const bool sameBody = leavesBodyOut(leftOut_) == leavesBodyOut(effects);
     leftOut_ = effects;
-    const Groom& groom = document_.groom();
     request([&](WorkerRequests& requests) {
         requests.leftOut = effects;
-        requests.regroomed = requests.regroomed || !sameBody;
-        requests.settings = groom.simulation;
-        requests.spheres = groom.spheres;
+        requests.regroomed = requests.regroomed || !sameBody || isMadeWithSettings(method_);
+        requests.changed = true;
     });
     outdatePlanPreview();
     Q_EMIT planPreviewChanged();
@@ -192,13 +192,13 @@ void Player::requestPlanPreview() {
     });
 }
 
-void Player::setLive(std::shared_ptr<LiveLink> live) {
-    request([&](WorkerRequests& requests) { requests.live = std::move(live); });
+void Player::setRenderJobs(std::shared_ptr<RenderJobs> jobs) {
+    request([&](WorkerRequests& requests) { requests.jobs = std::move(jobs); });
 }
 
 void Player::setEngine(EngineWish wish) {
     request([&](WorkerRequests& requests) {
-        if (wish == requests.wish || !requests.live) return;
+        if (wish == requests.wish || !requests.jobs) return;
         requests.wish = wish;
         requests.wishChanged = true;
     });
@@ -247,22 +247,22 @@ void Player::documentChanged(editing::Part parts) {
         if (play) this->play();
         return;
     }
-    if (!captured_) return;
+    // Follow hairs matter where they move with the strands, which is on the device.
+    const bool followsOther =
+        contains(parts, editing::Part::Interpolation) && engine_ && engine_->kind == EngineKind::gpu;
+    const bool changed = contains(parts, editing::Part::Physics | editing::Part::Spheres);
+    if (!captured_ || (!followsOther && !changed)) return;
     std::shared_ptr<HeadMotion> motion;
     if (contains(parts, editing::Part::Spheres)) {
         // Clips carry spheres along by their bones.
         if (auto made = makeMotion(motion_)) motion = std::move(*made);
     }
     request([&](WorkerRequests& requests) {
-        // The other methods are made with what they need, and engines with the body.
+        // Engines are made with the body.
         const bool sameBody = !requests.groom || requests.groom->body == groom.body;
-        if (method_.method != SimulationMethod::strands || !sameBody) {
-            requests.groom = std::make_shared<const Groom>(groom);
-            requests.regroomed = true;
-        }
-        if (contains(parts, editing::Part::Physics)) requests.settings = groom.simulation;
-        if (!contains(parts, editing::Part::Spheres)) return;
-        requests.spheres = groom.spheres;
+        if (!sameBody || followsOther || isMadeWithSettings(method_)) requests.regroomed = true;
+        requests.changed = requests.changed || changed;
+        requests.groom = std::make_shared<const Groom>(groom);
         if (motion) requests.motion = motion;
     });
 }

@@ -16,8 +16,8 @@
 #include "core/simulation/simulation.h"
 #include "editor/document/qt_document.h"
 #include "editor/simulation/played_method.h"
-#include "editor/viewport/live_link.h"
 #include "editor/viewport/picture_request.h"
+#include "editor/viewport/render_jobs.h"
 
 namespace hairloom::editor {
 
@@ -70,7 +70,7 @@ class Player : public QObject {
     /// hair.
     std::vector<EffectReport> effects() const;
     /// Where the hair is drawn, for simulating it there; null: the CPU simulates. Before anything plays.
-    void setLive(std::shared_ptr<LiveLink> live);
+    void setRenderJobs(std::shared_ptr<RenderJobs> jobs);
     /// What moves the hair: from the next frame on, which goes on from where hair is.
     void setEngine(EngineWish wish);
     /// How the hair moves, from the next frame on; a method that knows no state of another begins at rest.
@@ -100,7 +100,7 @@ class Player : public QObject {
     struct Playing;
     void run();
     /// The engine goes on, or begins; false: nothing can.
-    bool prepare(Playing& playing, const WorkerRequests& taken);
+    bool prepare(Playing& playing, WorkerRequests& taken);
     void advance(Playing& playing, WorkerRequests& taken);
     void setEngineShown(const EngineChoice& choice);
     void refuse(const Error& error);

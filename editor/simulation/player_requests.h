@@ -3,7 +3,6 @@
 // Between the two sides of the player: the interface (player.cpp) asks, the thread (player_thread.cpp) takes.
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/simulation/effect_switch.h"
@@ -22,15 +21,14 @@ struct Player::WorkerRequests {
     int steps = 0;
     bool restart = true;     ///< simulation and motion are made anew from `groom`
     bool regroomed = false;  ///< the strands of `groom` stand elsewhere or are others in looks; they go on
-    std::shared_ptr<LiveLink> live;
+    std::shared_ptr<RenderJobs> jobs;
     EngineWish wish = EngineWish::cpu;
     bool wishChanged = false;
     PlayedMethod method;
-    std::shared_ptr<const Groom> groom;
+    std::shared_ptr<const Groom> groom;  ///< as the document has it
+    bool changed = false;                ///< settings or spheres of `groom`, or what is left out of them
     std::shared_ptr<HeadMotion> motion;
     Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
-    std::optional<runtime::SimulationSettings> settings;
-    std::optional<std::vector<CollisionSphere>> spheres;
     QStringList leftOut;
     std::shared_ptr<const Groom> planPreview;  ///< whose plan is asked for
     quint64 epoch = 0;

@@ -7,8 +7,8 @@
 
 #include "core/documents/motions.h"
 #include "editor/document/words.h"
-#include "editor/simulation/live_engine.h"
 #include "editor/simulation/player_requests.h"
+#include "editor/simulation/transport.h"
 
 namespace hairloom::editor {
 namespace {
@@ -47,13 +47,22 @@ void apply(const Eigen::Isometry3f& offset, HeadPose& pose) {
 
 /// What the thread has of its own.
 struct Player::Playing {
-    std::unique_ptr<LiveEngine> engine;
+    Transport transport;
     EngineChoice choice;
     bool deviceFailed = false;  ///< until another wish
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
     std::shared_ptr<const HairPose> before;
     double time = 0;
+
+    void reset() {
+        transport.stop();
+        groom.reset();
+        motion.reset();
+        before.reset();
+        deviceFailed = false;
+        time = 0;
+    }
 };
 
 void Player::refuse(const Error& error) {
@@ -71,24 +80,24 @@ void Player::setEngineShown(const EngineChoice& choice) {
     });
 }
 
-bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
+bool Player::prepare(Playing& playing, WorkerRequests& taken) {
     if (taken.wishChanged) playing.deviceFailed = false;
-    const bool begins = taken.restart || !playing.engine;
+    const bool begins = taken.restart || !playing.transport.isMoving();
     if (!begins && !taken.regroomed && !taken.wishChanged) return true;
-    LiveStart start;
+    MovingStart start;
     if (begins) {
-        playing.engine.reset();
+        playing.transport.stop();
         playing.before.reset();
         playing.time = 0;
     } else {
-        start.state = playing.engine->state();
+        start.state = playing.transport.state();
     }
     if (!playing.groom || !playing.motion) return false;
     const auto tried = std::make_shared<const Groom>(without(*playing.groom, taken.leftOut));
-    start.groom = tried;
-    start.motion = playing.motion;
     start.pose = playing.motion->poseAt(static_cast<float>(playing.time));
+    start.time = playing.time;
     apply(taken.offset, start.pose);
+    taken.changed = false;  // it begins with what has changed
 
     EngineChoice choice{EngineKind::cpu, "selected in the preferences"};
     if (playing.deviceFailed) {
@@ -96,27 +105,24 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
     } else if (const std::string why = taken.method.whyCpu(); !why.empty()) {
         choice.why = why;
     } else if (taken.wish != EngineWish::cpu) {
-        choice = taken.live
-                     ->post([&](LiveWork* work) {
-                         return work ? work->choose(taken.wish, *tried)
-                                     : EngineChoice{EngineKind::cpu, "there is no graphics device"};
+        choice = taken.jobs
+                     ->post([&](PlayedHair* played) {
+                         return played ? played->choose(taken.wish, *tried)
+                                       : EngineChoice{EngineKind::cpu, "there is no graphics device"};
                      })
                      .get();
     }
     // The other engine goes first: the device has room for one hairstyle more.
-    playing.engine.reset();
+    playing.transport.stop();
     if (choice.kind == EngineKind::gpu) {
-        auto made = makeDeviceEngine(taken.live, start);
-        if (made) playing.engine = std::move(*made);
+        const auto made = playing.transport.startThere(taken.jobs, tried, playing.motion, start);
         if (!made) choice = {EngineKind::cpu, made.error().message()};
     }
-    if (!playing.engine) {
-        auto made = makeCpuEngine(start, playing.time, taken.method);
-        if (!made) {
+    if (!playing.transport.isMoving()) {
+        if (auto made = playing.transport.startHere(*tried, start, taken.method); !made) {
             refuse(made.error());
             return false;
         }
-        playing.engine = std::move(*made);
     }
     playing.choice = choice;
     setEngineShown(choice);
@@ -125,15 +131,14 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
 
 void Player::advance(Playing& playing, WorkerRequests& taken) {
     const auto begin = std::chrono::steady_clock::now();
-    LiveChanges changes;
-    if (taken.settings) changes.settings = without(*taken.settings, taken.leftOut);
-    if (taken.spheres) changes.spheres = without(std::move(*taken.spheres), taken.leftOut);
+    std::shared_ptr<const Groom> changed;
+    if (taken.changed) changed = std::make_shared<const Groom>(without(*playing.groom, taken.leftOut));
     playing.time += static_cast<double>(kFrameTime);
     auto pose = std::make_shared<HairPose>();
     pose->head = playing.motion->poseAt(static_cast<float>(playing.time));
     apply(taken.offset, pose->head);
     Status refused;
-    auto stepped = playing.engine->step(kFrameTime, playing.time, std::move(changes), *pose, refused);
+    auto stepped = playing.transport.step(kFrameTime, std::move(changed), *pose, refused);
     if (!stepped && playing.choice.kind == EngineKind::gpu) {
         // A device that was lost takes the motion of the hair along, and nothing else.
         playing.deviceFailed = true;
@@ -143,7 +148,7 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         Q_EMIT failed(
             tr("The GPU stopped simulating (%1). The CPU continues").arg(errorText(stepped.error())));
         if (!prepare(playing, again)) return;
-        stepped = playing.engine->step(kFrameTime, playing.time, {}, *pose, refused);
+        stepped = playing.transport.step(kFrameTime, nullptr, *pose, refused);
     }
     if (!stepped) refused = stepped;
     if (!refused) refuse(refused.error());
@@ -157,9 +162,9 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
     frame->time = playing.time;
     const double clock =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    const double device = playing.engine->milliseconds();
-    frame->milliseconds = device > 0 ? device : clock;
-    frame->stats = playing.engine->stats();
+    frame->stats = playing.transport.stats();
+    const bool onDevice = frame->pose->onDevice && frame->stats.millisecondsPerFrame > 0;
+    frame->milliseconds = onDevice ? frame->stats.millisecondsPerFrame : clock;
     deliver(std::move(frame), taken.epoch);
 }
 
@@ -171,7 +176,7 @@ void Player::run() {
         {
             std::unique_lock lock(mutex_);
             wake_.wait(lock, [&] {
-                const bool letGo = requests_->restart && playing.engine;
+                const bool letGo = requests_->restart && playing.transport.isMoving();
                 return requests_->stop || requests_->playing || requests_->steps > 0 || letGo ||
                        requests_->planPreview;
             });
@@ -187,14 +192,12 @@ void Player::run() {
                 continue;
             }
             if (!requests_->playing && requests_->steps == 0) {
-                if (requests_->restart) playing = {};
+                if (requests_->restart) playing.reset();
                 continue;
             }
             if (requests_->steps > 0) --requests_->steps;
             taken = *requests_;
-            requests_->restart = requests_->regroomed = requests_->wishChanged = false;
-            requests_->settings.reset();
-            requests_->spheres.reset();
+            requests_->restart = requests_->regroomed = requests_->wishChanged = requests_->changed = false;
         }
         due = std::chrono::steady_clock::now() + std::chrono::microseconds(16'667);
         playing.groom = taken.groom;

@@ -46,7 +46,7 @@ Status Looks::take(PictureRequest request) {
     left.groom = std::exchange(request.other, nullptr);
     left.other.reset();
     left.quality = request.otherQuality;
-    if (!other_) other_.emplace(device_, live_);
+    if (!other_) other_.emplace(device_, played_);
     if (auto taken = other_->take(std::move(left)); !taken) return taken;
     return work_.take(std::move(request));
 }
@@ -104,8 +104,8 @@ DeviceWork::DeviceWork(std::shared_ptr<const std::atomic<bool>> drop, software::
     : note_(std::move(choice.why)),
       drop_(std::move(drop)),
       device_(std::move(choice.device)),
-      live_(*device_),
-      shown_(*device_, &live_) {
+      played_(*device_),
+      shown_(*device_, &played_) {
     if (!software::isSoftware(*device_)) return;
     stillDevice_ = software::makeDevice(drop_);
     still_.emplace(*stillDevice_, nullptr);
@@ -171,7 +171,7 @@ void DeviceWork::forget() {
 }
 
 Result<QImage> DeviceWork::drawAlone(PictureRequest request) {
-    RenderWork work(stillDevice_ ? *stillDevice_ : *device_, stillDevice_ ? nullptr : &live_);
+    RenderWork work(stillDevice_ ? *stillDevice_ : *device_, stillDevice_ ? nullptr : &played_);
     if (auto taken = work.take(std::move(request)); !taken) return tl::unexpected(taken.error());
     QImage picture;
     while (!work.isComplete()) {

@@ -22,7 +22,8 @@ software::DeviceChoice chosenDevice();
 /// A picture, and beside it that of the look it is compared with.
 class Looks {
   public:
-    Looks(gpu::Device& device, const LiveWork* live) : device_(device), live_(live), work_(device, live) {}
+    Looks(gpu::Device& device, PlayedHair* played)
+        : device_(device), played_(played), work_(device, played) {}
 
     Status setWindow(const std::optional<gpu::NativeWindow>& window) { return work_.setWindow(window); }
     Status take(PictureRequest request);
@@ -36,7 +37,7 @@ class Looks {
 
   private:
     gpu::Device& device_;
-    const LiveWork* live_;
+    PlayedHair* played_;
     RenderWork work_;
     std::optional<RenderWork> other_;  ///< the look to compare with
     float split_ = 0.5f;
@@ -55,7 +56,7 @@ class DeviceWork {
     bool isSoftware() const { return still_.has_value(); }
     /// Why the software renderer draws; empty: it does not.
     const std::string& note() const { return note_; }
-    LiveWork& live() { return live_; }
+    PlayedHair& played() { return played_; }
 
     Status setWindow(const std::optional<gpu::NativeWindow>& window) { return shown_.setWindow(window); }
     Status take(PictureRequest request);
@@ -79,7 +80,7 @@ class DeviceWork {
     std::string note_;
     std::shared_ptr<const std::atomic<bool>> drop_;
     std::unique_ptr<gpu::Device> device_, stillDevice_;
-    LiveWork live_;
+    PlayedHair played_;
     Looks shown_;  ///< of the software renderer: what is quick
     // Of the software renderer.
     std::optional<Looks> still_;

@@ -19,7 +19,7 @@ struct HairPose {
     std::vector<Vec3f> positions_ws;   ///< per point of the groom
     std::vector<Vec3f> velocities_ws;  ///< likewise, m/s; empty at rest
     HeadPose head;
-    /// The device moves the hair itself (LiveWork): positions, where there are any, are of a frame or two
+    /// The device moves the hair itself (PlayedHair): positions, where there are any, are of a frame or two
     /// ago.
     bool onDevice = false;
 };

@@ -23,7 +23,7 @@ QString noteOf(const DeviceWork& on) {
 
 RenderThread::RenderThread(QObject* parent) : QObject(parent) {
     qRegisterMetaType<PictureReport>();
-    live_ = std::make_shared<LiveLink>([this] {
+    jobs_ = std::make_shared<RenderJobs>([this] {
         // Not between the thread's look for jobs and its sleep.
         {
             const std::lock_guard lock(mutex_);
@@ -203,12 +203,12 @@ void RenderThread::run() {
             const bool complete = on->isComplete();
             idle_ = !next_ && complete;
             wake_.wait(lock, [&] {
-                return stop_ || next_ || windowChanged_ || !complete || !side_.empty() || live_->hasJobs();
+                return stop_ || next_ || windowChanged_ || !complete || !side_.empty() || jobs_->hasJobs();
             });
             if (stop_) break;
-            if (live_->hasJobs()) {
+            if (jobs_->hasJobs()) {
                 lock.unlock();
-                live_->run(&on->live());
+                jobs_->run(&on->played());
                 lock.lock();
                 if (!next_ && !windowChanged_ && complete && side_.empty()) continue;
             }
@@ -230,7 +230,7 @@ void RenderThread::run() {
         }
         draw(on, std::move(request));
     }
-    live_->close();
+    jobs_->close();
     const std::lock_guard lock(mutex_);
     ended_ = true;
     windowTaken_.notify_all();

@@ -15,8 +15,8 @@
 
 #include "core/base/result.h"
 #include "core/gpu/device.h"
-#include "editor/viewport/live_link.h"
 #include "editor/viewport/picture_request.h"
+#include "editor/viewport/render_jobs.h"
 
 namespace hairloom::editor {
 
@@ -47,7 +47,7 @@ class RenderThread : public QObject {
     void setWindow(std::optional<gpu::NativeWindow> window);
 
     /// For who simulates on the device; may outlive this.
-    const std::shared_ptr<LiveLink>& live() const { return live_; }
+    const std::shared_ptr<RenderJobs>& jobs() const { return jobs_; }
 
   Q_SIGNALS:
     /// The device has been found. `note` says why it is the software renderer; empty: it is not.
@@ -95,7 +95,7 @@ class RenderThread : public QObject {
     bool ended_ = false;
     bool droppable_ = false;  ///< what is being drawn may be left
     const std::shared_ptr<std::atomic<bool>> drop_ = std::make_shared<std::atomic<bool>>(false);
-    std::shared_ptr<LiveLink> live_;
+    std::shared_ptr<RenderJobs> jobs_;
     std::thread thread_;
 };
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/groom/file/fields.h"
 #include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
@@ -36,16 +35,6 @@ render::Environment environmentOf(const PictureRequest& request) {
     return environment;
 }
 
-template <class S>
-bool sameFields(const S& a, const S& b) {
-    return std::ranges::all_of(fieldsOf(S()), [&](const hairloom::Field<S>& field) {
-        for (std::uint32_t c = 0; c < field.components(); ++c) {
-            if (field.get(a, c) != field.get(b, c)) return false;
-        }
-        return true;
-    });
-}
-
 /// Same strands on the same head, of which at most points have moved, and dye, widths and material have
 /// changed.
 bool sameStrands(const Groom& a, const Groom& b) {
@@ -57,15 +46,10 @@ bool sameStrands(const Groom& a, const Groom& b) {
             return mayDiffer ? y.has(entry.first) : versionOf(entry.second) == y.version(entry.first);
         });
     };
-    const auto sameLayer = [](const Layer& x, const Layer& y) {
-        return x.visible == y.visible && x.density == y.density;
-    };
-    return a.offsets.version() == b.offsets.version() &&
+    return drawSameHairs(a, b) &&
            same(a.pointAttributes, b.pointAttributes,
                 {attribute::kPosition, attribute::kPointDye, attribute::kWidthChange}) &&
-           same(a.strandAttributes, b.strandAttributes, {}) && a.scalp == b.scalp &&
-           a.scalpSelection == b.scalpSelection && sameFields(a.interpolation, b.interpolation) &&
-           std::ranges::equal(a.layers, b.layers, sameLayer);
+           same(a.strandAttributes, b.strandAttributes, {}) && a.scalpSelection == b.scalpSelection;
 }
 
 bool samePoints(const Groom& a, const Groom& b) {
@@ -141,8 +125,8 @@ void straighten(QImage& image) {
 
 }  // namespace
 
-RenderWork::RenderWork(gpu::Device& device, const LiveWork* live)
-    : device_(device), live_(live), software_(software::isSoftware(device)), renderer_(device) {}
+RenderWork::RenderWork(gpu::Device& device, PlayedHair* played)
+    : device_(device), played_(played), software_(software::isSoftware(device)), renderer_(device) {}
 
 Groom RenderWork::shownOf(const Groom& groom, bool draft) const {
     Groom shown = draft ? draftOf(groom) : groom;
@@ -246,8 +230,8 @@ Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
     draft_ = draft;
     hairShown_ = request.showHair;
     headShown_ = request.showHead;
-    if (!showsLive(request) && request.pose &&
-        request.pose->positions_ws.size() == request.groom->pointCount()) {
+    MovingHair* const played = playedIn(request);
+    if (!played && request.pose && request.pose->positions_ws.size() == request.groom->pointCount()) {
         scene_->pose(request.pose->positions_ws, request.pose->velocities_ws, request.pose->head);
     }
     render::RenderScene shown = scene_->scene();
@@ -257,34 +241,27 @@ Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
     shown.lights = lightsOf(request);
     shown.background = request.background;
     shown.environment = environmentOf(request);
-    if (auto set = renderer_.setScene(shown); !set || !showsLive(request)) return set;
-    return live_->show(renderer_, !shown.strands.empty(), !shown.meshes.empty());
+    if (auto set = renderer_.setScene(shown); !set || !played) return set;
+    return played->show(renderer_, *scene_, !shown.strands.empty(), !shown.meshes.empty());
 }
 
-/// The hair that the request shows is simulated on the device, and that of scene_.
-bool RenderWork::showsLive(const PictureRequest& request) const {
-    return request.pose && request.pose->onDevice && live_ && live_->fits(*scene_);
+MovingHair* RenderWork::playedIn(const PictureRequest& request) const {
+    const bool isPlayed = request.pose && request.pose->onDevice && played_ && !draft_;
+    return isPlayed ? played_->hairOf(*request.groom) : nullptr;
 }
 
 Status RenderWork::movePoints(const PictureRequest& request) {
-    if (showsLive(request)) {
-        const render::RenderScene shown = scene_->scene();
-        return live_->show(renderer_, request.showHair && !shown.strands.empty(),
-                           request.showHead && !shown.meshes.empty());
-    }
+    const render::RenderScene shown = scene_->scene();
+    const bool hair = request.showHair && !shown.strands.empty();
+    const bool head = request.showHead && !shown.meshes.empty();
+    if (MovingHair* const played = playedIn(request)) return played->show(renderer_, *scene_, hair, head);
     const bool posed = request.pose && request.pose->positions_ws.size() == request.groom->pointCount();
     if (posed) {
         scene_->pose(request.pose->positions_ws, request.pose->velocities_ws, request.pose->head);
     } else {
         scene_->pose(request.groom->positions(), {}, {});
     }
-    const render::RenderScene shown = scene_->scene();
-    if (request.showHead && !shown.meshes.empty()) {
-        const render::RenderMesh& mesh = shown.meshes.front();
-        if (auto set = renderer_.setMeshPositions(0, mesh.positions_ws, mesh.normals_ws); !set) return set;
-    }
-    if (!request.showHair || shown.strands.empty()) return {};
-    return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
+    return showPosed(renderer_, *scene_, hair, head);
 }
 
 Status RenderWork::moveStrands(const PictureRequest& request, const StrandMoves& moves) {

@@ -9,15 +9,16 @@
 #include "core/gpu/device.h"
 #include "core/live/groom_scene.h"
 #include "core/render/renderer.h"
-#include "editor/viewport/live_work.h"
 #include "editor/viewport/picture_request.h"
+#include "editor/viewport/played_hair.h"
 
 namespace hairloom::editor {
 
 class RenderWork {
   public:
-    /// Both outlive it. `live`: hair that is simulated on the device, for requests that show it; may be null.
-    RenderWork(gpu::Device& device, const LiveWork* live);
+    /// Both outlive it. `played`: hair that is simulated on the device, for requests that show it; may be
+    /// null.
+    RenderWork(gpu::Device& device, PlayedHair* played);
 
     Status setWindow(const std::optional<gpu::NativeWindow>& window);
     /// Takes what differs from the last request to the device.
@@ -49,7 +50,8 @@ class RenderWork {
     Groom shownOf(const Groom& groom, bool draft) const;
     Status replaceScene(const PictureRequest& request, bool draft);
     Status movePoints(const PictureRequest& request);
-    bool showsLive(const PictureRequest& request) const;
+    /// What the request shows where the device simulates it; null: it does not.
+    MovingHair* playedIn(const PictureRequest& request) const;
     Status moveStrands(const PictureRequest& request, const StrandMoves& moves);
     Status showMaterial(const PictureRequest& request);
     Status showWidths(const PictureRequest& request);
@@ -60,7 +62,7 @@ class RenderWork {
     Result<QImage> readBack() const;
 
     gpu::Device& device_;
-    const LiveWork* live_;
+    PlayedHair* played_;
     bool software_;  ///< the device is the software renderer
     render::Renderer renderer_;
     std::optional<gpu::NativeWindow> window_;

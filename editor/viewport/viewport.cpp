@@ -392,7 +392,7 @@ void Viewport::post() {
     Marks marks;
     positionsWanted_ = false;
     for (const auto& draw : marks_) draw(marks);
-    live()->setWantsPositions(positionsWanted_);
+    renderJobs()->setWantsPositions(positionsWanted_);
     if (tool_) tool_->draw(marks);
     PictureRequest request;
     request.groom = groom_;

@@ -58,7 +58,7 @@ class Viewport : public QWidget {
     const QImage& reference() const { return reference_; }
 
     /// For who simulates on the device that draws.
-    const std::shared_ptr<LiveLink>& live() const { return renderer_.live(); }
+    const std::shared_ptr<RenderJobs>& renderJobs() const { return renderer_.jobs(); }
     /// Called while marks are drawn, by those on strands.
     void wantPositions() const { positionsWanted_ = true; }
 

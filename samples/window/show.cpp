@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "samples/window/show.h"
 
+#include "core/live/moving_picture.h"
+
 namespace hairloom::window {
 namespace {
 
@@ -23,10 +25,11 @@ Result<std::unique_ptr<Show>> Show::make(gpu::Device& device, const Window& wind
     const auto kernels =
         std::make_shared<gpu_simulation::KernelLibrary>(device, gpu_simulation::userKernelFolder());
     EngineChoice engine = chooseEngine(wish, &device, kernels, groom, EngineMemory::ofUser());
-    auto hair = LiveHair::make(device, kernels, std::move(*scene), **motion, engine.kind);
+    auto hair =
+        MovingHair::make(engine.kind, device, kernels, *scene, (*motion)->skin(), {(*motion)->poseAt(0)});
     if (!hair) return tl::unexpected(hair.error());
-    std::unique_ptr<Show> show(
-        new Show(window, std::move(*motion), std::move(*hair), std::move(engine), render::Renderer(device)));
+    std::unique_ptr<Show> show(new Show(window, std::move(*motion), std::move(*scene), std::move(*hair),
+                                        std::move(engine), render::Renderer(device)));
     if (auto status = show->openSwapChain(device); !status) return tl::unexpected(status.error());
     return show;
 }
@@ -37,8 +40,8 @@ Status Show::openSwapChain(gpu::Device& device) {
     auto chain = device.createSwapChain({window_.native(), size_.width, size_.height, true});
     if (!chain) return tl::unexpected(chain.error());
     chain_ = std::move(*chain);
-    render::RenderScene scene = hair_.scene().scene();
-    scene.camera = render::frame(render::View::ThreeQuarter, hair_.scene().subject(), 1.0f);
+    render::RenderScene scene = scene_.scene();
+    scene.camera = render::frame(render::View::ThreeQuarter, scene_.subject(), 1.0f);
     scene.lights = render::studioLights(scene.camera);
     return renderer_.setScene(scene);
 }
@@ -55,16 +58,12 @@ Status Show::showNext() {
     render::RenderOptions options;
     options.width = size_.width;
     options.height = size_.height;
-    options.frames = 1;
-    // As fast as the editor's viewport while something moves.
-    options.samples = 1;
-    options.subdivisions = 1;
-    options.shadowResolution = 512;
-    options.detail = 0.5f;
+    simplifyWhileMoving(options);  // as the editor's viewport does
     options.temporal = true;
     auto list = device_->createCommandList();
     if (!list) return tl::unexpected(list.error());
-    if (auto status = hair_.record(**list, renderer_, kFrame); !status) return status;
+    if (auto status = hair_.step(**list, kFrame, *motion_); !status) return status;
+    if (auto status = hair_.show(renderer_, scene_); !status) return status;
     if (auto status = renderer_.record(**list, options, chain_->backBuffer()); !status) return status;
     auto submission = device_->submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/gpu/device.h"
-#include "core/live/live_hair.h"
+#include "core/live/moving_hair.h"
 #include "core/render/renderer.h"
 #include "samples/window/window.h"
 
@@ -24,10 +24,11 @@ class Show {
     Status showNext();
 
   private:
-    Show(const Window& window, std::unique_ptr<HeadMotion> motion, LiveHair hair, EngineChoice engine,
-         render::Renderer renderer)
+    Show(const Window& window, std::unique_ptr<HeadMotion> motion, GroomScene scene, MovingHair hair,
+         EngineChoice engine, render::Renderer renderer)
         : window_(window),
           motion_(std::move(motion)),
+          scene_(std::move(scene)),
           hair_(std::move(hair)),
           engine_(std::move(engine)),
           renderer_(std::move(renderer)) {}
@@ -37,7 +38,8 @@ class Show {
     const Window& window_;
     gpu::Device* device_ = nullptr;
     std::unique_ptr<HeadMotion> motion_;
-    LiveHair hair_;
+    GroomScene scene_;
+    MovingHair hair_;
     EngineChoice engine_;
     render::Renderer renderer_;
     std::unique_ptr<gpu::SwapChain> chain_;

@@ -149,20 +149,57 @@ TEST_F(LiveTest, EditsArriveWhileItPlays) {
     }
 }
 
-TEST(LiveLinkTest, JobsThatFollowEachOtherLeaveTimeForPictures) {
-    LiveLink link([] {});
-    int done = 0;
-    std::function<void(LiveWork*)> another = [&](LiveWork* work) {
-        if (++done < 100 && work == nullptr) link.post(another);
+TEST_F(LiveTest, WhatChangedWhileItPlaysStaysOnTheOtherDevice) {
+    simulateOn(SimulateOn::Cpu);
+    trigger("play.toggle");
+    ASSERT_TRUE(played(0.1));
+    const auto windIsOn = [&] {
+        const auto effects = parts().player.effects();
+        const auto row = std::ranges::find(effects, "wind", &EffectReport::name);
+        return row != effects.end() && row->on;
     };
-    link.post(another);
-    link.post(another);
-    link.run(nullptr);
+    EXPECT_TRUE(windIsOn());
+    std::uint64_t drawn = 0;
+    QObject::connect(&viewport(), &Viewport::drawn, window.get(),
+                     [&drawn](const PictureReport& report) { drawn = report.hairs; });
+    runtime::SimulationSettings calm = groom().simulation;
+    calm.windSpeed = 0;
+    document().perform(editing::setPhysics(document().editing().model(), calm, "Calm"));
+    ASSERT_TRUE(played(now() + 0.1));
+    EXPECT_FALSE(windIsOn());
+    for (const auto& [where, kind] :
+         {std::pair{SimulateOn::Gpu, EngineKind::gpu}, {SimulateOn::Cpu, EngineKind::cpu}}) {
+        simulateOn(where);
+        ASSERT_TRUE(played(now() + 0.2));
+        EXPECT_EQ(engine(), kind);
+        EXPECT_FALSE(windIsOn());
+        // As many follow hairs as the document asks for go on with it, too.
+        InterpolationSettings more = groom().interpolation;
+        ++more.followPerGuide;
+        const double before = now();
+        document().perform(editing::setInterpolation(document().editing().model(), more, "Follow hairs"));
+        ASSERT_TRUE(played(before + 0.2)) << "it goes on from where it was";
+        EXPECT_EQ(engine(), kind);
+        const std::uint64_t all = std::uint64_t{groom().strandCount()} * more.followPerGuide;
+        ASSERT_TRUE(QTest::qWaitFor([&] { return drawn == all; }, 60'000)) << drawn << " of " << all;
+    }
+    trigger("play.reset");
+}
+
+TEST(RenderJobsTest, JobsThatFollowEachOtherLeaveTimeForPictures) {
+    RenderJobs jobs([] {});
+    int done = 0;
+    std::function<void(PlayedHair*)> another = [&](PlayedHair* played) {
+        if (++done < 100 && played == nullptr) jobs.post(another);
+    };
+    jobs.post(another);
+    jobs.post(another);
+    jobs.run(nullptr);
     EXPECT_EQ(done, 2);
-    EXPECT_TRUE(link.hasJobs());
-    link.run(nullptr);
+    EXPECT_TRUE(jobs.hasJobs());
+    jobs.run(nullptr);
     EXPECT_EQ(done, 4);
-    link.close();
+    jobs.close();
     EXPECT_GT(done, 100) << "nobody waits for ever";
 }
 
@@ -171,17 +208,17 @@ TEST_F(LiveTest, ADeviceThatIsLostLeavesTheCpu) {
     options.validation = true;
     auto device = gpu::createDevice(options);
     ASSERT_TRUE(device) << device.error().message();
-    LiveWork work(**device);
-    const auto link = std::make_shared<LiveLink>([] {});
-    QTimer jobs;
-    QObject::connect(&jobs, &QTimer::timeout, [&] { link->run(&work); });
-    jobs.start(1);
+    PlayedHair played(**device);
+    const auto jobs = std::make_shared<RenderJobs>([] {});
+    QTimer timer;
+    QObject::connect(&timer, &QTimer::timeout, [&] { jobs->run(&played); });
+    timer.start(1);
     {
         Player player(document());
         QString problem;
         QObject::connect(&player, &Player::failed, window.get(),
                          [&](const QString& said) { problem = said; });
-        player.setLive(link);
+        player.setRenderJobs(jobs);
         player.setEngine(EngineWish::gpu);
         player.play();
         const auto plays = [&](double seconds) {
@@ -197,7 +234,7 @@ TEST_F(LiveTest, ADeviceThatIsLostLeavesTheCpu) {
         EXPECT_FALSE(player.engine()->why.empty());
         EXPECT_TRUE(player.isPlaying());
         EXPECT_EQ(player.frame()->stats.nanCount, 0u);
-        link->close();
+        jobs->close();
     }
 }
 

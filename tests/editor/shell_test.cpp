@@ -271,6 +271,32 @@ TEST_F(ShellTest, PreferencesTakeEffectAtOnceAndLast) {
     EXPECT_EQ(QApplication::palette().color(QPalette::Window), dark);
 }
 
+TEST_F(ShellTest, UndoHoldsAsMuchMemoryAsThePreferencesAllow) {
+    openSampleHair("short");
+    Groom moved = groom();
+    for (int step = 0; step < 3; ++step) {
+        for (Vec3f& point : moved.pointAttributes.edit<Vec3f>(attribute::kPosition)) point.y() += 1e-4f;
+        document().perform(editing::replaceGroom(document().editing().model(), moved, "Move"));
+    }
+    EXPECT_EQ(document().historyLimit(), std::size_t{512} << 20u);
+    PreferencesDialog dialog(parts().preferences);
+    auto* memory = dialog.findChild<QSpinBox*>("undoMemory");
+    ASSERT_TRUE(memory);
+    memory->setValue(1);
+    EXPECT_EQ(memory->value(), kLeastUndoMegabytes);
+    EXPECT_EQ(Preferences().undoMegabytes(), kLeastUndoMegabytes) << "kept for the next start";
+    EXPECT_EQ(document().historyLimit(), std::size_t{64} << 20u);
+    EXPECT_EQ(document().stepCount(), 3) << "these fit";
+    openSampleHair("short");
+    EXPECT_EQ(document().historyLimit(), std::size_t{64} << 20u) << "of every document";
+    document().setHistoryLimit(1);
+    for (int step = 0; step < 3; ++step) {
+        for (Vec3f& point : moved.pointAttributes.edit<Vec3f>(attribute::kPosition)) point.y() += 1e-4f;
+        document().perform(editing::replaceGroom(document().editing().model(), moved, "Move"));
+    }
+    EXPECT_EQ(document().stepCount(), 1) << "the newest always stays";
+}
+
 TEST_F(ShellTest, ShortcutsCanBeChangedAndAreUnique) {
     ShortcutDialog dialog(window->actions());
     auto* edit = dialog.findChild<QKeySequenceEdit*>("view.frame");

@@ -1,63 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every tool in a person's hand: it changes what it should, undo and redo restore every bit, Esc leaves
-// nothing behind, and hair stays sound.
+// Brushes and tools of the scalp in a person's hand: each changes what it should, undo and redo restore every
+// bit, Esc leaves nothing behind, and hair stays sound.
 #include <QCheckBox>
-#include <QComboBox>
 #include <QLabel>
 #include <QPointingDevice>
 #include <QPushButton>
 #include <QTabletEvent>
 #include <algorithm>
-#include <set>
 
 #include "core/base/random.h"
 #include "core/editing/document.h"
 #include "core/editing/selection_commands.h"
-#include "core/editing/settings_commands.h"
 #include "core/groom/point_dye.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
-#include "hairloom/body_field.h"
-#include "tests/editor/window_fixture.h"
+#include "tests/editor/tools_fixture.h"
 
 namespace hairloom::editor {
 namespace {
-
-class ToolsTest : public WindowTest {
-  protected:
-    void SetUp() override {
-        WindowTest::SetUp();
-        openHairFromTheFront();
-        middle = QPoint(viewport().width() / 2, viewport().height() / 2);
-        // Hair, not skin, is under the pointer in the upper part of the head.
-        Box3f roots;
-        for (std::size_t s = 0; s < groom().strandCount(); ++s) roots.extend(groom().strand(s).front());
-        crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
-    }
-    Tool& activate(const QString& id) {
-        trigger(("tool." + id).toUtf8().constData());
-        Tool* const tool = parts().tools.find(id);
-        EXPECT_EQ(viewport().tool(), tool);
-        return *tool;
-    }
-    /// A stroke across the hair, and what becomes of it when it is undone and done again.
-    void strokeAndBack(const QString& id, Qt::KeyboardModifiers modifiers = {}) {
-        const auto before = hash();
-        const int steps = document().doneSteps();
-        drag({crown, crown + QPoint(20, 4), crown + QPoint(45, 10), crown + QPoint(70, 12)}, modifiers);
-        const auto after = hash();
-        EXPECT_NE(after, before) << id.toStdString() << " did nothing";
-        EXPECT_EQ(document().doneSteps(), steps + 1) << id.toStdString();
-        expectSound();
-        trigger("edit.undo");
-        EXPECT_EQ(hash(), before) << id.toStdString();
-        trigger("edit.redo");
-        EXPECT_EQ(hash(), after) << id.toStdString();
-        trigger("edit.undo");
-    }
-
-    QPoint middle, crown;
-};
 
 class BrushToolTest : public ToolsTest, public testing::WithParamInterface<const char*> {};
 
@@ -410,111 +370,6 @@ TEST_F(ToolsTest, StrandsAreSelectedAndBrushesKeepToThem) {
         ASSERT_EQ(before.strand(s).back(), groom().strand(s).back()) << s;
     }
     EXPECT_EQ(document().doneSteps(), 2);
-}
-
-TEST_F(ToolsTest, SpheresArePlacedMovedResizedAndRemoved) {
-    Groom bare = groom();
-    bare.spheres.clear();
-    document().open(bare, {}, "bare");
-    viewport().look(render::View::Front);
-    viewport().frameAll();
-    activate("sphere");
-    const Box3f box = groom().scalp->bounds();
-    const QPoint face = at(Vec3f(0, box.max().y() - 0.12f, 0.1f));
-    press(face);
-    release(face);
-    ASSERT_EQ(groom().spheres.size(), 1u) << window->statusLine().message().toStdString();
-    const CollisionSphere placed = groom().spheres[0];
-    const QPoint centre = at(placed.centre);
-    drag({centre, centre + QPoint(10, -8), centre + QPoint(20, -16)});
-    EXPECT_GT((groom().spheres[0].centre - placed.centre).norm(), 0.002f);
-    EXPECT_EQ(groom().spheres[0].radius, placed.radius);
-    const CollisionSphere moved = groom().spheres[0];
-    const QPoint newCentre = at(moved.centre);
-    const auto metres = viewport().camera().metresPerPixel(moved.centre, viewport().viewSize_px());
-    const QPoint rim = newCentre + QPoint(static_cast<int>(0.9f * moved.radius / metres), 0);
-    drag({rim, rim + QPoint(12, 0), rim + QPoint(25, 0)});
-    EXPECT_GT(groom().spheres[0].radius, moved.radius);
-    EXPECT_EQ(document().doneSteps(), 3);
-    find<QPushButton>("sphereRemove")->click();
-    EXPECT_TRUE(groom().spheres.empty());
-    document().goToStep(1);
-    EXPECT_EQ(groom().spheres[0].centre, placed.centre);
-}
-
-TEST_F(ToolsTest, SpheresAreFittedToTheHead) {
-    find<QPushButton>("sphereFit")->click();
-    finishWork();
-    EXPECT_EQ(groom().spheres.size(), 12u);
-    EXPECT_EQ(document().stepName(0), "Fit spheres");
-    std::set<std::string> bones;
-    for (const CollisionSphere& sphere : groom().spheres) {
-        EXPECT_TRUE(parts().player.actor()->skeleton().find(sphere.bone))
-            << sphere.name << " on " << sphere.bone;
-        bones.insert(sphere.bone);
-    }
-    EXPECT_TRUE(bones.contains("head"));
-    auto* bone = find<QComboBox>("sphereBone");
-    EXPECT_EQ(bone->currentText().toStdString(), groom().spheres[0].bone);
-    find<QPushButton>("sphereMirror")->click();
-    EXPECT_EQ(groom().spheres.size(), 13u);
-}
-
-TEST_F(ToolsTest, TheSkinIsACollider) {
-    auto* check = find<QCheckBox>("bodyCheck");
-    check->click();
-    finishWork();
-    ASSERT_TRUE(groom().body);
-    EXPECT_TRUE(check->isChecked());
-    EXPECT_EQ(document().stepName(0), "Fit skin collider");
-    EXPECT_TRUE(std::ranges::count(groom().body->bones, "head"));
-    EXPECT_TRUE(find<QLabel>("bodyWords")->text().contains("Worst gap"))
-        << find<QLabel>("bodyWords")->text().toStdString();
-    EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
-    runtime::SimulationSettings springs = groom().simulation;
-    springs.strandModel = runtime::StrandModel::springs;
-    document().perform(editing::setPhysics(document().editing().model(), springs, "springs"));
-    EXPECT_TRUE(find<QLabel>("bodyNote")->text().contains("Springs pass through"));
-    document().goToStep(1);
-    EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
-    parts().player.setMethod({SimulationMethod::lattice, false});
-    EXPECT_TRUE(find<QLabel>("bodyNote")->text().contains("strand engine"));
-    parts().player.setMethod({});
-    EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
-    check->click();
-    EXPECT_FALSE(groom().body);
-    EXPECT_EQ(document().stepName(1), "Remove skin collider");
-    document().goToStep(1);
-    EXPECT_TRUE(groom().body);
-    EXPECT_TRUE(check->isChecked());
-}
-
-TEST_F(ToolsTest, WindFollowsTheArrowAndADragIsOneStep) {
-    activate("wind");
-    const QPoint centre = at(viewport().camera().target_ws());
-    const auto before = hash();
-    drag({centre, centre + QPoint(40, 0), centre + QPoint(90, 0)});
-    EXPECT_NEAR(groom().simulation.windSpeed, 5, 0.3f);
-    EXPECT_GT(groom().simulation.windDirection.x, 0.99f);
-    EXPECT_EQ(document().stepCount(), 1);
-    trigger("edit.undo");
-    EXPECT_EQ(hash(), before);
-}
-
-TEST_F(ToolsTest, TheHeadIsDraggedAndTheHairFollows) {
-    activate("head");
-    const auto before = hash();
-    const QPoint centre = at(viewport().camera().target_ws());
-    press(centre);
-    moveTo(centre + QPoint(60, 0));
-    ASSERT_TRUE(QTest::qWaitFor(
-        [this] {
-            const auto& frame = parts().player.frame();
-            return frame && frame->pose->head.head_ws.translation().x() > 0.01f;
-        },
-        20'000));
-    release(centre + QPoint(60, 0));
-    EXPECT_EQ(hash(), before);
 }
 
 TEST_F(ToolsTest, RandomActionsNeverBreakTheDocument) {

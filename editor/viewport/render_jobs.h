@@ -11,19 +11,19 @@
 #include <mutex>
 #include <type_traits>
 
-#include "editor/viewport/live_work.h"
+#include "editor/viewport/played_hair.h"
 
 namespace hairloom::editor {
 
-class LiveLink {
+class RenderJobs {
   public:
     /// The result of `job`, which is called with null once there is no device.
     template <class Job>
     auto post(Job job) {
-        using Value = std::invoke_result_t<Job, LiveWork*>;
-        auto task = std::make_shared<std::packaged_task<Value(LiveWork*)>>(std::move(job));
+        using Value = std::invoke_result_t<Job, PlayedHair*>;
+        auto task = std::make_shared<std::packaged_task<Value(PlayedHair*)>>(std::move(job));
         auto value = task->get_future();
-        add([task](LiveWork* work) { (*task)(work); });
+        add([task](PlayedHair* played) { (*task)(played); });
         return value;
     }
 
@@ -33,15 +33,15 @@ class LiveLink {
 
     // For the render thread.
     /// `wake` is called, on any thread, when there is a job.
-    explicit LiveLink(std::function<void()> wake) : wake_(std::move(wake)) {}
+    explicit RenderJobs(std::function<void()> wake) : wake_(std::move(wake)) {}
     bool hasJobs() const { return jobCount_ > 0; }
     /// What is there now: where steps take longer than they last the next is always there, and pictures wait.
-    void run(LiveWork* work);
+    void run(PlayedHair* played);
     /// From now on jobs are called at once, with null.
     void close();
 
   private:
-    using Job = std::function<void(LiveWork*)>;
+    using Job = std::function<void(PlayedHair*)>;
     void add(Job job);
 
     mutable std::mutex mutex_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair that moves and is drawn on the device, beside the same on the CPU.
-#include "core/live/live_hair.h"
+#include "core/live/moving_hair.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kFrame = 1.0f / 60;
 
-class LiveHairTest : public testing::Test {
+class MovingHairTest : public testing::Test {
   protected:
     void SetUp() override {
         auto made = gpu::createDevice(gpu::testDevice());
@@ -30,17 +30,25 @@ class LiveHairTest : public testing::Test {
 
     /// A hairstyle that plays.
     struct Stage {
-        LiveHair live;
+        GroomScene scene;
+        const HeadMotion& motion;
+        MovingHair hair;
         render::Renderer renderer;
     };
+    MovingHair hairOf(const GroomScene& scene, const HeadMotion& motion, EngineKind engine,
+                      const MovingStart& start) {
+        auto hair = MovingHair::make(engine, *device_, kernels_, scene, motion.skin(), start);
+        if (!hair) throw std::runtime_error(hair.error().message());
+        return std::move(*hair);
+    }
     std::unique_ptr<Stage> stageOf(const Groom& groom, const HeadMotion& motion, EngineKind engine) {
         auto scene = GroomScene::make(groom, {}, {});
         if (!scene) throw std::runtime_error(scene.error().message());
-        auto live = LiveHair::make(*device_, kernels_, std::move(*scene), motion, engine);
-        if (!live) throw std::runtime_error(live.error().message());
-        auto stage = std::make_unique<Stage>(Stage{std::move(*live), render::Renderer(*device_)});
-        render::RenderScene shown = stage->live.scene().scene();
-        shown.camera = render::frame(render::View::ThreeQuarter, stage->live.scene().subject(), 1);
+        MovingHair hair = hairOf(*scene, motion, engine, {motion.poseAt(0)});
+        auto stage = std::make_unique<Stage>(
+            Stage{std::move(*scene), motion, std::move(hair), render::Renderer(*device_)});
+        render::RenderScene shown = stage->scene.scene();
+        shown.camera = render::frame(render::View::ThreeQuarter, stage->scene.subject(), 1);
         shown.lights = render::studioLights(shown.camera);
         shown.lights.resize(1);
         EXPECT_TRUE(stage->renderer.setScene(shown));
@@ -50,16 +58,18 @@ class LiveHairTest : public testing::Test {
         for (int f = 0; f < frames; ++f) {
             auto list = device_->createCommandList();
             ASSERT_TRUE(list) << list.error().message();
-            const auto recorded = stage.live.record(**list, stage.renderer, kFrame);
+            const auto recorded = stage.hair.step(**list, kFrame, stage.motion);
             ASSERT_TRUE(recorded) << recorded.error().message();
+            const auto shown = stage.hair.show(stage.renderer, stage.scene);
+            ASSERT_TRUE(shown) << shown.error().message();
             auto submission = device_->submit(std::move(*list));
             ASSERT_TRUE(submission) << submission.error().message();
-            stage.live.submitted(*submission);
+            stage.hair.submitted(*submission);
         }
     }
     static std::vector<Vec3f> positionsOf(Stage& stage) {
-        std::vector<Vec3f> positions(stage.live.scene().rest().pointCount());
-        const auto read = stage.live.readPositions(positions);
+        std::vector<Vec3f> positions(stage.scene.rest().pointCount());
+        const auto read = stage.hair.readPositions(positions);
         if (!read) throw std::runtime_error(read.error().message());
         return positions;
     }
@@ -82,7 +92,7 @@ class LiveHairTest : public testing::Test {
     std::shared_ptr<gpu_simulation::KernelLibrary> kernels_;
 };
 
-TEST_F(LiveHairTest, BothEnginesMoveAndDrawAlike) {
+TEST_F(MovingHairTest, BothEnginesMoveAndDrawAlike) {
     const Groom groom = smallHead();
     const auto rigid = makeRigidMotion("nod", groom).value();
     const SkinnedNod skinned(groom);
@@ -103,7 +113,7 @@ TEST_F(LiveHairTest, BothEnginesMoveAndDrawAlike) {
     }
 }
 
-TEST_F(LiveHairTest, BothEnginesDrawLayersAsDenseAndInTheColoursTheyHave) {
+TEST_F(MovingHairTest, BothEnginesDrawLayersAsDenseAndInTheColoursTheyHave) {
     Groom groom = smallHead();
     HairMaterial red = groom.material;
     red.rootColour = red.tipColour = Vec3f(0.9f, 0.02f, 0.02f);
@@ -132,7 +142,7 @@ TEST_F(LiveHairTest, BothEnginesDrawLayersAsDenseAndInTheColoursTheyHave) {
     EXPECT_GT(render::flipDifference(drawn, pictureOf(*plain))->mean, 0.03) << "the colours are seen";
 }
 
-TEST_F(LiveHairTest, AnotherEngineGoesOnWithoutAStep) {
+TEST_F(MovingHairTest, AnotherEngineGoesOnWithoutAStep) {
     for (const auto model : {runtime::StrandModel::springs, runtime::StrandModel::rods}) {
         Groom groom = smallHead();
         groom.simulation.strandModel = model;
@@ -143,9 +153,12 @@ TEST_F(LiveHairTest, AnotherEngineGoesOnWithoutAStep) {
             play(*steady, 6);
             play(*changing, 6);
             const auto before = positionsOf(*changing);
-            const auto changed = changing->live.setEngine(engine);
-            ASSERT_TRUE(changed) << changed.error().message();
-            EXPECT_EQ(changing->live.engine(), engine);
+            const auto state = changing->hair.state();
+            ASSERT_TRUE(state) << state.error().message();
+            const double time = changing->hair.time();
+            changing->hair = hairOf(changing->scene, *motion, engine,
+                                    {motion->poseAt(static_cast<float>(time)), *state, time});
+            EXPECT_EQ(changing->hair.engine(), engine);
             EXPECT_LT(farthest(before, positionsOf(*changing)), 1e-6f);
         }
         play(*steady, 6);
@@ -154,7 +167,7 @@ TEST_F(LiveHairTest, AnotherEngineGoesOnWithoutAStep) {
     }
 }
 
-TEST_F(LiveHairTest, NoPointCrosses) {
+TEST_F(MovingHairTest, NoPointCrosses) {
     Groom groom = smallHead(16);
     groom.interpolation.followPerGuide = 60;
     const auto motion = makeRigidMotion("nod", groom).value();
@@ -163,12 +176,12 @@ TEST_F(LiveHairTest, NoPointCrosses) {
     const gpu::Traffic before = device_->traffic();
     play(*stage, 10);
     const gpu::Traffic after = device_->traffic();
-    const auto points = stage->live.scene().scene().strands.front().positions_ws.size_bytes();
+    const auto points = stage->scene.scene().strands.front().positions_ws.size_bytes();
     EXPECT_LT((after.toDevice - before.toDevice) / 10, points / 100);
     EXPECT_LT((after.fromDevice - before.fromDevice) / 10, 64'000u);
 }
 
-TEST_F(LiveHairTest, ALiveFrameIsReportedLater) {
+TEST_F(MovingHairTest, ALiveFrameIsReportedLater) {
     const Groom groom = smallHead();
     const auto motion = makeRigidMotion("nod", groom).value();
     auto scene = GroomScene::make(groom, {}, {}).value();
@@ -196,7 +209,7 @@ TEST_F(LiveHairTest, ALiveFrameIsReportedLater) {
     EXPECT_EQ(frame.nanCount, 0u);
 }
 
-TEST_F(LiveHairTest, EditsArriveInTheNextFrame) {
+TEST_F(MovingHairTest, EditsArriveInTheNextFrame) {
     const Groom groom = smallHead();
     const auto motion = makeRigidMotion("none", groom).value();
     auto scene = GroomScene::make(groom, {}, {}).value();
@@ -226,6 +239,70 @@ TEST_F(LiveHairTest, EditsArriveInTheNextFrame) {
     EXPECT_EQ(hair->engine().settings().gravity.y, groom.simulation.gravity.y);
     step(moved);
     EXPECT_EQ(hair->engine().settings().gravity.y, -200.0f);
+}
+
+TEST_F(MovingHairTest, SettingsAndCollidersReachBothEngines) {
+    const Groom groom = smallHead();
+    const auto motion = makeRigidMotion("none", groom).value();
+    const auto scene = GroomScene::make(groom, {}, {}).value();
+    for (const EngineKind engine : {EngineKind::cpu, EngineKind::gpu}) {
+        SCOPED_TRACE(engineName(engine));
+        MovingHair hair = hairOf(scene, *motion, engine, {});
+        const auto after = [&](int frames) {
+            for (int f = 0; f < frames; ++f) EXPECT_TRUE(hair.step(kFrame, HeadPose()));
+            std::vector<Vec3f> positions(groom.pointCount());
+            EXPECT_TRUE(hair.readPositions(positions));
+            return positions;
+        };
+        const auto rest = after(1);
+        CollisionSphere wide;
+        wide.radius = 0.2f;
+        hair.setColliders({wide});
+        EXPECT_GT(farthest(rest, after(1)), 0.01f);
+        hair.setColliders({});
+        runtime::SimulationSettings heavy = groom.simulation;
+        heavy.gravity = {0, -200, 0};
+        ASSERT_TRUE(hair.setSettings(heavy));
+        after(30);
+        const SimulationStats stats = hair.stats();
+        EXPECT_EQ(stats.frames, 32u);
+        EXPECT_EQ(stats.nanCount, 0u);
+        EXPECT_FALSE(stats.effects.empty());
+        runtime::SimulationSettings wrong = heavy;
+        wrong.substeps = 0;
+        EXPECT_FALSE(hair.setSettings(wrong));
+        EXPECT_NEAR(hair.time(), 32 * kFrame, 1e-4);
+        EXPECT_GT(farthest(rest, after(1)), 0.005f) << "gravity of 200 m/s² is felt";
+    }
+}
+
+TEST_F(MovingHairTest, OnlyTheCpuHasOtherMethods) {
+    const Groom groom = smallHead();
+    SimulationOptions options;
+    options.method = SimulationMethod::projective;
+    auto hair = MovingHair::onCpu(groom, {}, options);
+    ASSERT_TRUE(hair) << hair.error().message();
+    ASSERT_TRUE(hair->step(kFrame, HeadPose()));
+    EXPECT_FALSE(hair->setSettings(groom.simulation)) << "it is made with them";
+    EXPECT_EQ(hair->state().value(), nullptr);
+}
+
+TEST(GroomSceneTest, HairsAreTheSameWhileOnlyPointsAndLooksDiffer) {
+    const Groom groom = smallHead();
+    Groom other = groom;
+    other.pointAttributes.edit<Vec3f>(attribute::kPosition)[3].x() += 0.01f;
+    other.material.rootRadius *= 2;
+    other.simulation.windSpeed += 1;
+    other.spheres.clear();
+    EXPECT_TRUE(drawSameHairs(groom, other));
+    ++other.interpolation.followPerGuide;
+    EXPECT_FALSE(drawSameHairs(groom, other)) << "more follow hairs";
+    other = groom;
+    other.strandAttributes.set(attribute::kHidden, std::vector<std::uint8_t>(groom.strandCount(), 0));
+    EXPECT_FALSE(drawSameHairs(groom, other)) << "other strands may be shown";
+    other = groom;
+    other.scalp.reset();
+    EXPECT_FALSE(drawSameHairs(groom, other));
 }
 
 TEST(GroomSceneTest, WispsWidenWithSpeed) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/viewport/live_link.h"
+#include "editor/viewport/render_jobs.h"
 
 namespace hairloom::editor {
 
-void LiveLink::add(Job job) {
+void RenderJobs::add(Job job) {
     {
         const std::lock_guard lock(mutex_);
         if (!closed_) {
@@ -16,17 +16,17 @@ void LiveLink::add(Job job) {
     job(nullptr);
 }
 
-void LiveLink::run(LiveWork* work) {
+void RenderJobs::run(PlayedHair* played) {
     std::deque<Job> jobs;
     {
         const std::lock_guard lock(mutex_);
         jobs.swap(jobs_);
         jobCount_ = 0;
     }
-    for (const Job& job : jobs) job(work);
+    for (const Job& job : jobs) job(played);
 }
 
-void LiveLink::close() {
+void RenderJobs::close() {
     {
         const std::lock_guard lock(mutex_);
         closed_ = true;
