@@ -1,12 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# make_hairstyle.sh [--project-only] STYLE OUT: makes one of the sample hairstyles from nothing into the folder OUT and
-# says what each step took. STYLE names a file of samples/hairstyles. --project-only stops before anything is simulated,
-# exported or drawn. The programs must be built (./dev build).
+# make_hairstyle.sh [--project-only] [--spheres-only] STYLE OUT: makes one of the sample hairstyles from nothing into the folder
+# OUT and says what each step took. STYLE names a file of samples/hairstyles. --project-only stops before anything is simulated,
+# exported or drawn. --spheres-only leaves the skin collider out, for what knows spheres alone. The programs must be built
+# (./dev build).
 set -euo pipefail
 
-project_only=no
-if [ "${1-}" = --project-only ]; then project_only=yes; shift; fi
+project_only=no spheres_only=no
+while [[ ${1-} == --* ]]; do
+    case $1 in
+        --project-only) project_only=yes ;;
+        --spheres-only) spheres_only=yes ;;
+        *) echo "error: no option '$1'" >&2; exit 2 ;;
+    esac
+    shift
+done
 style=${1:?a style: short, shoulder, long, bob, afro or braid}
 top=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
 mkdir -p "${2:?a folder for the results}"
@@ -62,6 +70,9 @@ step "grooming" groom "$out/$style.hairloom" --script "samples/hairstyles/$style
 step "collision spheres" spheres "$out/$style.hairloom" --from samples/bust/spheres.json --replace -o "$out/$style.hairloom"
 step "simulation and material settings" set "$out/$style.hairloom" --from "samples/hairstyles/$style.settings.json" \
     -o "$out/$style.hairloom"
+if [ "$spheres_only" = no ]; then
+    step "skin collider" colliders "$out/$style.hairloom" --fit field -o "$out/$style.hairloom"
+fi
 if [ "$project_only" = no ]; then
     step "two seconds of head motion in wind" simulate "$out/$style.hairloom" --frames 60 --fps 30 \
         --motion clip:nod_and_turn --wind "$wind" --record "$out/$style.frames"

@@ -27,7 +27,7 @@ cd "$top"
 for style in short shoulder long; do
     # shellcheck source=/dev/null
     . "samples/hairstyles/$style.conf"
-    samples/make_hairstyle.sh --project-only "$style" "$out"
+    samples/make_hairstyle.sh --project-only --spheres-only "$style" "$out"
     measure "$style" "${clip[@]}" --substeps 1,2,3,4,8,16 --vary strandModel=rods,springs
     if [ "$style" = shoulder ]; then
         "$cli" set "$out/shoulder.hairloom" simulation.strandModel=springs simulation.angularStiffness=0.1 \

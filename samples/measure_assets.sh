@@ -38,7 +38,7 @@ table=$out/table.md
     echo '|---|---|---|---|---|---|---|'
 } > "$table"
 for style in short shoulder long bob afro braid; do
-    samples/make_hairstyle.sh --project-only "$style" "$out" > "$out/$style.txt"
+    samples/make_hairstyle.sh --project-only --spheres-only "$style" "$out" > "$out/$style.txt"
     row "$style" "sample $style" >> "$table"
 done
 # Few guides with many hairs each, as games have them.

@@ -23,7 +23,7 @@ for style in short shoulder long sintel; do
         [ -f "$sintel" ] || continue
         groom=$sintel
     else
-        samples/make_hairstyle.sh --project-only "$style" "$out"
+        samples/make_hairstyle.sh --project-only --spheres-only "$style" "$out"
         groom=$out/$style.hairloom
     fi
     "$cli" lod "$groom" -o "$out/$style" --json > "$out/$style.json"
