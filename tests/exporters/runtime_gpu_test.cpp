@@ -128,8 +128,9 @@ TEST_F(RuntimeGpu, GuidesOfTheGpuAreToldWhereTheyAreAndWhereRootsGo) {
         }
     }
     EXPECT_EQ(found, asset_.describe().guides);
-    ASSERT_EQ(hl_gpu_step(hair.get(), &Walk(6).frame, &error), HL_OK) << error.what();
-    ASSERT_TRUE(first_.step(Walk(6).frame));
+    const Walk next(6);
+    ASSERT_EQ(hl_gpu_step(hair.get(), &next.frame, &error), HL_OK) << error.what();
+    ASSERT_TRUE(first_.step(next.frame));
     const std::vector<float> to = filled(hair, HL_GPU_BUFFER_ROOTS_TO);
     const std::vector<Vec3f> walked = guides(first_);
     for (std::size_t slot = 0; slot < found; ++slot) {
