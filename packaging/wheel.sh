@@ -31,7 +31,7 @@ for python in "${pythons[@]}"; do
     rm -f "$dist"/hairloom-*-"$tag"-*.whl
     [ "$tag" = cp311 ] || rm -f "$dist"/hairloom-*-abi3-*.whl
     # libraries that every Linux has stay out; drivers are loaded by name at run time
-    PATH=$tools:$PATH "$tools/auditwheel" --quiet repair --wheel-dir "$build-repaired" "$build-raw"/hairloom-*.whl
+    PATH=$tools:$PATH "$tools/auditwheel" repair --wheel-dir "$build-repaired" "$build-raw"/hairloom-*.whl
     wheel=$(ls -t "$build-repaired"/hairloom-*.whl | head -1)
     cp "$wheel" "$dist/"
 

@@ -194,8 +194,8 @@ JobRun declare(CLI::App& job) {
         job.add_option("--man", options->man, "Folder for the manual pages hairloom.1 and hairloom-cli.1");
     auto* readme =
         job.add_option("--readme", options->readme, "README.md whose table of features to update in place");
-    auto* list = job.add_option("--jobs", options->list,
-                                "JSON file to write, with every job and its options as data");
+    auto* list =
+        job.add_option("--jobs", options->list, "JSON file to write, with every job and its options as data");
     page->excludes(man)->excludes(readme)->excludes(list);
     man->excludes(readme)->excludes(list);
     readme->excludes(list);
@@ -215,7 +215,8 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job referenceJob() {
-    return {"reference", "Write the reference page, the manual pages, or the jobs as data", "-o docs/reference.md", declare};
+    return {"reference", "Write the reference page, the manual pages, or the jobs as data",
+            "-o docs/reference.md", declare};
 }
 
 }  // namespace hairloom::cli

@@ -32,7 +32,7 @@ CALLS: dict[str, tuple[Callable[[], hairloom.Report], str]] = {
     ),
     "bench": (lambda: hairloom.bench("material", quick=True, repeat=1), "rows"),
     "blend": (lambda: hairloom.blend(hair, with_="other.hairloom", weight=0.3, output="blend.hairloom"), "strands"),
-    "budget": (lambda: hairloom.budget(hair, ms=1, frames=2), "settings"),
+    "budget": (lambda: hairloom.budget(hair, ms=1, frames=2, busy=True), "settings"),
     "clean": (lambda: hairloom.clean("."), "left_overs"),
     "colliders": (lambda: hairloom.colliders(hair, fit="spheres", output="c.hairloom"), "spheres"),
     "create": (

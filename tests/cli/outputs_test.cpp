@@ -109,7 +109,7 @@ TEST_F(Outputs, TheTableHasAllThatJobsWrite) {
             std::istringstream(line) >> word;
             const std::string help = run(word + " --help").output;
             for (const std::string option : {"--output", "--record", "--man", "--exr", "--animation",
-                                             "--strip", "--markdown", "--keep"}) {
+                                             "--strip", "--markdown", "--keep", "--jobs"}) {
                 const bool reads = option == "--record" && (word == "export" || word == "render");
                 if (!reads && help.find(option + " TEXT") != std::string::npos) found.emplace(word, option);
             }
