@@ -25,6 +25,7 @@ struct Options {
     std::vector<std::uint32_t> strands;  ///< ascending
     std::vector<std::uint32_t> hairs;
     std::vector<std::string> grooms;  ///< samples by their names without " sample", or project files
+    std::vector<std::string> only;    ///< rows whose names have one of these in them
     std::optional<std::uint32_t> frames;
     bool quick = false;                                           ///< to see that it works
     std::optional<std::pair<std::uint32_t, std::uint32_t>> size;  ///< pixels of all pictures

@@ -70,6 +70,7 @@ class Rows {
         return row;
     }
 
+    std::vector<NamedLayout> rodLayouts() const { return measuredRodLayouts(device_.info().type); }
     std::vector<NamedLayout> layouts() const { return measuredLayouts(device_.info().type); }
 
     double onCpu(std::uint32_t strands, bool allThreads) const {
@@ -121,6 +122,11 @@ Status measureFigure(Rows& rows, const Extent& extent, GpuBench& bench) {
         one.push_back(*row->cpuOne);
         all.push_back(*row->cpuAll);
         bench.rows.push_back(std::move(*row));
+        for (const NamedLayout& layout : rows.rodLayouts()) {
+            auto other = rows.measure(strands, LeftOut::nothing, kRods, layout);
+            if (!other) return tl::unexpected(other.error());
+            bench.layouts.push_back(std::move(*other));
+        }
     }
     bench.crossesOne = crossing(counts, gpu, one);
     bench.crossesAll = crossing(counts, gpu, all);
@@ -135,9 +141,6 @@ Status measureDetails(Rows& rows, const Extent& extent, GpuBench& bench) {
             if (!row) return tl::unexpected(row.error());
             bench.effects.push_back(std::move(*row));
         }
-        auto rods = rows.measure(strands, LeftOut::nothing, kRods, layouts.front());
-        if (!rods) return tl::unexpected(rods.error());
-        bench.layouts.push_back(std::move(*rods));
         for (const NamedLayout& layout : layouts) {
             auto row = rows.measure(strands, LeftOut::nothing, runtime::StrandModel::springs, layout);
             if (!row) return tl::unexpected(row.error());

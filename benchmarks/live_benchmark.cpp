@@ -4,63 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "benchmarks/benchmark.h"
 #include "benchmarks/sample_hair.h"
-#include "core/cost/benchmark_scenes.h"
-#include "core/documents/open.h"
 #include "core/live/live_cost.h"
 
 namespace hairloom::benchmarks {
 namespace {
 
 constexpr float kWind = 4;  // m/s
-constexpr std::string_view kMany = "100000x16";
-
-/// 10,000 guides of 16 points on a ball, and ten hairs around each.
-Groom manyHairs() {
-    const scenes::HeadOfHair head(10'000, 16);
-    std::vector<Vec3f> positions;
-    for (const runtime::Float3& p : head.positions) positions.emplace_back(p.x, p.y, p.z);
-    Groom groom = makeGroom(head.offsets, std::move(positions));
-    for (const runtime::Sphere& sphere : head.spheres) {
-        CollisionSphere placed;
-        placed.centre = {sphere.center_ws.x, sphere.center_ws.y, sphere.center_ws.z};
-        placed.radius = sphere.radius;
-        groom.spheres.push_back(placed);
-    }
-    groom.interpolation.followPerGuide = 10;
-    return groom;
-}
-
-Result<Sample> groomOf(const std::string& name) {
-    if (name == kMany) return Sample{name, manyHairs()};
-    if (std::filesystem::exists(name)) {
-        auto opened = openGroom(name);
-        if (!opened) return tl::unexpected(opened.error());
-        return Sample{name, std::move(*opened)};
-    }
-    const auto& known = samples();
-    if (!known) return tl::unexpected(known.error());
-    const auto sample = std::ranges::find(*known, name + " sample", &Sample::name);
-    if (sample == known->end())
-        return fail(fmt::format("there is no hairstyle '{}'", name),
-                    "expected a sample, a file, or 100000x16");
-    return *sample;
-}
-
-Result<std::vector<Sample>> groomsOf(const Options& options) {
-    if (options.grooms.empty()) return samples();
-    std::vector<Sample> grooms;
-    for (const std::string& name : options.grooms) {
-        auto groom = groomOf(name);
-        if (!groom) return tl::unexpected(groom.error());
-        grooms.push_back(std::move(*groom));
-    }
-    return grooms;
-}
-
 /// A groom on an engine.
 struct Row {
     std::string groom;
@@ -113,7 +64,7 @@ std::string markdownOf(const std::vector<Row>& rows, const Options& options, con
 }
 
 Result<Outcome> run(const Options& options) {
-    auto grooms = groomsOf(options);
+    auto grooms = wantedHair(options);
     if (!grooms) return tl::unexpected(grooms.error());
     gpu::DeviceOptions wanted;
     wanted.index = options.device;
@@ -121,8 +72,7 @@ Result<Outcome> run(const Options& options) {
     if (!device) return tl::unexpected(device.error());
     const gpu::DeviceInfo& info = (*device)->info();
     const bool software = info.type == gpu::DeviceType::Cpu;
-    if (options.grooms.empty() && !options.quick && !software)
-        grooms->push_back({std::string(kMany), manyHairs()});
+    if (options.grooms.empty() && !options.quick && !software) grooms->push_back(manyHairs());
     const auto kernels =
         std::make_shared<gpu_simulation::KernelLibrary>(**device, gpu_simulation::userKernelFolder());
     const auto size = options.size.value_or(software ? std::pair(320u, 180u) : std::pair(1920u, 1080u));

@@ -368,13 +368,25 @@ std::string inWords(const Measurement& m) {
     return fmt::format("{:.3g} ({:.3g}…{:.3g})", m.median(), minimum, maximum);
 }
 
+/// Leaves the rows that are asked for.
+Status keepOnly(const std::vector<std::string>& only, RenderBench& bench) {
+    if (only.empty()) return {};
+    std::erase_if(bench.cases, [&](const RenderCase& which) {
+        return std::ranges::none_of(
+            only, [&](const std::string& part) { return which.name.find(part) != std::string::npos; });
+    });
+    if (!bench.cases.empty()) return {};
+    return fail(fmt::format("no row has '{}' in its name", fmt::join(only, "' or '")),
+                "expected parts of the names that `bench render` writes, as FXAA or shadows");
+}
+
 Result<RenderBench> measureAll(const Options& options) {
     constexpr int kUsualRepetitions = 20;
     gpu::DeviceOptions wanted;
     wanted.index = options.device;
     const auto device = gpu::createDevice(wanted);
     if (!device) return tl::unexpected(device.error());
-    const auto& hairstyles = samples();
+    const auto hairstyles = wantedHair(options);
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     RenderBench bench;
     bench.device = (*device)->info();
@@ -382,6 +394,7 @@ Result<RenderBench> measureAll(const Options& options) {
         bench.notes.emplace_back("the device has no clock: frames are wall times, passes are 0");
     }
     CaseList(options, *hairstyles, bench.device, bench).add();
+    if (auto kept = keepOnly(options.only, bench); !kept) return tl::unexpected(kept.error());
     const int repetitions = options.repetitions.value_or(kUsualRepetitions);
     RenderMeasuring measuring(**device, repetitions);
     const std::unique_ptr<gpu::Device> processor = software::makeDevice();
@@ -466,7 +479,8 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark renderBenchmark() {
-    return {"render", "drawing hair", {"--hairs", "--size", "--device", "--markdown"}, run};
+    return {
+        "render", "drawing hair", {"--hairs", "--grooms", "--only", "--size", "--device", "--markdown"}, run};
 }
 
 }  // namespace hairloom::benchmarks

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "benchmarks/sample_hair.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+
+#include "core/cost/benchmark_scenes.h"
+#include "core/documents/open.h"
 #include "core/documents/sample.h"
 #include "core/geometry/curve.h"
 #include "core/simulation/scene_input.h"
@@ -10,6 +16,8 @@
 
 namespace hairloom::benchmarks {
 namespace {
+
+constexpr std::string_view kMany = "100000x16";
 
 double meanLength(const Groom& groom) {
     double sum = 0;
@@ -32,6 +40,22 @@ Result<std::vector<Sample>> makeSamples() {
     }
     std::ranges::sort(made, {}, [](const Sample& sample) { return meanLength(sample.groom); });
     return made;
+}
+
+Result<Sample> hairNamed(const std::string& name) {
+    if (name == kMany) return manyHairs();
+    if (std::filesystem::exists(name)) {
+        auto opened = openGroom(name);
+        if (!opened) return tl::unexpected(opened.error());
+        return Sample{name, std::move(*opened)};
+    }
+    const auto& known = samples();
+    if (!known) return tl::unexpected(known.error());
+    const auto sample = std::ranges::find(*known, name + " sample", &Sample::name);
+    if (sample == known->end())
+        return fail(fmt::format("there is no hairstyle '{}'", name),
+                    "expected a sample, a file, or 100000x16");
+    return *sample;
 }
 
 class NoddingHair : public MovingStrands {
@@ -57,6 +81,32 @@ class NoddingHair : public MovingStrands {
 const Result<std::vector<Sample>>& samples() {
     static const Result<std::vector<Sample>> made = makeSamples();
     return made;
+}
+
+Sample manyHairs() {
+    const scenes::HeadOfHair head(10'000, 16);
+    std::vector<Vec3f> positions;
+    for (const runtime::Float3& p : head.positions) positions.emplace_back(p.x, p.y, p.z);
+    Groom groom = makeGroom(head.offsets, std::move(positions));
+    for (const runtime::Sphere& sphere : head.spheres) {
+        CollisionSphere placed;
+        placed.centre = {sphere.center_ws.x, sphere.center_ws.y, sphere.center_ws.z};
+        placed.radius = sphere.radius;
+        groom.spheres.push_back(placed);
+    }
+    groom.interpolation.followPerGuide = 10;
+    return {std::string(kMany), std::move(groom)};
+}
+
+Result<std::vector<Sample>> wantedHair(const Options& options) {
+    if (options.grooms.empty()) return samples();
+    std::vector<Sample> hair;
+    for (const std::string& name : options.grooms) {
+        auto found = hairNamed(name);
+        if (!found) return tl::unexpected(found.error());
+        hair.push_back(std::move(*found));
+    }
+    return hair;
 }
 
 Result<std::unique_ptr<MovingStrands>> nodding(const Groom& groom) {

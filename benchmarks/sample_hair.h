@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/benchmark.h"
 #include "core/cost/step_cost.h"
 #include "core/groom/groom.h"
 
@@ -18,6 +19,13 @@ struct Sample {
 /// From short to long hair; made from the folder `samples` at the first call. Errors: there is no such folder
 /// beside the program or above it, a sample does not read.
 const Result<std::vector<Sample>>& samples();
+
+/// "100000x16": 10,000 guides of 16 points on a ball, and ten hairs around each.
+Sample manyHairs();
+
+/// The hairstyles that Options::grooms names, or samples() where it names none. Errors: one is neither a
+/// sample, a file nor 100000x16; a file does not read.
+Result<std::vector<Sample>> wantedHair(const Options& options);
 
 /// A groom's strands on a nodding head. Errors: those of SceneInput::make.
 Result<std::unique_ptr<MovingStrands>> nodding(const Groom& groom);

@@ -165,8 +165,10 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
     readGuides(from, raw);
     readAttributes(from, raw);
     if (!from.roots.empty() && from.bones.empty())
-        raw.warnings.push_back(fileNote("no bones are in the asset: roots go with the head as a whole",
-                                        "skin", "or the game gives the vertices of the scalp"));
+        raw.warnings.push_back(fileWarning("the asset has no bones: roots go with the head as a whole",
+                                           "skin",
+                                           "export from a head with a skeleton, or have the game give roots "
+                                           "or the scalp's vertices"));
     return raw;
 }
 

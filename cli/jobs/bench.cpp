@@ -122,6 +122,10 @@ JobRun declare(CLI::App& job) {
         job.add_option("--grooms", options->measuring.grooms,
                        of("--grooms", "samples by name, project files, or 100000x16, separated by commas"))
             ->delimiter(','));
+    some.push_back(
+        job.add_option("--only", options->measuring.only,
+                       of("--only", "rows with one of these words in their names, as FXAA,shadows"))
+            ->delimiter(','));
     some.push_back(job.add_option("--frames", options->measuring.frames, of("--frames", "frames per row"))
                        ->check(CLI::Range(1, 100'000)));
     some.push_back(

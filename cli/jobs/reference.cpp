@@ -12,9 +12,11 @@
 #include "cli/global_options.h"
 #include "cli/help_format.h"
 #include "cli/job.h"
+#include "cli/job_list.h"
 #include "cli/man_pages.h"
 #include "cli/outputs.h"
 #include "cli/readme_lists.h"
+#include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/groom/file/fields.h"
 #include "core/operations/script.h"
@@ -167,6 +169,12 @@ Result<Report> writeManPages(const std::string& folder) {
     return Report{{"output", folder}, {"files", *names}};
 }
 
+Result<Report> writeJobs(const std::string& path) {
+    const std::string text = describedJobs().dump(2) + '\n';
+    if (auto status = writeFileAtomically(path, text); !status) return tl::unexpected(status.error());
+    return Report{{"bytes", text.size()}, {"jobs", jobs().size()}, {"output", path}};
+}
+
 Result<Report> writeReadme(const std::string& path) {
     const auto before = readTextFile(path);
     if (!before) return tl::unexpected(before.error());
@@ -178,7 +186,7 @@ Result<Report> writeReadme(const std::string& path) {
 
 JobRun declare(CLI::App& job) {
     struct Options {
-        std::string output, man, readme;
+        std::string output, man, readme, list;
     };
     const auto options = std::make_shared<Options>();
     auto* page = job.add_option("-o,--output", options->output, "Markdown file to write");
@@ -186,8 +194,11 @@ JobRun declare(CLI::App& job) {
         job.add_option("--man", options->man, "Folder for the manual pages hairloom.1 and hairloom-cli.1");
     auto* readme =
         job.add_option("--readme", options->readme, "README.md whose table of features to update in place");
-    page->excludes(man)->excludes(readme);
-    man->excludes(readme);
+    auto* list = job.add_option("--jobs", options->list,
+                                "JSON file to write, with every job and its options as data");
+    page->excludes(man)->excludes(readme)->excludes(list);
+    man->excludes(readme)->excludes(list);
+    readme->excludes(list);
     job.require_option(1);
     return [options](const std::string&) {
         if (!options->man.empty())
@@ -195,6 +206,8 @@ JobRun declare(CLI::App& job) {
                                     [&] { return writeManPages(options->man); });
         if (!options->readme.empty())
             return withOutputs({{options->readme}}, [&] { return writeReadme(options->readme); });
+        if (!options->list.empty())
+            return withOutputs({{options->list, content::kJson}}, [&] { return writeJobs(options->list); });
         return withOutputs({{options->output}}, [&] { return write(options->output); });
     };
 }
@@ -202,7 +215,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job referenceJob() {
-    return {"reference", "Write the reference page, or the manual pages", "-o docs/reference.md", declare};
+    return {"reference", "Write the reference page, the manual pages, or the jobs as data", "-o docs/reference.md", declare};
 }
 
 }  // namespace hairloom::cli

@@ -173,6 +173,15 @@ std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
     return layouts;
 }
 
+std::vector<NamedLayout> measuredRodLayouts(gpu::DeviceType type) {
+    if (type == gpu::DeviceType::Cpu) return {{"chosen", {}}};
+    return {{"chosen", {}},
+            {"1 thread a strand", {.members = 1}},
+            {"4 threads a strand", {.members = 4}},
+            {"8 threads a strand", {.members = 8}},
+            {"16 threads a strand", {.members = 16}}};
+}
+
 GpuStepRun::GpuStepRun(std::unique_ptr<MovingStrands> strands, gpu_simulation::StrandEngine engine,
                        std::shared_ptr<const KeptBusy> busy)
     : strands_(std::move(strands)), engine_(std::move(engine)), busy_(std::move(busy)) {}

@@ -26,10 +26,13 @@ std::uint32_t evaluationOf(Integrator integrator) {
     return integrator == Integrator::rk4 ? 2 : 1;
 }
 
-/// A block is a work group, and each of its strands a thread's.
+/// Strands of a work group whose threads share them: few, so that few strands find many multiprocessors.
+constexpr std::uint32_t kSharedStrands = 8;
+
+/// A block is a work group and each of its strands a thread's, or some threads share one.
 void takeBuffers(BatchShape& shape) {
     shape.storage = StrandStorage::buffers;
-    shape.strands = runtime::kBlockLanes;
+    shape.strands = shape.members > 1 ? kSharedStrands : runtime::kBlockLanes;
     shape.perThread = 1;
     shape.wave = 0;
 }
@@ -55,12 +58,14 @@ std::string KernelKey::defines() const {
     const auto flag = [](bool on) { return on ? 1 : 0; };
     if (rods) {
         return fmt::format(
-            "#define HAIR_RODS 1\n#define HAIR_TOGETHER {}\n#define HAIR_CLAMPED {}\n#define HAIR_SPHERES "
+            "#define HAIR_RODS 1\n#define HAIR_MEMBERS {}\n#define HAIR_STRANDS {}\n#define HAIR_TOGETHER "
+            "{}\n#define HAIR_CLAMPED "
+            "{}\n#define HAIR_SPHERES "
             "{}\n"
             "#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n#define HAIR_VELOCITIES {}\n#define HAIR_STAGES "
             "{}\n",
-            flag(shape.together), clampedPoints, static_cast<std::uint32_t>(spheres), flag(wind), flag(sleep),
-            flag(velocities), stages);
+            shape.members, shape.strands, flag(shape.together), clampedPoints,
+            static_cast<std::uint32_t>(spheres), flag(wind), flag(sleep), flag(velocities), stages);
     }
     return fmt::format(
         "#define HAIR_POINTS {}\n#define HAIR_EXACT {}\n#define HAIR_UNROLL {}\n#define HAIR_STORAGE {}\n"
@@ -90,6 +95,7 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
         key.stages = callsOf(plan);
         return key;
     }
+    key.shape.members = 1;
     // Strands without a free point follow their roots and nothing else.
     if (shape.points <= settings.clampedPoints) {
         key.stages = callOf(StageId::roots);

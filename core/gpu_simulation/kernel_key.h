@@ -32,6 +32,8 @@ struct BatchShape {
     std::uint32_t perThread = 1;  ///< of lanes: points of a thread, 1 or 2
     /// Of lanes: threads of a wave that read each other's registers; 0: they use the memory of the group.
     std::uint32_t wave = 0;
+    /// Of rods: threads that share a strand (runtime/shaders/rod_members.hlsli).
+    std::uint32_t members = 1;
 
     friend bool operator==(const BatchShape&, const BatchShape&) = default;
 };

@@ -30,6 +30,10 @@ constexpr std::size_t kMaxBlocksInLanes = 100'000 / kBlockLanes;
 /// Blocks of strands up to which lanes have a point each, and not two: as measured there.
 constexpr std::size_t kMaxBlocksOfOne = 4'000 / kBlockLanes;
 
+/// Blocks of rods up to which some threads share a strand, and how many: as measured there.
+constexpr std::size_t kMaxBlocksOfMembers = 12'000 / kBlockLanes;
+constexpr std::uint32_t kMembers = 16;
+
 /// Of lanes: the memory of a group of more would be too much.
 constexpr std::uint32_t kMaxThreads = 256;
 
@@ -97,7 +101,8 @@ BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, con
 LayoutOptions layoutFor(gpu::DeviceType type) {
     // A driver that compiles for a CPU takes seconds for unrolled loops and gains nothing by them, and its
     // work groups are loops themselves.
-    if (type == gpu::DeviceType::Cpu) return {StrandStorage::threads, false};
+    if (type == gpu::DeviceType::Cpu)
+        return {.storage = StrandStorage::threads, .unroll = false, .members = 1};
     return {};
 }
 
@@ -122,6 +127,8 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
         StrandBatch batch;
         batch.shape =
             shapeFor(points, exact, storage, options, shape.blocks.size() <= kMaxBlocksOfOne, waves);
+        batch.shape.members =
+            options.members.value_or(shape.blocks.size() <= kMaxBlocksOfMembers ? kMembers : 1);
         batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
         batch.blocks = std::move(blocks);
         batches.push_back(std::move(batch));
@@ -129,101 +136,8 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
     return batches;
 }
 
-void forEachRow(const runtime::RestShape& shape, const StrandBatch& batch,
-                const std::function<void(std::size_t block, std::uint32_t point, std::size_t inBlock,
-                                         std::size_t inBatch)>& visit) {
-    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
-        const std::size_t block = batch.blocks[n];
-        for (std::uint32_t p = 0; p < shape.blocks[block].points; ++p) {
-            const std::size_t first = n * kBlockLanes, points = batch.shape.points;
-            visit(block, p, std::size_t{p} * kBlockLanes,
-                  batch.shape.together ? first * points + p : std::size_t{p} * batch.slots + first);
-        }
-    }
-}
-
-std::vector<float> planesOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
-                                 const runtime::Floats& planes, std::size_t count) {
-    const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-    std::vector<float> values(plane * count, 0.0f);
-    forEachRow(shape, batch, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inBatch) {
-        const float* const first = planes.data() + shape.blocks[block].firstPlane * count;
-        for (std::size_t k = 0; k < count; ++k) {
-            const float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
-            float* const to = values.data() + k * plane + inBatch;
-            for (std::size_t lane = 0; lane < kBlockLanes; ++lane) to[lane * laneStride(batch)] = row[lane];
-        }
-    });
-    return values;
-}
-
-void planesOfBlocks(const runtime::RestShape& shape, const StrandBatch& batch, std::span<const float> values,
-                    runtime::Floats& planes, std::size_t count) {
-    const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-    forEachRow(shape, batch, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inBatch) {
-        float* const first = planes.data() + shape.blocks[block].firstPlane * count;
-        for (std::size_t k = 0; k < count; ++k) {
-            float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
-            const float* const from = values.data() + k * plane + inBatch;
-            for (std::size_t lane = 0; lane < kBlockLanes; ++lane) row[lane] = from[lane * laneStride(batch)];
-        }
-    });
-}
-
-void rowsToBlocks(const StrandBatch& batch, std::span<const float> values, std::size_t rows, float* blocks) {
-    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
-        for (std::size_t r = 0; r < rows; ++r) {
-            std::copy_n(values.data() + r * batch.slots + n * kBlockLanes, kBlockLanes,
-                        blocks + (batch.blocks[n] * rows + r) * kBlockLanes);
-        }
-    }
-}
-
-std::vector<float> rowsOfBatch(const StrandBatch& batch, const float* blocks, std::size_t rows) {
-    std::vector<float> values(rows * batch.slots);
-    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
-        for (std::size_t r = 0; r < rows; ++r) {
-            std::copy_n(blocks + (batch.blocks[n] * rows + r) * kBlockLanes, kBlockLanes,
-                        values.data() + r * batch.slots + n * kBlockLanes);
-        }
-    }
-    return values;
-}
-
-std::vector<shaders::float4> quadsOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
-                                          const runtime::Floats& planes, std::size_t count,
-                                          std::span<const std::size_t> which) {
-    std::vector<shaders::float4> values(std::size_t{batch.shape.points} * batch.slots);
-    forEachRow(shape, batch, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inBatch) {
-        const std::size_t size = planeSize(shape.blocks[block]);
-        const float* const first = planes.data() + shape.blocks[block].firstPlane * count + inBlock;
-        for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
-            std::array<float, 4> parts{};
-            for (std::size_t k = 0; k < which.size(); ++k) parts[k] = first[which[k] * size + lane];
-            values[inBatch + lane * laneStride(batch)] = {parts[0], parts[1], parts[2], parts[3]};
-        }
-    });
-    return values;
-}
-
 Status makeRestBuffers(gpu::Device& device, const runtime::RestShape& shape, StrandBatch& batch) {
-    // Rest planes: x, y, z, length, inverse length, inverse mass.
-    constexpr std::array<std::size_t, 4> kVectors{0, 1, 2, 3};
-    constexpr std::array<std::size_t, 2> kLengthAndMass{3, 5};
-    const auto rest = quadsOfBatch(shape, batch, shape.planes, runtime::kRestPlanes, kVectors);
-    const auto quads = quadsOfBatch(shape, batch, shape.planes, runtime::kRestPlanes, kLengthAndMass);
-    std::vector<std::array<float, 2>> segments;
-    segments.reserve(quads.size());
-    for (const shaders::float4& quad : quads) segments.push_back({quad.x, quad.y});
-    std::vector<std::array<std::uint32_t, 2>> counts;
-    std::vector<std::uint32_t> first;
-    for (const std::uint32_t b : batch.blocks) {
-        const runtime::Block& block = shape.blocks[b];
-        counts.push_back({block.points, block.strands});
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            first.push_back(lane < block.strands ? shape.offsets[block.strandOfLane[lane]] : ~0u);
-        }
-    }
+    const runtime::RestSlots rest = runtime::restOfSlots(shape, batch.inSlots());
     Status status;
     const auto make = [&]<class T>(gpu::BufferPtr& buffer, const char* name, const std::vector<T>& content) {
         if (!status) return;
@@ -234,10 +148,10 @@ Status makeRestBuffers(gpu::Device& device, const runtime::RestShape& shape, Str
             status = tl::unexpected(made.error());
         }
     };
-    make(batch.rest, "rest shape", rest);
-    make(batch.segments, "segments", segments);
-    make(batch.blockCounts, "blocks of strands", counts);
-    make(batch.firstPoints, "first points", first);
+    make(batch.rest, "rest shape", rest.rest);
+    make(batch.segments, "segments", rest.segments);
+    make(batch.blockCounts, "blocks of strands", rest.blocks);
+    make(batch.firstPoints, "first points", rest.firstPoints);
     return status;
 }
 

@@ -52,12 +52,13 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
     if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
         layout.storage = StrandStorage::threads;
+    if (direct3d) layout.members = 1;
     // A thread takes a rod, and finds those of its neighbours beside it.
     if (settings.strandModel == runtime::StrandModel::rods && !layout.storage)
         layout.storage = StrandStorage::threads;
     impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
     if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
-    impl->roots.resize(impl->shape->restRoots.size());
+    impl->placed.roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (auto taken = impl->takeRods(settings); !taken) return tl::unexpected(taken.error());
     if (options.hairHair) {
@@ -147,7 +148,7 @@ Status StrandEngine::Impl::allocate() {
         bool fresh = have(batch.bend, "angular springs", plane * bendFloats(key), key.bend == 1 ? 4 : 16);
         fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
         if (fresh) bendSubstep = 0.0f;
-        const bool gathers = key.sleep && sharesBlocks(key.shape.storage);
+        const bool gathers = key.sleep && (sharesBlocks(key.shape.storage) || key.shape.members > 1);
         have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
         const bool scratch = key.shape.storage == StrandStorage::buffers && !key.stages.empty();
@@ -173,7 +174,7 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
     planInput.straight = shape->straight;
     planInput.rootsMin_ws = low;
     planInput.rootsMax_ws = high;
-    planInput.rootMotion = rootMotion;
+    planInput.rootMotion = placed.motion;
     planInput.fastest = std::numeric_limits<float>::infinity();
     next.plan = runtime::planFrame(settings, planInput, next.wind, frameSpheres.usable, frameSpheres.motion,
                                    input.dt);

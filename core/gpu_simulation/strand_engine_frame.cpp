@@ -27,47 +27,22 @@ std::span<const std::byte> bytesOfVector(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));
 }
 
-shaders::float4 toFloat4(Float3 v, float w) {
-    return {v.x, v.y, v.z, w};
-}
-
 }  // namespace
 
-/// Takes the roots that the frame ends on, their box and how far they go; which have moved. What is no root
-/// stays where it was.
-std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input) {
-    assert(input.roots_ws.size() == roots.size());
-    std::vector<bool> moved(roots.size(), false);
-    Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
-    rootMotion = 0.0f;
-    rejectedRoots = 0;
-    for (std::size_t s = 0; s < roots.size(); ++s) {
-        RootFrame root = input.roots_ws[s];
-        if (!runtime::usableWithin(root, runtime::kFarthest)) {
-            ++rejectedRoots;
-            continue;
-        }
-        const Float3 p = root.position;
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-        if (!rootsOfDevice && p == roots[s].position && root.rotation == roots[s].rotation) continue;
-        const float distance = length(p - roots[s].position);
-        if (distance <= wanted.teleportDistance) rootMotion = std::max(rootMotion, distance);
-        roots[s] = root;
-        moved[s] = true;
-    }
-    rootsMin_ws = low;
-    rootsMax_ws = high;
+/// Takes the roots that the frame ends on; whether some have moved.
+bool StrandEngine::Impl::takeRoots(const runtime::FrameInput& input) {
+    assert(input.roots_ws.size() == placed.roots.size());
+    runtime::takeFrameRoots(input.roots_ws, wanted.teleportDistance, !rootsOfDevice, placed);
     rootsOfDevice = false;
-    return moved;
+    return std::ranges::find(placed.moved, true) != placed.moved.end();
 }
 
 /// The same of roots that are on the device; whether they have moved.
 bool StrandEngine::Impl::takeRoots(const DeviceRoots& given) {
-    rejectedRoots = 0;
-    rootMotion = std::min(given.motion, wanted.teleportDistance);
-    rootsMin_ws = given.min_ws;
-    rootsMax_ws = given.max_ws;
+    placed.rejected = 0;
+    placed.motion = std::min(given.motion, wanted.teleportDistance);
+    placed.min_ws = given.min_ws;
+    placed.max_ws = given.max_ws;
     const bool moved = given.moved || !rootsOfDevice;
     rootsOfDevice = true;
     return moved;
@@ -111,50 +86,23 @@ Status StrandEngine::Impl::gatherRoots(gpu::CommandList& list, const DeviceRoots
 
 /// Measures what is known of the last frame from the origin of this one. What sleeps wakes, to write its
 /// positions anew.
-void StrandEngine::Impl::moveOrigin(gpu::CommandList& list, std::array<double, 3> next_ws) {
+void StrandEngine::Impl::moveOrigin(std::array<double, 3> next_ws) {
     if (!runtime::isFinite(next_ws)) next_ws = origin_ws.value_or(std::array<double, 3>{});
-    const Float3 shift = runtime::shiftOfOrigin(origin_ws.value_or(next_ws), next_ws);
+    originShift = runtime::shiftOfOrigin(origin_ws.value_or(next_ws), next_ws);
     origin_ws = next_ws;
-    if (shift == Float3{}) return;
-    for (RootFrame& root : roots) root.position = root.position + shift;
-    for (runtime::Sphere& sphere : spheresBefore) sphere.center_ws = sphere.center_ws + shift;
-    rootsMin_ws = rootsMin_ws + shift;
-    rootsMax_ws = rootsMax_ws + shift;
-    for (const StrandBatch& batch : batches) {
-        std::vector<float> rootPositions(std::size_t{batch.slots} * 3);
-        for (std::size_t slot = 0; slot < batch.slots; ++slot) {
-            const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
-            const Float3 at = roots[block.strandOfLane[slot % runtime::kBlockLanes]].position;
-            rootPositions[slot] = at.x;
-            rootPositions[batch.slots + slot] = at.y;
-            rootPositions[2 * std::size_t{batch.slots} + slot] = at.z;
-        }
-        list.updateBuffer(batch.roots, 0, bytesOfVector(rootPositions));
-    }
+    if (originShift == Float3{}) return;
+    for (RootFrame& root : placed.roots) root.position = root.position + originShift;
+    for (runtime::Sphere& sphere : spheresBefore) sphere.center_ws = sphere.center_ws + originShift;
+    placed.min_ws = placed.min_ws + originShift;
+    placed.max_ws = placed.max_ws + originShift;
     restsVoid = wakeAll = rootsMoved = true;
 }
 
 /// `moved` may be empty: none has.
-void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) {
-    for (const StrandBatch& batch : batches) {
-        std::vector<shaders::float4> rows(std::size_t{batch.slots} * 2);
-        for (std::size_t slot = 0; slot < batch.slots; ++slot) {
-            const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
-            const std::uint32_t strand = block.strandOfLane[slot % runtime::kBlockLanes];
-            const RootFrame& root = roots[strand];
-            rows[2 * slot] = toFloat4(root.position, !moved.empty() && moved[strand] ? 1.0f : 0.0f);
-            rows[2 * slot + 1] = {root.rotation.x, root.rotation.y, root.rotation.z, root.rotation.w};
-        }
-        list.updateBuffer(batch.rootsTo, 0, bytesOfVector(rows));
-    }
-}
-
-std::vector<shaders::SphereConstants> StrandEngine::Impl::sphereConstants() const {
-    std::vector<shaders::SphereConstants> constants;
-    constants.reserve(movingSpheres.size());
-    for (const runtime::MovingSphere& sphere : movingSpheres)
-        constants.push_back({toFloat4(sphere.from_ws, sphere.radius), toFloat4(sphere.step, 0.0f)});
-    return constants;
+void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) const {
+    for (const StrandBatch& batch : batches)
+        list.updateBuffer(batch.rootsTo, 0,
+                          bytesOfVector(runtime::rootsOfSlots(*shape, batch.inSlots(), placed.roots, moved)));
 }
 
 /// Where kernels read them from buffers.
@@ -175,12 +123,9 @@ void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
         sleeps = sleeps || batch.key.sleep;
         many = many || batch.key.spheres == SphereSource::buffer;
     }
-    if (many) upload(spheres, "spheres", sphereConstants());
+    if (many) upload(spheres, "spheres", runtime::sphereConstants(movingSpheres));
     if (!sleeps) return;
-    std::vector<shaders::float4> reaches;
-    for (const runtime::Sphere& sphere : frameSpheres.waking)
-        reaches.push_back(toFloat4(sphere.center_ws, sphere.radius));
-    upload(waking, "waking spheres", reaches);
+    upload(waking, "waking spheres", runtime::wakingOf(frameSpheres));
 }
 
 /// The arrays of angular springs for substeps of h seconds.
@@ -195,7 +140,7 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
     const std::size_t planes = bend.planeCount();
     for (const StrandBatch& batch : batches) {
         if (batch.key.bend == 1) {
-            std::vector<float> all = planesOfBatch(*shape, batch, bend.planes, planes);
+            std::vector<float> all = runtime::planesOfSlots(*shape, batch.inSlots(), bend.planes, planes);
             all.resize(std::size_t{batch.shape.points} * batch.slots);
             list.updateBuffer(batch.bend, 0, bytesOfVector(all));
         } else if (batch.key.bend == 2 && batch.key.shape.storage == StrandStorage::lanes) {
@@ -204,13 +149,15 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
         } else if (batch.key.bend == 2) {
             // Planes are stiffness, inverse diagonal, lower1, lower2; the kernel has the stiffness last.
             constexpr std::array<std::size_t, 4> kFactors{1, 2, 3, 0};
-            list.updateBuffer(batch.bend, 0,
-                              bytesOfVector(quadsOfBatch(*shape, batch, bend.planes, planes, kFactors)));
+            list.updateBuffer(
+                batch.bend, 0,
+                bytesOfVector(runtime::quadsOfSlots(*shape, batch.inSlots(), bend.planes, planes, kFactors)));
         }
         if (!batch.key.targets) continue;
         const std::array<std::size_t, 3> targets{planes - 3, planes - 2, planes - 1};
-        list.updateBuffer(batch.targets, 0,
-                          bytesOfVector(quadsOfBatch(*shape, batch, bend.planes, planes, targets)));
+        list.updateBuffer(
+            batch.targets, 0,
+            bytesOfVector(runtime::quadsOfSlots(*shape, batch.inSlots(), bend.planes, planes, targets)));
     }
 }
 
@@ -236,43 +183,11 @@ void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
 shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::SubstepContext& context,
                                                            const runtime::FrameInput& input,
                                                            const StrandBatch& batch) const {
-    const runtime::SimulationSettings& s = run.settings;
-    shaders::SimulationConstants c;
-    c.slots = batch.slots;
-    c.substeps = context.count;
-    c.sphereCount = static_cast<std::uint32_t>(movingSpheres.size());
+    const runtime::GpuFrame frame{run.settings, run.wind.wind, movingSpheres, frameSpheres.waking.size(),
+                                  substep,      wakeAll,       *origin_ws,    originShift};
+    auto c = runtime::frameConstants(frame, context, input, batch.inSlots(), batch.key.shape.strands);
     if (batch.key.spheres == SphereSource::constants)
         c.sphereCount = std::min<std::uint32_t>(c.sphereCount, HAIRLOOM_CONSTANT_SPHERES);
-    c.lengthIterations = context.lengthIterations;
-    c.wakingCount = static_cast<std::uint32_t>(frameSpheres.waking.size());
-    const bool windy = length(run.wind.wind.mean) > 0.0f && s.airDrag > 0.0f;
-    c.wakeAll = windy || wakeAll ? 1 : 0;
-    c.h = context.h;
-    c.substep = context;
-    c.dt = input.dt;
-    // Rods keep speeds, not ways.
-    c.rescale = substep > 0.0f && !batch.key.rods ? context.h / substep : 1.0f;
-    c.teleportDistance = s.teleportDistance;
-    const float slow = s.sleepSpeed * context.h;
-    c.slowSquared = slow * slow;
-    c.sleepDelay = s.sleepDelay;
-    c.groups = batch.slots / batch.key.shape.strands;
-    c.firstShare = substep > 0.0f ? 1.0f : 0.5f;
-    c.sphereDisplacement = 0.0f;
-    for (const runtime::MovingSphere& sphere : movingSpheres)
-        c.sphereDisplacement = std::max(c.sphereDisplacement, length(sphere.step));
-    c.gravityStep = toFloat4(context.gravityStep, 0.0f);
-    const runtime::Wind& wind = run.wind.wind;
-    c.windKind = static_cast<std::uint32_t>(wind.kind);
-    c.wind = toFloat4(wind.mean, wind.strength);
-    const double time = std::isfinite(input.time) ? input.time : 0.0;
-    const auto from = runtime::windPhases(wind, time - static_cast<double>(input.dt), *origin_ws);
-    const auto to = runtime::windPhases(wind, time, *origin_ws);
-    static_assert(runtime::kWindModes == HAIRLOOM_WIND_MODES);
-    for (std::size_t m = 0; m < runtime::kWindModes; ++m) {
-        c.windAmplitudes[m] = toFloat4(wind.modes[m].amplitude, from[m]);
-        c.windWaves[m] = toFloat4(wind.modes[m].waveVector, to[m]);
-    }
     return c;
 }
 
@@ -307,12 +222,12 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(5, batch.rodState);
     write(6, rods ? velocities : nullptr);
     write(7, inBuffers ? batch.scratch : velocities);
-    write(8, rods ? nullptr : inBuffers ? velocities : batch.gathered);
+    write(8, inBuffers && !rods ? velocities : batch.gathered);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
     if (rods) list.setConstants(2, gpu::bytesOf(ofRods));
     if (batch.key.spheres == SphereSource::constants) {
-        std::vector<shaders::SphereConstants> all = sphereConstants();
+        std::vector<shaders::SphereConstants> all = runtime::sphereConstants(movingSpheres);
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
         list.setConstants(1, bytesOfVector(all));
     }
@@ -325,15 +240,15 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
                                   const DeviceRoots* deviceRoots) {
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
     known.reset();
-    moveOrigin(list, input.origin_ws);
-    const Float3 lowBefore = rootsMin_ws, highBefore = rootsMax_ws;
+    moveOrigin(input.origin_ws);
+    const Float3 lowBefore = placed.min_ws, highBefore = placed.max_ws;
     const bool found = deviceRoots != nullptr;
-    const std::vector<bool> moved = found ? std::vector<bool>(1, takeRoots(*deviceRoots)) : takeRoots(input);
+    const bool moves = found ? takeRoots(*deviceRoots) : takeRoots(input);
     runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, frameSpheres);
-    const Float3 low{std::min(rootsMin_ws.x, lowBefore.x), std::min(rootsMin_ws.y, lowBefore.y),
-                     std::min(rootsMin_ws.z, lowBefore.z)};
-    const Float3 high{std::max(rootsMax_ws.x, highBefore.x), std::max(rootsMax_ws.y, highBefore.y),
-                      std::max(rootsMax_ws.z, highBefore.z)};
+    const Float3 low{std::min(placed.min_ws.x, lowBefore.x), std::min(placed.min_ws.y, lowBefore.y),
+                     std::min(placed.min_ws.z, lowBefore.z)};
+    const Float3 high{std::max(placed.max_ws.x, highBefore.x), std::max(placed.max_ws.y, highBefore.y),
+                      std::max(placed.max_ws.z, highBefore.z)};
     if (auto chosen = choose(input, low, high); !chosen) return chosen;
     movingSpheres.clear();
     if (run.plan.on(Effect::collision))
@@ -344,9 +259,8 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     constexpr std::array<std::uint32_t, 4> kNothing{};
     list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
     // Roots that rest are there already, once the device knows that they do.
-    const bool moves = std::ranges::find(moved, true) != moved.end();
     if (substep == 0.0f || moves || rootsMoved) {
-        if (!found) uploadRoots(list, moved);
+        if (!found) uploadRoots(list, placed.moved);
         if (auto gathered = found ? gatherRoots(list, *deviceRoots) : Status(); !gathered) return gathered;
     }
     rootsMoved = moves;

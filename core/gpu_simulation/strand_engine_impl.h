@@ -5,9 +5,9 @@
 #include <deque>
 
 #include "core/gpu_simulation/strand_engine.h"
-#include "runtime/models/rods/rods.h"
+#include "runtime/engine/gpu_frame.h"
+#include "runtime/models/rods/rod_slots.h"
 #include "runtime/models/springs/springs.h"
-#include "runtime/shaders/rod_types.h"
 
 namespace hairloom::gpu_simulation {
 
@@ -35,15 +35,14 @@ struct StrandEngine::Impl {
     bool switching = false;
 
     // Of the scene.
-    std::vector<runtime::RootFrame> roots;  // one per strand, sound, at the end of the last frame
-    runtime::Float3 rootsMin_ws, rootsMax_ws;
-    float rootMotion = 0.0f;
-    std::uint32_t rejectedRoots = 0, rejectedWinds = 0;
+    runtime::FrameRoots placed;
+    std::uint32_t rejectedWinds = 0;
     runtime::FrameSpheres frameSpheres;
     std::vector<runtime::Sphere> spheresBefore;
     std::vector<runtime::MovingSphere> movingSpheres;
     float substep = 0.0f;                            ///< seconds of the last one; 0 before the first
     std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
+    runtime::Float3 originShift;                     ///< by which that of the frame moves what was known
     float bendSubstep = 0.0f;                        ///< that the springs' buffers are for; 0: none
     bool restsVoid = false;                          ///< other settings: nothing sleeps
     bool tensionsVoid = false;                       ///< those on the device are of a plan that is over
@@ -52,7 +51,7 @@ struct StrandEngine::Impl {
     bool rodEnergyKnown = true;  ///< what rods had before the frame is energy under these settings
     bool rodsFresh = false;      ///< the device has places of rods, and nothing else yet
     bool rootsMoved = false;     ///< in the last frame, as the device knows
-    bool rootsOfDevice = false;  ///< `roots` are of an earlier frame: the device found them itself since
+    bool rootsOfDevice = false;  ///< `placed` is of an earlier frame: the device found them itself since
     gpu::ComputePipelinePtr rootRows;  ///< puts roots of the device in order, once there are some
 
     std::deque<gpu::SubmissionPtr> submissionsInFlight;
@@ -75,11 +74,11 @@ struct StrandEngine::Impl {
     Result<bool> kernelsFor(const Run& next, bool wait);
     // strand_engine_frame.cpp
     Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots* deviceRoots);
-    std::vector<bool> takeRoots(const runtime::FrameInput& input);
+    bool takeRoots(const runtime::FrameInput& input);
     bool takeRoots(const DeviceRoots& given);
     Status gatherRoots(gpu::CommandList& list, const DeviceRoots& given);
-    void moveOrigin(gpu::CommandList& list, std::array<double, 3> next_ws);
-    void uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved);
+    void moveOrigin(std::array<double, 3> next_ws);
+    void uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) const;
     void uploadSpheres(gpu::CommandList& list);
     void uploadBend(gpu::CommandList& list, float h);
     void uploadChanges(gpu::CommandList& list);
@@ -87,13 +86,10 @@ struct StrandEngine::Impl {
                                            const runtime::FrameInput& input, const StrandBatch& batch) const;
     void dispatch(gpu::CommandList& list, const StrandBatch& batch,
                   const shaders::SimulationConstants& constants, const shaders::RodConstants& ofRods) const;
-    std::vector<shaders::SphereConstants> sphereConstants() const;
     // strand_engine_rods.cpp
     Status takeRods(const runtime::SimulationSettings& settings);
     Status makeRodBuffers(StrandBatch& batch) const;
     void allocateRods(runtime::State& state) const;
-    void sendRods(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;
-    void takeRodsOf(const StrandBatch& batch, std::span<const float> rods, runtime::State& state) const;
     shaders::RodConstants rodConstants(const runtime::SubstepContext& context,
                                        const StrandBatch& batch) const;
     // strand_engine_state.cpp

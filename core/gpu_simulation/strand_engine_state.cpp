@@ -68,15 +68,16 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
         return values;
     };
     const std::vector<float> moving = take(batch.state);
-    planesOfBlocks(*shape, batch, moving, state.planes, runtime::kStatePlanes);
+    runtime::planesOfBlocks(*shape, batch.inSlots(), moving, state.planes, runtime::kStatePlanes);
     if (batch.key.tensions) {
         const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-        planesOfBlocks(*shape, batch, std::span(moving).subspan(runtime::kStatePlanes * plane),
-                       state.own[runtime::kOwnTensions], 1);
+        runtime::planesOfBlocks(*shape, batch.inSlots(),
+                                std::span(moving).subspan(runtime::kStatePlanes * plane),
+                                state.own[runtime::kOwnTensions], 1);
     }
-    rowsToBlocks(batch, take(batch.roots), runtime::kRootRows, state.roots.data());
+    runtime::rowsToBlocks(batch.inSlots(), take(batch.roots), runtime::kRootRows, state.roots.data());
     if (batch.rodState != nullptr) {
-        takeRodsOf(batch, take(batch.rodState), state);
+        runtime::rodStateToBlocks(*shape, batch.inSlots(), take(batch.rodState), state);
     }
     if (batch.rests == nullptr) return;
     const std::vector<float> rests = take(batch.rests);
@@ -113,8 +114,8 @@ Result<runtime::State> StrandEngine::Impl::readState() {
     std::span<const std::byte> rest = *bytes;
     for (const StrandBatch& batch : batches) takeBatch(batch, rest, state);
     state.spheres = spheresBefore;
-    state.rootsMin_ws = rootsMin_ws;
-    state.rootsMax_ws = rootsMax_ws;
+    state.rootsMin_ws = placed.min_ws;
+    state.rootsMax_ws = placed.max_ws;
     state.substep = substep;
     state.origin_ws = origin_ws;
     known = state;
@@ -126,15 +127,18 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     const auto send = [&](const gpu::BufferPtr& buffer, const std::vector<float>& values) {
         list.updateBuffer(buffer, 0, std::as_bytes(std::span(values)));
     };
-    std::vector<float> moving = planesOfBatch(*shape, batch, state.planes, runtime::kStatePlanes);
+    std::vector<float> moving =
+        runtime::planesOfSlots(*shape, batch.inSlots(), state.planes, runtime::kStatePlanes);
     if (state.model == runtime::StrandModel::springs && !state.own[runtime::kOwnTensions].empty()) {
-        const std::vector<float> tensions = planesOfBatch(*shape, batch, state.own[runtime::kOwnTensions], 1);
+        const std::vector<float> tensions =
+            runtime::planesOfSlots(*shape, batch.inSlots(), state.own[runtime::kOwnTensions], 1);
         moving.insert(moving.end(), tensions.begin(), tensions.end());
     }
     moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);
     send(batch.state, moving);
-    send(batch.roots, rowsOfBatch(batch, state.roots.data(), runtime::kRootRows));
-    if (batch.rodState != nullptr) sendRods(list, batch, state);
+    send(batch.roots, runtime::rowsOfSlots(batch.inSlots(), state.roots.data(), runtime::kRootRows));
+    if (batch.rodState != nullptr)
+        send(batch.rodState, runtime::rodStateOfSlots(*shape, batch.inSlots(), state));
     if (batch.rests != nullptr) {
         std::vector<float> rests;
         for (const std::uint32_t block : batch.blocks) {
@@ -172,8 +176,8 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
             const auto row = [&](std::size_t r) {
                 return state.roots[(b * runtime::kRootRows + r) * kBlockLanes + lane];
             };
-            roots[shape->blocks[b].strandOfLane[lane]] = {{row(0), row(1), row(2)},
-                                                          {row(3), row(4), row(5), row(6)}};
+            placed.roots[shape->blocks[b].strandOfLane[lane]] = {{row(0), row(1), row(2)},
+                                                                 {row(3), row(4), row(5), row(6)}};
         }
     }
     uploadRoots(**list, {});
@@ -184,13 +188,13 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
     substep = state.substep;
     origin_ws = state.origin_ws;
     runtime::Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
-    for (const RootFrame& root : roots) {
+    for (const RootFrame& root : placed.roots) {
         const Float3 p = root.position;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
-    rootsMin_ws = low;
-    rootsMax_ws = high;
+    placed.min_ws = low;
+    placed.max_ws = high;
     return (*submission)->wait();
 }
 
@@ -240,7 +244,7 @@ Result<FrameReport> StrandEngine::report() {
     std::memcpy(words.data(), bytes->data(), sizeof(words));
     FrameReport report = reportFrom(words, impl_->substep);
     report.kernelMilliseconds = impl_->kernelMilliseconds;
-    report.rejectedRoots = impl_->rejectedRoots;
+    report.rejectedRoots = impl_->placed.rejected;
     report.rejectedSpheres = impl_->frameSpheres.rejected;
     report.rejectedWinds = impl_->rejectedWinds;
     const auto milliseconds = wait();

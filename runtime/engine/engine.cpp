@@ -82,6 +82,10 @@ bool Engine::addVelocities(std::span<const Float3> changes_ws) {
     return true;
 }
 
+std::shared_ptr<const RestShape> Engine::restShape() const {
+    return impl_->shape_;
+}
+
 std::shared_ptr<const State> Engine::state() const {
     return std::make_shared<const State>(impl_->state_);
 }

@@ -47,17 +47,6 @@ hl_code makeInstance(const hl_asset* opened, uint32_t what, const Host& host, hl
     });
 }
 
-/// Reset and step: a frame of any version.
-template <class Body>
-hl_code withFrame(hl_instance* instance, const hl_frame* given, hl_error* error, const Body& body) {
-    if (!instance || !given) return nullRefused(error, "no instance or no frame");
-    return guarded(error, [&] {
-        hl_frame frame{};
-        if (const Outcome refused = takeIn(given, "hl_frame", kFirstFrame, frame)) return say(error, refused);
-        return say(error, body(instance->instance, frame));
-    });
-}
-
 hl_code readPlain(hl_instance* instance, bool hairs, hl_out positions, hl_out tangents, hl_out radii,
                   hl_error* error) {
     if (!instance) return nullRefused(error, "no instance");
@@ -127,6 +116,7 @@ hl_code hl_instance_copy(const hl_instance* instance, hl_instance** out, hl_erro
     if (!instance || !out) return nullRefused(error, "no instance or no place for its copy");
     return guarded(error, [&] {
         *out = new hl_instance(*instance);
+        (*out)->instance.leaveGpu();
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }

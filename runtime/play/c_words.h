@@ -118,4 +118,15 @@ inline constexpr std::size_t kFirstAssetInfo = 88, kFirstBone = 72, kFirstLayer 
                              kFirstEffect = 136, kFirstLevel = 28, kFirstViewed = 24, kFirstReport = 12,
                              kFirstFrame = 128, kFirstLimits = 24;
 
+/// A frame of any version.
+template <class Body>
+hl_code withFrame(hl_instance* instance, const hl_frame* given, hl_error* error, const Body& body) {
+    if (!instance || !given) return nullRefused(error, "no instance or no frame");
+    return guarded(error, [&] {
+        hl_frame frame{};
+        if (const Outcome refused = takeIn(given, "hl_frame", kFirstFrame, frame)) return say(error, refused);
+        return say(error, body(instance->instance, frame));
+    });
+}
+
 }  // namespace hairloom::runtime

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// hairloom/gpu.h: what a game's own GPU is given to make follow hairs and to draw them.
+// hairloom/gpu.h: what a game's own GPU is given to step guides, to make follow hairs and to draw them.
 #include "hairloom/gpu.h"
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "follow/follow_gpu.h"
 #include "play/c_words.h"
+#include "play/gpu_guides.h"
 #include "shaders/ribbon_types.h"
 
 namespace hairloom::runtime {
@@ -14,7 +16,7 @@ namespace {
 
 static_assert(sizeof(hl_gpu_view) == sizeof(shaders::RibbonView));
 static_assert(offsetof(hl_gpu_view, points) == offsetof(shaders::RibbonView, points));
-static_assert(HL_GPU_PASS_COUNT == 3 && HL_GPU_BUFFER_COUNT == 12);
+static_assert(HL_GPU_PASS_COUNT == 4 && HL_GPU_BUFFER_COUNT == 30);
 
 constexpr std::uint64_t kRowsOfPoint = 4;  // FOLLOW_ROWS of follow.hlsli
 constexpr std::uint64_t kMostGroups = 65535;
@@ -22,9 +24,26 @@ constexpr std::uint64_t kMostGroups = 65535;
 /// Counts that buffers are measured by.
 struct GpuCounts {
     std::uint64_t guides, guidePoints, hairs, points;
+    // Of the pass GUIDES.
+    std::uint64_t blocks, longest, spheres;
+
+    std::uint64_t slots() const { return blocks * kBlockLanes; }
+    std::uint64_t slotPoints() const { return slots() * longest; }
 };
+/// Adds what the pass GUIDES is measured by.
+GpuCounts withGuides(GpuCounts counts, const std::map<std::uint32_t, std::size_t>& strandsOf,
+                     std::size_t spheres) {
+    counts.blocks = gpuBlocksOf(strandsOf);
+    counts.longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
+    counts.spheres = gpuSpheresOf(spheres);
+    return counts;
+}
 GpuCounts gpuCountsOf(const Asset& asset) {
-    return {asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair};
+    std::map<std::uint32_t, std::size_t> strandsOf;
+    for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
+    return withGuides(
+        {asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair, 0, 0, 0},
+        strandsOf, asset.spheres.size());
 }
 
 struct GpuBuffer {
@@ -46,6 +65,19 @@ HAIRLOOM_GPU_COUNT(GUIDE_ROWS, kRowsOfPoint* c.guides* c.points)
 HAIRLOOM_GPU_COUNT(HAIR_SAMPLES, c.points)
 HAIRLOOM_GPU_COUNT(HAIRS, c.hairs)
 HAIRLOOM_GPU_COUNT(HAIR_POINTS, c.hairs* c.points)
+HAIRLOOM_GPU_COUNT(WORDS, 4)
+HAIRLOOM_GPU_COUNT(SPHERES, c.spheres)
+HAIRLOOM_GPU_COUNT(SPHERE_ENDS, 2 * c.spheres)
+HAIRLOOM_GPU_COUNT(BLOCKS, c.blocks)
+HAIRLOOM_GPU_COUNT(BLOCK_RESTS, 2 * c.blocks)
+HAIRLOOM_GPU_COUNT(SLOTS, c.slots())
+HAIRLOOM_GPU_COUNT(SLOT_TURNS, 2 * c.slots())
+HAIRLOOM_GPU_COUNT(SLOT_ROOTS, kRootRows* c.slots())
+HAIRLOOM_GPU_COUNT(SLOT_POINTS, c.slotPoints())
+HAIRLOOM_GPU_COUNT(SLOT_RESTS, 4 * c.slotPoints())
+HAIRLOOM_GPU_COUNT(SLOT_STATE, (kStatePlanes + 1) * c.slotPoints())
+HAIRLOOM_GPU_COUNT(SLOT_RODS, kRodStatePlanes* c.slotPoints() + kRodLaneRows * c.slots())
+HAIRLOOM_GPU_COUNT(SLOT_SCRATCH, (HAIRLOOM_ROD_WORK_PLANES + HAIRLOOM_ROD_CONTACT_PLANES) * c.slotPoints())
 #undef HAIRLOOM_GPU_COUNT
 
 #define HAIRLOOM_GPU_ROW(name, bytes, of, fill, words) {#name, bytes, count##of, HL_GPU_##fill},
@@ -110,8 +142,12 @@ Outcome checkGpuBytes(std::uint32_t buffer, std::uint64_t given, std::uint64_t w
                                       "; expected " + std::to_string(wanted)};
 }
 
-Outcome checkGpuFill(std::uint32_t buffer, std::uint32_t fill, const char* call) {
-    if (buffer < HL_GPU_BUFFER_COUNT && kGpuBuffers[buffer].fill == fill) return std::nullopt;
+bool isOfFrame(std::uint32_t fill) {
+    return fill == HL_GPU_FRAME || fill == HL_GPU_GUIDES || fill == HL_GPU_BEGIN || fill == HL_GPU_STEP;
+}
+
+Outcome checkGpuFill(std::uint32_t buffer, bool (*fills)(std::uint32_t), const char* call) {
+    if (buffer < HL_GPU_BUFFER_COUNT && fills(kGpuBuffers[buffer].fill)) return std::nullopt;
     return Refusal{HL_BAD_VALUE, "buffer " +
                                      (buffer < HL_GPU_BUFFER_COUNT ? std::string(kGpuBuffers[buffer].name)
                                                                    : std::to_string(buffer)) +
@@ -122,20 +158,70 @@ Outcome checkGpuFill(std::uint32_t buffer, std::uint32_t fill, const char* call)
 
 std::size_t Instance::gpuBytes(std::uint32_t buffer) const {
     // What a frame has is measured by guides alone.
-    return static_cast<std::size_t>(kGpuBuffers[buffer].count({roots_.size(), positions_.size(), 0, 0})) *
-           kGpuBuffers[buffer].element;
+    GpuCounts counts{roots_.size(), positions_.size(), 0, 0, 0, 0, 0};
+    const std::uint32_t fill = kGpuBuffers[buffer].fill;
+    if (fill == HL_GPU_BEGIN || fill == HL_GPU_STEP) {
+        std::map<std::uint32_t, std::size_t> strandsOf;
+        for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) ++strandsOf[offsets_[s + 1] - offsets_[s]];
+        counts = withGuides(counts, strandsOf, restSpheres_.size());
+    }
+    return static_cast<std::size_t>(kGpuBuffers[buffer].count(counts)) * kGpuBuffers[buffer].element;
+}
+
+Outcome Instance::beginGpu() {
+    if (level() != HL_LEVEL_FINEST)
+        return Refusal{HL_BAD_VALUE, "level " + std::to_string(level()) + "; the GPU steps the finest alone"};
+    if (std::string why = gpuGuidesRefused(engine_.settings()); !why.empty())
+        return Refusal{HL_BAD_VALUE, std::move(why)};
+    gpuGuides_.emplace(engine_.restShape(), engine_.settings(), engine_.state(),
+                       gpuSpheresOf(restSpheres_.size()));
+    return std::nullopt;
+}
+
+Outcome Instance::stepGpu(const hl_frame& frame) {
+    if (!gpuGuides_) return Refusal{HL_BAD_VALUE, "hl_gpu_begin() comes before the first hl_gpu_step()"};
+    if (frame.dt == 0) return std::nullopt;
+    if (Outcome refused = checkStep(frame)) return refused;
+    if (frame.spheres && frame.sphere_count > gpuGuides_->mostSpheres())
+        return Refusal{HL_WRONG_SIZE, std::to_string(frame.sphere_count) + " spheres; expected at most " +
+                                          std::to_string(gpuGuides_->mostSpheres())};
+    FrameInput input;
+    if (Outcome refused = place(frame, input)) return refused;
+    takeTurns();
+    gpuGuides_->take(input);
+    takeOrigin(frame);
+    asleep_ = last_.known = false;
+    return std::nullopt;
+}
+
+/// What the pass GUIDES asks for in vain.
+Outcome Instance::checkGpuGuides(std::uint32_t buffer) const {
+    const std::uint32_t fill = kGpuBuffers[buffer].fill;
+    const std::string name = kGpuBuffers[buffer].name;
+    if (fill == HL_GPU_BEGIN && !(gpuGuides_ && gpuGuides_->atBegin()))
+        return Refusal{HL_BAD_VALUE,
+                       "buffer " + name + " is filled between hl_gpu_begin() and hl_gpu_step()"};
+    if (fill == HL_GPU_STEP && !(gpuGuides_ && gpuGuides_->hasFrame()))
+        return Refusal{HL_BAD_VALUE, "buffer " + name + " is filled after hl_gpu_step()"};
+    if (fill == HL_GPU_GUIDES && gpuGuides_ && !gpuGuides_->atBegin())
+        return Refusal{HL_BAD_VALUE, "buffer " + name + " is what the pass GUIDES makes"};
+    return std::nullopt;
 }
 
 void Instance::fillGpu(std::uint32_t buffer, void* out) {
-    if (buffer == HL_GPU_BUFFER_CONSTANTS) {
+    const std::uint32_t fill = kGpuBuffers[buffer].fill;
+    if (fill == HL_GPU_BEGIN || fill == HL_GPU_STEP) {
+        gpuGuides_->fill(buffer, {static_cast<std::byte*>(out), gpuBytes(buffer)});
+    } else if (buffer == HL_GPU_BUFFER_CONSTANTS) {
         writeGpu(out, shaders::FollowConstants{static_cast<std::uint32_t>(roots_.size()), gpuHairs_,
                                                gpuPoints_, GuideMotion{}.wispSpread, 1, 0, 0, 0});
     } else if (buffer == HL_GPU_BUFFER_TURNS) {
-        showPositions();
+        const bool onGpu = gpuGuides_ && !gpuGuides_->atBegin();
+        if (!onGpu) showPositions();
         for (std::size_t s = 0; s < turns_.size(); ++s) {
             Quat turn = turns_[s];
             if (!normalize(turn)) turn = {};
-            const Float3 root = positions_[offsets_[s]];
+            const Float3 root = onGpu ? gpuGuides_->roots()[s].position : positions_[offsets_[s]];
             writeGpu(out, shaders::float4{root.x, root.y, root.z, 1});
             writeGpu(out, shaders::float4{turn.x, turn.y, turn.z, turn.w});
         }
@@ -171,7 +257,9 @@ hl_code hl_gpu_buffer(const hl_asset* asset, uint32_t buffer, hl_gpu_buffer_info
 
 hl_code hl_gpu_fill(const hl_asset* opened, uint32_t buffer, void* data, size_t bytes, hl_error* error) {
     if (!opened || !data) return nullRefused(error, "no asset or no place for its numbers");
-    if (const Outcome refused = checkGpuFill(buffer, HL_GPU_ONCE, "hl_gpu_fill")) return say(error, refused);
+    if (const Outcome refused = checkGpuFill(
+            buffer, [](std::uint32_t fill) { return fill == HL_GPU_ONCE; }, "hl_gpu_fill"))
+        return say(error, refused);
     return withHairs(opened, error, [&](const Asset& asset, const GpuCounts& counts) {
         const std::uint64_t wanted = kGpuBuffers[buffer].count(counts) * kGpuBuffers[buffer].element;
         if (const Outcome refused = checkGpuBytes(buffer, bytes, wanted)) return say(error, refused);
@@ -184,13 +272,27 @@ hl_code hl_gpu_fill_frame(hl_instance* instance, uint32_t buffer, void* data, si
     if (!instance || !data) return nullRefused(error, "no instance or no place for its numbers");
     return guarded(error, [&] {
         if (!instance->instance.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");
-        if (const Outcome refused = checkGpuFill(buffer, HL_GPU_FRAME, "hl_gpu_fill_frame"))
+        if (const Outcome refused = checkGpuFill(buffer, isOfFrame, "hl_gpu_fill_frame"))
             return say(error, refused);
         if (const Outcome refused = checkGpuBytes(buffer, bytes, instance->instance.gpuBytes(buffer)))
             return say(error, refused);
+        if (const Outcome refused = instance->instance.checkGpuGuides(buffer)) return say(error, refused);
         instance->instance.fillGpu(buffer, data);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
+}
+
+hl_code hl_gpu_begin(hl_instance* instance, hl_error* error) {
+    if (!instance) return nullRefused(error, "no instance");
+    return guarded(error, [&] {
+        if (!instance->instance.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");
+        return say(error, instance->instance.beginGpu());
+    });
+}
+
+hl_code hl_gpu_step(hl_instance* instance, const hl_frame* frame, hl_error* error) {
+    return withFrame(instance, frame, error,
+                     [](Instance& hair, const hl_frame& known) { return hair.stepGpu(known); });
 }
 
 hl_code hl_gpu_pass(const hl_asset* asset, uint32_t pass, hl_gpu_pass_info* out, hl_error* error) {
@@ -205,8 +307,9 @@ hl_code hl_gpu_pass(const hl_asset* asset, uint32_t pass, hl_gpu_pass_info* out,
             info.vertices = static_cast<std::uint32_t>(2 * counts.points);
             info.instances = static_cast<std::uint32_t>(counts.hairs);
         } else {
-            const std::uint64_t threads =
-                pass == HL_GPU_PASS_WISPS ? counts.guides : counts.hairs * counts.points;
+            const std::uint64_t threads = pass == HL_GPU_PASS_GUIDES  ? counts.slots()
+                                          : pass == HL_GPU_PASS_WISPS ? counts.guides
+                                                                      : counts.hairs * counts.points;
             const std::uint64_t groups = (threads + kGpuPasses[pass].threads - 1) / kGpuPasses[pass].threads;
             info.groups[0] = static_cast<std::uint32_t>(std::min(groups, kMostGroups));
             info.groups[1] = static_cast<std::uint32_t>((groups + kMostGroups - 1) / kMostGroups);

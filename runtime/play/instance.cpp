@@ -281,6 +281,7 @@ Outcome Instance::place(const hl_frame& frame, FrameInput& input) {
 Outcome Instance::reset(const hl_frame& frame) {
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
+    leaveGpu();
     engine_.reset(roots_);
     takeTurns();
     asleep_ = false;
@@ -305,16 +306,20 @@ void Instance::takeTurns() {
     }
 }
 
+Outcome Instance::checkStep(const hl_frame& frame) {
+    // Speeds of a shorter step are no numbers any more.
+    if (frame.dt >= 1e-6f && std::isfinite(frame.dt)) return std::nullopt;
+    return Refusal{HL_BAD_VALUE, "dt is " + std::to_string(frame.dt) + "; expected 0, or 0.000001 s or more"};
+}
+
 Outcome Instance::step(const hl_frame& frame) {
     if (frame.dt == 0) return std::nullopt;
-    // Speeds of a shorter step are no numbers any more.
-    if (!(frame.dt >= 1e-6f) || !std::isfinite(frame.dt))
-        return Refusal{HL_BAD_VALUE,
-                       "dt is " + std::to_string(frame.dt) + "; expected 0, or 0.000001 s or more"};
+    if (Outcome refused = checkStep(frame)) return refused;
     // Nothing wakes it: a step would leave every bit as it is.
     if (asleep_ && asBefore(frame)) return std::nullopt;
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
+    leaveGpu();
     takeTurns();
     if (levels_)
         stepLevel(input);
@@ -369,6 +374,7 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
     if (const std::string why = engine_.setSettings(settings); !why.empty())
         return Refusal{HL_BAD_VALUE, why};
     if (levels_) setSettingsOfLevels(settings);
+    leaveGpu();
     asleep_ = false;
     return std::nullopt;
 }

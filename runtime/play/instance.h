@@ -14,6 +14,7 @@
 #include "hairloom/asset.h"
 #include "hairloom/engine.h"
 #include "hairloom/hairloom.h"
+#include "play/gpu_guides.h"
 #include "play/levels.h"
 #include "play/root_poses.h"
 
@@ -47,6 +48,10 @@ class Instance {
     bool hasGpuHairs() const { return gpuHairs_ > 0; }
     std::size_t gpuBytes(std::uint32_t buffer) const;
     void fillGpu(std::uint32_t buffer, void* data);
+    Outcome checkGpuGuides(std::uint32_t buffer) const;
+    Outcome beginGpu();
+    void leaveGpu() { gpuGuides_.reset(); }
+    Outcome stepGpu(const hl_frame& frame);
     Outcome readHairNumbers(std::span<std::uint32_t> numbers) const;
     Outcome readOffsets(std::span<std::uint32_t> offsets) const;
     hl_instance_info describe() const;
@@ -130,6 +135,7 @@ class Instance {
     std::size_t hairPoints() const;
 
     void grow(const hl_reserve& wanted);
+    static Outcome checkStep(const hl_frame& frame);
     Outcome place(const hl_frame& frame, FrameInput& input);
     Outcome placeRoots(const hl_frame& frame);
     void placeBody(const hl_frame& frame, FrameInput& input);
@@ -168,6 +174,7 @@ class Instance {
     std::array<double, 3> origin_{};              // of the last frame
     Float3 pivot_{};                              // that heads nod about where something is measured
     std::uint32_t gpuHairs_ = 0, gpuPoints_ = 0;  // of the asset, read or not, and of each
+    std::optional<GpuGuides> gpuGuides_;          // from hl_gpu_begin() until the CPU moves the hair
     std::uint64_t asset_ = 0;                     // tells assets apart
     std::uint64_t changes_ = 1;                   // grows with all that changes what is read
     /// What the last reads have shown, of guides and of hairs.

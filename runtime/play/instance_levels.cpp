@@ -216,6 +216,7 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
     Levels& levels = *levels_;
     takeHairs(hairShare);
     if (number == levels.level) return std::nullopt;
+    leaveGpu();
     ++changes_;
     showPositions();
     showVelocities();

@@ -220,6 +220,7 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
         levels_->fade.swap(read.fade);
         placeRootsOfLevels();
     }
+    leaveGpu();
     origin_ = origin;
     turns_.swap(turns);
     asleep_ = last_.known = false;

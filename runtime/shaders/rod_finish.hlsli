@@ -3,7 +3,7 @@
 
 /// Takes the share of its motion from a strand.
 void slowRod(float share) {
-    EACH_SEGMENT(j) {
+    OWN_SEGMENTS(j) {
         setVelocity(j + 1, velocity(j + 1) * share);
         setIncrement(j, increment(j) * share);
     }
@@ -11,7 +11,7 @@ void slowRod(float share) {
 
 /// Takes the step: places, velocities, and what the next one starts from.
 void finishRodStep() {
-    float3 at = firstPosition();
+    float3 at = beginOfNow(true);
     float turn = 0.0, energy = 0.0, kinetic = 0.0, size = 0.0, stiffness = 0.0, masses = 0.0;
     // The least that the normal part of a contact's force can be of it.
     const float normalShare = 1.0 / sqrt(1.0 + gFrame.substep.friction * gFrame.substep.friction);
@@ -22,7 +22,7 @@ void finishRodStep() {
     // A bounce is no smooth motion: speeds behind it are those of the mean way.
     const bool bounces = touched > 2.0;
     const float blend = bounces ? 0.0 : gBlend, inverseStep = bounces ? 1.0 / gFrame.h : gInverseTimeStep;
-    EACH_SEGMENT(j) {
+    OWN_SEGMENTS(j) {
         const uint node = j + 1;
         const float4 rest = restTangentAndBend(j), relative = newRelative(j);
         at = mad3(rodRotate(rotation(j), rest.xyz), segmentLength(j), at);
@@ -57,10 +57,19 @@ void finishRodStep() {
 #endif
         setLoad(node, pressed);
     }
-    turn = bounces ? HAIRLOOM_ROD_NO_STEP : sqrt(turn);
     // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time scheme add is taken
     // back.
     const float last = energyBefore();
+    float4 sums = float4(energy, kinetic, size, stiffness), largest = float4(turn, 0.0, 0.0, 0.0);
+    join(sums, largest);
+    float4 weights = float4(masses, 0.0, 0.0, 0.0), none = float4(0, 0, 0, 0);
+    join(weights, none);
+    energy = sums.x;
+    kinetic = sums.y;
+    size = sums.z;
+    stiffness = sums.w;
+    masses = weights.x;
+    turn = bounces ? HAIRLOOM_ROD_NO_STEP : sqrt(largest.x);
     float noise = 30.0 * HAIRLOOM_ROD_ROUNDING * (size + kinetic) +
                         4.0 * HAIRLOOM_ROD_ROUNDING * sqrt((size + size) * stiffness);
     // Where spheres press, what is as slow as this is rounding.
@@ -78,6 +87,9 @@ void finishRodStep() {
     // What contacts with spheres that move do is work that is not counted here. Those that rest can only take: what they
     // push out of them comes to rest outside.
     if (touched > 0.0 && gRod.conservative != 2u) after = HAIRLOOM_ROD_NO_ENERGY;
-    setEnergyBefore(after);
-    setLargestTurn(turn);
+    ALONE {
+        setEnergyBefore(after);
+        setLargestTurn(turn);
+    }
+    MEET
 }

@@ -2,10 +2,6 @@
 // A substep of elastic rods (docs/engine.md, "Rods"): a prediction, one elimination from tip to root, one pass back, and
 // the guards that keep the objective from rising. As runtime/models/rods/rod-inl.h.
 
-#define FIRST_SEGMENT (HAIR_CLAMPED - 1)
-#define SEGMENTS (POINTS - 1)
-#define EACH_SEGMENT(j) [loop] for (uint j = FIRST_SEGMENT; j < SEGMENTS; ++j)
-
 static float gStepRatio;         // of this substep
 static float gBlend;             // c of the time scheme
 static float gVelocityAhead;     // share of the last change of velocity that is expected again
@@ -49,7 +45,8 @@ void openRodStep() {
     // The clamped segment turns with its root; where only the root is held, the frame that stands for one.
     const float3 along = restTangent(0);
     gInDisplacement = mad3(rodRotate(gInner, along) - rodRotate(rotation(0), along), segmentLength(0), gRootDisplacement);
-    setRotation(0, gInner);
+    MEET
+    ALONE setRotation(0, gInner);
 #endif
     const float4 turned = abs(gRotationFrom - (dot(gRotationFrom, gRotationTo) < 0.0 ? -gRotationTo : gRotationTo));
     const float moved = dot(gRootDisplacement, gRootDisplacement) + turned.x + turned.y + turned.z + turned.w;
@@ -118,23 +115,56 @@ RodContact meet(uint j, RodNode node) {
 }
 #endif
 
-/// Repeats the last substep's rotations where gPredicts, and finds the objective there and where nothing turns.
-void predict() {
-    float3 outer = gInDisplacement, position = firstPosition();
-    float4 before = gInner;
-    gObjective = gStartObjective = gStiffnessSum = 0.0;
-#if HAIR_SPHERES
-    gTouched = 0.0;
-    gNear = false;
+/// The turn that is expected of segment j.
+float3 predictedTurn(uint j) {
+    if (!gPredicts) return float3(0, 0, 0);
+    const float3 u = increment(j) * gStepRatio;
+    const float squared = dot(u, u);
+    if (squared > HAIRLOOM_ROD_LARGEST_PREDICTION * HAIRLOOM_ROD_LARGEST_PREDICTION)
+        return u * (HAIRLOOM_ROD_LARGEST_PREDICTION / sqrt(squared));
+    return u;
+}
+
+/// Where the first of this member's segments begins in the guess, and the rotation before it.
+void beginOfPrediction(bool runs, out float3 outer, out float3 position, out float4 before) {
+    outer = gInDisplacement;
+    position = firstPosition();
+    before = gInner;
+#if HAIR_MEMBERS > 1
+    float3 change = float3(0, 0, 0), way = float3(0, 0, 0);
+    if (runs) {
+        OWN_SEGMENTS(j) {
+            const float4 old = rotation(j);
+            const float3 u = predictedTurn(j), rest = restTangent(j);
+            const float4 q = rodTurned(old, u);
+            const float along = segmentLength(j);
+            change = mad3(rodTangentChange(u, rodRotate(old, rest)), along, change);
+            way = mad3(rodRotate(q, rest), along, way);
+            setPredictedRotation(j, q);
+        }
+    }
+    addThoseBefore(change, way, outer, position);
+    const uint first = ownFrom(gMember);
+    if (first > FIRST_SEGMENT) before = predictedRotation(first - 1);
 #endif
-    EACH_SEGMENT(j) {
+}
+
+/// Repeats the last substep's rotations where gPredicts, and finds the objective there and where nothing turns.
+void predict(bool runs) {
+    float3 outer, position;
+    float4 before;
+    beginOfPrediction(runs, outer, position, before);
+    float2 sums = float2(0, 0);  // the objective, and where nothing turns
+    float stiffnesses = 0.0;
+#if HAIR_SPHERES
+    if (runs) {
+        gTouched = 0.0;
+        gNear = false;
+    }
+#endif
+    if (runs) OWN_SEGMENTS(j) {
         const float4 old = rotation(j), rest = restTangentAndBend(j);
-        const float3 oldTangent = rodRotate(old, rest.xyz);
-        float3 u = increment(j) * gStepRatio;
-        const float squared = dot(u, u);
-        if (squared > HAIRLOOM_ROD_LARGEST_PREDICTION * HAIRLOOM_ROD_LARGEST_PREDICTION)
-            u *= HAIRLOOM_ROD_LARGEST_PREDICTION / sqrt(squared);
-        if (!gPredicts) u = float3(0, 0, 0);
+        const float3 oldTangent = rodRotate(old, rest.xyz), u = predictedTurn(j);
         const float along = segmentLength(j);
         outer = mad3(rodTangentChange(u, oldTangent), along, outer);
         const float4 q = rodTurned(old, u);
@@ -148,12 +178,12 @@ void predict() {
         const float4 side = rodOfStrain(last), relative = rodRelative(before, q, side);
         const float bend = rest.w * gDamped;
         const RodSection resists = section(j, bend);
-        gStiffnessSum += bend;
+        stiffnesses += bend;
         const float3 off = outer - aimed.xyz, offStart = gInDisplacement - aimed.xyz;
-        gObjective += rodTwiceEnergy(twice(relative) - wanted, bend, resists) + aimed.w * dot(off, off);
+        sums.x += rodTwiceEnergy(twice(relative) - wanted, bend, resists) + aimed.w * dot(off, off);
         float3 strainStart = last;
         if (j == FIRST_SEGMENT) strainStart = twice(rodRelative(gInner, old, side));
-        gStartObjective += rodTwiceEnergy(strainStart - wanted, bend, resists) + aimed.w * dot(offStart, offStart);
+        sums.y += rodTwiceEnergy(strainStart - wanted, bend, resists) + aimed.w * dot(offStart, offStart);
         setPredictedRotation(j, q);
         setPredictedRelative(j, relative);
         setWantedStrain(j, wanted);
@@ -163,14 +193,25 @@ void predict() {
 #if HAIR_SPHERES
         if (gReachable != 0u) {
             const RodContact met = meet(j, nodeOf(j + 1, outer, tangent, position, aimed.w));
-            gObjective += met.twiceEnergy;
-            gStartObjective += rodContactTwiceEnergy(met, gInDisplacement - outer);
+            sums.x += met.twiceEnergy;
+            sums.y += rodContactTwiceEnergy(met, gInDisplacement - outer);
         }
 #endif
         before = q;
     }
-    gObjective *= 0.5;
-    gStartObjective *= 0.5;
+    float4 all = float4(sums, stiffnesses, 0.0), most = float4(0, 0, 0, 0);
+#if HAIR_SPHERES
+    most.xy = float2(gTouched, gNear ? 1.0 : 0.0);
+#endif
+    join(all, most);
+    if (!runs) return;
+    gObjective = 0.5 * all.x;
+    gStartObjective = 0.5 * all.y;
+    gStiffnessSum = all.z;
+#if HAIR_SPHERES
+    gTouched = most.x;
+    gNear = most.y != 0.0;
+#endif
 }
 
 void eliminate() {
@@ -198,12 +239,29 @@ void eliminate() {
     }
 }
 
+/// Twice what segment j and its outer node have of the objective where it has turned to q, behind a segment that has turned
+/// to `before`, and the node has gone by `outer`; keeps how the vertex is bent then.
+float twiceEnergyOf(uint j, float bend, float4 before, float4 q, float3 outer, float3 x) {
+    const float4 relative = rodRelative(before, q, predictedRelative(j)), aimed = target(j);
+    const float3 off = outer - aimed.xyz;
+    float sum = rodTwiceEnergy(twice(relative) - wantedStrain(j), bend, section(j, bend)) + aimed.w * dot(off, off);
+#if HAIR_SPHERES
+    if (gReachable != 0u) sum += rodContactTwiceEnergy(contact(j), x);
+#endif
+    setNewRelative(j, relative);
+    return sum;
+}
+
 /// Turns the segments from root to tip; returns the objective.
-float advance(float share) {
+float advance(float share, bool runs) {
     float3 outer = gInDisplacement, predicted = gInDisplacement;
     float3 x = float3(0, 0, 0), u = float3(0, 0, 0);
-    float4 before = gInner;
     float sum = 0.0;
+#if HAIR_MEMBERS > 1
+    if (runs && gMember == 0u)
+#else
+    float4 before = gInner;
+#endif
     EACH_SEGMENT(j) {
         const RodGains g = gains(j);
         u -= float3(rodGain(g, 0, share, x, u), rodGain(g, 1, share, x, u), rodGain(g, 2, share, x, u));
@@ -214,47 +272,70 @@ float advance(float share) {
         outer = mad3(change, segmentLength(j), outer) + (here - predicted);
         predicted = here;
         x = outer - here;
-        const float4 relative = rodRelative(before, q, predictedRelative(j)), aimed = target(j);
-        const float bend = rest.w * gDamped;
-        const float3 off = outer - aimed.xyz;
-        sum += rodTwiceEnergy(twice(relative) - wantedStrain(j), bend, section(j, bend)) +
-               aimed.w * dot(off, off);
-#if HAIR_SPHERES
-        if (gReachable != 0u) sum += rodContactTwiceEnergy(contact(j), x);
-#endif
         setNewDisplacement(j, outer);
-        setNewRelative(j, relative);
         setRotation(j, q);
         setIncrement(j, predictedIncrement(j) + u);
+#if HAIR_MEMBERS == 1
+        sum += twiceEnergyOf(j, rest.w * gDamped, before, q, outer, x);
         before = q;
+#endif
     }
-    return sum * 0.5;
+#if HAIR_MEMBERS > 1
+    MEET
+    if (runs) OWN_SEGMENTS(i) {
+        float4 before = gInner;
+        if (i > FIRST_SEGMENT) before = rotation(i - 1);
+        const float3 moved = newDisplacement(i);
+        sum += twiceEnergyOf(i, restTangentAndBend(i).w * gDamped, before, rotation(i), moved,
+                             moved - predictedDisplacement(i));
+    }
+#endif
+    float4 all = float4(sum, 0.0, 0.0, 0.0), none = float4(0, 0, 0, 0);
+    join(all, none);
+    return 0.5 * all.x;
 }
 
 /// One step of Gauss-Newton from the guess.
-void descend() {
+void descend(bool runs) {
+#if HAIR_MEMBERS > 1
+    if (runs && gMember == 0u)
+#endif
     eliminate();
     float share = 1.0;
     const float limit = gObjective + mad(gObjective, 1e-5, roundingOf(gObjective));
     [loop] for (uint shortenings = 0; shortenings <= HAIRLOOM_ROD_SHORTENINGS + 1; ++shortenings) {
-        const float objective = advance(share);
+        const float objective = advance(share, runs);
         // What is no number has risen, too.
-        if (objective <= limit && isSound(float3(objective, limit, 0.0))) break;
+        runs = runs && !(objective <= limit && isSound(float3(objective, limit, 0.0)));
+        if (!anyOf(runs)) break;
         share = shortenings < HAIRLOOM_ROD_SHORTENINGS ? share * HAIRLOOM_ROD_SHORTENING : 0.0;
     }
+}
+
+/// Where the first of this member's segments begins, relative to the root, with rotations as they are now.
+float3 beginOfNow(bool runs) {
+    float3 begin = firstPosition();
+#if HAIR_MEMBERS > 1
+    float3 way = float3(0, 0, 0), none = float3(0, 0, 0);
+    if (runs) OWN_SEGMENTS(j) way = mad3(rodRotate(rotation(j), restTangent(j)), segmentLength(j), way);
+    addThoseBefore(way, none, begin, none);
+#endif
+    return begin;
 }
 
 #if HAIR_SPHERES
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the prediction had outside,
 /// or holds one that it has lifted off, what it has found is the next guess; false: nowhere. Looks after the first are
 /// for hair that comes to rest (models/rods/rod_look-inl.h).
-bool lookAgain(bool isFirst) {
-    if (!gNear) return false;
-    bool wrong = false;
+bool lookAgain(bool isFirst, bool runs) {
+    runs = runs && gNear;
+    if (!anyOf(runs)) return false;
     const float deepest = isFirst ? 1e9 : HAIRLOOM_ROD_CONTACT_SUNK;
+    const float3 begin = beginOfNow(runs);
+    bool wrong = false;
     float farthest = 0.0;
-    float3 position = firstPosition();
-    EACH_SEGMENT(j) {
+    float3 position = begin;
+    if (runs) OWN_SEGMENTS(j) {
         const float3 tangent = rodRotate(rotation(j), restTangent(j));
         position = mad3(tangent, segmentLength(j), position);
         if (isNear(j)) {
@@ -274,12 +355,15 @@ bool lookAgain(bool isFirst) {
             farthest = max(farthest, dot(node.displacement, node.displacement));
         }
     }
+    float4 seen = float4(wrong ? 1.0 : 0.0, farthest, 0.0, 0.0), none = float4(0, 0, 0, 0);
+    join(none, seen);
     const float slow = HAIRLOOM_ROD_CONTACT_SLOW * gFrame.h;
-    const bool moves = gTouched > 2.0 || farthest > slow * slow;
-    if (!wrong || (!isFirst && moves)) return false;
-    position = firstPosition();
-    gObjective = gTouched = 0.0;
-    EACH_SEGMENT(i) {
+    const bool moves = gTouched > 2.0 || seen.y > slow * slow;
+    runs = runs && seen.x != 0.0 && (isFirst || !moves);
+    if (!anyOf(runs)) return false;
+    position = begin;
+    float sum = 0.0, touched = 0.0;
+    if (runs) OWN_SEGMENTS(i) {
         const float4 q = rotation(i), rest = restTangentAndBend(i), relative = newRelative(i), aimed = target(i);
         const float3 tangent = rodRotate(q, rest.xyz), moved = newDisplacement(i), off = moved - aimed.xyz;
         position = mad3(tangent, segmentLength(i), position);
@@ -294,17 +378,22 @@ bool lookAgain(bool isFirst) {
             setContact(i, found);
         }
         const RodContact met = contact(i);
-        gTouched = max(gTouched, met.touching);
+        touched = max(touched, met.touching);
         const float bend = rest.w * gDamped;
-        gObjective += met.twiceEnergy + aimed.w * dot(off, off) +
-                      rodTwiceEnergy(twice(relative) - wantedStrain(i), bend, section(i, bend));
+        sum += met.twiceEnergy + aimed.w * dot(off, off) +
+               rodTwiceEnergy(twice(relative) - wantedStrain(i), bend, section(i, bend));
         setPredictedRotation(i, q);
         setPredictedRelative(i, relative);
         setPredictedDisplacement(i, moved);
         setPredictedIncrement(i, increment(i));
     }
-    gObjective *= 0.5;
-    return true;
+    float4 all = float4(sum, 0.0, 0.0, 0.0), most = float4(touched, 0.0, 0.0, 0.0);
+    join(all, most);
+    if (runs) {
+        gObjective = 0.5 * all.x;
+        gTouched = most.x;
+    }
+    return runs;
 }
 #endif
 
@@ -313,19 +402,25 @@ bool lookAgain(bool isFirst) {
 /// All that moves a rod in a substep, in one solve.
 void stageRod() {
     openRodStep();
-    bool worse = false;
+    // Drivers inline: each of these is called in one place.
+    bool runs = true;
+    gPredicts = true;
     [loop] for (uint attempt = 0; attempt < 2; ++attempt) {
-        gPredicts = attempt == 0;
-        predict();
-        worse = gObjective > mad(gStartObjective, HAIRLOOM_ROD_PREDICTION_SHARE, roundingOf(gStartObjective));
-        if (!worse) break;
+        predict(runs);
+        runs = runs && gObjective > mad(gStartObjective, HAIRLOOM_ROD_PREDICTION_SHARE, roundingOf(gStartObjective));
+        if (!anyOf(runs)) break;
+        if (runs) gPredicts = false;
     }
-    descend();
 #if HAIR_SPHERES
-    [loop] for (int look = 0; look < HAIRLOOM_ROD_CONTACT_LOOKS; ++look) {
-        if (gReachable == 0u || !lookAgain(look == 0)) break;
-        descend();
+    runs = true;
+    [loop] for (int look = 0; look <= HAIRLOOM_ROD_CONTACT_LOOKS; ++look) {
+        descend(runs);
+        runs = runs && gReachable != 0u && look < HAIRLOOM_ROD_CONTACT_LOOKS;
+        runs = lookAgain(look == 0, runs);
+        if (!anyOf(runs)) break;
     }
+#else
+    descend(true);
 #endif
     finishRodStep();
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A frame of strands as elastic rods, one thread a strand and 32 a work group, as rods.cpp of the engine has them. Whoever
-// compiles this defines HAIR_RODS 1 and, as strands.hlsli has them, HAIR_TOGETHER, HAIR_CLAMPED, HAIR_SPHERES, HAIR_WIND,
-// HAIR_SLEEP, HAIR_VELOCITIES and HAIR_STAGES. Any number of points has the same kernel.
+// A frame of strands as elastic rods, HAIR_MEMBERS threads a strand and HAIR_STRANDS strands a work group, as rods.cpp of the
+// engine has them. Whoever compiles this defines HAIR_RODS 1, both and, as strands.hlsli has them, HAIR_TOGETHER, HAIR_CLAMPED,
+// HAIR_SPHERES, HAIR_WIND, HAIR_SLEEP, HAIR_VELOCITIES and HAIR_STAGES. Any number of points has the same kernel.
 #define HAIR_POINTS gRod.points
 #define HAIR_EXACT 0
 #define HAIR_UNROLL 0
 #define HAIR_STORAGE 2
-#define HAIR_STRANDS 32
 #define HAIR_EVALUATION 0
 #define HAIR_BEND 0
 #define HAIR_TARGETS 0
@@ -27,20 +26,26 @@ float windPhase(uint m, uint left) { return mad(gRod.windTurns[m].x, float(left)
 #if HAIR_SPHERES
 #include "rod_contact.hlsli"
 #endif
+#include "rod_members.hlsli"
 #include "rod_substep.hlsli"
 #include "sleeping.hlsli"
 
 void runSubsteps() {
-    const uint block = gSlot / HAIR_STRANDS;
+    const uint block = gSlot / HAIRLOOM_GROUP_STRANDS;
     gCurved = gCurvedBlocks[block] != 0u;
     gGuarded = false;
 #if HAIR_SPHERES
     findReachableSpheres();
 #endif
+    openMembers();
     [loop] for (gSubstep = 0; gSubstep < gFrame.substeps; ++gSubstep) {
         HAIR_STAGES
     }
-    if (gGuarded && gSlot % HAIR_STRANDS < gBlocks[block].y) InterlockedAdd(gReport[REPORT_GUARDED], 1u);
+    ALONE if (gGuarded && gSlot % HAIRLOOM_GROUP_STRANDS < gBlocks[block].y) InterlockedAdd(gReport[REPORT_GUARDED], 1u);
 }
 
+#if HAIR_MEMBERS > 1
+#include "frame_members.hlsli"
+#else
 #include "frame_threads.hlsli"
+#endif

@@ -71,8 +71,10 @@ float3 rootNormal() { return rotate(gRotation, gNormalAtRest); }
 /// Takes the way of the root through the frame.
 void enterFrame() {
 #if HAIR_RODS
-    if (gRod.fresh == HAIRLOOM_RODS_FRESH) placeRodOnPoints();
-    if (gRod.fresh == HAIRLOOM_RODS_OF_OTHER_ENERGY) setEnergyBefore(HAIRLOOM_ROD_NO_ENERGY);
+    ALONE {
+        if (gRod.fresh == HAIRLOOM_RODS_FRESH) placeRodOnPoints();
+        if (gRod.fresh == HAIRLOOM_RODS_OF_OTHER_ENERGY) setEnergyBefore(HAIRLOOM_ROD_NO_ENERGY);
+    }
 #endif
     float3 from = float3(rootRow(0), rootRow(1), rootRow(2));
     float4 rotationFrom = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
@@ -83,7 +85,7 @@ void enterFrame() {
     const bool teleported = !(dot(displacement, displacement) <= gFrame.teleportDistance * gFrame.teleportDistance);
     if (teleported) {
         const float4 turn = multiply(turnedTo, conjugate(rotationFrom));
-        ALL_POINTS(p) {
+        ALONE ALL_POINTS(p) {
             setPosition(p, rotate(turn, position(p)));
             setPrevious(p, rotate(turn, previous(p)));
 #if HAIR_RODS

@@ -59,8 +59,9 @@ struct SimulationConstants {
     float sphereDisplacement;  ///< metres; the longest way of a sphere in a substep
     float firstShare;  ///< of the ways of position Verlet in the frame's first substep: ½ from rest, else 1
     SubstepNumbers substep;
-    float4 gravityStep;                          ///< g h², w unused
-    float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts
+    float4 gravityStep;  ///< g h², w unused
+    float4 originShift;  ///< metres by which the origin moves what was measured from it; w: 0
+    float4 wind;         ///< mean velocity, m/s; w: strength of gusts
     float4 windAmplitudes[HAIRLOOM_WIND_MODES];  ///< m/s; w: phase at the start of the frame, turns
     float4 windWaves[HAIRLOOM_WIND_MODES];       ///< turns per metre; w: phase at the end of the frame
 };
@@ -74,8 +75,8 @@ struct SphereConstants {
 #ifdef __cplusplus
 static_assert(sizeof(SubstepNumbers) % 16 == 0 && offsetof(SimulationConstants, substep) == 64);
 static_assert(offsetof(SimulationConstants, h) == 28 && offsetof(SimulationConstants, gravityStep) == 112);
-static_assert(offsetof(SimulationConstants, windWaves) == 144 + 16 * HAIRLOOM_WIND_MODES);
-static_assert(sizeof(SimulationConstants) == 144 + 32 * HAIRLOOM_WIND_MODES);
+static_assert(offsetof(SimulationConstants, windWaves) == 160 + 16 * HAIRLOOM_WIND_MODES);
+static_assert(sizeof(SimulationConstants) == 160 + 32 * HAIRLOOM_WIND_MODES);
 static_assert(sizeof(SphereConstants) == 32);
 }  // namespace hairloom::shaders
 #endif

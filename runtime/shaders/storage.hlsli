@@ -12,6 +12,16 @@
 // of now, so position − previous is the displacement in the world. Forces add a·h² to it by taking it from
 // `previous`.
 
+// Of rods HAIR_MEMBERS threads may share a strand, see rod_members.hlsli; elsewhere it is 1.
+
+#if HAIR_MEMBERS > 1
+static uint gMember;  // which of the threads of its strand
+/// Before what one of them does for all.
+#define ALONE if (gMember == 0u)
+#else
+#define ALONE
+#endif
+
 cbuffer Frame : register(b0) { SimulationConstants gFrame; };
 
 StructuredBuffer<float4> gRest : register(t0);       // rest vector of the segment after the point, its length
@@ -66,7 +76,7 @@ StructuredBuffer<float4> gTargets : register(t3);
 #if HAIR_SLEEP
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
 #endif
-#if HAIR_SLEEP && HAIR_STORAGE >= 3
+#if HAIR_SLEEP && (HAIR_STORAGE >= 3 || HAIR_MEMBERS > 1)
 RWStructuredBuffer<uint> gGathered : register(u8);   // per block: of its work groups, see shared_block.hlsli
 #endif
 #if HAIR_VELOCITIES
@@ -74,7 +84,8 @@ RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  //
 #endif
 
 static uint gSlot;
-float rootRow(uint row) { return gRoots[row * gFrame.slots + gSlot]; }
+/// Seen from the origin of this frame. Where that moves nothing sleeps, so that all roots are written anew.
+float rootRow(uint row) { return gRoots[row * gFrame.slots + gSlot] + gFrame.originShift[min(row, 3u)]; }
 #if HAIR_EXACT
 #define POINTS HAIR_POINTS
 #else
@@ -98,7 +109,7 @@ static uint gPointCount;
 #define freedom(p) 1.0
 #define setFreePosition setPosition
 #define setFreePrevious setPrevious
-#define ONLY_POINT(n)
+#define ONLY_POINT(n) ALONE
 uint pointOf(uint k) { return k; }
 uint ownOf(uint p) { return p; }
 #endif

@@ -12,6 +12,7 @@
 //   HAIR_TARGETS     1: rest directions; HAIR_TENSIONS 1: kept from substep to substep
 //   HAIR_SPHERES     0; 1: in a constant buffer; 2: in a buffer
 //   HAIR_WIND, HAIR_SLEEP, HAIR_VELOCITIES
+#define HAIR_MEMBERS 1
 #include "simulation_types.h"
 #include "math.hlsli"
 #include "storage.hlsli"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Plays a runtime asset with Vulkan 1.3: the CPU steps guides, the kernels of share/hairloom-runtime/shaders
-// make all hairs of them and draw them as ribbons, and nothing is read back but the last image, which is
-// written as PPM.
-//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--compare]
+// Plays a runtime asset with Vulkan 1.3: the CPU steps guides, or with --gpu a kernel does. The kernels of
+// share/hairloom-runtime/shaders make all hairs of them and draw them as ribbons, and nothing is read back
+// but the last image, which is written as PPM.
+//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--compare]
 // --compare reads the hairs of each frame back and says how far they are from hl_instance_read_hairs().
 
 #include <hairloom/gpu.h>
@@ -138,9 +138,9 @@ void makePipeline(const Gpu& gpu, const std::string& shaders, Pass& pass) {
     check(vkCreateGraphicsPipelines(gpu.device, {}, 1, &info, nullptr, &pass.pipeline), file.c_str());
 }
 
-/// One frame: the passes in their order, then the image into `pixels`.
-void draw(const Gpu& gpu, const std::vector<Pass>& passes, const Image& colour, const Image& depth,
-          const Buffer& pixels) {
+/// One frame: the passes from `first` on in their order, then the image into `pixels`.
+void draw(const Gpu& gpu, const std::vector<Pass>& passes, std::uint32_t first, const Image& colour,
+          const Image& depth, const Buffer& pixels) {
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     check(vkBeginCommandBuffer(gpu.commands, &begin), "vkBeginCommandBuffer");
     turnInto(gpu.commands, colour.handle, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
@@ -162,7 +162,8 @@ void draw(const Gpu& gpu, const std::vector<Pass>& passes, const Image& colour, 
     targets.colorAttachmentCount = 1;
     targets.pColorAttachments = &colours;
     targets.pDepthAttachment = &depths;
-    for (const Pass& pass : passes) {
+    for (std::size_t p = first; p < passes.size(); ++p) {
+        const Pass& pass = passes[p];
         const bool compute = pass.info.kind == HL_GPU_COMPUTE;
         const auto point = compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
         vkCmdBindPipeline(gpu.commands, point, pass.pipeline);
@@ -240,14 +241,16 @@ void writeImage(const char* name, const Buffer& pixels) {
 }  // namespace
 
 int main(int count, char** words) {
-    if (count < 3) fail("vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--compare]");
+    if (count < 3) fail("vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--compare]");
     const char* image = nullptr;
     int frames = 60;
-    bool comparing = false;
+    bool comparing = false, onGpu = false;
     for (int i = 3; i < count; ++i) {
         const std::string word = words[i];
         if (word == "--compare")
             comparing = true;
+        else if (word == "--gpu")
+            onGpu = true;
         else if (word == "-o" && i + 1 < count)
             image = words[++i];
         else if (word == "--frames" && i + 1 < count)
@@ -260,10 +263,11 @@ int main(int count, char** words) {
     std::size_t size = 0;
     const std::vector<Piece> bytes = readFile(words[1], size);
     hairloom::game::Asset asset;
-    hairloom::game::Instance hair;
+    hairloom::game::Instance hair, onCpu;
     if (!asset.open(bytes.data(), size, &error)) fail(error.words);
-    // Follow hairs on the CPU are there to compare with, and for nothing else.
-    if (!hair.make(asset, comparing ? HL_HAIRS : HL_GUIDES, nullptr, &error)) fail(error.words);
+    if (!hair.make(asset, HL_GUIDES, nullptr, &error)) fail(error.words);
+    // There to compare with, and for nothing else.
+    if (comparing && !onCpu.make(asset, HL_HAIRS, nullptr, &error)) fail(error.words);
 
     const Gpu gpu;
     std::vector<Buffer> buffers;
@@ -288,6 +292,18 @@ int main(int count, char** words) {
     look(asset.describe(), view);
     std::memcpy(buffers[HL_GPU_BUFFER_VIEW].mapped, &view, sizeof view);
 
+    const auto fill = [&](std::uint32_t kind) {
+        for (std::uint32_t b = 0; b < HL_GPU_BUFFER_COUNT; ++b) {
+            if (infos[b].fill == kind)
+                check(hl_gpu_fill_frame(hair.get(), b, buffers[b].mapped, buffers[b].bytes, &error), error);
+        }
+    };
+    if (onGpu) {
+        check(hl_gpu_begin(hair.get(), &error), error);
+        fill(HL_GPU_BEGIN);
+        fill(HL_GPU_GUIDES);
+    }
+
     const Image colour =
         gpu.image(kColour, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
                   VK_IMAGE_ASPECT_COLOR_BIT);
@@ -305,19 +321,21 @@ int main(int count, char** words) {
         frame.time = f / 60.0;
         frame.head = head;
         frame.wind = wind;
-        if (!hair.step(frame, &error)) fail(error.words);
-        for (std::uint32_t b = 0; b < HL_GPU_BUFFER_COUNT; ++b) {
-            if (infos[b].fill == HL_GPU_FRAME)
-                check(hl_gpu_fill_frame(hair.get(), b, buffers[b].mapped, buffers[b].bytes, &error), error);
-        }
-        draw(gpu, passes, colour, depth, pixels);
+        check(onGpu ? hl_gpu_step(hair.get(), &frame, &error) : hl_instance_step(hair.get(), &frame, &error),
+              error);
+        fill(HL_GPU_FRAME);
+        fill(onGpu ? HL_GPU_STEP : HL_GPU_GUIDES);
+        draw(gpu, passes, onGpu ? HL_GPU_PASS_GUIDES : HL_GPU_PASS_WISPS, colour, depth, pixels);
         if (!comparing) continue;
-        if (!hair.readHairs(expected, &error)) fail(error.words);
+        if (!onCpu.step(frame, &error) || !onCpu.readHairs(expected, &error)) fail(error.words);
         compare(buffers[HL_GPU_BUFFER_POINTS], expected, farthest, squares);
     }
     if (image) writeImage(image, pixels);
     std::size_t uploaded = 0;
-    for (const hl_gpu_buffer_info& info : infos) uploaded += info.fill == HL_GPU_FRAME ? info.bytes : 0;
+    for (const hl_gpu_buffer_info& info : infos) {
+        if (info.fill == HL_GPU_FRAME || info.fill == (onGpu ? HL_GPU_STEP : HL_GPU_GUIDES))
+            uploaded += info.bytes;
+    }
     std::printf("%u hairs, %d frames, %zu bytes uploaded in each\n", view.hairs, frames, uploaded);
     if (comparing)
         std::printf("apart from the CPU's: %.3g m at most, %.3g m root mean square\n", farthest, squares);

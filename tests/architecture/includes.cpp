@@ -31,7 +31,7 @@ std::vector<std::string> findSources() {
     const fs::path top = sourceDir();
     std::vector<std::string> found;
     for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "editor", "cli",
-                               "samples", "benchmarks", "tests", "packaging"}) {
+                               "samples", "benchmarks", "tests", "packaging", "python"}) {
         for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
             if (kExtensions.contains(entry.path().extension().string()))
                 found.push_back(fs::relative(entry.path(), top).generic_string());

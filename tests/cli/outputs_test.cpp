@@ -44,6 +44,7 @@ constexpr Writes kWrites[] = {
     {"lod", "--output", "g.hairloom -o OUT", true},
     {"reference", "--output", "-o OUT"},
     {"reference", "--man", "--man OUT", true},
+    {"reference", "--jobs", "--jobs OUT"},
     {"render", "--output", "g.hairloom --size 2000x2000 -o OUT"},
     {"render", "--exr", "g.hairloom --size 2000x2000 -o p.png --exr OUT"},
     {"render", "--animation", "g.hairloom --size 2000x2000 -o p.png --animation OUT"},

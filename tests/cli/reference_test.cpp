@@ -62,6 +62,36 @@ TEST_F(Reference, GroomListsOperationsAndBrushesWithTheirFields) {
     EXPECT_EQ(run("groom hair.hairloom").exitCode, 2) << "neither --list nor a script";
 }
 
+TEST_F(Reference, JobsAsDataHaveWhatTheirHelpHas) {
+    const auto written = runJson("reference --jobs jobs.json");
+    const auto all = nlohmann::json::parse(readText(folder / "jobs.json"));
+    ASSERT_EQ(all["jobs"].size(), written["jobs"].get<std::size_t>());
+    EXPECT_EQ(all["options"].front()["name"], "version");
+    for (const auto& job : all["jobs"]) {
+        const std::string help = run(job["name"].get<std::string>() + " --help").output;
+        EXPECT_THAT(help, testing::HasSubstr(job["does"].get<std::string>()));
+        for (const auto& option : job["options"]) {
+            const bool placed = option["argument"].is_null();
+            EXPECT_THAT(
+                help, testing::HasSubstr((placed ? option["name"] : option["argument"]).get<std::string>()));
+        }
+    }
+    const auto optionOf = [&](const char* name, const char* wanted) -> nlohmann::json {
+        for (const auto& job : all["jobs"]) {
+            for (const auto& option : job["options"])
+                if (job["name"] == name && option["name"] == wanted) return option;
+        }
+        ADD_FAILURE() << name << ' ' << wanted;
+        return {};
+    };
+    EXPECT_EQ(optionOf("render", "camera")["choices"].size(), 7u);
+    EXPECT_EQ(optionOf("simulate", "frames")["type"], "UINT");
+    EXPECT_EQ(optionOf("simulate", "sag")["type"], "FLAG");
+    EXPECT_EQ(optionOf("set", "fields")["many"], true);
+    EXPECT_EQ(optionOf("simulate", "groom")["required"], true);
+    EXPECT_EQ(optionOf("budget", "ms")["argument"], "--ms") << "an option of a group";
+}
+
 TEST_F(Reference, ManualPagesHaveEveryJobAndBrush) {
     const auto written = runJson("reference --man man");
     EXPECT_EQ(written["files"].size(), 2u);

@@ -38,6 +38,23 @@ TEST_F(RuntimeAssetJobs, AnAssetIsWrittenDescribedValidatedAndSimulated) {
     EXPECT_THAT(asked.errors, HasSubstr("metres, Y up"));
 }
 
+TEST_F(RuntimeAssetJobs, FindingsAreToldOnStandardErrorAndByValidate) {
+    const auto said = [&](const std::string& mesh, const std::string& name) {
+        runJson("create --mesh '" + mesh + "' --scalp material:scalp --count 20 --length 0.1 --points 8 -o " +
+                name + ".hairloom");
+        const auto exported = run("export " + name + ".hairloom --format runtime -o " + name + ".hairrt");
+        EXPECT_EQ(exported.exitCode, 0);
+        return exported.errors + runJson("validate " + name + ".hairrt")["findings"].dump();
+    };
+    std::string plain = bustFile();
+    plain.replace(plain.rfind('.'), std::string::npos, ".obj");
+    const std::string bare = said(plain, "bare");
+    const auto first = bare.find("the asset has no bones");
+    ASSERT_NE(first, std::string::npos) << bare;
+    EXPECT_NE(bare.find("the asset has no bones", first + 1), std::string::npos) << bare;
+    EXPECT_EQ(said(bustFile(), "boned").find("no bones"), std::string::npos);
+}
+
 TEST_F(RuntimeAssetJobs, ADamagedAssetIsRefusedWithItsPlace) {
     runJson("create --mesh " + bustFile() +
             " --scalp cap:40 --count 20 --length 0.1 --points 8 -o g.hairloom");

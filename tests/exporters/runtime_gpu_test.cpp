@@ -100,6 +100,104 @@ TEST_F(RuntimeGpu, FramesHaveTheGuidesAtEveryLevelAndAskForMemoryOnce) {
     }
 }
 
+TEST_F(RuntimeGpu, GuidesOfTheGpuAreToldWhereTheyAreAndWhereRootsGo) {
+    Instance hair;
+    Error error;
+    ASSERT_TRUE(hair.make(asset_, HL_GUIDES));
+    for (int f = 1; f <= 5; ++f) ASSERT_TRUE(hair.step(Walk(f).frame));
+    ASSERT_EQ(hl_gpu_begin(hair.get(), &error), HL_OK) << error.what();
+    const std::vector<Vec3f> seen = guides(hair);
+    const std::vector<float> state = filled(hair, HL_GPU_BUFFER_STATE),
+                             roots = filled(hair, HL_GPU_BUFFER_ROOTS);
+    const std::vector<float> lengths = filled(hair, HL_GPU_BUFFER_SEGMENTS);
+    const std::vector<float> first = filled(hair, HL_GPU_BUFFER_FIRST_POINTS);
+    const std::size_t slots = first.size(), points = lengths.size() / 2 / slots, plane = slots * points;
+    ASSERT_EQ(state.size(), 7 * plane);
+    std::size_t found = 0;
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+        std::uint32_t at = 0;
+        std::memcpy(&at, &first[slot], sizeof at);
+        // Slots behind the guides of a block repeat its last, those behind the blocks are empty.
+        if (at == ~0u || lengths[2 * slot] == 0) continue;
+        ++found;
+        for (std::size_t p = 0; p < points; ++p) {
+            const std::size_t i = p * slots + slot;
+            const Vec3f root(roots[slot], roots[slots + slot], roots[2 * slots + slot]);
+            const Vec3f point = root + Vec3f(state[i], state[plane + i], state[2 * plane + i]);
+            EXPECT_EQ(point, seen[at + p]) << slot << ", " << p;
+        }
+    }
+    EXPECT_EQ(found, asset_.describe().guides);
+    ASSERT_EQ(hl_gpu_step(hair.get(), &Walk(6).frame, &error), HL_OK) << error.what();
+    ASSERT_TRUE(first_.step(Walk(6).frame));
+    const std::vector<float> to = filled(hair, HL_GPU_BUFFER_ROOTS_TO);
+    const std::vector<Vec3f> walked = guides(first_);
+    for (std::size_t slot = 0; slot < found; ++slot) {
+        std::uint32_t at = 0;
+        std::memcpy(&at, &first[slot], sizeof at);
+        if (at == ~0u) continue;
+        EXPECT_EQ(Vec3f(to[8 * slot], to[8 * slot + 1], to[8 * slot + 2]), walked[at]) << slot;
+        EXPECT_EQ(to[8 * slot + 3], 1) << "it moves";
+    }
+    const std::vector<float> turns = filled(hair, HL_GPU_BUFFER_TURNS);
+    EXPECT_EQ(Vec3f(turns[0], turns[1], turns[2]), walked[0]);
+    EXPECT_EQ(filled(hair, HL_GPU_BUFFER_SPHERES)[3], 0.095f);
+    EXPECT_EQ(guides(hair), seen) << "the CPU knows nothing of it";
+}
+
+TEST_F(RuntimeGpu, GuidesOfTheGpuAreAskedForInOrder) {
+    Instance hair;
+    Error error;
+    ASSERT_TRUE(hair.make(asset_, HL_GUIDES | HL_LEVELS));
+    std::vector<std::byte> room(about(HL_GPU_BUFFER_SCRATCH).bytes, std::byte{0x5a});
+    const std::vector<std::byte> untouched = room;
+    const auto refused = [&](hl_code code, const char* words) {
+        EXPECT_EQ(code, HL_BAD_VALUE) << words;
+        EXPECT_THAT(error.words, HasSubstr(words));
+        EXPECT_EQ(room, untouched) << words;
+    };
+    const auto fill = [&](std::uint32_t buffer) {
+        return hl_gpu_fill_frame(hair.get(), buffer, room.data(), about(buffer).bytes, &error);
+    };
+    const Walk walk(1);
+    refused(hl_gpu_step(hair.get(), &walk.frame, &error), "hl_gpu_begin() comes before");
+    refused(fill(HL_GPU_BUFFER_STATE), "STATE is filled between");
+    refused(fill(HL_GPU_BUFFER_STEP), "STEP is filled after hl_gpu_step()");
+    refused(fill(HL_GPU_BUFFER_SCRATCH), "SCRATCH is none");
+    ASSERT_EQ(hl_gpu_begin(hair.get(), &error), HL_OK);
+    refused(fill(HL_GPU_BUFFER_ROOTS_TO), "ROOTS_TO is filled after hl_gpu_step()");
+    ASSERT_EQ(hl_gpu_step(hair.get(), &walk.frame, &error), HL_OK);
+    refused(fill(HL_GPU_BUFFER_STATE), "STATE is filled between");
+    refused(fill(HL_GPU_BUFFER_POSITIONS), "POSITIONS is what the pass GUIDES makes");
+    game::Frame frame = walk.frame;
+    const std::vector<float> spheres(4 * 33, 0.1f);
+    frame.spheres = spheres.data();
+    frame.sphere_count = 33;
+    EXPECT_EQ(hl_gpu_step(hair.get(), &frame, &error), HL_WRONG_SIZE);
+    EXPECT_THAT(error.words, HasSubstr("33 spheres; expected at most 32"));
+    frame.sphere_count = 32;
+    EXPECT_EQ(hl_gpu_step(hair.get(), &frame, &error), HL_OK) << error.what();
+    Instance copied;
+    ASSERT_TRUE(copied.copy(hair));
+    refused(hl_gpu_step(copied.get(), &frame, &error), "hl_gpu_begin() comes before");
+    frame.dt = -1;
+    refused(hl_gpu_step(hair.get(), &frame, &error), "dt is -1");
+    // What moves the hair on the CPU ends it.
+    ASSERT_TRUE(hair.step(walk.frame));
+    refused(hl_gpu_step(hair.get(), &walk.frame, &error), "hl_gpu_begin() comes before");
+    ASSERT_TRUE(hair.setLevel(HL_LEVEL_RIGID));
+    refused(hl_gpu_begin(hair.get(), &error), "level 4; the GPU steps the finest alone");
+    refused(hl_gpu_begin(nullptr, &error), "no instance");
+    // Of other models and roots there is no kernel.
+    Groom springs = this->hair();
+    springs.simulation.strandModel = runtime::StrandModel::springs;
+    const std::vector<std::byte> bytes = written(springs);
+    game::Asset other;
+    ASSERT_TRUE(other.open(bytes.data(), bytes.size()));
+    ASSERT_TRUE(hair.make(other, HL_GUIDES));
+    refused(hl_gpu_begin(hair.get(), &error), "strandModel is springs");
+}
+
 TEST_F(RuntimeGpu, WrongWordsAreRefusedAndNothingIsWritten) {
     std::vector<std::byte> room(1u << 20, std::byte{0x5a});
     const std::vector<std::byte> untouched = room;
@@ -125,7 +223,7 @@ TEST_F(RuntimeGpu, WrongWordsAreRefusedAndNothingIsWritten) {
     hl_gpu_pass_info pass{};
     refused(hl_gpu_pass(asset, 0, &pass, &error), HL_WRONG_SIZE, "hl_gpu_pass_info");
     pass.size = sizeof pass;
-    refused(hl_gpu_pass(asset, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 3 of 3");
+    refused(hl_gpu_pass(asset, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 4 of 4");
     hl_gpu_buffer_info info{};
     info.size = 7;
     refused(hl_gpu_buffer(asset, 0, &info, &error), HL_WRONG_SIZE, "hl_gpu_buffer_info");

@@ -33,11 +33,15 @@ inline testing::Environment* const kSharedDevice = testing::AddGlobalTestEnviron
 
 /// The layouts whose results are held against the CPU. Lavapipe takes long to compile unrolled loops; its
 /// waves of 8 threads hold strands of 16 points in pairs, where waves are asked for.
-inline const LayoutOptions kHeldLayouts[] = {{StrandStorage::threads, false},
-                                             {StrandStorage::lanes, false, {}, 1},
-                                             {StrandStorage::lanes, false, {}, 2},
-                                             {StrandStorage::lanes, false, {}, 2, false},
-                                             {StrandStorage::wisps, false}};
+inline const LayoutOptions kHeldLayouts[] = {
+    {.storage = StrandStorage::threads, .unroll = false, .members = 1},
+    {StrandStorage::lanes, false, {}, 1},
+    {StrandStorage::lanes, false, {}, 2},
+    {StrandStorage::lanes, false, {}, 2, false},
+    {StrandStorage::wisps, false}};
+/// A thread for each rod, and as many as share one of few.
+inline const LayoutOptions kRodLayouts[] = {
+    kHeldLayouts[0], {.storage = StrandStorage::threads, .unroll = false, .members = 16}};
 inline std::string nameOf(const LayoutOptions& layout) {
     constexpr const char* kNames[] = {"threads", "groups", "buffers", "lanes", "wisps"};
     const bool pairs = layout.perThread == 2u;

@@ -286,7 +286,7 @@ TEST_F(Permutation, ConstantsArriveWhereTheyAreRead) {
     const auto input =
         makeBuffer<shaders::SphereConstants>(*device(), "two spheres", gpu::Usage::ShaderRead, 2, spheres)
             .value();
-    constexpr std::size_t kResults = 23;
+    constexpr std::size_t kResults = 24;
     const std::vector<shaders::float4> nothing(kResults);
     const auto output =
         makeBuffer<shaders::float4>(*device(), "results", gpu::Usage::UnorderedAccess, kResults, nothing)

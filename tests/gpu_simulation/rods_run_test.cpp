@@ -114,16 +114,22 @@ class RodRun : public GpuSimulationTest {
     }
 };
 
+/// By the threads of a strand.
+class EachRodLayout : public RodRun, public testing::WithParamInterface<LayoutOptions> {};
+INSTANTIATE_TEST_SUITE_P(Layouts, EachRodLayout, testing::ValuesIn(kRodLayouts), [](const auto& layout) {
+    return std::to_string(*layout.param.members) + "ThreadsAStrand";
+});
+
 /// Half a second on a root that turns to and fro: 0.05 mm is what rounding to 2e-8 m in each of 120 substeps
 /// becomes in hair that swings freely, and less than is seen.
-TEST_F(RodRun, GentleMotionStaysWithTheCpu) {
+TEST_P(EachRodLayout, GentleMotionStaysWithTheCpu) {
     const auto offAfter = [](const StrandSet& strands, std::uint32_t clampedPoints) {
         SimulationSettings settings = rods();
         settings.substeps = 4;
         settings.clampedPoints = clampedPoints;
         settings.windSpeed = 2.0f;
         settings.angularStiffness = 0.5f;
-        Both both(strands, settings, options());
+        Both both(strands, settings, options(GetParam()));
         for (int f = 1; f <= 30; ++f) {
             const double time = f * static_cast<double>(kFrame);
             const auto roots = strands.roots({0.05f * static_cast<float>(time), 0.0f, 0.0f}, turned(time));
@@ -174,9 +180,9 @@ TEST_F(RodRun, CurlyHairStaysWithTheCpu) {
 }
 
 /// A cut carries strands along rigidly, with what they remember; what is no number goes back to rest.
-TEST_F(RodRun, TeleportsAndRestoredStrands) {
+TEST_P(EachRodLayout, TeleportsAndRestoredStrands) {
     const StrandSet strands = curls(40, 12);
-    Both both(strands, rods(), options());
+    Both both(strands, rods(), options(GetParam()));
     const Quat half{0.0f, std::sin(0.8f), 0.0f, std::cos(0.8f)};
     for (int f = 0; f < 12; ++f) {
         const bool cut = f >= 6;
@@ -202,7 +208,7 @@ TEST_F(RodRun, TeleportsAndRestoredStrands) {
 }
 
 /// Falls asleep and wakes with the CPU.
-TEST_F(RodRun, SleepsAndWakes) {
+TEST_P(EachRodLayout, SleepsAndWakes) {
     StrandSet strands;
     for (int s = 0; s < 64; ++s) {
         // Two blocks, a metre apart.
@@ -211,7 +217,7 @@ TEST_F(RodRun, SleepsAndWakes) {
     }
     SimulationSettings s = rods();
     s.sleepDelay = 0.1f;
-    Both both(strands, s, options());
+    Both both(strands, s, options(GetParam()));
     std::vector<RootFrame> roots = strands.roots();
     // Near, without touching: hair that rests on one is slow only now and then.
     std::vector<runtime::Sphere> spheres{{{0.04f, 0.0f, 0.0f}, 0.017f}};
@@ -234,7 +240,7 @@ TEST_F(RodRun, SleepsAndWakes) {
 }
 
 /// Equal input, equal bits; a state that was read goes on as if nothing had been.
-TEST_F(RodRun, StatesCanBeTakenAndPutBack) {
+TEST_P(EachRodLayout, StatesCanBeTakenAndPutBack) {
     const StrandSet strands = curls(40, 9);
     const std::vector<runtime::Sphere> spheres = scenes::HeadOfHair(1, 2).spheres;
     SimulationSettings settings = rods();
@@ -246,8 +252,8 @@ TEST_F(RodRun, StatesCanBeTakenAndPutBack) {
             ASSERT_TRUE(engine.step({kFrame, time, roots, spheres}));
         }
     };
-    StrandEngine a = engineOf(strands.view(), settings, options()),
-                 b = engineOf(strands.view(), settings, options());
+    StrandEngine a = engineOf(strands.view(), settings, options(GetParam())),
+                 b = engineOf(strands.view(), settings, options(GetParam()));
     run(a, 1, 8);
     run(b, 1, 4);
     const runtime::State middle = b.readState().value();

@@ -141,14 +141,17 @@ TEST_P(RodParity, EightSubsteps) {
         SCOPED_TRACE(static_cast<int>(hair));
         const Scene scene = sceneOf(settingsOf(GetParam(), 8), hair);
         const runtime::State cpu = runOnCpu(scene);
-        const runtime::State gpu = runOnDevice(scene, kHeldLayouts[0]);
-        const test::Distance distance = distanceOf(scene, gpu, cpu);
-        EXPECT_EQ(distance.lost, 0u);
-        EXPECT_LE(*std::ranges::max_element(distance.strands), GetParam().tolerance);
-        const Memory memory = memoryOf(scene, gpu, cpu);
-        EXPECT_LE(memory.rotation, 100.0 * GetParam().tolerance);
-        EXPECT_LE(memory.speed, 200.0 * GetParam().tolerance);
-        EXPECT_LE(stretchOf(scene, gpu), 1e-6);
+        for (const LayoutOptions& layout : kRodLayouts) {
+            SCOPED_TRACE(*layout.members);
+            const runtime::State gpu = runOnDevice(scene, layout);
+            const test::Distance distance = distanceOf(scene, gpu, cpu);
+            EXPECT_EQ(distance.lost, 0u);
+            EXPECT_LE(*std::ranges::max_element(distance.strands), GetParam().tolerance);
+            const Memory memory = memoryOf(scene, gpu, cpu);
+            EXPECT_LE(memory.rotation, 100.0 * GetParam().tolerance);
+            EXPECT_LE(memory.speed, 200.0 * GetParam().tolerance);
+            EXPECT_LE(stretchOf(scene, gpu), 1e-6);
+        }
     }
 }
 
@@ -156,14 +159,16 @@ TEST_P(RodParity, EightSubsteps) {
 /// one substep, and after eight strands are elsewhere, on the CPU as well where its input is a rounding off.
 TEST_P(RodParity, NastyStates) {
     const Scene once = sceneOf(settingsOf(GetParam(), 1), Hair::nasty);
-    const runtime::State gpu = runOnDevice(once, kHeldLayouts[0]);
-    const test::Distance distance = distanceOf(once, gpu, runOnCpu(once));
-    EXPECT_EQ(distance.lost, 0u);
-    EXPECT_LE(*std::ranges::max_element(distance.strands), 2e-3);
     const Scene often = sceneOf(settingsOf(GetParam(), 8), Hair::nasty);
-    const runtime::State after = runOnDevice(often, kHeldLayouts[0]);
-    EXPECT_EQ(distanceOf(often, after, runOnCpu(often)).lost, 0u);
-    EXPECT_LE(stretchOf(often, after), 5e-6);
+    for (const LayoutOptions& layout : kRodLayouts) {
+        SCOPED_TRACE(*layout.members);
+        const test::Distance distance = distanceOf(once, runOnDevice(once, layout), runOnCpu(once));
+        EXPECT_EQ(distance.lost, 0u);
+        EXPECT_LE(*std::ranges::max_element(distance.strands), 2e-3);
+        const runtime::State after = runOnDevice(often, layout);
+        EXPECT_EQ(distanceOf(often, after, runOnCpu(often)).lost, 0u);
+        EXPECT_LE(stretchOf(often, after), 5e-6);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Effects, RodParity, testing::ValuesIn(kCases),

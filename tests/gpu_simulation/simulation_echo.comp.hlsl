@@ -17,11 +17,12 @@ void main() {
     gResults[5] = float4(substep.bendRate, substep.tensionShare, substep.maximalExtension, substep.collisionRadiusAtRoot);
     gResults[6] = float4(substep.collisionRadiusAtTip, substep.friction, substep.restitution, substep.slowestSwept);
     gResults[7] = gFrame.gravityStep;
-    gResults[8] = gFrame.wind;
+    gResults[8] = gFrame.originShift;
+    gResults[9] = gFrame.wind;
     for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
-        gResults[9 + m] = gFrame.windAmplitudes[m];
-        gResults[9 + HAIRLOOM_WIND_MODES + m] = gFrame.windWaves[m];
+        gResults[10 + m] = gFrame.windAmplitudes[m];
+        gResults[10 + HAIRLOOM_WIND_MODES + m] = gFrame.windWaves[m];
     }
-    gResults[21] = gSpheres[1].from;
-    gResults[22] = gSpheres[1].step;
+    gResults[22] = gSpheres[1].from;
+    gResults[23] = gSpheres[1].step;
 }

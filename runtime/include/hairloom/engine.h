@@ -58,6 +58,8 @@ struct StepReport {
 
 /// What changes from step to step (src/state.h): for those who go on elsewhere, as the engine on a GPU does.
 struct State;
+/// What strands are at rest, and how they are grouped (src/state.h).
+struct RestShape;
 
 class Engine {
   public:
@@ -109,6 +111,8 @@ class Engine {
     /// left out. Strands that are changed wake up. Before the first step it does nothing.
     bool addVelocities(std::span<const Float3> changes_ws);
 
+    /// Of make(); copies of an engine share it.
+    std::shared_ptr<const RestShape> restShape() const;
     /// A copy.
     std::shared_ptr<const State> state() const;
     /// Goes on from the state of another engine of as many strands of as many points; positions and

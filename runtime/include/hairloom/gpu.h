@@ -1,14 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 #ifndef HAIRLOOM_GPU_H
 #define HAIRLOOM_GPU_H
-/* Follow hairs and ribbons on the game's own GPU: C99. An instance steps the guides on the CPU; a frame then
- * uploads their points alone, and kernels make all hairs of them and draw them, without reading anything
- * back. Kernels lie in share/hairloom-runtime/shaders as HLSL (shader model 5) and SPIR-V (Vulkan 1.1), and
- * gpu.json beside them has the tables below, made from this header.
+/* Hair on the game's own GPU: C99. Kernels make all hairs of guides and draw them, without reading anything
+ * back. The guides are stepped by hl_instance_step() on the CPU, and a frame uploads their points. Or the
+ * kernel GUIDES steps them, and a frame uploads their roots. Kernels lie in share/hairloom-runtime/shaders as
+ * HLSL (shader model 5) and SPIR-V (Vulkan 1.1), and gpu.json beside them has the tables below, made from
+ * this header.
  *
  * Once: make the buffers of HL_GPU_BUFFERS as large as hl_gpu_buffer() says, and fill those of HL_GPU_ONCE
- * with hl_gpu_fill(). Each frame: hl_instance_step(), fill those of HL_GPU_FRAME with hl_gpu_fill_frame(),
- * and run what hl_gpu_pass() says in the order of HL_GPU_PASSES, with a barrier after each.
+ * with hl_gpu_fill(). Then, in each frame:
+ *
+ *   guides on the CPU   hl_instance_step(), hl_gpu_fill_frame() of HL_GPU_FRAME and HL_GPU_GUIDES, and all
+ *                       passes but GUIDES
+ *   guides on the GPU   hl_gpu_step(), hl_gpu_fill_frame() of HL_GPU_FRAME and HL_GPU_STEP, and all passes.
+ *                       Before the first: hl_gpu_begin(), and hl_gpu_fill_frame() of HL_GPU_BEGIN and
+ *                       HL_GPU_GUIDES
+ *
+ * Run what hl_gpu_pass() says in the order of HL_GPU_PASSES, with a barrier after each. Buffers of
+ * HL_GPU_BEGIN, HL_GPU_STEP and SCRATCH are for the pass GUIDES alone.
  *
  * Binding: in Direct3D register `number` of class B (constants), T (read) or U (written); in Vulkan set 0,
  * binding `number` + HL_GPU_VULKAN_B, _T or _U, uniform buffers for B and storage buffers for T and U. */
@@ -21,16 +30,18 @@ extern "C" {
 
 /* Name, file without its ending, stage, threads of a group (0: none) and what it does. Entry point: main. */
 #define HL_GPU_PASSES(X)                                                \
+    X(GUIDES, "guides", COMPUTE, 32, "a frame of each guide as a rod")  \
     X(WISPS, "follow_wisps", COMPUTE, 32, "the wisp around each guide") \
     X(HAIRS, "follow_hairs", COMPUTE, 64, "each point of each hair")    \
     X(RIBBONS, "ribbons", DRAW, 0, "ribbons.vert and ribbons.frag, an instance for each hair")
 
 /* Name, bytes of an element, elements, who fills it, and with what. GUIDE_SAMPLES is guides times points of a
- * hair, GUIDE_ROWS four times as many, GUIDE_TURNS two a guide. */
+ * hair, GUIDE_ROWS four times as many, GUIDE_TURNS two a guide. GUIDES has them in slots, 32 a block:
+ * SLOT_POINTS is slots times points of the longest guide. */
 #define HL_GPU_BUFFERS(X)                                                                          \
     X(CONSTANTS, 32, ONE, FRAME, "numbers of both kernels of hairs")                               \
-    X(POSITIONS, 16, GUIDE_POINTS, FRAME, "of guides, metres less hl_frame.origin, and 1")         \
-    X(VELOCITIES, 16, GUIDE_POINTS, FRAME, "of guides, m/s, and 0, since wisps widen with speed")  \
+    X(POSITIONS, 16, GUIDE_POINTS, GUIDES, "of guides, metres less hl_frame.origin, and 1")        \
+    X(VELOCITIES, 16, GUIDE_POINTS, GUIDES, "of guides, m/s, and 0, since wisps widen with speed") \
     X(TURNS, 16, GUIDE_TURNS, FRAME, "of each guide its root, and 1, and its turn since rest")     \
     X(PLANES, 48, GUIDES, ONCE, "the scalp at each root at rest")                                  \
     X(SAMPLES, 8, GUIDE_SAMPLES, ONCE, "where points of hairs lie along their guides")             \
@@ -39,31 +50,72 @@ extern "C" {
     X(LOOKS, 32, HAIRS, ONCE, "linear colour, random number, radii at root and tip, metres, 0, 0") \
     X(ROWS, 16, GUIDE_ROWS, DEVICE, "what WISPS hands to HAIRS")                                   \
     X(POINTS, 16, HAIR_POINTS, DEVICE, "of all hairs, metres less hl_frame.origin, and 1")         \
-    X(VIEW, 144, ONE, HOST, "hl_gpu_view")
+    X(VIEW, 144, ONE, HOST, "hl_gpu_view")                                                         \
+    X(STEP, 352, ONE, STEP, "numbers of the frame")                                                \
+    X(RODS, 160, ONE, STEP, "numbers of rods in it")                                               \
+    X(ROOTS_TO, 16, SLOT_TURNS, STEP, "where roots go: place, and 1 if it moves, and turn")        \
+    X(SPHERES, 32, SPHERES, STEP, "centre and radius, and way in a substep")                       \
+    X(WAKING, 16, SPHERE_ENDS, STEP, "reach of spheres that have moved")                           \
+    X(REPORT, 4, WORDS, STEP, "of the kernel: bits of a speed, restored, asleep, guarded")         \
+    X(REST, 16, SLOT_POINTS, BEGIN, "segments at rest")                                            \
+    X(SEGMENTS, 8, SLOT_POINTS, BEGIN, "their lengths, and inverse masses of points")              \
+    X(ROD_REST, 16, SLOT_RESTS, BEGIN, "rods at rest: tangents, stiffness, turns, sections")       \
+    X(MASSES, 4, SLOT_POINTS, BEGIN, "of points")                                                  \
+    X(BLOCKS, 8, BLOCKS, BEGIN, "points of a guide, and guides")                                   \
+    X(FIRST_POINTS, 4, SLOTS, BEGIN, "of the slot's guide in POSITIONS")                           \
+    X(CURVED, 4, BLOCKS, BEGIN, "1 where rods twist")                                              \
+    X(STATE, 4, SLOT_STATE, BEGIN, "where points are, and were")                                   \
+    X(ROOTS, 4, SLOT_ROOTS, BEGIN, "where roots were")                                             \
+    X(RESTS, 4, BLOCK_RESTS, BEGIN, "seconds at rest, and 1 asleep")                               \
+    X(ROD_STATE, 4, SLOT_RODS, BEGIN, "speeds, turns and strains of rods")                         \
+    X(SCRATCH, 4, SLOT_SCRATCH, DEVICE, "what GUIDES works in")
 
 /* Pass, class of the register, its number, and the buffer. */
-#define HL_GPU_BINDINGS(X)     \
-    X(WISPS, B, 0, CONSTANTS)  \
-    X(WISPS, T, 0, POSITIONS)  \
-    X(WISPS, T, 1, VELOCITIES) \
-    X(WISPS, T, 2, PLANES)     \
-    X(WISPS, T, 3, SAMPLES)    \
-    X(WISPS, T, 4, RADII)      \
-    X(WISPS, T, 5, TURNS)      \
-    X(WISPS, U, 0, ROWS)       \
-    X(HAIRS, B, 0, CONSTANTS)  \
-    X(HAIRS, T, 0, ROWS)       \
-    X(HAIRS, T, 1, PLANES)     \
-    X(HAIRS, T, 2, BINDINGS)   \
-    X(HAIRS, T, 3, TURNS)      \
-    X(HAIRS, U, 0, POINTS)     \
-    X(RIBBONS, B, 0, VIEW)     \
-    X(RIBBONS, T, 0, POINTS)   \
+#define HL_GPU_BINDINGS(X)        \
+    X(GUIDES, B, 0, STEP)         \
+    X(GUIDES, B, 2, RODS)         \
+    X(GUIDES, T, 0, REST)         \
+    X(GUIDES, T, 1, SEGMENTS)     \
+    X(GUIDES, T, 2, ROD_REST)     \
+    X(GUIDES, T, 3, MASSES)       \
+    X(GUIDES, T, 4, BLOCKS)       \
+    X(GUIDES, T, 5, FIRST_POINTS) \
+    X(GUIDES, T, 6, ROOTS_TO)     \
+    X(GUIDES, T, 7, SPHERES)      \
+    X(GUIDES, T, 8, WAKING)       \
+    X(GUIDES, T, 9, CURVED)       \
+    X(GUIDES, U, 0, STATE)        \
+    X(GUIDES, U, 1, ROOTS)        \
+    X(GUIDES, U, 2, RESTS)        \
+    X(GUIDES, U, 3, REPORT)       \
+    X(GUIDES, U, 4, POSITIONS)    \
+    X(GUIDES, U, 5, ROD_STATE)    \
+    X(GUIDES, U, 6, VELOCITIES)   \
+    X(GUIDES, U, 7, SCRATCH)      \
+    X(WISPS, B, 0, CONSTANTS)     \
+    X(WISPS, T, 0, POSITIONS)     \
+    X(WISPS, T, 1, VELOCITIES)    \
+    X(WISPS, T, 2, PLANES)        \
+    X(WISPS, T, 3, SAMPLES)       \
+    X(WISPS, T, 4, RADII)         \
+    X(WISPS, T, 5, TURNS)         \
+    X(WISPS, U, 0, ROWS)          \
+    X(HAIRS, B, 0, CONSTANTS)     \
+    X(HAIRS, T, 0, ROWS)          \
+    X(HAIRS, T, 1, PLANES)        \
+    X(HAIRS, T, 2, BINDINGS)      \
+    X(HAIRS, T, 3, TURNS)         \
+    X(HAIRS, U, 0, POINTS)        \
+    X(RIBBONS, B, 0, VIEW)        \
+    X(RIBBONS, T, 0, POINTS)      \
     X(RIBBONS, T, 1, LOOKS)
 
 #define HL_GPU_VULKAN_B 0
 #define HL_GPU_VULKAN_T 16
 #define HL_GPU_VULKAN_U 64
+
+/* Spheres of a frame that GUIDES meets at most, or those of the asset where it has more. */
+#define HL_GPU_SPHERES 32
 
 #define HL_GPU_AS_PASS(name, file, stage, threads, words) HL_GPU_PASS_##name,
 #define HL_GPU_AS_BUFFER(name, bytes, count, fill, words) HL_GPU_BUFFER_##name,
@@ -77,7 +129,10 @@ enum {
     HL_GPU_ONCE = 0,   /* hl_gpu_fill() */
     HL_GPU_FRAME = 1,  /* hl_gpu_fill_frame() after each step */
     HL_GPU_DEVICE = 2, /* passes alone */
-    HL_GPU_HOST = 3    /* the game */
+    HL_GPU_HOST = 3,   /* the game */
+    HL_GPU_GUIDES = 4, /* HL_GPU_FRAME, or the pass GUIDES, from what it was at hl_gpu_begin() */
+    HL_GPU_BEGIN = 5,  /* hl_gpu_fill_frame() after hl_gpu_begin() and before the first step */
+    HL_GPU_STEP = 6    /* hl_gpu_fill_frame() after each hl_gpu_step() */
 };
 typedef struct hl_gpu_buffer_info {
     size_t size; /* sizeof(hl_gpu_buffer_info), set by the caller */
@@ -95,6 +150,15 @@ HL_API hl_code hl_gpu_fill(const hl_asset* asset, uint32_t buffer, void* data, s
  * All hairs are made, whatever the level's hair_share is. */
 HL_API hl_code hl_gpu_fill_frame(hl_instance* instance, uint32_t buffer, void* data, size_t bytes,
                                  hl_error* error);
+
+/* From here on the pass GUIDES moves the hair, from where the CPU has it. hl_instance_reset(), _load(),
+ * _step(), _set() and another level end it, and copies are on the CPU: begin again. What hl_instance_read()
+ * gives stays as it was. The hair meets spheres, not the skin. HL_BAD_VALUE where strandModel is springs,
+ * clampedPoints is not 2, or the level is not the finest. Takes memory, as hl_gpu_step() does. */
+HL_API hl_code hl_gpu_begin(hl_instance* instance, hl_error* error);
+/* Takes a frame as hl_instance_step() does; HL_WRONG_SIZE where it has more spheres than HL_GPU_SPHERES and
+ * than the asset. With dt 0 nothing moves: run no pass GUIDES. HL_BAD_VALUE without hl_gpu_begin(). */
+HL_API hl_code hl_gpu_step(hl_instance* instance, const hl_frame* frame, hl_error* error);
 
 enum { HL_GPU_COMPUTE = 0, HL_GPU_DRAW = 1 };
 typedef struct hl_gpu_pass_info {

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# wheel.sh DIST [PYTHON…]: for each Python (default: python3, and the first of python3.13, python3.14 and python3.12 that is there with its
+# headers) builds the wheel of python/ into DIST, makes it self-contained, and tests it in an environment with nothing but NumPy.
+set -euo pipefail
+mkdir -p "${1:?a folder for the wheels}"
+dist=$(cd "$1" && pwd)
+shift
+cd "$(dirname "$(readlink -f "$0")")/.."
+
+hasHeaders() { command -v "$1" >/dev/null && "$1" -c 'import os, sysconfig; raise SystemExit(not os.path.exists(sysconfig.get_paths()["include"] + "/Python.h"))' 2>/dev/null; }
+pythons=("$@")
+if [ ${#pythons[@]} -eq 0 ]; then
+    pythons=(python3)
+    for later in python3.13 python3.14 python3.12; do
+        if hasHeaders "$later"; then pythons+=("$later"); break; fi
+    done
+    [ ${#pythons[@]} -gt 1 ] || echo "no Python 3.12 or later with headers is here: only the wheel of python3 is built" >&2
+fi
+
+for python in "${pythons[@]}"; do
+    tag=$("$python" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+    build=build/wheel-$tag
+    [ -d "build/wheel-venv-$tag" ] || "$python" -m venv "build/wheel-venv-$tag"
+    tools=$PWD/build/wheel-venv-$tag/bin
+    "$tools/pip" install --quiet -r python/requirements.txt
+    rm -rf "$build-raw"
+    # At the depth of build/release, so that ccache knows its sources again.
+    PATH=$tools:$PATH "$tools/pip" wheel --quiet --no-build-isolation --no-deps --wheel-dir "$build-raw" \
+        -C "build-dir=$PWD/$build" ${CI:+-C cmake.define.CMAKE_UNITY_BUILD=ON} ./python
+    rm -f "$dist"/hairloom-*-"$tag"-*.whl
+    [ "$tag" = cp311 ] || rm -f "$dist"/hairloom-*-abi3-*.whl
+    # libraries that every Linux has stay out; drivers are loaded by name at run time
+    PATH=$tools:$PATH "$tools/auditwheel" --quiet repair --wheel-dir "$build-repaired" "$build-raw"/hairloom-*.whl
+    wheel=$(ls -t "$build-repaired"/hairloom-*.whl | head -1)
+    cp "$wheel" "$dist/"
+
+    # Nothing of this machine but Python, NumPy and the C library: no other library may be found beside it.
+    bare=build/wheel-bare-$tag
+    rm -rf "$bare"
+    "$python" -m venv "$bare"
+    "$bare/bin/pip" install --quiet "numpy==$(sed -n 's/^numpy==//p' python/requirements.txt)"
+    "$bare/bin/pip" install --quiet --no-index --no-deps "$wheel"
+    package=$("$bare/bin/python" -c 'import hairloom, os; print(os.path.dirname(hairloom.__file__))')
+    missing=$(ldd "$package"/_core*.so "$package"/bin/* | awk '$2 == "=>" { print $1, $3 }' |
+        grep -vE '^(linux-vdso|libc|libm|libstdc\+\+|libgcc_s|libpthread|libdl|librt|libz)\.so' | grep -v "/hairloom.libs/" | sort -u || true)
+    [ -z "$missing" ] || { printf 'error: the wheel is not self-contained:\n%s\n' "$missing" >&2; exit 1; }
+    (cd python/tests && PYTHONDONTWRITEBYTECODE=1 "../../$bare/bin/python" -m unittest)
+    # The stubs are what the package is, and what its examples and tests hold to.
+    "$tools/mypy" --strict --python-executable "$bare/bin/python" --cache-dir "build/mypy-$tag" -p hairloom
+    MYPYPATH=python/tests "$tools/mypy" --strict --python-executable "$bare/bin/python" --cache-dir "build/mypy-$tag" \
+        python/generate_jobs.py python/tests/*.py samples/python/groom_heads.py
+    for recipe in samples/python/accuracy_plot.py samples/python/strands_to_cards.py; do
+        "$tools/mypy" --strict --python-executable "$bare/bin/python" --cache-dir "build/mypy-$tag" --ignore-missing-imports "$recipe"
+    done
+    ls -l "$dist/$(basename "$wheel")"
+done

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+from __future__ import annotations
+
+import threading
+import time
+import unittest
+from typing import Any
+
+import numpy as np
+from support import rows
+
+import hairloom
+
+DT = 1 / 60
+
+
+class Engines(unittest.TestCase):
+    def setUp(self) -> None:
+        self.positions, self.offsets = rows(20)
+        self.roots = np.ascontiguousarray(self.positions[self.offsets[:-1]])
+        self.engine = self.make()
+
+    def make(self, **settings: float) -> hairloom.Engine:
+        engine = hairloom.Engine(self.positions, self.offsets, settings=settings)
+        engine.reset(self.roots)
+        return engine
+
+    def test_it_starts_at_rest_and_falls(self) -> None:
+        self.assertEqual((self.engine.strand_count, self.engine.point_count), (20, 160))
+        np.testing.assert_allclose(self.engine.positions(), self.positions, atol=1e-6)
+        turned = np.tile(np.array([0, 0, np.sin(np.pi / 4), np.cos(np.pi / 4)], np.float32), (20, 1))
+        self.engine.reset(self.roots, turned)  # now they stand out sideways
+        before = self.engine.positions()
+        self.assertAlmostEqual(float(before[7, 0] - before[0, 0]), 0.07, places=4)
+        for _ in range(30):
+            self.engine.step(DT, self.roots, turned)
+        self.assertLess(float(self.engine.positions()[7, 1]), float(before[7, 1]) - 0.001)
+        self.assertAlmostEqual(self.engine.time, 0.5)
+        lengths = np.linalg.norm(np.diff(self.engine.positions().reshape(20, 8, 3), axis=1), axis=2)
+        np.testing.assert_allclose(lengths, 0.01, rtol=1e-3)
+
+    def test_wind_spheres_and_settings(self) -> None:
+        blown = self.make()
+        for _ in range(60):
+            blown.step(DT, self.roots, wind=(0, 0, 6))
+        self.assertGreater(float(blown.positions()[7, 2]), 0.005)
+        self.assertGreater(float(np.abs(blown.velocities()).max()), 0)
+        ball = np.array([[0.1, 1.66, 0.02, 0.03]], np.float32)
+        hit = self.make()
+        for _ in range(60):
+            hit.step(DT, self.roots, spheres=ball)
+        self.assertLess(hit.measure()["max_penetration"], 1e-3)
+        self.assertFalse(np.allclose(hit.positions(), self.positions, atol=1e-4))
+        blown.set_settings({"gravity": [0, 0, 0]})
+        with self.assertRaises(hairloom.Error):
+            blown.set_settings({"gravity": 3})
+
+    def test_output_arrays_are_filled_in_place(self) -> None:
+        out = np.zeros((160, 3), np.float32)
+        self.assertIs(self.engine.positions(out), out)
+        np.testing.assert_allclose(out, self.positions, atol=1e-6)
+        frozen = np.zeros((160, 3), np.float32)
+        frozen.flags.writeable = False
+        for wrong in (
+            np.zeros((160, 3)),
+            np.zeros((159, 3), np.float32),
+            np.zeros((320, 3), np.float32)[::2],
+            np.zeros((160, 3), np.float32, order="F"),
+            frozen,
+            [0.0],
+        ):
+            with self.assertRaises(hairloom.ArgumentError):
+                self.engine.positions(wrong)  # type: ignore[arg-type]
+
+    def test_wrong_arguments(self) -> None:
+        refused: list[dict[str, Any]] = [
+            {"root_positions": self.roots.astype(np.float64)},
+            {"root_positions": self.roots[:-1].copy()},
+            {"root_positions": None},
+            {"root_positions": self.roots, "root_rotations": np.zeros((20, 3), np.float32)},
+            {"root_positions": self.roots, "spheres": np.array([[0, 0, 0, -1]], np.float32)},
+            {"root_positions": self.roots, "wind": (1e9, 0, 0)},
+            {"root_positions": self.roots, "dt": 0},
+            {"root_positions": self.roots, "dt": float("nan")},
+        ]
+        before = self.engine.state_hash
+        for arguments in refused:
+            with self.assertRaises(hairloom.ArgumentError, msg=str(arguments)):
+                self.engine.step(**{"dt": DT, **arguments})
+        self.assertEqual(self.engine.state_hash, before)
+        with self.assertRaises(hairloom.Error):
+            hairloom.Engine(self.positions, np.arange(161, dtype=np.uint32))  # strands of one point
+        with self.assertRaises(hairloom.Error):
+            self.make(windSpeed=-1)
+        with self.assertRaises(hairloom.Error):
+            self.make(windSped=1)
+        with self.assertRaises(hairloom.ArgumentError):
+            hairloom.Engine(self.positions, self.offsets, masses=np.ones(3, np.float64))
+
+    def test_threads_run_at_once_to_the_same_bits(self) -> None:
+        strands, points = 2000, 16
+        positions, offsets = rows(strands, points)
+        roots = np.ascontiguousarray(positions[offsets[:-1]])
+
+        def run(hashes: list[str]) -> None:
+            engine = hairloom.Engine(positions, offsets)
+            engine.reset(roots)
+            for _ in range(20):
+                engine.step(DT, roots, wind=(3, 0, 0))
+            hashes.append(engine.state_hash)
+
+        alone: list[str] = []
+        run(alone)
+        hashes: list[str] = []
+        threads = [threading.Thread(target=run, args=(hashes,)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(hashes, alone * 4)
+
+    def test_steps_release_the_gil(self) -> None:
+        positions, offsets = rows(60_000, 32)
+        roots = np.ascontiguousarray(positions[offsets[:-1]])
+        engine = hairloom.Engine(positions, offsets)
+        engine.reset(roots)
+        done = threading.Event()
+
+        def step() -> None:
+            steps = 0
+            while steps < 5:
+                try:
+                    engine.step(DT, roots)
+                    steps += 1
+                except hairloom.BusyError:
+                    pass
+            done.set()
+
+        thread = threading.Thread(target=step)
+        thread.start()
+        counted = busy = 0
+        while not done.is_set():
+            counted += 1
+            try:
+                engine.state_hash
+            except hairloom.BusyError:
+                busy += 1
+            time.sleep(1e-4)
+        thread.join()
+        self.assertGreater(counted, 5)
+        self.assertGreater(busy, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

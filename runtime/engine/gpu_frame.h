@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the kernels of strands are told of a frame.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/frame_setup.h"
+#include "engine/slots.h"
+
+namespace hairloom::runtime {
+
+struct GpuFrame {
+    const SimulationSettings& settings;
+    const Wind& wind;
+    std::span<const MovingSphere> spheres;
+    std::size_t waking = 0;  ///< FrameSpheres::waking
+    float before = 0;        ///< seconds of the last frame's substep; 0 before the first
+    bool wakeAll = false;
+    std::array<double, 3> origin_ws{};
+    Float3 originShift{};  ///< metres that positions of the last frame have moved by, seen from the origin
+};
+/// Of slots in work groups of `groupStrands`.
+shaders::SimulationConstants frameConstants(const GpuFrame& frame, const SubstepContext& context,
+                                            const FrameInput& input, const Slots& slots,
+                                            std::uint32_t groupStrands);
+
+std::vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres);
+/// Centre and reach of each.
+std::vector<shaders::float4> wakingOf(const FrameSpheres& spheres);
+
+/// What is known of roots from frame to frame.
+struct FrameRoots {
+    std::vector<RootFrame> roots;  ///< one per strand, sound, at the end of the last frame
+    std::vector<bool> moved;       ///< of the last frame
+    Float3 min_ws, max_ws;         ///< box of them
+    float motion = 0;              ///< metres, the longest way
+    std::uint32_t rejected = 0;
+};
+/// Takes the roots that the frame ends on. What is no root stays where it was. `known`: those of before are
+/// where they were said to be.
+void takeFrameRoots(std::span<const RootFrame> given, float teleportDistance, bool known, FrameRoots& roots);
+
+}  // namespace hairloom::runtime
