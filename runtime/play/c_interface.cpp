@@ -218,11 +218,10 @@ hl_code hl_instance_time(hl_instance* instance, uint64_t (*nanoseconds)(void* us
 
 hl_code hl_instance_effect_sized(const hl_instance* instance, uint32_t effect, hl_effect* out, size_t size,
                                  hl_error* error) {
-    static_assert(HL_EFFECT_COUNT == kEffectCount + 1);
     if (!instance || !out) return nullRefused(error, "no instance or no place for the effect");
     if (const Outcome refused = checkSize<hl_effect>("hl_effect", size, kFirstEffect))
         return say(error, refused);
-    if (effect >= HL_EFFECT_COUNT) return nullRefused(error, "an effect that there is not");
+    if (effect > kEffectCount) return nullRefused(error, "an effect that there is not");
     return guarded(error, [&] {
         giveBack(instance->instance.describeEffect(effect), out, size);
         return say(error, HL_OK, HL_NO_PLACE, "");

@@ -99,7 +99,9 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
     }
     const float pivot[3] = {0, info.bounds_max[1], 0};
     const int before = options.resting ? 600 : 0;  // until they sleep
-    double measured = 0, planned = 0, predicted = 0, effects[HL_EFFECT_COUNT] = {};
+    double measured = 0, planned = 0, predicted = 0;
+    std::vector<double> effects;
+    while (hairs[0].describeEffect(static_cast<std::uint32_t>(effects.size())).name) effects.push_back(0);
     int timedFrames = 0, levels[HL_LEVEL_COUNT] = {};
     for (int f = 1; f <= before + options.frames; ++f) {
         // A clock around every stage makes steps longer: it runs in every eighth frame, which does not count.
@@ -125,7 +127,7 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
             if (!hairs[i].step(frame, &error)) return false;
         }
         if (counts && !timed) measured += millisecondsSince(begin);
-        for (std::uint32_t e = 0; timed && e < HL_EFFECT_COUNT; ++e)
+        for (std::uint32_t e = 0; timed && e < effects.size(); ++e)
             for (const hairloom::game::Instance& hair : hairs)
                 effects[e] += static_cast<double>(hair.describeEffect(e).milliseconds);
     }
@@ -143,7 +145,7 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
         "%llu of %llu guides asleep, %d %d %d %d %d at levels 0 to 4, error %.2f pixels, state %016llx\n",
         asleep, guides, levels[0], levels[1], levels[2], levels[3], levels[4],
         static_cast<double>(crowd.report.error_pixels), state);
-    for (std::uint32_t e = 0; e < HL_EFFECT_COUNT; ++e)
+    for (std::uint32_t e = 0; e < effects.size(); ++e)
         std::printf("  %-20s %.4f ms a frame\n", hairs[0].describeEffect(e).name,
                     effects[e] / std::max(timedFrames, 1));
     return true;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -44,6 +45,14 @@ class AssetTest : public ExportTest {
         return readFile(path).value();
     }
 };
+
+/// The upper three rows of a matrix, as games give it.
+template <class Matrix>
+std::array<float, 12> rows(const Matrix& matrix) {
+    std::array<float, 12> values{};
+    for (int i = 0; i < 12; ++i) values[static_cast<std::size_t>(i)] = matrix(i / 4, i % 4);
+    return values;
+}
 
 /// Strand s has counts[s] points on a helix that hangs from (1 cm · s, 1.7 m, 0).
 inline Groom helices(const std::vector<std::uint32_t>& counts) {

@@ -30,13 +30,6 @@ constexpr float kFrame = 1.0f / 60.0f;
 constexpr float kBall = 0.1f;
 constexpr std::uint32_t kPoints = 12;
 
-template <class Matrix>
-std::array<float, 12> rows(const Matrix& matrix) {
-    std::array<float, 12> values{};
-    for (int i = 0; i < 12; ++i) values[static_cast<std::size_t>(i)] = matrix(i / 4, i % 4);
-    return values;
-}
-
 /// Soft hair on the upper half of a ball, which falls into it where nothing protects it.
 Groom ballOfHair(bool protectedBySkin) {
     auto mesh = std::make_shared<const ScalpMesh>(meshOf(icosphereSoup(4, kBall)));

@@ -126,12 +126,6 @@ bool liesWithin(AssetBytes& asset) {
 
 using Matrix = Eigen::Affine3f;
 
-std::array<float, 12> rows(const Matrix& matrix) {
-    std::array<float, 12> values{};
-    for (int i = 0; i < 12; ++i) values[static_cast<std::size_t>(i)] = matrix(i / 4, i % 4);
-    return values;
-}
-
 Matrix inverseBind(const game::Asset& asset, std::uint32_t number) {
     hl_bone bone{};
     EXPECT_EQ(hl_asset_bone(asset.get(), number, &bone, nullptr), HL_OK);

@@ -28,16 +28,6 @@ using testing::HasSubstr;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFrame = 1.0f / 60.0f;
 
-template <class Matrix>
-std::array<float, 12> rows(const Matrix& matrix) {
-    std::array<float, 12> values{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column)
-            values[static_cast<std::size_t>(4 * row + column)] = matrix(row, column);
-    }
-    return values;
-}
-
 Groom hairOfADome() {
     Groom groom = dome(5, 2, 12, 0.15f);
     groom.interpolation.followPerGuide = 7;

@@ -28,16 +28,6 @@ Groom wavyHair() {
     return groom;
 }
 
-/// Degrees between neighbouring segments.
-float largestTurn(std::span<const Vec3f> points) {
-    float largest = 0;
-    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-        const Vec3f a = points[i] - points[i - 1], b = points[i + 1] - points[i];
-        largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / kPi);
-    }
-    return largest;
-}
-
 /// Mean distance of tips from those of their leaders, metres.
 double apart(const Groom& groom, std::span<const std::uint32_t> leaders) {
     double sum = 0;

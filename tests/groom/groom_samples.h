@@ -8,12 +8,23 @@
 #include <filesystem>
 #include <map>
 #include <numeric>
+#include <span>
 
 #include "core/base/random.h"
 #include "core/geometry/closest_point.h"
 #include "core/groom/groom.h"
 
 namespace hairloom {
+
+/// Degrees between neighbouring segments.
+inline float largestTurn(std::span<const Vec3f> points) {
+    float largest = 0;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        const Vec3f a = points[i] - points[i - 1], b = points[i + 1] - points[i];
+        largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / kPi);
+    }
+    return largest;
+}
 
 /// A subdivided octahedron on a sphere, with two groups and every array filled.
 inline std::shared_ptr<const ScalpMesh> sphereScalp(float radius = 0.09f, int levels = 4,

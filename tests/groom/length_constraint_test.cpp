@@ -33,15 +33,6 @@ TEST(LengthConstraint, RestoresLengthsTowardsThePoints) {
     EXPECT_NEAR((collapsed[2] - collapsed[1]).norm(), 2, 1e-6f);
 }
 
-float largestTurn(std::span<const Vec3f> points) {
-    float largest = 0;
-    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-        const Vec3f a = points[i] - points[i - 1], b = points[i + 1] - points[i];
-        largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / kPi);
-    }
-    return largest;
-}
-
 /// Where points are drawn together the strand gets ahead of them; it goes on and does not turn round.
 TEST(LengthConstraint, WhatIsDrawnTogetherDoesNotTurnRound) {
     for (const float share : {0.3f, 0.7f, 0.95f}) {

@@ -118,16 +118,7 @@ constexpr std::uint8_t kTranslate = 1u << 4u, kTurnAboutY = 5u << 4u;
 
 class AlembicHeads : public MeshFiles {
   protected:
-    ImportedScene read(const std::string& bytes) const {
-        auto scene = import("head.abc", bytes);
-        EXPECT_TRUE(scene) << scene.error().message();
-        return scene ? std::move(*scene) : ImportedScene();
-    }
-    static std::string said(const ImportedScene& scene) {
-        std::string all;
-        for (const std::string& warning : scene.warnings) all += warning + "\n";
-        return all;
-    }
+    ImportedScene read(const std::string& bytes) const { return imported("head.abc", bytes); }
 };
 
 TEST_F(AlembicHeads, FacesSetsTextureCoordinatesAndNormalsComeIn) {
@@ -142,7 +133,7 @@ TEST_F(AlembicHeads, FacesSetsTextureCoordinatesAndNormalsComeIn) {
         EXPECT_LT((normal - Vec3f(0.6f, 0, 0.8f)).norm(), 1e-6f) << "the file's, not the faces'";
     EXPECT_THAT(scene.mesh.groupNames(), ElementsAre("lips", "head"));
     EXPECT_EQ(scene.mesh.triangleGroups()[2], 0u);
-    EXPECT_THAT(said(scene), HasSubstr("1 faces of sets are not there"));
+    EXPECT_THAT(warningsOf(scene), HasSubstr("1 faces of sets are not there"));
     ASSERT_EQ(scene.mesh.cornerUvs().size(), 9u);
     for (std::size_t corner = 0; corner < 9; ++corner) {
         const Vec3f at = scene.mesh.positions()[scene.mesh.triangles()[corner / 3][corner % 3]];
@@ -150,7 +141,7 @@ TEST_F(AlembicHeads, FacesSetsTextureCoordinatesAndNormalsComeIn) {
     }
     EXPECT_TRUE(scene.skeleton.empty());
     head.schema = "AbcGeom_SubD_v1";
-    EXPECT_THAT(said(read(fileOf(head))), HasSubstr("polygons of their cages"));
+    EXPECT_THAT(warningsOf(read(fileOf(head))), HasSubstr("polygons of their cages"));
 }
 
 TEST_F(AlembicHeads, PointsThatMoveStayAsTheyAreAtFirst) {
@@ -160,7 +151,7 @@ TEST_F(AlembicHeads, PointsThatMoveStayAsTheyAreAtFirst) {
     const ImportedScene scene = read(fileOf(head, {2, 1.0 / 24, {1.0}}));
     EXPECT_FLOAT_EQ(scene.mesh.bounds().max().x(), 2);
     EXPECT_TRUE(scene.clips.empty());
-    EXPECT_THAT(said(scene), HasSubstr("points of meshes move in time"));
+    EXPECT_THAT(warningsOf(scene), HasSubstr("points of meshes move in time"));
 }
 
 TEST_F(AlembicHeads, InstancesStandInTheirPlacesAndTheHiddenAreLeftOut) {
@@ -172,7 +163,7 @@ TEST_F(AlembicHeads, InstancesStandInTheirPlacesAndTheHiddenAreLeftOut) {
     EXPECT_EQ(scene.mesh.triangleCount(), 6u);
     EXPECT_FLOAT_EQ(scene.mesh.bounds().min().z(), 1);
     EXPECT_FLOAT_EQ(scene.mesh.bounds().max().z(), 5);
-    EXPECT_THAT(said(scene), HasSubstr("/away/hat is hidden"));
+    EXPECT_THAT(warningsOf(scene), HasSubstr("/away/hat is hidden"));
     AlembicScene hidden;
     const auto only = hidden.below("away", kTranslate, {{0, 0, 0}}, hidden.mesh("hat", {}), true);
     EXPECT_THAT(refusal("hidden.abc", hidden.finish(only)), HasSubstr("/away/hat is hidden"));
@@ -227,7 +218,7 @@ TEST_F(AlembicHeads, MeshesThatContradictThemselvesAreNamed) {
         const std::array beside{file.mesh("good", {}), file.mesh("bad", head)};
         const ImportedScene scene = read(file.finish(beside));
         EXPECT_EQ(scene.mesh.triangleCount(), 3u) << word;
-        EXPECT_THAT(said(scene), HasSubstr("/bad")) << "the good one comes in, the other is named";
+        EXPECT_THAT(warningsOf(scene), HasSubstr("/bad")) << "the good one comes in, the other is named";
     }
 }
 

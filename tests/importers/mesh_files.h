@@ -31,6 +31,17 @@ class MeshFiles : public testing::Test {
     Result<ImportedScene> import(const std::string& name, std::string_view content) const {
         return importScene(write(name, content));
     }
+    /// Fails the test when the file is refused.
+    ImportedScene imported(const std::string& name, std::string_view content) const {
+        auto scene = import(name, content);
+        EXPECT_TRUE(scene) << scene.error().message();
+        return scene ? std::move(*scene) : ImportedScene();
+    }
+    static std::string warningsOf(const ImportedScene& scene) {
+        std::string all;
+        for (const std::string& warning : scene.warnings) all += warning + "\n";
+        return all;
+    }
     /// The message of the refusal; fails the test when the file is loaded.
     std::string refusal(const std::string& name, std::string_view content) const {
         const auto scene = import(name, content);

@@ -27,16 +27,7 @@ std::string mesh(const std::string& name, const std::string& more = {}, const st
 
 class UsdHeads : public MeshFiles {
   protected:
-    ImportedScene read(const std::string& text) const {
-        auto scene = import("head.usda", text);
-        EXPECT_TRUE(scene) << scene.error().message();
-        return scene ? std::move(*scene) : ImportedScene();
-    }
-    static std::string said(const ImportedScene& scene) {
-        std::string all;
-        for (const std::string& warning : scene.warnings) all += warning + "\n";
-        return all;
-    }
+    ImportedScene read(const std::string& text) const { return imported("head.usda", text); }
 };
 
 TEST_F(UsdHeads, FacesPartsAndTextureCoordinatesComeIn) {
@@ -59,7 +50,7 @@ TEST_F(UsdHeads, FacesPartsAndTextureCoordinatesComeIn) {
     EXPECT_EQ(scene.mesh.triangleGroups()[2], 0u) << "the triangle is the subset's";
     ASSERT_EQ(scene.mesh.cornerUvs().size(), 18u);
     EXPECT_EQ(scene.mesh.cornerUvs()[8], Vec2f(1, 1));
-    EXPECT_THAT(said(scene), HasSubstr("1 meshes have no texture coordinates"));
+    EXPECT_THAT(warningsOf(scene), HasSubstr("1 meshes have no texture coordinates"));
     EXPECT_TRUE(scene.statesUnit && scene.statesUp);
     EXPECT_FLOAT_EQ(scene.mesh.bounds().max().z(), 1);
 }
@@ -73,12 +64,12 @@ TEST_F(UsdHeads, OrientationHolesAndBadFacesAreSeen) {
     EXPECT_FLOAT_EQ(z(read(kStart + mesh("a", mirror))), 1) << "outside stays outside";
     const ImportedScene holed = read(kStart + mesh("a", "    int[] holeIndices = [0, 77, -1]\n"));
     EXPECT_EQ(holed.mesh.triangleCount(), 1u);
-    EXPECT_THAT(said(holed), HasSubstr("1 faces that are holes"));
+    EXPECT_THAT(warningsOf(holed), HasSubstr("1 faces that are holes"));
     const ImportedScene some = read(kStart + mesh("good") + mesh("beyond", "", "[3]", "[0, 1, 9]") +
                                     mesh("few", "", "[4]", "[0, 1]") + mesh("negative", "", "[-3]", "[]") +
                                     mesh("none", "", "[]", "[]"));
     EXPECT_EQ(some.mesh.triangleCount(), 3u);
-    EXPECT_THAT(said(some), HasSubstr("/beyond has a face that refers to point 9 of 5"));
+    EXPECT_THAT(warningsOf(some), HasSubstr("/beyond has a face that refers to point 9 of 5"));
     const std::string refused = refusal("none.usda", kStart + mesh("beyond", "", "[3]", "[0, 1, 9]"));
     EXPECT_THAT(refused, HasSubstr("refers to point 9"));
     EXPECT_THAT(refusal("huge.usda", kStart + mesh("huge", "", "[2147483647, 2147483647]", "[0, 1, 2]")),
@@ -93,7 +84,7 @@ TEST_F(UsdHeads, UnitsAndAxesAreThoseOfTheStageOrOfItsFormat) {
     const ImportedScene unsaid = read("#usda 1.0\n" + mesh("a"));
     EXPECT_FALSE(unsaid.statesUnit);
     EXPECT_FLOAT_EQ(unsaid.metresPerUnit, 0.01f);
-    EXPECT_THAT(said(unsaid), HasSubstr("states no unit"));
+    EXPECT_THAT(warningsOf(unsaid), HasSubstr("states no unit"));
     const auto asked = importScene(folder / "head.usda", {0.1f});
     ASSERT_TRUE(asked);
     EXPECT_FLOAT_EQ(asked->metresPerUnit, 0.1f);
@@ -131,9 +122,9 @@ TEST_F(UsdHeads, OddSkinsAreReadAsFarAsTheyGo) {
                 kJoints));
     EXPECT_FLOAT_EQ(odd.skin.weights[0][0], 0.5f) << "weights add up to 1";
     EXPECT_FLOAT_EQ(odd.skin.weights[1][0], 1) << "a joint that is named twice is one";
-    EXPECT_THAT(said(odd), HasSubstr("2 weights name joints that there are not"));
-    EXPECT_THAT(said(odd), HasSubstr("2 weights are negative or no numbers"));
-    EXPECT_THAT(said(odd), HasSubstr("3 points have no weights"));
+    EXPECT_THAT(warningsOf(odd), HasSubstr("2 weights name joints that there are not"));
+    EXPECT_THAT(warningsOf(odd), HasSubstr("2 weights are negative or no numbers"));
+    EXPECT_THAT(warningsOf(odd), HasSubstr("3 points have no weights"));
     for (const auto& [weights, skeleton, word] : std::vector<std::array<std::string, 3>>{
              {"    int[] primvars:skel:jointIndices = [0]\n    float[] primvars:skel:jointWeights = [1, 0]\n",
               kJoints, "1 joint indices and 2 weights"},
@@ -142,11 +133,11 @@ TEST_F(UsdHeads, OddSkinsAreReadAsFarAsTheyGo) {
              {kRigid + "    rel skel:skeleton = </nowhere>\n", kJoints, "/nowhere"}}) {
         const ImportedScene plain = read(skinned(weights, skeleton));
         EXPECT_TRUE(plain.skeleton.empty()) << word;
-        EXPECT_THAT(said(plain), HasSubstr(word));
+        EXPECT_THAT(warningsOf(plain), HasSubstr(word));
     }
     const ImportedScene outside = read(kStart + std::string("def Skeleton \"s\"\n{\n") + kJoints + "}\n" +
                                        mesh("m", "    rel skel:skeleton = </s>\n" + kRigid));
-    EXPECT_THAT(said(outside), HasSubstr("lies in no SkelRoot"));
+    EXPECT_THAT(warningsOf(outside), HasSubstr("lies in no SkelRoot"));
 }
 
 TEST_F(UsdHeads, InstancesOfACharacterHaveSkeletonsOfTheirOwn) {

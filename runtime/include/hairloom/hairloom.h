@@ -298,14 +298,14 @@ HL_API hl_code hl_instance_load(hl_instance* instance, const void* data, size_t 
  * asked from whatever threads the jobs run on. Copies ask it, too. */
 HL_API hl_code hl_instance_time(hl_instance* instance, uint64_t (*nanoseconds)(void* user), void* user,
                                 hl_error* error);
-enum { HL_EFFECT_COUNT = 12 };
 typedef struct hl_effect {
     const char* name; /* "collision"; the last is "strands", what every strand takes */
     uint32_t on;      /* in the last step */
     float milliseconds;
     char why[120]; /* "collision: off, no sphere within reach of a strand"; ends in 0 */
 } hl_effect;
-/* Of the last step, `effect` below HL_EFFECT_COUNT. Rods solve all forces in one, which counts as strands. */
+/* Of the last step, `effect` from 0 on; HL_BAD_VALUE: there are no more. Rods solve all forces in one, which
+ * counts as strands. */
 HL_API hl_code hl_instance_effect(const hl_instance* instance, uint32_t effect, hl_effect* out,
                                   hl_error* error);
 

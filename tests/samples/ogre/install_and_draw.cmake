@@ -7,17 +7,9 @@ if(missing)
     message("skipped: there is no Ogre here; './dev ogre' installs libogre-1.12-dev")
     return()
 endif()
-file(REMOVE_RECURSE "${WORK}")
-file(MAKE_DIRECTORY "${WORK}" "${PICTURES}")
-include("${SOURCE}/tests/support/run.cmake")
-
-run(${CMAKE_COMMAND} --install "${BINARY}" --component runtime --prefix "${WORK}/prefix")
-run(${CMAKE_COMMAND} -S "${SOURCE}/samples/ogre" -B "${WORK}/build" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${CXX}"
-    "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror -Wno-restrict" "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
-run(${CMAKE_COMMAND} --build "${WORK}/build")
-
-run(${CMAKE_COMMAND} -E env "HAIRLOOM_CLI=${CLI}" "${SOURCE}/samples/make_hairstyle.sh" --project-only shoulder "${WORK}")
-run("${CLI}" export "${WORK}/shoulder.hairloom" --format runtime -o "${WORK}/shoulder.hairrt")
+include("${SOURCE}/tests/samples/installed_sample.cmake")
+build_installed_sample(ogre -Wno-restrict)
+write_sample_asset(shoulder)
 
 # In the last frame of the clip's first second the head is down and turned.
 set(first "${PICTURES}/ogre-first.png")

@@ -3,14 +3,8 @@
 # the CPU has them, the image has hair in it, Vulkan's validation layer has nothing to say, and the tables as JSON name what the
 # kernels bind.
 #   cmake -DSOURCE=DIR -DBINARY=DIR -DWORK=DIR -DPICTURES=DIR -DCLI=PROGRAM -DCXX=CXX -P install_and_draw.cmake
-file(REMOVE_RECURSE "${WORK}")
-file(MAKE_DIRECTORY "${WORK}" "${PICTURES}")
-include("${SOURCE}/tests/support/run.cmake")
-
-run(${CMAKE_COMMAND} --install "${BINARY}" --component runtime --prefix "${WORK}/prefix")
-run(${CMAKE_COMMAND} -S "${SOURCE}/samples/vulkan" -B "${WORK}/build" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${CXX}"
-    "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror -Wno-missing-field-initializers" "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
-run(${CMAKE_COMMAND} --build "${WORK}/build")
+include("${SOURCE}/tests/samples/installed_sample.cmake")
+build_installed_sample(vulkan -Wno-missing-field-initializers)
 set(shaders "${WORK}/prefix/share/hairloom-runtime/shaders")
 
 file(READ "${shaders}/gpu.json" json)
@@ -41,8 +35,7 @@ if(NOT "${bound}" STREQUAL "${listed}")
 endif()
 
 foreach(style IN ITEMS short shoulder)
-    run(${CMAKE_COMMAND} -E env "HAIRLOOM_CLI=${CLI}" "${SOURCE}/samples/make_hairstyle.sh" --project-only ${style} "${WORK}")
-    run("${CLI}" export "${WORK}/${style}.hairloom" --format runtime -o "${WORK}/${style}.hairrt")
+    write_sample_asset(${style})
     set(image "${PICTURES}/vulkan-${style}.ppm")
     run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${style}.hairrt"
         "${shaders}" -o "${image}" --frames 20 --compare)
