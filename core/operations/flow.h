@@ -17,8 +17,8 @@ struct FlowSettings {
     Vec3f sweep = Vec3f::Zero();
     float gravity = 0.5f;
     float fall = 0.8f;
-    float liftRoot = 0.012f;
-    float liftTip = 0.006f;
+    float liftRoot = 0.006f;
+    float liftTip = 0.016f;
     float rise = 0.03f;
     float bend = 0.012f;
     float variation = 0.5f;

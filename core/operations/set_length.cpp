@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/operations/head_places.h"
 #include "core/operations/operation.h"
 #include "core/operations/reshape.h"
 
@@ -15,7 +16,8 @@ constexpr Field<S> kFields[] = {
     field<&S::length>("length", "m", 0.001, 5, "strand length before variation and gradient"),
     field<&S::variation>("variation", "", 0, 1, "shortens each strand by a random share up to this"),
     boolField<&S::rescale>("rescale", "true scales the shape; false cuts strands or extends them straight"),
-    field<&S::gradientPoint>("gradientPoint", "m", -kAnywhere, kAnywhere, "where the gradient begins"),
+    field<&S::gradientPoint>("gradientPoint", "m", -kAnywhere, kAnywhere,
+                             "where the gradient begins. Zero is the top of the head"),
     field<&S::gradientAxis>("gradientAxis", "", -kAnywhere, kAnywhere, "direction of the gradient"),
     field<&S::gradientDistance>("gradientDistance", "m", 0, kAnywhere,
                                 "distance along the axis to the end of the gradient: 0 is no gradient"),
@@ -45,8 +47,11 @@ namespace {
 Result<std::size_t> setLengthVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("set_length", varied.base()); !status)
         return tl::unexpected(status.error());
-    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
-        const S settings = varied.at(strand.index);
+    const S& asked = varied.base();
+    const Vec3f begin = asked.gradientPoint.isZero(0) ? topOfHead(groom) : asked.gradientPoint;
+    return editStrands(groom, region, {asked.clearance}, [&](StrandEdit& strand) {
+        S settings = varied.at(strand.index);
+        settings.gradientPoint = begin;
         const float share = 1 - settings.variation * strand.random(settings.seed).uniform();
         const float length =
             std::max(kShortest, settings.length * share * gradientAt(settings, strand.points[0]));

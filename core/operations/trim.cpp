@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/operations/head_places.h"
 #include "core/operations/operation.h"
 #include "core/operations/reshape.h"
 
@@ -13,7 +14,8 @@ namespace {
 using S = TrimSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::planePoint>("planePoint", "m", -kAnywhere, kAnywhere, "a point on the cutting plane"),
+    field<&S::planePoint>("planePoint", "m", -kAnywhere, kAnywhere,
+                          "a point on the cutting plane. Zero is the top of the head"),
     field<&S::planeNormal>("planeNormal", "", -kAnywhere, kAnywhere,
                            "normal that points to the side to cut off. Zero uses no plane"),
     field<&S::maxLength>("maxLength", "m", 0.001, 5, "cuts strands to this length"),
@@ -51,8 +53,11 @@ namespace {
 
 Result<std::size_t> trimVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("trim", varied.base()); !status) return tl::unexpected(status.error());
+    const S& asked = varied.base();
+    const Vec3f point = asked.planePoint.isZero(0) ? topOfHead(groom) : asked.planePoint;
     return editStrands(groom, region, {}, [&](StrandEdit& strand) {
-        const S settings = varied.at(strand.index);
+        S settings = varied.at(strand.index);
+        settings.planePoint = point;
         const float now = strand.totalLength();
         const float ragged = settings.raggedness * strand.random(settings.seed).uniform();
         const float cut = std::min(lengthToPlane(strand, settings), settings.maxLength);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <functional>
 
 #include "core/base/parallel.h"
@@ -13,6 +15,7 @@
 #include "core/operations/curl.h"
 #include "core/operations/drape.h"
 #include "core/operations/flow.h"
+#include "core/operations/head_places.h"
 #include "core/operations/noise.h"
 #include "core/operations/operation.h"
 #include "core/operations/set_length.h"
@@ -269,6 +272,46 @@ TEST(Flow, LaysHairDownAroundTheHead) {
     }
     EXPECT_GT(height, 0.002) << "hair has volume";
     EXPECT_LT(height, 0.02) << "hair lies on the head";
+}
+
+/// Else the roots below show through hair from the crown as a ring around the head.
+TEST(Flow, ByDefaultHairFromAboveLiesOverThatWhichGrowsBelow) {
+    Groom groom = hairOnSphere(0.12f);
+    ASSERT_TRUE(flow(groom, FlowSettings()));
+    const auto heightAt = [&](std::size_t point) {
+        double height = 0;
+        for (std::size_t s = 0; s < kStrands; ++s)
+            height += static_cast<double>((groom.strand(s)[point] - kHeadCentre).norm() - kHeadRadius);
+        return height / kStrands;
+    };
+    EXPECT_GT(heightAt(16), heightAt(6) + 0.001) << "at 8 cm and at 3 cm from the roots";
+    EXPECT_LT(heightAt(16), 0.03);
+}
+
+TEST(Places, ThatNobodyNamedAreOnTopOfTheHead) {
+    const Groom hair = wavyHair();
+    const Vec3f top = topOfHead(hair);
+    EXPECT_NEAR(top.y(), kHeadCentre.y() + kHeadRadius, 0.01f);
+    TrimSettings cut, cutThere;
+    cut.planeNormal = cutThere.planeNormal = Vec3f(1, 0, 0);
+    cutThere.planePoint = top;
+    SetLengthSettings shorter, shorterThere;
+    shorter.gradientDistance = shorterThere.gradientDistance = kHeadRadius;
+    shorter.farScale = shorterThere.farScale = 0.3f;
+    shorterThere.gradientPoint = top;
+    std::array<Groom, 4> made{hair, hair, hair, hair};
+    ASSERT_TRUE(trim(made[0], cut) && trim(made[1], cutThere));
+    ASSERT_TRUE(setLength(made[2], shorter) && setLength(made[3], shorterThere));
+    EXPECT_EQ(contentHash(made[0]), contentHash(made[1]));
+    EXPECT_EQ(contentHash(made[2]), contentHash(made[3]));
+    EXPECT_NE(contentHash(made[0]), contentHash(hair));
+    float shortest = 1, longest = 0;
+    for (std::size_t s = 0; s < kStrands; ++s) {
+        shortest = std::min(shortest, polylineLength(made[2].strand(s)));
+        longest = std::max(longest, polylineLength(made[2].strand(s)));
+    }
+    EXPECT_NEAR(longest, 0.1f, 0.01f);
+    EXPECT_NEAR(shortest, 0.03f, 0.003f);
 }
 
 TEST(Flow, APartingSendsHairToTheSideOfItsRoot) {
