@@ -40,6 +40,9 @@ class Prices : public QObject {
     void clear();
     /// Null: not measured. Valid until the next change.
     const SettingPrices* find(const QString& setting) const;
+    /// The longest time and the greatest error of all settings priced in that unit: their bars have one
+    /// scale.
+    Price greatest(const QString& unit) const;
 
   Q_SIGNALS:
     void changed();

@@ -79,11 +79,7 @@ void PriceTag::paintEvent(QPaintEvent*) {
     painter.setRenderHint(QPainter::Antialiasing);
     if (prices->outdated) painter.setOpacity(static_cast<double>(kFaded));
     const ThemeColours colours = themeColours(preferences_.theme());
-    double longest = 0, furthest = 0;
-    for (const Price& price : prices->values) {
-        longest = std::max(longest, price.milliseconds);
-        furthest = std::max(furthest, price.error);
-    }
+    const Price greatest = prices_.greatest(prices->unit);
     const double middle = height() / 2.0, room = middle - 1;
     const auto share = [room](double value, double most) {
         return most > 0 ? std::max(1.0, room * value / most) : 1.0;
@@ -96,7 +92,8 @@ void PriceTag::paintEvent(QPaintEvent*) {
             time.setAlphaF(kFaded);
             error.setAlphaF(kFaded);
         }
-        const double up = share(price.milliseconds, longest), down = share(price.error, furthest);
+        const double up = share(price.milliseconds, greatest.milliseconds),
+                     down = share(price.error, greatest.error);
         painter.fillRect(QRectF(x, middle - up, kColumn_px, up), time);
         painter.fillRect(QRectF(x, middle, kColumn_px, down), error);
         x += kColumn_px + kGap_px;

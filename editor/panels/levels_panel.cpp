@@ -212,7 +212,7 @@ LevelBudget LevelsPanel::budget() const {
 
 void LevelsPanel::make() {
     const auto groom = std::make_shared<const Groom>(document_.groom());
-    tasks_.run<MadeLevels>(
+    tasks_.measure<MadeLevels>(
         tr("Creating levels"),
         [groom, budget = budget()](TaskControl& control) { return makeShownLevels(*groom, budget, control); },
         [this, document = documents_, change = changes_](MadeLevels made) {

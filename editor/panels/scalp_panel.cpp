@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which faces carry hair, and placing hair on them.
 #include <QComboBox>
+#include <QFormLayout>
 #include <QGridLayout>
 #include <QLabel>
 #include <QLineEdit>
@@ -18,6 +19,7 @@
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
+#include "editor/fields/number_box.h"
 #include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
 
@@ -170,6 +172,18 @@ class PlacePanel : public QWidget {
         row->addWidget(preview);
         row->addWidget(place);
         layout->addLayout(row);
+        auto* density = new NumberBox(0, 100, true);
+        density->setObjectName("previewDensity");
+        density->setShown(1, QStringLiteral("%"), 0);
+        density->setValue(100);
+        density->setToolTip(
+            tr("Share of the follow hairs that the viewport draws, to work faster. Renders and exports have "
+               "all hairs"));
+        connect(density, &NumberBox::edited, this,
+                [this](double percent) { viewport_.setPreviewDensity(static_cast<float>(0.01 * percent)); });
+        auto* form = new QFormLayout;
+        form->addRow(tr("Preview density"), density);
+        layout->addLayout(form);
         count_->setObjectName("placeCount");
         count_->setWordWrap(true);
         count_->setProperty("role", "dim");

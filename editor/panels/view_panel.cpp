@@ -101,10 +101,13 @@ QWidget* makeLight(Viewport& viewport) {
         layout->addRow(label, box);
         return box;
     };
-    number("lightTurn", QObject::tr("Light angle"),
-           QObject::tr("Rotates the three lights around the head, in degrees"), {-180, 180}, 0,
-           [&viewport](float degrees) { viewport.setLightTurn(degrees); })
-        ->setShown(1, QStringLiteral("°"), 0);
+    auto* turn = number("lightTurn", QObject::tr("Light angle"),
+                        QObject::tr("Rotates the three lights around the head, in degrees. The Light tool "
+                                    "drags them in the viewport (Shift+V)"),
+                        {-180, 180}, 0, [&viewport](float degrees) { viewport.setLightTurn(degrees); });
+    turn->setShown(1, QStringLiteral("°"), 0);
+    QObject::connect(&viewport, &Viewport::lightTurned, turn,
+                     [turn](float degrees) { turn->setValue(static_cast<double>(degrees)); });
     number("exposure", QObject::tr("Exposure"),
            QObject::tr("Brightness of the image. 1.6 shows skin as it is"), {0.2, 6}, 1.6,
            [&viewport](float factor) { viewport.setExposure(factor); });

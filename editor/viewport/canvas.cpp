@@ -2,6 +2,7 @@
 #include "editor/viewport/canvas.h"
 
 #include <QPainter>
+#include <utility>
 
 namespace hairloom::editor {
 
@@ -19,6 +20,12 @@ void Canvas::setPicture(const QImage& picture) {
 
 void Canvas::setBackground(const QColor& colour) {
     background_ = colour;
+    update();
+}
+
+void Canvas::setMarks(MarkSheet::Sheet marks) {
+    if (marks.image.isNull() && marks_.image.isNull()) return;
+    marks_ = std::move(marks);
     update();
 }
 
@@ -43,6 +50,12 @@ void Canvas::paintEvent(QPaintEvent*) {
     if (!picture_.isNull()) {
         painter.setRenderHint(QPainter::SmoothPixmapTransform);
         painter.drawImage(rect(), picture_);
+    }
+    if (!marks_.image.isNull()) {
+        const qreal ratio = devicePixelRatioF();
+        const QRect& at = marks_.at_px;
+        painter.drawImage(QRectF(at.x() / ratio, at.y() / ratio, at.width() / ratio, at.height() / ratio),
+                          marks_.image);
     }
     if (split_) paintSplit(painter);
 }

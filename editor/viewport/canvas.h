@@ -7,6 +7,8 @@
 #include <QWidget>
 #include <optional>
 
+#include "editor/viewport/mark_sheet.h"
+
 namespace hairloom::editor {
 
 class Canvas : public QWidget {
@@ -19,6 +21,8 @@ class Canvas : public QWidget {
     void setPicture(const QImage& picture);
     const QImage& picture() const { return picture_; }
     void setBackground(const QColor& colour);
+    /// Over the picture, at this place in device pixels; a null image: none.
+    void setMarks(MarkSheet::Sheet marks);
     /// Behind the picture, as large as fits; null: none. `opacity` 0…1.
     void setReference(const QImage& image, double opacity);
     /// Draws the line between two looks at this part of the width; nothing: none.
@@ -32,6 +36,7 @@ class Canvas : public QWidget {
     void paintSplit(QPainter& painter) const;
 
     QImage picture_;
+    MarkSheet::Sheet marks_;
     QImage reference_;
     double referenceOpacity_ = 1;
     QColor background_;

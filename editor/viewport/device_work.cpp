@@ -20,22 +20,6 @@ software::DeviceChoice chosenDevice() {
     return software::chooseDevice();
 }
 
-namespace {
-
-/// They differ at most in their marks.
-bool sameButMarks(const PictureRequest& a, const PictureRequest& b) {
-    const render::Camera &c = a.camera, &d = b.camera;
-    return a.document == b.document && a.groom == b.groom && a.pose == b.pose && c.eye_ws == d.eye_ws &&
-           c.target_ws == d.target_ws && c.up_ws == d.up_ws && c.verticalFov == d.verticalFov &&
-           c.orthographicHeight == d.orthographicHeight && a.width == b.width && a.height == b.height &&
-           a.showHair == b.showHair && a.showHead == b.showHead && a.lightTurn == b.lightTurn &&
-           a.exposure == b.exposure && a.lightScale == b.lightScale && a.environment == b.environment &&
-           a.background == b.background && a.seeThrough == b.seeThrough && a.quality == b.quality &&
-           a.other == b.other && a.otherQuality == b.otherQuality;
-}
-
-}  // namespace
-
 Status Looks::take(PictureRequest request) {
     split_ = request.split;
     if (!request.other) {
@@ -126,8 +110,8 @@ Status DeviceWork::take(PictureRequest request) {
     if (!still_) return shown_.take(std::move(request));
     joinMoves(request);
     const bool showsMore = stillOf_ && !stillWaits_ && !quickWaits_ && still_->frames() > 0;
-    marksOnly_ = showsMore && !request.moving && sameButMarks(*stillOf_, request);
-    if (marksOnly_) return still_->take(std::move(request));
+    keepsAverage_ = showsMore && !request.moving && showsTheSame(*stillOf_, request);
+    if (keepsAverage_) return still_->take(std::move(request));
     stillOf_.reset();
     stillWaits_ = request.moving ? std::nullopt : std::optional(request);
     quickWaits_ = true;
@@ -151,7 +135,7 @@ Result<std::pair<QImage, PictureReport>> DeviceWork::draw() {
         stillOf_ = std::exchange(stillWaits_, std::nullopt);
         if (auto taken = still_->take(*stillOf_); !taken) return tl::unexpected(taken.error());
     }
-    still_->holdAverage(std::exchange(marksOnly_, false));
+    still_->holdAverage(std::exchange(keepsAverage_, false));
     auto drawn = still_->draw();
     if (!drawn) still_->takeBack();
     return drawn;
@@ -159,7 +143,7 @@ Result<std::pair<QImage, PictureReport>> DeviceWork::draw() {
 
 bool DeviceWork::isComplete() const {
     if (!still_) return shown_.isComplete();
-    return !quickWaits_ && !marksOnly_ && !stillWaits_ && (!stillOf_ || still_->isComplete());
+    return !quickWaits_ && !keepsAverage_ && !stillWaits_ && (!stillOf_ || still_->isComplete());
 }
 
 void DeviceWork::forget() {
@@ -167,7 +151,7 @@ void DeviceWork::forget() {
     if (still_) still_->forget();
     stillWaits_.reset();
     stillOf_.reset();
-    quickWaits_ = marksOnly_ = false;
+    quickWaits_ = keepsAverage_ = false;
 }
 
 Result<QImage> DeviceWork::drawAlone(PictureRequest request) {

@@ -64,7 +64,7 @@ class DeviceWork {
     Result<std::pair<QImage, PictureReport>> draw();
     bool isComplete() const;
     /// draw() takes long, and `drop` stops it.
-    bool canBeDropped() const { return still_ && !quickWaits_ && !marksOnly_; }
+    bool canBeDropped() const { return still_ && !quickWaits_ && !keepsAverage_; }
     void forget();
     /// The device refuses all, and will.
     bool isLost() const { return !device_->createCommandList(); }
@@ -87,7 +87,7 @@ class DeviceWork {
     std::optional<PictureRequest> stillWaits_;  ///< still_ has yet to take it
     std::optional<PictureRequest> stillOf_;     ///< what it has
     bool quickWaits_ = false;                   ///< shown_ has a request that it has not drawn
-    bool marksOnly_ = false;                    ///< still_ is to be shown again as it is
+    bool keepsAverage_ = false;                 ///< still_ is to be shown again as it is
     float lightTurn_ = 0;                       ///< of the last request
     std::shared_ptr<const Groom> handed_, moved_;
 };

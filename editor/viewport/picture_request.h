@@ -38,7 +38,7 @@ struct PictureRequest {
     std::shared_ptr<const StrandMoves> moves;
     std::shared_ptr<const HairPose> pose;  ///< null: at rest
     render::Camera camera;
-    render::Overlay marks;
+    render::Overlay marks;                ///< that the device draws
     std::uint32_t width = 1, height = 1;  ///< device pixels
     bool moving = false;                  ///< something moves: fast before fine
     bool showHair = true;
@@ -57,8 +57,12 @@ struct PictureRequest {
     float split = 0.5f;
 };
 
+/// The same picture: they differ at most in their marks, in the line between two looks and in haste.
+bool showsTheSame(const PictureRequest& a, const PictureRequest& b);
+
 struct PictureReport {
     std::uint32_t document = 0;  ///< of the request
+    render::Camera camera;       ///< likewise
     double milliseconds = 0;     ///< of this frame, everything included
     std::uint64_t hairs = 0;     ///< drawn
     std::uint32_t frames = 0;    ///< in the average

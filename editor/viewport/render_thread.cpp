@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/render_thread.h"
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <utility>
@@ -60,37 +61,41 @@ std::shared_ptr<const StrandMoves> RenderThread::withdrawMoves() {
 }
 
 void RenderThread::postSide(const QString& name, PictureRequest request) {
-    postSide(name, Side{std::move(request), [this, name](const Result<QImage>& picture) {
-                            if (picture) Q_EMIT sidePictureReady(name, *picture);
-                        }});
+    postSide(
+        std::make_shared<Side>(Side{std::move(request), name, [this, name](const Result<QImage>& picture) {
+                                        if (picture) Q_EMIT sidePictureReady(name, *picture);
+                                    }}));
 }
 
-void RenderThread::postSide(const QString& name, Side side) {
+void RenderThread::postSide(Ticket side) {
     {
         const std::lock_guard lock(mutex_);
-        side_.insert_or_assign(name, std::move(side));
+        const bool isThumbnail = !side->name.isEmpty();
+        if (isThumbnail) std::erase_if(side_, [&](const Ticket& other) { return other->name == side->name; });
+        const auto behind = std::ranges::find_if(
+            side_, [&](const Ticket& other) { return !isThumbnail && !other->name.isEmpty(); });
+        side_.insert(behind, std::move(side));
     }
     wake_.notify_all();
 }
 
-void RenderThread::withdrawSide(const QString& name) {
+void RenderThread::withdraw(const Ticket& side) {
     const std::lock_guard lock(mutex_);
-    side_.erase(name);
-    if (drawingSide_ != name) return;
-    sideWithdrawn_ = true;
-    dropStill();
+    side->isWithdrawn = true;
+    side_.remove(side);
+    if (drawn_ == side) dropStill();
 }
 
 Result<QImage> RenderThread::drawAside(PictureRequest request, const std::function<bool()>& isCancelled) {
     constexpr std::chrono::milliseconds kPatience(50);
-    const QString name = "!aside";  // before all thumbnails
     const auto made = std::make_shared<std::promise<Result<QImage>>>();
     std::future<Result<QImage>> picture = made->get_future();
-    postSide(name,
-             Side{std::move(request), [made](Result<QImage> drawn) { made->set_value(std::move(drawn)); }});
+    const auto ticket = std::make_shared<Side>(
+        Side{std::move(request), {}, [made](Result<QImage> drawn) { made->set_value(std::move(drawn)); }});
+    postSide(ticket);
     while (picture.wait_for(kPatience) != std::future_status::ready) {
         if (!isCancelled() && !hasEnded()) continue;
-        withdrawSide(name);
+        withdraw(ticket);
         return fail("the picture was cancelled");
     }
     return picture.get();
@@ -168,25 +173,26 @@ bool RenderThread::endDroppable() {
     return drop_->exchange(false);
 }
 
-void RenderThread::drawSide(DeviceWork& on, const QString& name, Side side) {
-    {
-        const std::lock_guard lock(mutex_);
-        drawingSide_ = name;
-        sideWithdrawn_ = false;
-    }
+void RenderThread::drawSide(DeviceWork& on, const Ticket& side) {
     beginDroppable(true);
-    auto picture = on.drawAlone(side.request);
+    auto picture = on.drawAlone(side->request);
     const bool dropped = endDroppable();
     {
         const std::lock_guard lock(mutex_);
-        drawingSide_.clear();
-        if (sideWithdrawn_) return;
+        drawn_.reset();
+        if (side->isWithdrawn) return;
         if (!picture && dropped) {
-            side_.try_emplace(name, std::move(side));
+            const bool isThumbnail = !side->name.isEmpty();
+            const bool isOld = isThumbnail && std::ranges::any_of(side_, [&](const Ticket& other) {
+                                   return other->name == side->name;
+                               });
+            const auto first = std::ranges::find_if(
+                side_, [&](const Ticket& other) { return !isThumbnail || !other->name.isEmpty(); });
+            if (!isOld) side_.insert(first, side);
             return;
         }
     }
-    side.done(std::move(picture));
+    side->done(std::move(picture));
 }
 
 void RenderThread::run() {
@@ -222,9 +228,10 @@ void RenderThread::run() {
             }
             request = std::exchange(next_, std::nullopt);
             if (!request && complete) {
-                auto asked = side_.extract(side_.begin());
+                const Ticket side = drawn_ = side_.front();
+                side_.pop_front();
                 lock.unlock();
-                drawSide(*on, asked.key(), std::move(asked.mapped()));
+                drawSide(*on, side);
                 continue;
             }
         }

@@ -8,7 +8,8 @@
 #include <QObject>
 #include <condition_variable>
 #include <functional>
-#include <map>
+#include <list>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -34,8 +35,8 @@ class RenderThread : public QObject {
     std::shared_ptr<const StrandMoves> withdrawMoves();
     /// A small picture of something else, drawn when nothing waits; of two of one name the later counts.
     void postSide(const QString& name, PictureRequest request);
-    /// The same, and waits for it: for work off the interface thread. Errors: it cannot be drawn,
-    /// `isCancelled` says so, the thread has ended.
+    /// The same, and waits for it: for work off the interface thread. It comes before small
+    /// pictures. Errors: it cannot be drawn, `isCancelled` says so, the thread has ended.
     Result<QImage> drawAside(PictureRequest request, const std::function<bool()>& isCancelled);
     /// Nothing is being drawn or waits to be, the average is complete.
     bool isIdle() const;
@@ -65,14 +66,17 @@ class RenderThread : public QObject {
   private:
     void run();
     void draw(std::unique_ptr<DeviceWork>& on, std::optional<PictureRequest> request);
-    /// A picture of something else, and who is told of it, on this thread.
+    /// A picture of something else.
     struct Side {
         PictureRequest request;
-        std::function<void(Result<QImage>)> done;
+        QString name;                              ///< of a thumbnail; empty: somebody waits for it
+        std::function<void(Result<QImage>)> done;  ///< on this thread
+        bool isWithdrawn = false;                  ///< with mutex_: nobody wants it any more
     };
-    void postSide(const QString& name, Side side);
-    void withdrawSide(const QString& name);
-    void drawSide(DeviceWork& on, const QString& name, Side side);
+    using Ticket = std::shared_ptr<Side>;
+    void postSide(Ticket side);
+    void withdraw(const Ticket& side);
+    void drawSide(DeviceWork& on, const Ticket& side);
     void beginDroppable(bool can);
     /// Whether it was dropped.
     bool endDroppable();
@@ -85,9 +89,8 @@ class RenderThread : public QObject {
     std::condition_variable wake_;
     std::condition_variable windowTaken_;
     std::optional<PictureRequest> next_;
-    std::map<QString, Side> side_;
-    QString drawingSide_;         ///< name of what drawSide() draws
-    bool sideWithdrawn_ = false;  ///< nobody wants that any more
+    std::list<Ticket> side_;  ///< in the order in which they are drawn
+    Ticket drawn_;            ///< what drawSide() draws; null: nothing
     std::optional<gpu::NativeWindow> window_;
     bool windowChanged_ = false;
     bool idle_ = true;

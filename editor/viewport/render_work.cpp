@@ -125,6 +125,15 @@ void straighten(QImage& image) {
 
 }  // namespace
 
+bool showsTheSame(const PictureRequest& a, const PictureRequest& b) {
+    return a.document == b.document && a.groom == b.groom && a.pose == b.pose &&
+           sameCamera(a.camera, b.camera) && a.width == b.width && a.height == b.height &&
+           a.showHair == b.showHair && a.showHead == b.showHead && a.lightTurn == b.lightTurn &&
+           a.exposure == b.exposure && a.lightScale == b.lightScale && a.environment == b.environment &&
+           a.background == b.background && a.seeThrough == b.seeThrough && a.quality == b.quality &&
+           a.other == b.other && a.otherQuality == b.otherQuality;
+}
+
 RenderWork::RenderWork(gpu::Device& device, PlayedHair* played)
     : device_(device), played_(played), software_(software::isSoftware(device)), renderer_(device) {}
 
@@ -354,6 +363,7 @@ Result<std::pair<QImage, PictureReport>> RenderWork::draw() {
     }
     PictureReport& report = result.second;
     report.document = last_->document;
+    report.camera = last_->camera;
     report.milliseconds = static_cast<double>(clock.nsecsElapsed()) * 1e-6;
     report.hairs = renderer_.strands();
     report.frames = renderer_.accumulated();

@@ -31,7 +31,7 @@ class RenderWork {
     std::uint32_t frames() const { return renderer_.accumulated(); }
     /// The last frame was left (software::kDropped): the next does it.
     void takeBack() { renderer_.takeBack(); }
-    /// While true, draw() shows the average as it is, with the marks of now.
+    /// While true, draw() shows the average as it is.
     void holdAverage(bool on) { renderer_.holdAverage(on); }
     /// While true, light and shadows stay as they were: Renderer::holdMaps().
     void holdMaps(bool on) { renderer_.holdMaps(on); }

@@ -80,7 +80,9 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
                 if (std::exchange(headFirst_, false)) redraw();
                 if (!report.presented) {
                     picture_ = picture;
+                    pictureCamera_ = report.camera;
                     if (canvas_) canvas_->setPicture(picture);
+                    layMarks();
                 }
                 Q_EMIT drawn(report);
             });
@@ -109,7 +111,9 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
         ++documents_;
         headFirst_ = !document_.isEmpty() && wishedSurface() != "none" && !renderer_.hasEnded();
         picture_ = {};
+        overlay_ = {};
         if (canvas_) canvas_->setPicture({});
+        layMarks();
     });
     connect(&preferences_, &Preferences::changed, this, [this] {
         showOnCanvas();
@@ -230,6 +234,10 @@ void Viewport::setHairShown(bool on) {
     showHair_ = on;
     redraw();
 }
+void Viewport::setPreviewDensity(float share) {
+    previewDensity_ = std::clamp(share, 0.0f, 1.0f);
+    redraw();
+}
 void Viewport::setHeadShown(bool on) {
     showHead_ = on;
     redraw();
@@ -237,6 +245,7 @@ void Viewport::setHeadShown(bool on) {
 void Viewport::setLightTurn(float degrees) {
     lightTurn_ = degrees;
     redraw(true);
+    Q_EMIT lightTurned(degrees);
 }
 void Viewport::setExposure(float factor) {
     exposure_ = factor;
@@ -331,6 +340,13 @@ void Viewport::handOverAll() {
     other_.reset();
     moved_.clear();
     isMoved_.clear();
+    posted_.reset();
+}
+
+std::uint32_t Viewport::previewedPerGuide() const {
+    const std::uint32_t all = document_.groom().interpolation.followPerGuide;
+    if (previewDensity_ >= 1 || (pose_ && pose_->onDevice)) return all;
+    return static_cast<std::uint32_t>(std::lround(previewDensity_ * static_cast<float>(all)));
 }
 
 void Viewport::noteMoved(std::span<const std::uint32_t> strands) {
@@ -386,19 +402,20 @@ void Viewport::post() {
     if (document_.isEmpty() || isHeld_ || wishedSurface() == "none") return;
     headFirst_ = headFirst_ && document_.groom().scalp && document_.groom().strandCount() > 0;
     if (headFirst_) return postHead();
+    const std::uint32_t perGuide = previewedPerGuide();
+    if (groom_ && groom_->interpolation.followPerGuide != perGuide) handOverAll();
     const bool anew = !groom_;
-    // The copy shares its arrays with the document.
-    if (anew) groom_ = std::make_shared<const Groom>(document_.groom());
-    Marks marks;
-    positionsWanted_ = false;
-    for (const auto& draw : marks_) draw(marks);
-    renderJobs()->setWantsPositions(positionsWanted_);
-    if (tool_) tool_->draw(marks);
+    if (anew) {
+        Groom shown = document_.groom();  // shares its arrays with the document
+        shown.interpolation.followPerGuide = perGuide;
+        groom_ = std::make_shared<const Groom>(std::move(shown));
+    }
+    overlay_ = marksNow();
+    layMarks();
     PictureRequest request;
     request.groom = groom_;
     if (!anew) request.moves = movesSinceHandedOver();
     request.pose = pose_;
-    request.marks = marks.overlay();
     finishRequest(request);
     if (comparison_ && canvas_) {
         if (!other_) {
@@ -411,7 +428,36 @@ void Viewport::post() {
         request.otherQuality = comparison_->quality;
         request.split = split_;
     }
+    if (!canvas_) {
+        request.marks = overlay_;
+    } else if (!request.moves) {
+        const bool isNew = !posted_ || !showsTheSame(*posted_, request) || posted_->split != request.split ||
+                           posted_->moving != request.moving || (pose_ && pose_->onDevice);
+        if (!isNew) return;
+        posted_ = request;
+    } else {
+        posted_.reset();
+    }
     renderer_.post(std::move(request));
+}
+
+render::Overlay Viewport::marksNow() {
+    Marks marks;
+    positionsWanted_ = false;
+    for (const auto& draw : marks_) draw(marks);
+    renderJobs()->setWantsPositions(positionsWanted_);
+    if (tool_) tool_->draw(marks);
+    return marks.overlay();
+}
+
+void Viewport::layMarks() {
+    if (!canvas_) return;
+    const qreal ratio = devicePixelRatioF();
+    const QSize size_px(static_cast<int>(std::round(width() * ratio)),
+                        static_cast<int>(std::round(height() * ratio)));
+    canvas_->setMarks(sheet_.draw(overlay_, picture_.isNull() ? camera_.camera() : pictureCamera_, size_px,
+                                  static_cast<float>(ratio), document_.groom(),
+                                  pose_ ? &pose_->head : nullptr, showHead_));
 }
 
 void Viewport::finishRequest(PictureRequest& request) const {

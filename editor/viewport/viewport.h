@@ -16,6 +16,7 @@
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
 #include "editor/viewport/canvas.h"
+#include "editor/viewport/mark_sheet.h"
 #include "editor/viewport/orbit_camera.h"
 #include "editor/viewport/render_thread.h"
 #include "editor/viewport/tool.h"
@@ -80,10 +81,15 @@ class Viewport : public QWidget {
     void setPose(std::shared_ptr<const HairPose> pose);
     const std::shared_ptr<const HairPose>& pose() const { return pose_; }
     void setHairShown(bool on);
+    /// Share of the follow hairs that is drawn, 0…1, so that much hair stays quick. Pictures and exports have
+    /// all, and so has hair that the device simulates.
+    void setPreviewDensity(float share);
+    float previewDensity() const { return previewDensity_; }
     void setHeadShown(bool on);
     bool isHairShown() const { return showHair_; }
     bool isHeadShown() const { return showHead_; }
     void setLightTurn(float degrees);
+    float lightTurn() const { return lightTurn_; }
     void setExposure(float factor);
     float exposure() const { return exposure_; }
     /// Factors on the lights and on the light from around; 1 as they come.
@@ -96,7 +102,8 @@ class Viewport : public QWidget {
     void setOrthographic(bool on);
     void frameAll();
 
-    /// Draws over the picture, each time anew; called in the order in which they were added.
+    /// Draws over the picture, each time anew; called in the order in which they were added. The interface
+    /// draws them over the last picture, unless the device shows pictures by itself.
     void addMarks(std::function<void(Marks&)> draw);
     /// Takes everything anew. `moving` asks for speed.
     void redraw(bool moving = false);
@@ -106,7 +113,7 @@ class Viewport : public QWidget {
     bool presents() const { return window_ != nullptr; }
     /// Waits until what was asked for is drawn; false after `milliseconds`.
     bool waitForPicture(int milliseconds = 20'000);
-    /// The last picture that was read back.
+    /// The last picture that was read back; without marks, which grab() has.
     const QImage& picture() const { return picture_; }
 
   Q_SIGNALS:
@@ -116,6 +123,7 @@ class Viewport : public QWidget {
     void failed(const QString& problem);
     /// Quality or comparison.
     void lookChanged();
+    void lightTurned(float degrees);
     void sidePictureReady(const QString& name, const QImage& picture);
     /// The pointer's tool has something else to say.
     void hintChanged();
@@ -138,11 +146,16 @@ class Viewport : public QWidget {
     void showOnCanvas();
     void placeApart();
     void post();
+    /// Marks as they are now, of all who add some.
+    render::Overlay marksNow();
+    /// Lays the last marks over the picture that is shown, as its camera sees them.
+    void layMarks();
     /// The head of a document that has just been opened: its hair may take a while.
     void postHead();
     void finishRequest(PictureRequest& request) const;
     /// The next picture takes all of the groom.
     void handOverAll();
+    std::uint32_t previewedPerGuide() const;
     void noteMoved(std::span<const std::uint32_t> strands);
     std::shared_ptr<const StrandMoves> movesSinceHandedOver();
     void dragView(const QPointF& to_px);
@@ -170,13 +183,18 @@ class Viewport : public QWidget {
     std::vector<std::uint8_t> isMoved_;   ///< per strand, 1 for those
     std::shared_ptr<const HairPose> pose_;
     std::vector<std::function<void(Marks&)>> marks_;
+    render::Overlay overlay_;  ///< marks that lie over the picture
+    MarkSheet sheet_;
     QImage picture_;
-    QTimer settle_;  ///< from fast pictures to fine ones
+    render::Camera pictureCamera_;          ///< of picture_
+    std::optional<PictureRequest> posted_;  ///< the last, without marks and moves; nothing: post the next
+    QTimer settle_;                         ///< from fast pictures to fine ones
     QTimer turntable_;
     QTimer postSoon_;
     bool moving_ = false;
     bool isHeld_ = false;
     bool showHair_ = true, showHead_ = true;
+    float previewDensity_ = 1;
     float lightTurn_ = 0;
     float exposure_ = 1.6f;
     float lightScale_ = 1, environment_ = 1;

@@ -1,137 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From the bare bust to an exported hairstyle with a fringe and a braid, with the mouse alone: every click
 // lands on what is seen there.
-#include <QApplication>
 #include <QCheckBox>
-#include <QComboBox>
-#include <QDialogButtonBox>
-#include <QDir>
-#include <QDockWidget>
-#include <QFileDialog>
-#include <QListWidget>
-#include <QMenuBar>
-#include <QScrollArea>
-#include <QScrollBar>
 #include <QStandardPaths>
 #include <QStyleOptionSlider>
-#include <QTabBar>
-#include <QTimer>
-#include <QToolButton>
 #include <QTreeWidget>
-#include <QWheelEvent>
 
 #include "core/groom/file/project_file.h"
 #include "core/groom/strand_subset.h"
 #include "core/operations/stack.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/document/autosave.h"
-#include "editor/fields/number_box.h"
 #include "importers/strands.h"
-#include "tests/editor/window_fixture.h"
+#include "tests/editor/mouse_fixture.h"
 
 namespace hairloom::editor {
 namespace {
 
-class MouseWalkTest : public WindowTest {
+class MouseWalkTest : public MouseTest {
   protected:
-    void SetUp() override {
-        WindowTest::SetUp();
-        before_ = QDir::currentPath();
-        QDir::setCurrent(folder.path());  // where dialogs of files begin
-    }
-    void TearDown() override {
-        QDir::setCurrent(before_);
-        WindowTest::TearDown();
-    }
-
-    /// A click there, if that is what lies there: not behind another, not scrolled out of sight.
-    static void clickAt(QWidget& widget, const QPoint& at) {
-        QCoreApplication::processEvents();
-        QWidget* const top = widget.window();
-        const QPoint there = widget.mapTo(top, at);
-        QWidget* const seen = top->childAt(there);
-        EXPECT_TRUE(seen == &widget || widget.isAncestorOf(seen))
-            << widget.objectName().toStdString() << " is not seen at " << there.x() << ", " << there.y();
-        QTest::mouseClick(&widget, Qt::LeftButton, {}, at);
-        QCoreApplication::processEvents();
-    }
-    /// Turns the wheel over the bar of what the widget is scrolled in until it is seen.
-    static void scrollTo(QWidget& widget) {
-        QCoreApplication::processEvents();
-        for (QWidget* outer = widget.parentWidget(); outer; outer = outer->parentWidget()) {
-            auto* area = qobject_cast<QScrollArea*>(outer);
-            if (!area) continue;
-            QScrollBar* const bar = area->verticalScrollBar();
-            for (int turns = 0; turns < 200; ++turns) {
-                const QRect seen(widget.mapTo(area->viewport(), QPoint(0, 0)), widget.size());
-                if (area->viewport()->rect().contains(seen)) break;
-                turnWheel(*bar, seen.top() < 0 ? 1 : -1);
-            }
-        }
-    }
-    static void click(QWidget& widget) {
-        scrollTo(widget);
-        clickAt(widget, widget.rect().center());
-    }
-    void click(const char* button) { click(*find<QPushButton>(button)); }
-    void tool(const char* name) {
-        QAction& action = window->actions().get((std::string("tool.") + name).c_str());
-        for (auto* button : window->findChildren<QToolButton*>()) {
-            if (button->defaultAction() == &action && button->isVisible()) return click(*button);
-        }
-        ADD_FAILURE() << "no button of the tool " << name;
-    }
-    /// Brings a panel to the front by its tab.
-    QDockWidget& open(const char* panel) {
-        QDockWidget& dock = *window->panel(panel);
-        for (auto* bar : window->findChildren<QTabBar*>()) {
-            for (int i = 0; i < bar->count(); ++i) {
-                if (bar->isVisible() && bar->tabText(i) == dock.windowTitle())
-                    clickAt(*bar, bar->tabRect(i).center());
-            }
-        }
-        return dock;
-    }
-    static QString plain(QString text) { return text.remove('&'); }
-    static void choose(QMenu& menu, const QString& entry) {
-        for (QAction* action : menu.actions()) {
-            if (plain(action->text()) != entry) continue;
-            QTest::mouseClick(&menu, Qt::LeftButton, {}, menu.actionGeometry(action).center());
-            QCoreApplication::processEvents();
-            return;
-        }
-        menu.close();
-        ADD_FAILURE() << "no entry " << entry.toStdString();
-    }
-    void chooseInMenu(const QString& menu, const QString& entry) {
-        QMenuBar& bar = *window->menuBar();
-        for (QAction* action : bar.actions()) {
-            if (plain(action->text()) != menu) continue;
-            clickAt(bar, bar.actionGeometry(action).center());
-            return choose(*action->menu(), entry);
-        }
-        ADD_FAILURE() << "no menu " << menu.toStdString();
-    }
-    void addOperator(const QString& name) {
-        auto& add = *find<QPushButton>("operatorAdd");
-        scrollTo(add);
-        // The menu of a button waits for its choice.
-        QTimer::singleShot(50, &add, [&] { choose(*add.menu(), name); });
-        clickAt(add, add.rect().center());
-    }
-    void chooseOperator(int row) {
-        auto& list = *find<QListWidget>("operators");
-        scrollTo(list);
-        clickAt(*list.viewport(), list.visualItemRect(list.item(row)).center());
-        EXPECT_EQ(list.currentRow(), row);
-    }
-    static void turnWheel(QWidget& over, int ticks) {
-        const QPoint at = over.rect().center();
-        QWheelEvent wheel(at, over.mapToGlobal(at), {}, {0, 120 * ticks}, Qt::NoButton, {}, Qt::NoScrollPhase,
-                          false);
-        QCoreApplication::sendEvent(&over, &wheel);
-        QCoreApplication::processEvents();
-    }
     /// Drags the handle of a slider until its box shows about that, and turns the wheel over it for the rest.
     void slideTo(NumberBox& box, double value) {
         scrollTo(box);
@@ -158,25 +45,6 @@ class MouseWalkTest : public WindowTest {
         if (box.value() != 0) box.spinBox().setValue(box.spinBox().value() * value / box.value());
         QCoreApplication::processEvents();
     }
-    /// Draws a curve of the chosen operator over these points of the world.
-    void drawCurve(std::initializer_list<Vec3f> points) {
-        click("curveDraw");
-        press(at(*points.begin()));
-        for (const Vec3f& point : points) moveTo(at(point));
-        release(at(*(points.end() - 1)));
-    }
-    /// The name that a dialog of files proposes is taken.
-    void onceAskedForAFileTakeIt() {
-        onceAsked<QFileDialog>([](QFileDialog& dialog) {
-            clickAt(*dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save), {8, 8});
-        });
-    }
-    Vec3f onHead(float x, float down, float z) const { return top + Vec3f(x, -down, z); }
-
-    Vec3f top = Vec3f::Zero();  ///< of the head
-
-  private:
-    QString before_;
 };
 
 TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
@@ -189,14 +57,7 @@ TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
     // The scalp of the file, and a hairline drawn a little higher.
     open("scalp");
     auto& groups = *find<QComboBox>("scalpGroup");
-    click(groups);
-    QAbstractItemView& names = *groups.view();
-    // The release of the click that opened the list is none in it.
-    QTest::qWait(2 * QApplication::doubleClickInterval());
-    const int scalp = groups.findData("material:scalp");
-    QTest::mouseClick(names.viewport(), Qt::LeftButton, {},
-                      names.visualRect(groups.model()->index(scalp, 0)).center());
-    QCoreApplication::processEvents();
+    pick(groups, groups.findData("material:scalp"));
     ASSERT_FALSE(groom().scalpSelection.empty());
     chooseInMenu("View", "From the front");
     chooseInMenu("View", "Frame selection");

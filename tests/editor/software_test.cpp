@@ -102,14 +102,13 @@ TEST_F(SoftwareWindowTest, AStillThatWasDroppedIsThatOfAnUndisturbedOne) {
     ASSERT_TRUE(viewport().waitForPicture(120'000));
     const QImage undisturbed = viewport().picture();
     EXPECT_EQ(reports_.back().frames, viewport().quality().frames);
-    // Marks alone take nothing back.
+    // Marks alone take nothing back, nor draw anything anew.
     const std::size_t before = reports_.size();
     for (int i = 0; i < 4; ++i) {
         viewport().redraw();
         ASSERT_TRUE(viewport().waitForPicture(120'000));
     }
-    EXPECT_TRUE(std::all_of(reports_.begin() + static_cast<std::ptrdiff_t>(before), reports_.end(),
-                            [](const PictureReport& report) { return report.frames > 1; }));
+    EXPECT_EQ(reports_.size(), before);
     EXPECT_EQ(viewport().picture(), undisturbed);
     // There and back, while stills are begun and dropped.
     for (int i = 0; i < 12; ++i) {
@@ -124,13 +123,13 @@ TEST_F(SoftwareWindowTest, AStillThatWasDroppedIsThatOfAnUndisturbedOne) {
 TEST_F(SoftwareWindowTest, MarksAndTubesAreDrawn) {
     openFewHairs();
     ASSERT_TRUE(viewport().waitForPicture(120'000));
-    const QImage without = viewport().picture();
+    const QImage without = viewport().grab().toImage();
     trigger("overlay.guides");
     ASSERT_TRUE(viewport().waitForPicture(120'000));
-    EXPECT_NE(viewport().picture(), without);
+    EXPECT_NE(viewport().grab().toImage(), without);
     trigger("overlay.guides");
     ASSERT_TRUE(viewport().waitForPicture(120'000));
-    EXPECT_EQ(viewport().picture(), without);
+    EXPECT_EQ(viewport().grab().toImage(), without);
     Groom tubes = groom();
     tubes.material.tubes = true;
     reports_.clear();

@@ -107,11 +107,12 @@ class PictureTest : public WindowTest {
     /// Each of these overlays changes the picture.
     void expectDrawn(std::initializer_list<const char*> overlays) {
         ASSERT_TRUE(viewport().waitForPicture(60'000));
-        const QImage without = viewport().picture();
+        const QImage without = viewport().grab().toImage(), picture = viewport().picture();
         for (const char* name : overlays) {
             trigger((std::string("overlay.") + name).c_str());
             ASSERT_TRUE(viewport().waitForPicture(60'000));
-            EXPECT_NE(viewport().picture(), without) << name;
+            EXPECT_NE(viewport().grab().toImage(), without) << name;
+            EXPECT_EQ(viewport().picture(), picture) << name << " is laid over it";
             trigger((std::string("overlay.") + name).c_str());
         }
     }
@@ -239,7 +240,7 @@ TEST_F(PictureTest, MarkersStandWhereTheCameraProjectsThem) {
     for (const bool orthographic : {false, true}) {
         viewport().setOrthographic(orthographic);
         ASSERT_TRUE(viewport().waitForPicture(60'000));
-        const QImage& picture = viewport().picture();
+        const QImage picture = viewport().grab().toImage();
         for (std::size_t i = 0; i < 2; ++i) {
             QPointF sum;
             int count = 0;
