@@ -84,7 +84,8 @@ def by_usd(path):
             arrived.add(what)
     if all(UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0] for prim in prims):
         arrived.add("material")
-    if any(prim.GetAttribute("hairloom:settings").HasValue() for prim in stage.GetPseudoRoot().GetChildren()):
+    settings = stage.GetDefaultPrim().GetCustomDataByKey("hairloom:settings")
+    if settings and "simulation" in json.loads(settings):
         arrived.add("settings")
     return arrived
 
