@@ -3,6 +3,7 @@
 with, and writes what arrives as the table of targets in docs/exchange.md. Fails where strands or layers that a format
 has do not arrive, where Blenders disagree, and where hair comes back from Blender or USD without its layers."""
 import argparse
+import json
 import os
 import sys
 
