@@ -120,6 +120,10 @@ void addAvatarBody(cards::Character& character, const Vec3f& head_ws) {
             bone.parent < 0 ? place[static_cast<std::size_t>(AvatarBone::spine)] : first + bone.parent;
         avatar.bones.push_back(std::move(bone));
     }
+    avatar.roots = std::move(character.roots);
+    for (cards::Character::Root& root : avatar.roots)
+        for (std::uint16_t& bone : root.bones)
+            bone = static_cast<std::uint16_t>(bone + static_cast<std::uint16_t>(first));
     avatar.head = hasHead ? first + character.head : place[kHead];
     place[kHead] = avatar.head;
     for (std::size_t b = 0; b < kAvatarBones; ++b) avatar.humanoid.emplace_back(known()[b].name, place[b]);

@@ -26,14 +26,15 @@ struct CardMesh {
 struct CardJoint {
     std::string name;
     std::int32_t parent = -1;  ///< comes before; -1: none
-    Vec3f position_ws = Vec3f::Zero();
+    /// Where it is at rest, and where its axes point, as long as its scale.
+    Vec3f position_ws = Vec3f::Zero(), x_ws = Vec3f::UnitX(), y_ws = Vec3f::UnitY(), z_ws = Vec3f::UnitZ();
 };
 
 struct CardMeshScene {
     CardMeshFormat format = CardMeshFormat::obj;
     std::string stem;  ///< of the file's name
     std::vector<CardMesh> meshes;
-    std::vector<CardJoint> joints;  ///< the root first
+    std::vector<CardJoint> joints;
 };
 inline constexpr auto kCardSceneMembers = [](auto& archive, auto& scene) {
     archive.choice(scene.format, CardMeshFormat::fbx);
@@ -55,6 +56,9 @@ inline constexpr auto kCardSceneMembers = [](auto& archive, auto& scene) {
         archive(joint.name);
         archive(joint.parent);
         archive(joint.position_ws);
+        archive(joint.x_ws);
+        archive(joint.y_ws);
+        archive(joint.z_ws);
     });
 };
 

@@ -25,7 +25,7 @@ inline Result<WrittenCards> writeGlb(const CardsToWrite& cards, const std::files
 inline Result<WrittenCards> writeGlb(const CardsToWrite& cards, const std::filesystem::path& path,
                                      cards::GlbNumbers numbers) {
     std::vector<Finding> findings;
-    const cards::Character character = cardCharacter(cards.groom, findings);
+    const cards::Character character = cardCharacter({cards.groom, cards.chain.roots_ws}, findings);
     return writeGlb(cards, path, numbers, character, std::move(findings));
 }
 

@@ -7,6 +7,7 @@
 #include "exporters/usd_curves.h"
 #include "exporters/usd_scene.h"
 #include "exporters/usda_numbers.h"
+#include "importers/authored_settings.h"
 
 namespace hairloom {
 namespace {
@@ -210,13 +211,14 @@ std::string usdaText(const Groom& groom, PreparedStrands& strands, const StrandE
         "#usda 1.0\n(\n    defaultPrim = \"groom\"\n    doc = \"Hairloom\"\n{}    metersPerUnit = "
         "{}\n    "
         "upAxis = \"{}\"\n)\n\n"
-        "def Xform \"groom\"\n{{\n",
-        timesInHead(options), options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y");
+        "def Xform \"groom\" (\n    customData = {{\n        dictionary {} = {{\n",
+        timesInHead(options), options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y", kUsdDictionary);
     // About what points and widths take as text.
     out.reserve(strands.positions.size() * 48 * (1 + strands.frames.size()));
     const bool hasOperators = usdHasOperators(groom, options);
     for (const auto& [name, text] : usdSettings(groom, strands, hasOperators))
-        out += fmt::format("    custom string {} = {}\n", name, inQuotes(text));
+        out += fmt::format("            string {} = {}\n", name, inQuotes(text));
+    out += "        }\n    }\n)\n{\n";
     const auto attributes = exportedAttributes(groom, strands, usdNames(hasOperators));
     const std::vector<ExportedPart> parts = exportedParts(groom, strands, isLegalInUsd);
     const UsdBeside beside = usdBeside(parts);

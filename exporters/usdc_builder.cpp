@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t kBootstrap = 88;
 constexpr std::uint32_t kAttribute = 1, kPrim = 6, kRoot = 7, kRelationship = 8;
 constexpr std::uint8_t kBool = 1, kUChar = 2, kInt = 3, kFloat = 8, kDouble = 9, kString = 10, kToken = 11,
-                       kVec2f = 20, kVec3f = 24, kVec4f = 28, kTokenListOp = 32, kPathListOp = 34,
-                       kTokenVector = 41, kSpecifier = 42, kVariability = 44, kTimeSamples = 46,
-                       kDoubleVector = 48;
+                       kVec2f = 20, kVec3f = 24, kVec4f = 28, kDictionary = 31, kTokenListOp = 32,
+                       kPathListOp = 34, kTokenVector = 41, kSpecifier = 42, kVariability = 44,
+                       kTimeSamples = 46, kDoubleVector = 48;
 
 UsdcRep inlined(std::uint8_t type, std::uint32_t payload) {
     return {std::uint64_t{1} << 62u | std::uint64_t{type} << 48u | payload};
@@ -85,6 +85,23 @@ UsdcRep UsdcBuilder::tokens(std::span<const std::string> texts) {
     out_.write(std::uint64_t{texts.size()});
     for (const std::string& text : texts) out_.write(tokenIndex(text));
     return {std::uint64_t{kTokenVector} << 48u | offset};
+}
+
+UsdcRep UsdcBuilder::dictionary(const Fields& entries) {
+    std::vector<std::uint32_t> names;
+    for (const auto& [name, value] : entries) {
+        strings_.push_back(tokenIndex(name));
+        names.push_back(static_cast<std::uint32_t>(strings_.size() - 1));
+    }
+    out_.align(8);
+    const std::uint64_t offset = out_.size();
+    out_.write(std::uint64_t{entries.size()});
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        out_.write(names[i]);
+        out_.write(std::int64_t{8});  // a jump to what stands behind it
+        out_.write(entries[i].second.bits);
+    }
+    return {std::uint64_t{kDictionary} << 48u | offset};
 }
 
 UsdcRep UsdcBuilder::number(double value) {

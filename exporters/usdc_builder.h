@@ -30,6 +30,8 @@ class UsdcBuilder {
     /// A text that is no name.
     UsdcRep string(const std::string& text);
     UsdcRep tokens(std::span<const std::string> texts);
+    /// Values by names.
+    UsdcRep dictionary(const Fields& entries);
     UsdcRep number(double value);
     UsdcRep single(float value);
     /// One element of 2 to 4 numbers.

@@ -5,6 +5,7 @@
 #include "exporters/usd_curves.h"
 #include "exporters/usd_scene.h"
 #include "exporters/usdc_builder.h"
+#include "importers/authored_settings.h"
 
 namespace hairloom {
 namespace {
@@ -270,30 +271,27 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
     UsdcBuilder file;
     file.reserve(roomOf(*strands, attributes));
     writeRoot(file, options);
-    std::vector<std::string> names, properties;
+    std::vector<std::string> names;
     for (const ExportedPart& part : parts) names.push_back(part.name);
     if (!scalp.empty()) names.push_back(beside.scalp);
     names.push_back(beside.materials);
     const UsdMore more = usdMore(groom, *strands, options, parts, beside.physics);
     for (const UsdNode& node : more.beside) names.push_back(node.name);
-    const auto settings = usdSettings(groom, *strands, hasOperators);
-    for (const auto& [name, text] : settings) properties.push_back(name);
+    UsdcBuilder::Fields settings;
+    for (const auto& [name, text] : usdSettings(groom, *strands, hasOperators))
+        settings.emplace_back(name, file.string(text));
+    const UsdcBuilder::Fields custom{{std::string(kUsdDictionary), file.dictionary(settings)}};
     file.prim(1, "groom",
               {{"specifier", file.definition()},
                {"typeName", file.token("Xform")},
                {"primChildren", file.tokens(names)},
-               {"properties", file.tokens(properties)}});
+               {"customData", file.dictionary(custom)}});
     PartWriter writer(file, *strands, options);
     for (std::size_t p = 0; p < parts.size(); ++p)
         writer.write(parts[p], attributes, materials.all[materials.ofPart[p]], more.ofParts[p]);
     if (!scalp.empty()) writeScalp(file, beside.scalp, scalp);
     writeMaterials(file, beside.materials, materials);
     for (const UsdNode& node : more.beside) writeNode(file, node, 2);
-    for (const auto& [name, text] : settings)
-        file.attribute(2, name,
-                       {{"typeName", file.token("string")},
-                        {"custom", file.boolean(true)},
-                        {"default", file.string(text)}});
     return writeAndCompare(groom, std::move(*strands), options, path, file.finish());
 }
 

@@ -7,7 +7,8 @@ namespace {
 Result<WrittenCards> writeVrm(const CardsToWrite& cards, const std::filesystem::path& path) {
     const std::string name = path.stem().string();
     std::vector<Finding> findings;
-    const cards::Character character = avatarCharacter(cards.groom, name.empty() ? "hair" : name, findings);
+    const cards::Character character =
+        avatarCharacter({cards.groom, cards.chain.roots_ws}, name.empty() ? "hair" : name, findings);
     return writeGlb(cards, path, cards::GlbNumbers::floats, character, std::move(findings));
 }
 

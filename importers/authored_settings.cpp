@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "importers/authored_settings.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 
 #include "core/groom/file/layers_json.h"
@@ -39,21 +41,31 @@ Result<std::shared_ptr<const Groom>> readSettingsText(const std::string& file, c
     return authored;
 }
 
+namespace {
+
+/// A text that the prim has as customData or, of older files, as an attribute.
+const std::string* usdText(const UsdPrim& prim, std::string_view name) {
+    const std::string key = fmt::format("{}:{}", kUsdDictionary, name);
+    if (const auto found = prim.customTexts.find(key); found != prim.customTexts.end()) return &found->second;
+    const UsdAttribute* const attribute = prim.find(key);
+    return attribute == nullptr || attribute->value.texts.empty() ? nullptr : &attribute->value.texts.front();
+}
+
+}  // namespace
+
 void takeUsdSettings(const UsdPrim& root, const std::string& file, RawStrands& strands) {
     for (const UsdPrim& prim : root.children) {
-        const UsdAttribute* const text = prim.find(kUsdSettings);
-        if (text == nullptr || text->value.texts.empty()) continue;
-        auto authored = readSettingsText(file, text->value.texts.front());
+        const std::string* const text = usdText(prim, kUsdSettings);
+        if (text == nullptr) continue;
+        auto authored = readSettingsText(file, *text);
         if (!authored) {
             strands.warnings.push_back(fileWarning(authored.error().problem + "; they were left out",
                                                    prim.name, authored.error().expected));
             continue;
         }
         strands.authored = std::move(*authored);
-        const UsdAttribute* const shape = prim.find(kUsdShape);
-        if (shape == nullptr || shape->value.texts.empty()) return;
-        const std::string& number = shape->value.texts.front();
-        std::from_chars(number.data(), number.data() + number.size(), strands.authoredShape);
+        if (const std::string* const shape = usdText(prim, kUsdShape))
+            std::from_chars(shape->data(), shape->data() + shape->size(), strands.authoredShape);
         return;
     }
 }

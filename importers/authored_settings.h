@@ -14,10 +14,10 @@
 
 namespace hairloom {
 
-/// The attribute of a USD prim that holds them, of type string.
-inline constexpr std::string_view kUsdSettings = "hairloom:settings";
+/// The dictionary in a USD prim's customData that holds them, and its text of them.
+inline constexpr std::string_view kUsdDictionary = "hairloom", kUsdSettings = "settings";
 /// Likewise, the hash of the points that the operators made, as a decimal number.
-inline constexpr std::string_view kUsdShape = "hairloom:shape";
+inline constexpr std::string_view kUsdShape = "shape";
 
 /// JSON.
 std::string settingsText(const Groom& groom);
@@ -25,7 +25,8 @@ std::string settingsText(const Groom& groom);
 /// A groom with these and nothing else. Errors: no JSON, unknown names, values out of range.
 Result<std::shared_ptr<const Groom>> readSettingsText(const std::string& file, const std::string& text);
 
-/// Those of the first prim below the root that has some. What is wrong with them is a warning.
+/// Those of the first prim below the root that has some, in version 0.1 as attributes. What is wrong with
+/// them is a warning.
 void takeUsdSettings(const UsdPrim& root, const std::string& file, RawStrands& strands);
 
 }  // namespace hairloom

@@ -101,6 +101,7 @@ void merge(UsdPrim& strong, UsdPrim&& weak) {
     if (!strong.active) strong.active = weak.active;
     if (!strong.instanceable) strong.instanceable = weak.instanceable;
     if (strong.displayName.empty()) strong.displayName = std::move(weak.displayName);
+    strong.customTexts.merge(weak.customTexts);
     strong.hasClips = strong.hasClips || weak.hasClips;
     for (UsdAttribute& attribute : weak.attributes) {
         if (UsdAttribute* const found = strong.find(attribute.name))
@@ -214,6 +215,7 @@ class Composer {
         own.active = spec.active;
         own.instanceable = spec.instanceable;
         own.displayName = spec.displayName;
+        own.customTexts = spec.customTexts;
         own.hasClips = spec.hasClips;
         ++prims_;
         for (const UsdAttribute& attribute : spec.attributes) {

@@ -75,6 +75,8 @@ struct UsdPrim {
     Specifier specifier = Specifier::Over;
     std::optional<bool> active, instanceable;
     std::string displayName;  ///< for people; may be empty
+    /// Texts of its customData, by their keys in dictionaries: "hairloom:settings".
+    std::map<std::string, std::string, std::less<>> customTexts;
     std::vector<UsdAttribute> attributes;
     std::vector<UsdPrim> children;
     UsdArcs inherits, references, payloads, specializes;

@@ -117,6 +117,37 @@ class Parser {
         return true;
     }
 
+    /// { dictionary a = { string b = "text" } }, of which texts are kept: "a:b". `key` is of what it lies in.
+    bool customTexts(UsdPrim& prim_, const std::string& key, int depth) {
+        if (depth > kMaxDepth)
+            return in_.wrong("dictionaries are nested too deep", fmt::format("expected {}", kMaxDepth));
+        if (!in_.need('{')) return false;
+        while (!in_.take('}')) {
+            const std::string type(in_.word());
+            if (type.empty()) return found("expected TYPE NAME = VALUE");
+            const bool isList = in_.take('[');
+            if (isList && !in_.need(']')) return false;
+            std::string name;
+            if (in_.peek() == '"' || in_.peek() == '\'') {
+                if (!in_.takeString(name)) return false;
+            } else {
+                name = in_.word();
+            }
+            if (!key.empty()) name = key + ':' + name;
+            if (!in_.need('=')) return false;
+            if (type == "dictionary") {
+                if (!customTexts(prim_, name, depth + 1)) return false;
+            } else {
+                UsdValue value;
+                if (!in_.value(value)) return false;
+                if (type == "string" && !isList && value.texts.size() == 1)
+                    prim_.customTexts[name] = std::move(value.texts.front());
+            }
+            in_.take(';'), in_.take(',');
+        }
+        return true;
+    }
+
     /// "(key = value …)": `use` takes what it knows of, with the edit that stands before, and says whether it
     /// did.
     template <class Use>
@@ -213,6 +244,8 @@ class Parser {
                 good = arcs(prim_.specializes, edit);
             else if (key == "variants")
                 good = selections(prim_.selections);
+            else if (key == "customData" && in_.peek() == '{')
+                good = customTexts(prim_, {}, 0);
             else if (key == "clips")
                 prim_.hasClips = true;
             else

@@ -19,14 +19,51 @@ Status UsdcValues::readOffset(UsdTimeOffset& time) {
     return {};
 }
 
-/// Its values stand elsewhere: names, and how far away they are.
-Status UsdcValues::skipDictionary() {
-    constexpr std::uint64_t kEntry = sizeof(std::uint32_t) + sizeof(std::uint64_t);
+/// An entry is a name, a jump over what the value needs, and the value.
+Status UsdcValues::readDictionary(const std::string& key,
+                                  std::map<std::string, std::string, std::less<>>& texts,
+                                  std::uint32_t depth) {
+    constexpr std::uint64_t kEntry = sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t);
+    constexpr std::uint32_t kMaxDepth = 32;
+    constexpr std::uint64_t kMaxTexts = 1 << 16u;
+    if (depth > kMaxDepth)
+        return error("dictionaries are nested too deep", fmt::format("expected {}", kMaxDepth));
     const auto count = in_.read<std::uint64_t>("the size of a dictionary");
     if (!count) return tl::unexpected(count.error());
     if (*count > in_.remaining() / kEntry)
         return error(fmt::format("a dictionary of {} entries goes beyond the end of the file", *count));
-    return in_.seek(in_.position() + *count * kEntry, "the end of a dictionary");
+    // Dictionaries may name the same bytes again and again.
+    dictionaryEntries_ += *count;
+    if (dictionaryEntries_ > kMaxTexts)
+        return error("its dictionaries have more entries than are kept",
+                     fmt::format("expected {}", kMaxTexts));
+    for (std::uint64_t i = 0; i < *count; ++i) {
+        const auto name = in_.read<std::uint32_t>("a name in a dictionary");
+        if (!name) return tl::unexpected(name.error());
+        if (auto status = jump(); !status) return status;
+        const auto bits = in_.read<std::uint64_t>("a value in a dictionary");
+        if (!bits) return tl::unexpected(bits.error());
+        const UsdcValue value{*bits};
+        const std::string own = key.empty() ? file_.string(*name) : key + ':' + file_.string(*name);
+        if (value.type() == String && value.isInlined() && !value.isArray()) {
+            texts[own] = file_.string(value.payload());
+        } else if (value.type() == Dictionary && !value.isInlined()) {
+            const std::uint64_t behind = in_.position();
+            if (auto status = in_.seek(value.payload(), "a dictionary"); !status) return status;
+            if (auto status = readDictionary(own, texts, depth + 1); !status) return status;
+            if (auto status = in_.seek(behind, "a dictionary"); !status) return status;
+        }
+    }
+    return {};
+}
+
+Result<std::map<std::string, std::string, std::less<>>> UsdcValues::textsIn(const UsdcValue& value) {
+    std::map<std::string, std::string, std::less<>> texts;
+    if (value.type() != Dictionary || value.isInlined()) return texts;
+    if (auto status = in_.seek(value.payload(), "a dictionary"); !status)
+        return tl::unexpected(status.error());
+    if (auto status = readDictionary({}, texts, 0); !status) return tl::unexpected(status.error());
+    return texts;
 }
 
 Result<UsdArc> UsdcValues::item(std::uint8_t kind) {
@@ -45,7 +82,8 @@ Result<UsdArc> UsdcValues::item(std::uint8_t kind) {
         if (auto status = readOffset(arc.time); !status) return tl::unexpected(status.error());
     }
     if (kind == ReferenceListOp) {
-        if (auto status = skipDictionary(); !status) return tl::unexpected(status.error());
+        std::map<std::string, std::string, std::less<>> ignored;
+        if (auto status = readDictionary({}, ignored, 0); !status) return tl::unexpected(status.error());
     }
     return arc;
 }

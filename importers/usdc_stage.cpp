@@ -138,6 +138,11 @@ class Reader {
                 if (!selections) return tl::unexpected(selections.error());
                 prim.selections = std::move(*selections);
             }
+            if (name == "customData") {
+                auto texts = values_.textsIn(field.value);
+                if (!texts) return tl::unexpected(texts.error());
+                prim.customTexts = std::move(*texts);
+            }
             if (auto status = readArcs(name, field.value, prim); !status) return status;
         }
         return addChildren(path, prim, depth + 1, childNames);

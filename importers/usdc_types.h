@@ -37,6 +37,7 @@ enum Type : std::uint8_t {
     Vec4f,
     Vec4h,
     Vec4i,
+    Dictionary = 31,
     StringListOp = 33,
     PathListOp = 34,
     ReferenceListOp = 35,

@@ -25,6 +25,8 @@ class UsdcValues {
     /// Of paths that a relationship has.
     Result<std::vector<std::string>> pathsOf(const UsdcValue& value);
     Result<std::map<std::string, std::string>> selectionsOf(const UsdcValue& value);
+    /// Texts of a dictionary and of those in it, by their keys: "hairloom:settings".
+    Result<std::map<std::string, std::string, std::less<>>> textsIn(const UsdcValue& value);
     /// Files below a layer, with what its field of their times says.
     Result<std::vector<UsdArc>> subLayersOf(const UsdcValue& names, const UsdcValue& times);
     /// A list of names; empty where it is damaged, since their order alone is at stake.
@@ -52,11 +54,13 @@ class UsdcValues {
     Result<std::vector<UsdArc>> items(std::uint8_t kind);
     Result<UsdArc> item(std::uint8_t kind);
     Status readOffset(UsdTimeOffset& time);
-    Status skipDictionary();
+    /// Texts, and those of dictionaries in it, by keys that begin with `key`.
+    Status readDictionary(const std::string& key, std::map<std::string, std::string, std::less<>>& texts,
+                          std::uint32_t depth);
 
     const UsdcFile& file_;
     ByteReader in_;
-    std::uint64_t kept_ = 0;
+    std::uint64_t kept_ = 0, dictionaryEntries_ = 0;
 };
 
 }  // namespace hairloom

@@ -31,7 +31,7 @@ Result<Report> run(const LodOptions& options, const std::string& commandLine) {
         [&](std::string_view, double share) { bar.done(static_cast<std::size_t>(1000 * share)); }, nullptr);
     if (!chain) return tl::unexpected(inFile(chain.error(), options.input));
     std::vector<Finding> findings;
-    const cards::Character character = cardCharacter(*groom, findings);
+    const cards::Character character = cardCharacter({*groom, chain->roots_ws}, findings);
     tellFindings(findings);
     const auto files = writeChain(*chain, commandLine, collidersOf(*groom), character, options.output);
     if (!files) return tl::unexpected(files.error());

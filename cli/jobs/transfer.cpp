@@ -6,6 +6,7 @@
 #include "cli/head_options.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
+#include "cli/progress.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/documents/head_transfer.h"
@@ -26,7 +27,9 @@ struct TransferOptions {
 Result<Report> transferHair(const TransferOptions& options) {
     auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    const auto done = transferToFile(*groom, options.to, headImportOptions(options.head));
+    Progress bar("transferring", 1000);
+    const WorkWatch watch{[&](double share) { bar.done(static_cast<std::size_t>(1000 * share)); }};
+    const auto done = transferToFile(*groom, options.to, headImportOptions(options.head), watch);
     if (!done) return tl::unexpected(inFile(done.error(), options.input));
     const Transfer* const transfer = &done->transfer;
     if (transfer->baked)

@@ -158,12 +158,24 @@ std::array<std::uint8_t, 4> weightsOf(const Vec4f& weights) {
     return bytes;
 }
 
+/// As bytes, where there are no more joints.
+std::size_t smallJoints(Writer& w, const std::vector<std::array<std::uint16_t, 4>>& joints) {
+    std::vector<std::array<std::uint8_t, 4>> bytes;
+    for (const auto& of : joints) {
+        if (*std::ranges::max_element(of) > std::numeric_limits<std::uint8_t>::max())
+            return w.accessor(joints, kUnsignedShort, "VEC4", kVertices);
+        std::ranges::transform(of, bytes.emplace_back().begin(),
+                               [](std::uint16_t joint) { return static_cast<std::uint8_t>(joint); });
+    }
+    return w.accessor(bytes, kUnsignedByte, "VEC4", kVertices);
+}
+
 Json quantised(Writer& w, const LevelArrays& a, const Cube& cube) {
     std::vector<std::array<std::int16_t, 4>> positions;
     std::vector<std::array<std::int8_t, 4>> normals, tangents;
     std::vector<std::array<std::uint16_t, 4>> colours;
     std::vector<std::array<std::uint16_t, 2>> uvs;
-    std::vector<std::array<std::uint8_t, 4>> joints, weights;
+    std::vector<std::array<std::uint8_t, 4>> weights;
     std::array<std::int16_t, 3> low, high;
     low.fill(std::numeric_limits<std::int16_t>::max()), high.fill(std::numeric_limits<std::int16_t>::min());
     for (std::size_t v = 0; v < a.positions_ws.size(); ++v) {
@@ -179,16 +191,13 @@ Json quantised(Writer& w, const LevelArrays& a, const Cube& cube) {
             uvs.push_back(integers<std::uint16_t, 2>(a.uvs[v], 2));
             tangents.push_back(integers<std::int8_t, 4>(a.tangents_ws[v], 4));
         }
-        std::array<std::uint8_t, 4> of{};
-        for (std::size_t i = 0; i < 4; ++i) of[i] = static_cast<std::uint8_t>(a.joints[v][i]);
-        joints.push_back(of);
         weights.push_back(weightsOf(a.weights[v]));
     }
     Json attributes{{"POSITION", w.packed(positions, kShort, "VEC3")}};
     w.json["accessors"].back()["min"] = low, w.json["accessors"].back()["max"] = high;
     attributes["NORMAL"] = w.packed(normals, kByte, "VEC3");
     attributes["COLOR_0"] = w.packed(colours, kUnsignedShort, "VEC3");
-    attributes["JOINTS_0"] = w.accessor(joints, kUnsignedByte, "VEC4", kVertices);
+    attributes["JOINTS_0"] = smallJoints(w, a.joints);
     attributes["WEIGHTS_0"] = w.packed(weights, kUnsignedByte, "VEC4");
     if (!a.uvs.empty()) {
         attributes["TEXCOORD_0"] = w.packed(uvs, kUnsignedShort, "VEC2");
@@ -220,10 +229,8 @@ void addMesh(Writer& w, const Level& level, const LevelArrays& a, const std::opt
                                               {"material", w.json["materials"].size() - 1}}})}});
 }
 
-/// Nodes of the joints, the head's first, and the skin.
-void addRig(Writer& w, const Rig& rig, const Cube& cube, const std::string& rootName) {
-    std::vector<Eigen::Matrix4f> inverse;
-    Json joints = Json::array();
+/// Nodes of the joints, the head's first.
+void addRig(Writer& w, const Rig& rig, const std::string& rootName) {
     for (std::size_t j = 0; j < rig.joints.size(); ++j) {
         const Joint& joint = rig.joints[j];
         Vec3f at = joint.position_ws;
@@ -233,15 +240,30 @@ void addRig(Writer& w, const Rig& rig, const Cube& cube, const std::string& root
         w.json["nodes"].push_back(Json{{"name", name}, {"translation", toJson(at)}});
         if (joint.parent >= 0)
             w.json["nodes"][static_cast<std::size_t>(joint.parent)]["children"].push_back(j);
-        Eigen::Matrix4f bind = Eigen::Matrix4f::Identity();
-        bind.topLeftCorner<3, 3>() *= cube.half;
-        bind.topRightCorner<3, 1>() = cube.middle_ws - joint.position_ws;
-        inverse.push_back(bind);
+    }
+}
+
+/// Joints of the rig, then the character's bones, whose nodes are the last.
+void addSkin(Writer& w, const Rig& rig, const Character& character, const Cube& cube) {
+    Eigen::Matrix4f placed = Eigen::Matrix4f::Identity();
+    placed.topLeftCorner<3, 3>() *= cube.half;
+    placed.topRightCorner<3, 1>() = cube.middle_ws;
+    std::vector<Eigen::Matrix4f> inverse;
+    Json joints = Json::array();
+    for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+        inverse.push_back(placed);
+        inverse.back().topRightCorner<3, 1>() -= rig.joints[j].position_ws;
         joints.push_back(j);
     }
-    const std::size_t matrices = w.accessor(inverse, kFloat, "MAT4", 0);
-    w.json["skins"] =
-        Json::array({Json{{"inverseBindMatrices", matrices}, {"joints", joints}, {"skeleton", 0}}});
+    const std::size_t first = w.json["nodes"].size() - character.bones.size();
+    for (std::size_t b = 0; b < character.bones.size(); ++b) {
+        inverse.emplace_back(character.bones[b].bind_ws.inverse().matrix() * placed);
+        inverse.back().bottomRows<1>() << 0, 0, 0, 1;  // what division rounds, readers refuse
+        joints.push_back(first + b);
+    }
+    Json skin{{"inverseBindMatrices", w.accessor(inverse, kFloat, "MAT4", 0)}, {"joints", std::move(joints)}};
+    if (character.bones.empty()) skin["skeleton"] = 0;
+    w.json["skins"] = Json::array({std::move(skin)});
 }
 
 /// Where a node is at rest, from what it hangs on.
@@ -255,30 +277,56 @@ void placeNode(Json& node, const Eigen::Affine3f& local) {
     if (!scale.isIdentity(1e-5f)) node["scale"] = toJson(scale.diagonal());
 }
 
-/// The character's bones behind all other nodes; the rig goes to its head. The nodes that hang on none.
-Json addCharacter(Writer& w, const Rig& rig, const Character& character) {
+/// A joint of the rig, which now hangs on a node that is elsewhere.
+void hangJoint(Writer& w, const Rig& rig, std::size_t joint, std::size_t node,
+               const Eigen::Affine3f& node_ws) {
+    const Eigen::Affine3f joint_ws(Eigen::Translation3f(rig.joints[joint].position_ws));
+    placeNode(w.json["nodes"][joint], node_ws.inverse() * joint_ws);
+    w.json["nodes"][node]["children"].push_back(joint);
+}
+
+/// The character's bones behind all other nodes; the rig goes to its head, and chains to the bones of their
+/// roots. The node that hangs on none.
+std::size_t addCharacter(Writer& w, const Chain& chain, const Character& character) {
+    const Rig& rig = chain.rig;
     Json roots = Json::array();
+    const auto isRoot = [](const Character::Bone& bone) { return bone.parent < 0; };
+    if (std::ranges::count_if(character.bones, isRoot) > 1)
+        w.json["nodes"].push_back(Json{{"name", "skeleton"}});
     const std::size_t first = w.json["nodes"].size();
     const auto nodeOf = [&](std::int32_t bone) { return first + static_cast<std::size_t>(bone); };
+    const auto bindOf = [&](std::int32_t bone) {
+        return character.bones[static_cast<std::size_t>(bone)].bind_ws;
+    };
     for (const Character::Bone& bone : character.bones) {
         Json node{{"name", bone.name}};
         const std::size_t number = w.json["nodes"].size();
-        if (bone.parent >= 0) {
-            const Eigen::Affine3f& parent_ws = character.bones[static_cast<std::size_t>(bone.parent)].bind_ws;
-            placeNode(node, parent_ws.inverse() * bone.bind_ws);
-            w.json["nodes"][nodeOf(bone.parent)]["children"].push_back(number);
-        } else {
+        if (isRoot(bone)) {
             placeNode(node, bone.bind_ws);
             roots.push_back(number);
+        } else {
+            placeNode(node, bindOf(bone.parent).inverse() * bone.bind_ws);
+            w.json["nodes"][nodeOf(bone.parent)]["children"].push_back(number);
         }
         w.json["nodes"].push_back(std::move(node));
     }
-    if (character.head < 0) return Json::array({0});
-    const Eigen::Affine3f rig_ws(Eigen::Translation3f(rig.joints[0].position_ws));
-    placeNode(w.json["nodes"][0],
-              character.bones[static_cast<std::size_t>(character.head)].bind_ws.inverse() * rig_ws);
-    w.json["nodes"][nodeOf(character.head)]["children"].push_back(0);
-    return roots;
+    if (character.head < 0) return 0;
+    hangJoint(w, rig, 0, nodeOf(character.head), bindOf(character.head));
+    const std::vector<std::int32_t> bones = bonesOfChains(chain, character);
+    Json stay = Json::array();
+    for (std::size_t c = 0; c < bones.size(); ++c) {
+        const std::size_t joint = 1 + c * rig.perChain;
+        if (bones[c] == character.head)
+            stay.push_back(joint);
+        else
+            hangJoint(w, rig, joint, nodeOf(bones[c]), bindOf(bones[c]));
+    }
+    w.json["nodes"][0].erase("children");
+    if (!stay.empty()) w.json["nodes"][0]["children"] = std::move(stay);
+    // A skin wants one node above all of its joints.
+    if (roots.size() == 1) return roots[0];
+    w.json["nodes"][first - 1]["children"] = std::move(roots);
+    return first - 1;
 }
 
 /// VRMC_vrm 1.0. Whose it is and what others may do with it is the author's to say: the strictest until then.
@@ -366,7 +414,10 @@ Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collide
     w.json = Json{{"asset", {{"version", "2.0"}, {"generator", "Hairloom"}}}, {"scene", 0}};
     w.json["nodes"] = Json::array();
     std::vector<LevelArrays> arrays;
-    for (const Level* level : held) arrays.push_back(arraysOf(*level, rig));
+    for (const Level* level : held) {
+        arrays.push_back(arraysOf(*level, rig));
+        hangOnBones(*level, chain, character, arrays.back());
+    }
     std::optional<Cube> cube;
     if (numbers == GlbNumbers::quantised) {
         cube = cubeAround(arrays);
@@ -374,7 +425,7 @@ Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collide
         w.json["extensionsRequired"].push_back("KHR_mesh_quantization");
     }
     // Not the name that the character's own bone has.
-    addRig(w, rig, cube.value_or(Cube()), character.bones.empty() ? "head" : "hair");
+    addRig(w, rig, character.bones.empty() ? "head" : "hair");
     bool hasCards = false;
     for (std::size_t i = 0; i < held.size(); ++i) {
         const Level* const level = held[i];
@@ -398,9 +449,9 @@ Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collide
     const std::size_t nearest = rig.joints.size();
     w.json["extensionsUsed"].push_back("KHR_materials_ior");
     if (hasCards) w.json["extensionsUsed"].push_back("KHR_materials_anisotropy");
-    Json roots = addCharacter(w, rig, character);
-    roots.push_back(nearest);
-    w.json["scenes"] = Json::array({Json{{"nodes", std::move(roots)}}});
+    const std::size_t root = addCharacter(w, chain, character);
+    addSkin(w, rig, character, cube.value_or(Cube()));
+    w.json["scenes"] = Json::array({Json{{"nodes", {root, nearest}}}});
     if (held.size() > 1) {
         Json ids = Json::array(), shares = Json::array();
         for (std::size_t i = 1; i < held.size(); ++i) {

@@ -157,14 +157,15 @@ Status makeStrands(const Work& work, Level& level) {
     return {};
 }
 
-/// Sets thickness and brightness so that coverage and light are those of the strands.
-Status calibrate(const Work& work, Cards& made, Level& level) {
+/// Sets thickness and brightness of the level's cards so that coverage and light are those of the strands.
+Status calibrate(const Work& work, Level& level) {
+    // Measured where they lie: atlases take tens of megabytes.
+    Cards& made = std::get<Cards>(level.content);
     // Coverage grows by some power of the thickness: 1 of thin hair, less where strands lie over each other.
     constexpr double kSmall = 0.1, kOfThickHair = 0.4, kLeast = 0.15;
     float thickness = 1;
     double power = 1, lastCover = 0, lastThick = 0;
     for (int round = 0; round < kRounds; ++round) {
-        level.content = made;
         const auto off = measured(work, level);
         if (!off) return tl::unexpected(off.error());
         const double brighter = 1 / std::max(off->light, 1e-9);
@@ -188,13 +189,11 @@ Status calibrate(const Work& work, Cards& made, Level& level) {
     }
     // What was baked last has a light of its own. The middle of those where it takes over and where the next
     // one does, so that neither step is large.
-    level.content = made;
     const auto near = lightAt(work, level, level.spec.headPx), far = lightAt(work, level, level.untilPx);
     if (!near || !far) return tl::unexpected((near ? far : near).error());
     const double light = std::sqrt(std::max(*near * *far, 0.0625));
     made.brightness = std::clamp(made.brightness / static_cast<float>(light), 0.25f, 4.0f);
     buildMesh(made);
-    level.content = std::move(made);
     return {};
 }
 
@@ -212,7 +211,8 @@ Status makeCardLevel(const Work& work, Level& level) {
         if (held.level == options.cards) options.held.push_back(held);
     auto made = makeCards(work.hair, work.light, options, work.cancel);
     if (!made) return tl::unexpected(made.error());
-    if (auto status = calibrate(work, *made, level); !status) return status;
+    level.content = std::move(*made);
+    if (auto status = calibrate(work, level); !status) return status;
     // Last: the other cards do not make up for what a hand has done.
     auto& shaped = std::get<Cards>(level.content);
     if (!options.held.empty()) shapeByHand(options.held, shaped);

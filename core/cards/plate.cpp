@@ -222,8 +222,16 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const Vec2f largest = v[0]->place.cwiseMax(v[1]->place).cwiseMax(v[2]->place);
         // Most samples of thin hair fail by this alone.
         const float most = (1 - share) * finer.most(least, largest) + share * coarser.most(least, largest);
+        // Of most samples: what lies nearer was drawn before.
+        const auto isHidden = [&](int x, int y, const SampleRow& ofA, const SampleRow& ofB,
+                                  const SampleRow& ofC) {
+            if (x + kSamplesAtOnce > width_) return false;
+            const SampleRow depths = ofA * a.z() + ofB * b.z() + ofC * c.z();
+            return !(depths > Eigen::Map<const SampleRow>(&depth_[index(x, y)])).any();
+        };
         forSamplesOfTriangle(
-            a.head<2>(), b.head<2>(), c.head<2>(), width_, height_, [&](int x, int y, const Vec3f& w) {
+            a.head<2>(), b.head<2>(), c.head<2>(), width_, height_,
+            [&](int x, int y, const Vec3f& w) {
                 const std::size_t i = index(x, y);
                 const float depth = mixed(w, a.z(), b.z(), c.z());
                 if (depth <= depth_[i]) return;
@@ -236,7 +244,8 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
                 if (alpha <= dither) return;
                 depth_[i] = depth, isHair_[i] = 1;
                 seen_[i] = {t, w.x(), w.y()};
-            });
+            },
+            isHidden);
     }
     const Reflection fibre{hair.specular, hair.shininess};
     for (std::size_t i = 0; i < seen_.size(); ++i) {

@@ -86,9 +86,16 @@ inline std::pair<int, int> spanOfRow(const Vec2f& a, const Vec2f& b, const Vec2f
                       : std::pair(x0, x0);
 }
 
-/// Calls f(x, y, barycentrics) for the samples of a triangle of either orientation.
-template <class F>
-void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height, const F& f) {
+/// Samples of a row that share an instruction, and one barycentric of each.
+inline constexpr int kSamplesAtOnce = 4;
+using SampleRow = Eigen::Array4f;
+
+/// Calls f(x, y, barycentrics) for the samples of a triangle of either orientation. Of kSamplesAtOnce that
+/// begin at x, isHidden(x, y, u, v, w) may say that none is wanted; they may go beyond the triangle and the
+/// row.
+template <class F, class Hidden>
+void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height, const F& f,
+                          const Hidden& isHidden) {
     const float area = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
     if (area == 0 || !std::isfinite(area)) return;
     const Vec2f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
@@ -102,17 +109,24 @@ void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int wi
         const auto [begin, end] = spanOfRow(a, b, c, area, growth, static_cast<float>(y) + 0.5f, x0, x1);
         const float py = static_cast<float>(y) + 0.5f;
         const float ay = a.y() - py, by = b.y() - py, cy = c.y() - py;
-        constexpr int kAtOnce = 4;  // samples that share an instruction
-        const Eigen::Array4f places(0, 1, 2, 3);
-        for (int x = begin; x < end; x += kAtOnce) {
-            const Eigen::Array4f px = (static_cast<float>(x) + places) + 0.5f;
-            const Eigen::Array4f u = ((b.x() - px) * cy - by * (c.x() - px)) / area;
-            const Eigen::Array4f v = ((c.x() - px) * ay - cy * (a.x() - px)) / area;
-            const Eigen::Array4f w = 1 - u - v;
-            for (int i = 0; i < std::min(kAtOnce, end - x); ++i)
+        const SampleRow places(0, 1, 2, 3);
+        for (int x = begin; x < end; x += kSamplesAtOnce) {
+            const SampleRow px = (static_cast<float>(x) + places) + 0.5f;
+            const SampleRow u = ((b.x() - px) * cy - by * (c.x() - px)) / area;
+            const SampleRow v = ((c.x() - px) * ay - cy * (a.x() - px)) / area;
+            const SampleRow w = 1 - u - v;
+            if (isHidden(x, y, u, v, w)) continue;
+            for (int i = 0; i < std::min(kSamplesAtOnce, end - x); ++i)
                 if (u[i] >= 0 && v[i] >= 0 && w[i] > 0) f(x + i, y, Vec3f(u[i], v[i], w[i]));
         }
     }
+}
+
+template <class F>
+void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height, const F& f) {
+    forSamplesOfTriangle(
+        a, b, c, width, height, f,
+        [](int, int, const SampleRow&, const SampleRow&, const SampleRow&) { return false; });
 }
 
 }  // namespace hairloom::cards

@@ -81,7 +81,9 @@ Binding bind(const Rig& rig, const Cards& cards) {
         std::array<std::uint16_t, 4> joints{};
         for (std::uint32_t k = 0; k < 4; ++k) {
             const std::uint32_t of = 1 + hold.chains[k / 2] * rig.perChain + joint + k % 2;
-            if (weights[static_cast<int>(k)] > 0) joints[k] = static_cast<std::uint16_t>(of);
+            // Roots stay on the skin, however a chain turns.
+            const bool isRoot = joint + k % 2 == 0;
+            if (weights[static_cast<int>(k)] > 0 && !isRoot) joints[k] = static_cast<std::uint16_t>(of);
         }
         binding.joints.push_back(joints);
         binding.weights.push_back(weights);

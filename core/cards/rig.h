@@ -29,12 +29,13 @@ inline constexpr std::uint32_t kChains = 24, kJointsPerChain = 5;
 /// stopped.
 Result<Rig> makeRig(const Cards& cards, std::uint32_t chains, std::uint32_t perChain, Cancel cancel);
 
-/// What each vertex of a mesh hangs on: four joints and their weights, ≥ 0, sum 1. Joints of no weight are 0.
+/// What each vertex of a mesh hangs on: four joints and their weights, ≥ 0, sum 1. Joints of no weight are 0;
+/// 0 may stand there several times.
 struct Binding {
     std::vector<std::array<std::uint16_t, 4>> joints;
     std::vector<Vec4f> weights;
 };
-/// To the two chains nearest to each card, by the way along it.
+/// To the two chains nearest to each card, by the way along it. Roots hang on the head's joint.
 Binding bind(const Rig& rig, const Cards& cards);
 
 /// Moves vertices by their joints' motions since rest.

@@ -89,6 +89,10 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
     const auto push =
         bindings ? std::nullopt : makeBodyPush(guides, guides.offsets.view(), guides.positions());
     for (const RecordedFrame& frame : wanted.frames) {
+        if (cards::cancelled(wanted.cancel)) return cards::stopped();
+        if (wanted.progress)
+            wanted.progress("frames", static_cast<double>(moving.shapes.size()) /
+                                          static_cast<double>(wanted.frames.size()));
         const Groom posed = posedGroom(guides, pointsOf(whole, strands, frame.positions_ws), frame.pose);
         std::vector<Vec3f> shape(posed.positions().begin(), posed.positions().end());
         if (hairs) {
@@ -282,6 +286,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         if (!limits) return tl::unexpected(limits.error());
         exporting.safeLimits = *limits;
     }
+    if (cards::cancelled(wanted.cancel)) return cards::stopped();
     // With what lies beside it, or not at all; also where it reads back as something else.
     OutputBatch batch;
     auto report = writer.holdsCards() ? writeCards(shown, wanted, writer, path, exporting)

@@ -33,13 +33,13 @@ RunOperation readTransfer(JsonReader& reader) {
     };
 }
 
-Result<Transfer> putOn(Groom& groom, const ScalpMesh& head) {
-    return transferTo(groom, std::make_shared<const ScalpMesh>(head));
+Result<Transfer> putOn(Groom& groom, const ScalpMesh& head, const WorkWatch& watch) {
+    return transferTo(groom, std::make_shared<const ScalpMesh>(head), watch);
 }
 
 /// Whether the new head lies plainly nearer to the old one with its Z axis up. Says so in `done`.
 Result<bool> layingFits(const Groom& groom, const std::string& path, FileTransfer& done,
-                        const ScalpMesh& head) {
+                        const ScalpMesh& head, const WorkWatch& watch) {
     constexpr float kPlainly = 0.6f;
     const HeadTurn asItIs = nearestTurn(groom, head);
     if (asItIs.distance < kAlikeHeads_m) return false;
@@ -49,7 +49,8 @@ Result<bool> layingFits(const Groom& groom, const std::string& path, FileTransfe
     const auto other = importHead(path, options);
     if (!other) return tl::unexpected(other.error());
     Groom moved = groom;
-    const auto laid = putOn(moved, other->scene.mesh);
+    const auto laid = putOn(moved, other->scene.mesh, watch);
+    if (watch.isCancelled()) return tl::unexpected(watch.at(1).error());
     if (!laid || isBeyondScale(laid->fit)) return false;
     const HeadTurn turned = nearestTurn(groom, other->scene.mesh);
     if (turned.distance >= kPlainly * asItIs.distance) return false;
@@ -64,21 +65,22 @@ Result<bool> layingFits(const Groom& groom, const std::string& path, FileTransfe
 
 }  // namespace
 
-Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options) {
+Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options,
+                                    const WorkWatch& watch) {
     auto head = importHead(path, options);
     if (!head) return tl::unexpected(head.error());
     FileTransfer done{{}, head->taken, std::move(head->words)};
     Groom moved = groom;
-    auto transfer = putOn(moved, head->scene.mesh);
+    auto transfer = putOn(moved, head->scene.mesh, watch.part(0.05, 0.4));
     if (!transfer) return tl::unexpected(transfer.error());
     if (options.guessUp && !done.taken.zUp && !head->scene.statesUp) {
-        auto laid = layingFits(groom, path, done, head->scene.mesh);
+        auto laid = layingFits(groom, path, done, head->scene.mesh, watch.part(0.4, 0.6));
         if (!laid) return tl::unexpected(laid.error());
         if (*laid) {
             head = importHead(path, done.taken);
             if (!head) return tl::unexpected(head.error());
             moved = groom;
-            transfer = putOn(moved, head->scene.mesh);
+            transfer = putOn(moved, head->scene.mesh, watch.part(0.6, 0.75));
             if (!transfer) return tl::unexpected(transfer.error());
         }
     }
@@ -96,7 +98,7 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
             head = importHead(path, done.taken);
             if (!head) return tl::unexpected(head.error());
             moved = groom;
-            transfer = putOn(moved, head->scene.mesh);
+            transfer = putOn(moved, head->scene.mesh, watch.part(0.75, 1));
             if (!transfer) return tl::unexpected(transfer.error());
         }
     }

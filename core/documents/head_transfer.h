@@ -19,7 +19,8 @@ struct FileTransfer {
 /// Puts the groom onto the head of the file, which becomes its character unless it is turned. What is guessed
 /// goes to the log. Errors, which leave the groom as it was: those of importHead() and transferTo(), heads
 /// that are none of one size.
-Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options);
+Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options,
+                                    const WorkWatch& watch = {});
 
 /// The operation "transfer" of a script (JSON) that does it. It holds the file's absolute path, not the file.
 std::string transferRecord(const std::string& path, const HeadImportOptions& taken);

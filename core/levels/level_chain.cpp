@@ -111,7 +111,7 @@ ExportReport levelReport(const cards::Chain& chain, const Groom& groom) {
 
 Result<LevelFile> levelFile(const cards::Chain& chain, const Groom& groom, cards::GlbNumbers numbers) {
     std::vector<Finding> findings;
-    const cards::Character character = cardCharacter(groom, findings);
+    const cards::Character character = cardCharacter({groom, chain.roots_ws}, findings);
     auto bytes = cards::glbOf(chain, collidersOf(groom), numbers, character);
     if (!bytes) return tl::unexpected(bytes.error());
     LevelFile file{std::move(*bytes), levelReport(chain, groom)};

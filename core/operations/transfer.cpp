@@ -136,20 +136,23 @@ PlacesFit fitPlaces(std::span<const Vec3f> places, const Vec3f& crown, const Sur
     return best;
 }
 
-Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head) {
+Result<Transfer> transferTo(Groom& target, std::shared_ptr<const ScalpMesh> head, const WorkWatch& watch) {
+    Groom groom = target;
     const std::vector<SurfacePoint> from = groom.rootBindings();
     if (!groom.scalp || from.size() != groom.strandCount() || from.empty())
         return fail("the strands are not bound to a head", "expected hair that grows on one");
     if (!head || head->triangleCount() == 0) return fail("the head has no triangles");
     Transfer transfer;
     const SurfaceTree tree(*head);
+    if (auto status = watch.at(0); !status) return tl::unexpected(status.error());
     transfer.fit = fitHeads(groom, tree, *head);
+    if (auto status = watch.at(0.2); !status) return tl::unexpected(status.error());
     transfer.sameMesh = std::ranges::equal(groom.scalp->triangles(), head->triangles());
     std::vector<SurfacePoint> to(from.begin(), from.end());
     transfer.distances.resize(to.size());
     std::vector<Vec2f> uvs(to.size());
     parallelFor(to.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t s = begin; s < end; ++s) {
+        for (std::size_t s = begin; s < end && !watch.isCancelled(); ++s) {
             const SurfaceTree::Hit hit = tree.closest(apply(transfer.fit, groom.strand(s)[0]));
             if (!transfer.sameMesh) {
                 transfer.distances[s] = hit.distance;
@@ -158,6 +161,7 @@ Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head)
             uvs[s] = head->uvAt(to[s].triangle, to[s].barycentric);
         }
     });
+    if (auto status = watch.at(0.4); !status) return tl::unexpected(status.error());
     transfer.baked = !groom.operators.empty();
     dropOperators(groom);
     FaceSet selection =
@@ -180,7 +184,10 @@ Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head)
     groom.characterMetresPerUnit = 0;
     groom.scalp = std::move(head);
     groom.body.reset();
+    if (auto status = watch.at(0.6); !status) return tl::unexpected(status.error());
     if (auto pushed = collide(groom, {kClearance}); !pushed) return tl::unexpected(pushed.error());
+    if (auto status = watch.at(1); !status) return tl::unexpected(status.error());
+    target = std::move(groom);
     return transfer;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/base/work_watch.h"
 #include "core/groom/groom.h"
 
 namespace hairloom {
@@ -46,8 +47,8 @@ struct Transfer {
 /// by size and place, by their crowns first and then by the nearest points of the scalp (iterative closest
 /// points, Besl and McKay 1992, without turning). Each strand goes with its root onto the nearest place of
 /// the new head, turned as the skin is there, sized as the heads are, and is kept outside. Scalp selection
-/// and spheres go along; density does not. Errors: no scalp or strands that are not bound to it, a head
-/// without triangles.
-Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head);
+/// and spheres go along; density does not. Errors, which leave the groom as it was: no scalp or strands that
+/// are not bound to it, a head without triangles, stopped.
+Result<Transfer> transferTo(Groom& groom, std::shared_ptr<const ScalpMesh> head, const WorkWatch& watch = {});
 
 }  // namespace hairloom

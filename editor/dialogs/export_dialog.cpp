@@ -10,7 +10,6 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <numeric>
 
@@ -374,12 +373,10 @@ void ExportDialog::exportTo(const QString& path) {
                 if (!frames) return tl::unexpected(frames.error());
                 wanted.frames = std::move(*frames);
             }
-            std::atomic<bool> stop = false;
             wanted.progress = [&](std::string_view, double share) {
                 control.setProgress(static_cast<float>(share));
-                stop = control.isCancelled();
             };
-            wanted.cancel = &stop;
+            wanted.cancel = control.cancelFlag();
             if (isPage) return exportWebPage(groom, wanted, path.toStdString());
             return exportHair(groom, wanted, writer, path.toStdString(), options);
         },

@@ -287,12 +287,14 @@ void DocumentFiles::transferTo(const QString& path) {
     const std::string file = path.toStdString();
     tasks_.run<Opened>(
         QObject::tr("Transferring to %1").arg(name),
-        [file, groom = document_.groom()](TaskControl&) -> Result<Opened> {
+        [file, groom = document_.groom()](TaskControl& control) -> Result<Opened> {
             Opened opened;
             opened.groom = groom;
             HeadImportOptions options;
             options.guessUnit = options.guessUp = options.guessTurn = true;
-            const auto done = transferToFile(opened.groom, file, options);
+            const WorkWatch watch{[&](double share) { control.setProgress(static_cast<float>(share)); },
+                                  control.cancelFlag()};
+            const auto done = transferToFile(opened.groom, file, options, watch);
             if (!done) return tl::unexpected(done.error());
             opened.record = transferRecord(file, done->taken);
             opened.farthest = *std::ranges::max_element(done->transfer.distances);

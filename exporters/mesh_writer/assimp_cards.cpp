@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <assimp/Exporter.hpp>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <string_view>
 
@@ -18,10 +19,19 @@ aiVector3D vectorOf(const Vec3f& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-aiMatrix4x4 moved(const Vec3f& by) {
+aiMatrix4x4 matrixOf(const Eigen::Affine3f& place) {
     aiMatrix4x4 matrix;
-    aiMatrix4x4::Translation(vectorOf(by), matrix);
+    for (unsigned row = 0; row < 3; ++row)
+        for (unsigned column = 0; column < 4; ++column) matrix[row][column] = place(row, column);
     return matrix;
+}
+
+/// Where a joint is at rest, in the file's unit.
+Eigen::Affine3f placeOf(const CardJoint& joint, float scale) {
+    Eigen::Affine3f place = Eigen::Affine3f::Identity();
+    place.linear() << joint.x_ws, joint.y_ws, joint.z_ws;
+    place.translation() = scale * joint.position_ws;
+    return place;
 }
 
 /// assimp deletes arrays with delete[].
@@ -47,7 +57,7 @@ std::vector<aiBone*> bonesOf(const CardMesh& mesh, const std::vector<CardJoint>&
         bone->mName = joints[j].name;
         bone->mNumWeights = static_cast<unsigned>(held[j].size());
         bone->mWeights = arrayOf(held[j]);
-        bone->mOffsetMatrix = moved(-scale * joints[j].position_ws);
+        bone->mOffsetMatrix = matrixOf(placeOf(joints[j], scale).inverse());
         bones.push_back(bone);
     }
     return bones;
@@ -110,21 +120,25 @@ void setChildren(aiNode& node, const std::vector<aiNode*>& children) {
     for (aiNode* child : children) child->mParent = &node;
 }
 
-aiNode* jointNodes(const std::vector<CardJoint>& joints, float scale) {
-    std::vector<aiNode*> nodes;
+/// Those that hang on no other.
+std::vector<aiNode*> jointNodes(const std::vector<CardJoint>& joints, float scale) {
+    std::vector<aiNode*> nodes, roots;
     std::vector<std::vector<aiNode*>> children(joints.size());
     for (const CardJoint& joint : joints) {
         nodes.push_back(new aiNode(joint.name));
-        Vec3f at = joint.position_ws;
+        Eigen::Affine3f place = placeOf(joint, scale);
         if (joint.parent >= 0) {
-            at -= joints[static_cast<std::size_t>(joint.parent)].position_ws;
-            children[static_cast<std::size_t>(joint.parent)].push_back(nodes.back());
+            const auto parent = static_cast<std::size_t>(joint.parent);
+            place = placeOf(joints[parent], scale).inverse() * place;
+            children[parent].push_back(nodes.back());
+        } else {
+            roots.push_back(nodes.back());
         }
-        nodes.back()->mTransformation = moved(scale * at);
+        nodes.back()->mTransformation = matrixOf(place);
     }
     for (std::size_t j = 0; j < nodes.size(); ++j)
         if (!children[j].empty()) setChildren(*nodes[j], children[j]);
-    return nodes[0];
+    return roots;
 }
 
 std::unique_ptr<aiScene> sceneOf(const CardMeshScene& cards) {
@@ -141,13 +155,14 @@ std::unique_ptr<aiScene> sceneOf(const CardMeshScene& cards) {
         nodes.back()->mNumMeshes = 1;
         nodes.back()->mMeshes = new unsigned[1]{index};
     }
-    if (isFbx) nodes.push_back(jointNodes(cards.joints, scale));
+    if (isFbx) std::ranges::copy(jointNodes(cards.joints, scale), std::back_inserter(nodes));
     auto scene = std::make_unique<aiScene>();
     scene->mNumMeshes = static_cast<unsigned>(meshes.size());
     scene->mMeshes = arrayOf(meshes);
     scene->mNumMaterials = static_cast<unsigned>(materials.size());
     scene->mMaterials = arrayOf(materials);
-    scene->mRootNode = new aiNode("hair");
+    // Not a name that a joint has.
+    scene->mRootNode = new aiNode("scene");
     setChildren(*scene->mRootNode, nodes);
     return scene;
 }

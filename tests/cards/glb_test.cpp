@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
 
 #include "tests/cards/card_samples.h"
 
@@ -212,6 +215,183 @@ TEST(Glb, HangsHairAndSpheresOnTheCharactersBones) {
         const auto held = collidersOfChain(chain->rig, s, colliders);
         EXPECT_EQ(springs[s].value("colliderGroups", json::array()), json(held));
     }
+}
+
+/// Entries of an accessor of floats.
+std::vector<float> floatsOf(const Glb& glb, std::size_t accessor, std::size_t perEntry) {
+    const json& of = glb.head["accessors"][accessor];
+    const std::size_t view = of["bufferView"];
+    std::vector<float> values(of["count"].get<std::size_t>() * perEntry);
+    std::memcpy(values.data(),
+                glb.bin.data() + glb.head["bufferViews"][view]["byteOffset"].get<std::size_t>(),
+                values.size() * sizeof(float));
+    return values;
+}
+
+/// As glTF has a skin: the sum of what joints do, from where they were bound to where they are.
+std::vector<Vec3f> skinned(const Glb& glb, std::size_t mesh, std::span<const Eigen::Affine3f> joints_ws) {
+    const json& attributes = glb.head["meshes"][mesh]["primitives"][0]["attributes"];
+    const auto positions = floatsOf(glb, attributes["POSITION"], 3);
+    const auto weights = floatsOf(glb, attributes["WEIGHTS_0"], 4);
+    const auto binds = floatsOf(glb, glb.head["skins"][0]["inverseBindMatrices"], 16);
+    const json& joints = glb.head["accessors"][attributes["JOINTS_0"].get<std::size_t>()];
+    const std::size_t jointBytes =
+        glb.head["bufferViews"][joints["bufferView"].get<std::size_t>()]["byteOffset"];
+    std::vector<Vec3f> posed;
+    for (std::size_t v = 0; v < positions.size() / 3; ++v) {
+        const Vec3f rest(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
+        Vec3f sum = Vec3f::Zero();
+        float all = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            std::uint16_t joint = 0;
+            std::memcpy(&joint, glb.bin.data() + jointBytes + 8 * v + 2 * k, 2);
+            const Eigen::Map<const Eigen::Matrix4f> bind(binds.data() + std::ptrdiff_t{16} * joint);
+            sum += weights[4 * v + k] * (joints_ws[joint] * Eigen::Affine3f(Eigen::Matrix4f(bind)) * rest);
+            all += weights[4 * v + k];
+        }
+        EXPECT_NEAR(all, 1, 1e-5f);
+        posed.push_back(sum);
+    }
+    return posed;
+}
+
+/// Where the joints of the skin are.
+std::vector<Eigen::Affine3f> jointsOf(const json& head) {
+    std::vector<Eigen::Affine3f> joints_ws;
+    for (const json& node : head["skins"][0]["joints"]) joints_ws.push_back(placeOf(head, node));
+    return joints_ws;
+}
+
+/// Roots of `chain` on three bones: the more at the side, the more with a jaw that hangs on the head.
+Character jawed(const Chain& chain) {
+    Character character;
+    const Eigen::Affine3f neck(Eigen::Translation3f(0, -0.2f, 0.02f) *
+                               Eigen::AngleAxisf(0.4f, Vec3f(1, 2, 3).normalized()));
+    const Eigen::Affine3f head = neck * Eigen::Translation3f(0, 0.15f, 0);
+    character.bones = {
+        {"neck", -1, neck}, {"head", 0, head}, {"jaw", 1, head * Eigen::Translation3f(0.05f, 0.02f, 0)}};
+    character.head = 1;
+    for (const Vec3f& root : chain.roots_ws) {
+        const float jaw = std::clamp(10 * root.x(), 0.0f, 1.0f), neckShare = 0.3f * (1 - jaw);
+        character.roots.push_back({{1, 2, 0, 0}, Vec4f(1 - jaw - neckShare, jaw, neckShare, 0)});
+    }
+    return character;
+}
+
+TEST(Glb, RootsMoveWithTheirSkin) {
+    const auto chain = smallChain("cards:20@64,shell:200@16");
+    ASSERT_TRUE(chain) << chain.error().message();
+    const Character character = jawed(*chain);
+    const auto file = glbOf(*chain, {}, GlbNumbers::floats, character);
+    ASSERT_TRUE(file) << file.error().message();
+    Glb glb = parsed(*file);
+    const auto& cards = std::get<Cards>(chain->levels[0].content);
+    const auto atRest = skinned(glb, 0, jointsOf(glb.head));
+    ASSERT_EQ(atRest.size(), cards.mesh.vertices.size());
+    for (std::size_t v = 0; v < atRest.size(); ++v)
+        ASSERT_LT((atRest[v] - cards.mesh.vertices[v].position_ws).norm(), 2e-6f) << v;
+    // The bones are turned, and with them what hangs on them; and chains swing.
+    std::vector<Eigen::Affine3f> moved;
+    const auto named = [&](std::string_view name) -> json& {
+        for (json& node : glb.head["nodes"])
+            if (node["name"] == name) return node;
+        ADD_FAILURE() << name;
+        return glb.head["nodes"][0];
+    };
+    const auto firstBone = static_cast<std::ptrdiff_t>(chain->rig.joints.size());
+    const auto before = jointsOf(glb.head);
+    named("jaw")["rotation"] = {0.38f, 0, 0, std::sqrt(1 - 0.38f * 0.38f)};
+    named("head")["rotation"] = {0, 0.26f, 0, std::sqrt(1 - 0.26f * 0.26f)};
+    named("hair_0_0")["rotation"] = {0, 0, 0.5f, std::sqrt(0.75f)};
+    const auto now = jointsOf(glb.head);
+    for (std::size_t b = 0; b < character.bones.size(); ++b) {
+        const auto joint = static_cast<std::size_t>(firstBone) + b;
+        EXPECT_LT((before[joint].matrix() - character.bones[b].bind_ws.matrix()).norm(), 1e-5f);
+        moved.push_back(now[joint] * character.bones[b].bind_ws.inverse());
+    }
+    const auto posed = skinned(glb, 0, now);
+    std::size_t roots = 0;
+    float farthest = 0;
+    for (std::size_t v = 0; v < posed.size(); ++v) {
+        const CardVertex& vertex = cards.mesh.vertices[v];
+        if (vertex.hangs > 0) continue;
+        float least = 1;
+        Character::Root nearest;
+        for (const std::uint32_t strand : cards.cards[vertex.card].strands) {
+            const float distance = (chain->roots_ws[strand] - vertex.position_ws).norm();
+            if (distance < least) least = distance, nearest = character.roots[strand];
+        }
+        Vec3f expected = Vec3f::Zero();
+        for (std::size_t k = 0; k < 4; ++k)
+            expected += nearest.weights[static_cast<int>(k)] * (moved[nearest.bones[k]] * vertex.position_ws);
+        ASSERT_LT((posed[v] - expected).norm(), 2e-6f) << v;
+        farthest = std::max(farthest, (expected - vertex.position_ws).norm());
+        ++roots;
+    }
+    EXPECT_GT(roots, 40u);
+    EXPECT_GT(farthest, 0.02f) << "the pose moves roots";
+    // Chains at the side hang on the jaw, and others on the head.
+    std::size_t onJaw = 0, onHead = 0;
+    const std::size_t jaw = static_cast<std::size_t>(&named("jaw") - &glb.head["nodes"][0]);
+    for (std::size_t c = 0; c < chain->rig.chains(); ++c) {
+        const json joint(1 + c * chain->rig.perChain);
+        const auto holds = [&](const json& node) {
+            const json children = node.value("children", json::array());
+            return std::count(children.begin(), children.end(), joint) == 1;
+        };
+        const bool isAside = chain->rig.curves[c][0].x() > 0.06f;
+        if (isAside) {
+            ++onJaw;
+            EXPECT_TRUE(holds(glb.head["nodes"][jaw])) << c;
+        }
+        if (chain->rig.curves[c][0].x() < 0) {
+            ++onHead;
+            EXPECT_TRUE(holds(glb.head["nodes"][0])) << c;
+        }
+    }
+    EXPECT_GT(onJaw, 0u);
+    EXPECT_GT(onHead, 0u);
+    // The shell follows the same skin.
+    const auto shell = skinned(glb, 1, now), still = skinned(glb, 1, before);
+    EXPECT_TRUE(std::ranges::equal(
+        skinned(parsed(*glbOf(*chain, {})), 1, std::vector<Eigen::Affine3f>(before.begin(), before.end())),
+        still, [](const Vec3f& a, const Vec3f& b) { return (a - b).norm() < 2e-6f; }));
+    EXPECT_TRUE(std::ranges::any_of(shell, [&](const Vec3f& p) {
+        return (p - still[static_cast<std::size_t>(&p - shell.data())]).norm() > 0.02f;
+    }));
+}
+
+TEST(Glb, OfACharacterWithSeveralRootsHasOneNodeAboveItsJoints) {
+    const auto chain = smallChain("cards:8@64");
+    ASSERT_TRUE(chain) << chain.error().message();
+    Character character = jawed(*chain);
+    character.bones[2].parent = -1;
+    const auto file = glbOf(*chain, {}, GlbNumbers::quantised, character);
+    ASSERT_TRUE(file) << file.error().message();
+    const json head = parsed(*file).head;
+    ASSERT_EQ(head["scenes"][0]["nodes"].size(), 2u);
+    std::vector<bool> below(head["nodes"].size());
+    const auto mark = [&](const auto& self, std::size_t node) -> void {
+        below[node] = true;
+        for (const json& child : head["nodes"][node].value("children", json::array())) self(self, child);
+    };
+    mark(mark, head["scenes"][0]["nodes"][0]);
+    for (const json& joint : head["skins"][0]["joints"]) EXPECT_TRUE(below[joint]) << joint;
+}
+
+TEST(Glb, JointsBeyond255AreNotCutToBytes) {
+    const auto chain = smallChain("cards:8@64");
+    ASSERT_TRUE(chain) << chain.error().message();
+    Character character = jawed(*chain);
+    // Many bones before the one that all roots hang on.
+    for (int b = 0; b < 300; ++b)
+        character.bones.push_back({"b" + std::to_string(b), 0, character.bones[0].bind_ws});
+    for (Character::Root& root : character.roots) root = {{302, 0, 0, 0}, Vec4f(1, 0, 0, 0)};
+    const auto file = glbOf(*chain, {}, GlbNumbers::quantised, character);
+    ASSERT_TRUE(file) << file.error().message();
+    const json head = parsed(*file).head;
+    const std::size_t joints = head["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"];
+    EXPECT_EQ(head["accessors"][joints]["componentType"], 5123);
 }
 
 TEST(Glb, RefusesStrandsAlone) {

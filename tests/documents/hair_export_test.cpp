@@ -17,6 +17,7 @@
 #include "core/operations/stack.h"
 #include "core/stability/certificate.h"
 #include "hairloom/asset.h"
+#include "importers/authored_settings.h"
 #include "tests/documents/small_head.h"
 
 namespace hairloom::test {
@@ -116,6 +117,66 @@ TEST_F(HairExportTest, OperatorsComeBackFromUsdWhereThisVersionKnowsThem) {
     EXPECT_TRUE(odd->groom.operators.empty());
     EXPECT_FALSE(odd->groom.pointAttributes.has(attribute::kBasePosition));
     EXPECT_TRUE(std::ranges::any_of(odd->warnings, [](const Finding& f) { return f.where == "operators"; }));
+}
+
+/// What is odd in text and in numbers.
+Groom oddSettings() {
+    Groom groom = smallHead();
+    groom.simulation.windSpeed = 0.1f;
+    groom.material.rootColour = Vec3f(0.1f, 1.0f / 3, 0.7f);
+    groom.layers[0].name = "a \"b\" \\ ä\n{};";
+    return groom;
+}
+
+TEST_F(HairExportTest, SettingsAreCustomDataOfUsdAndComeBackBitForBit) {
+    const Groom groom = oddSettings();
+    for (const char* const format : {"usda", "usdc"}) {
+        const fs::path path = folder_ / (std::string("settings.") + format);
+        ASSERT_TRUE(exportHair(groom, {}, strandWriter(format), path, {}));
+        const auto back = importHairFor(smallHead(), path.string(), {});
+        ASSERT_TRUE(back) << back.error().message();
+        EXPECT_EQ(settingsText(back->groom), settingsText(groom)) << format;
+        EXPECT_TRUE(back->warnings.empty()) << format;
+    }
+}
+
+TEST_F(HairExportTest, SettingsOfOlderUsdAreAnAttribute) {
+    const Groom groom = oddSettings();
+    const fs::path path = folder_ / "older.usda";
+    ASSERT_TRUE(exportHair(groom, {}, strandWriter("usda"), path, {}));
+    std::string text = readTextFile(path).value();
+    const std::size_t begin = text.find(" (\n    customData"), at = text.find("string settings = ", begin);
+    ASSERT_NE(at, std::string::npos);
+    const std::string line = text.substr(at, text.find('\n', at) - at);
+    const std::size_t end = text.find("{\n", text.find(")\n", at));
+    text.replace(begin, end + 2 - begin, "\n{\n    custom string hairloom:" + line.substr(7) + "\n");
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view(text)));
+    const auto back = importHairFor(smallHead(), path.string(), {});
+    ASSERT_TRUE(back) << back.error().message();
+    EXPECT_EQ(settingsText(back->groom), settingsText(groom));
+}
+
+TEST_F(HairExportTest, OtherCustomDataOfUsdIsReadOver) {
+    const fs::path path = folder_ / "other.usda";
+    ASSERT_TRUE(exportHair(smallHead(), {}, strandWriter("usda"), path, {}));
+    std::string text = readTextFile(path).value();
+    const std::string_view key = "customData = {";
+    text.insert(
+        text.find(key) + key.size(),
+        "\n        dictionary \"my tool\" = { int[] a = [1, 2]; string[] b = [\"x\"] string hairloom = "
+        "\"}\" }\n        asset c = @a.png@\n        matrix2d d = ((1, 0), (0, 1))\n"
+        "        float3[] e = [(1, 2, 3)]\n        dictionary empty = {}\n        bool f = 1\n");
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view(text)));
+    const auto back = importHairFor(smallHead(), path.string(), {});
+    ASSERT_TRUE(back) << back.error().message();
+    EXPECT_EQ(settingsText(back->groom), settingsText(smallHead()));
+    std::string deep;
+    for (int i = 0; i < 2000; ++i) deep += "dictionary a = {";
+    const std::size_t at = text.find("dictionary empty");
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view(text.substr(0, at) + deep)));
+    const auto refused = importHairFor(smallHead(), path.string(), {});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message(), testing::HasSubstr("nested too deep"));
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
 #include "core/base/parallel.h"
 #include "core/geometry/curve.h"
 #include "core/groom/groom_hash.h"
@@ -56,6 +60,32 @@ TEST(Transfer, ToALargerHeadElsewhereIsTheSameHairLarger) {
     };
     EXPECT_NEAR(share(after), share(before), 0.1);
     expectSound(after);
+}
+
+TEST(Transfer, TellsItsShareAndStopsWhereverItIs) {
+    const Groom before = combedHair();
+    const auto head = sphereScalp(0.135f, 3, kCentre);
+    std::vector<double> shares;
+    Groom whole = before;
+    ASSERT_TRUE(transferTo(whole, head, {[&](double share) { shares.push_back(share); }}));
+    ASSERT_GE(shares.size(), 4u);
+    EXPECT_TRUE(std::ranges::is_sorted(shares));
+    EXPECT_EQ(shares.front(), 0);
+    EXPECT_EQ(shares.back(), 1);
+    // At each of them somebody may stop it.
+    for (const double at : shares) {
+        std::atomic<bool> stop = false;
+        Groom groom = before;
+        const auto stopped = transferTo(groom, head, {[&](double share) { stop = share >= at; }, &stop});
+        if (at == 1) {
+            EXPECT_TRUE(stopped) << "it is done";
+            continue;
+        }
+        ASSERT_FALSE(stopped) << at;
+        EXPECT_THAT(stopped.error().message(), HasSubstr("stopped"));
+        EXPECT_EQ(contentHash(groom), contentHash(before));
+        EXPECT_EQ(groom.scalp, before.scalp);
+    }
 }
 
 TEST(Transfer, OnTheSameMeshRootsKeepTheirTriangles) {

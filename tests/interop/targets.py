@@ -3,6 +3,7 @@
 with, and writes what arrives as the table of targets in docs/exchange.md. Fails where strands or layers that a format
 has do not arrive, where Blenders disagree, and where hair comes back from Blender or USD without its layers."""
 import argparse
+import json
 import os
 import sys
 
@@ -84,7 +85,8 @@ def by_usd(path):
             arrived.add(what)
     if all(UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0] for prim in prims):
         arrived.add("material")
-    if any(prim.GetAttribute("hairloom:settings").HasValue() for prim in stage.GetPseudoRoot().GetChildren()):
+    settings = stage.GetDefaultPrim().GetCustomDataByKey("hairloom:settings")
+    if settings and "simulation" in json.loads(settings):
         arrived.add("settings")
     return arrived
 
