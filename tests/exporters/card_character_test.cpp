@@ -97,7 +97,9 @@ TEST_P(CardCharacter, RootsStayOnTheSkinInEveryClip) {
     for (std::uint32_t clip = 0; clip < actor.clips().size(); ++clip) {
         const auto [worst, way] = worstOf(grown, bones, clip);
         EXPECT_LT(worst, GetParam().mostOff * height) << actor.clips()[clip].name;
-        if (clip == 0) EXPECT_GT(way, 0.01f * height);
+        if (clip == 0) {
+            EXPECT_GT(way, 0.01f * height);
+        }
     }
 }
 
@@ -117,9 +119,10 @@ TEST(CardCharacterRoots, AreRenumberedBehindAnAddedBody) {
     ASSERT_EQ(avatar.roots.size(), own.roots.size());
     for (std::size_t r = 0; r < own.roots.size(); ++r) {
         EXPECT_EQ(own.roots[r].weights, avatar.roots[r].weights);
-        for (std::size_t k = 0; k < 4; ++k)
-            if (own.roots[r].weights[static_cast<int>(k)] > 0)
-                EXPECT_EQ(own.bones[own.roots[r].bones[k]].name, avatar.bones[avatar.roots[r].bones[k]].name);
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (own.roots[r].weights[static_cast<int>(k)] == 0) continue;
+            EXPECT_EQ(own.bones[own.roots[r].bones[k]].name, avatar.bones[avatar.roots[r].bones[k]].name);
+        }
     }
 }
 
