@@ -26,6 +26,13 @@ Operator operatorWith(std::string_view name, std::string_view field = {}, double
     return readOperator(reader);
 }
 
+/// Hair that lies high enough for strokes over the top.
+Operator highFlow() {
+    const nlohmann::json json{{"op", "flow"}, {"gravity", 0.8}, {"liftRoot", 0.012}, {"liftTip", 0.006}};
+    JsonReader reader(json, "o.json");
+    return readOperator(reader);
+}
+
 void perform(Document& document, StackCommand command) {
     ASSERT_TRUE(command) << command.error().message();
     document.perform(std::move(*command));
@@ -52,7 +59,7 @@ void expectEvaluated(const Groom& groom) {
 /// Hair with flow, clump and noise.
 struct StackEdit : testing::Test {
     StackEdit() {
-        perform(document, addOperator(document.model(), 0, operatorWith("flow", "gravity", 0.8)));
+        perform(document, addOperator(document.model(), 0, highFlow()));
         perform(document, addOperator(document.model(), 1, operatorWith("clump")));
         perform(document, addOperator(document.model(), 2, operatorWith("noise")));
     }

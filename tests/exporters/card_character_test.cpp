@@ -91,22 +91,28 @@ TEST_P(CardCharacter, RootsStayOnTheSkinInEveryClip) {
         for (std::size_t k = 0; k < 4; ++k) ASSERT_LT(root.bones[k], bones.bones.size());
     }
     EXPECT_GT(blended, 0u) << "hair grows where several bones move the skin";
+    cards::Character onHead = bones;
+    for (cards::Character::Root& root : onHead.roots)
+        root = {{static_cast<std::uint16_t>(bones.head)}, Vec4f(1, 0, 0, 0)};
     const Actor& actor = *grown.character.actor;
     const float height = actor.mesh().bounds().sizes().y();
     ASSERT_FALSE(actor.clips().empty());
+    float worst = 0, way = 0, worstOnHead = 0;
     for (std::uint32_t clip = 0; clip < actor.clips().size(); ++clip) {
-        const auto [worst, way] = worstOf(grown, bones, clip);
-        EXPECT_LT(worst, GetParam().mostOff * height) << actor.clips()[clip].name;
-        if (clip == 0) {
-            EXPECT_GT(way, 0.01f * height);
-        }
+        const auto [off, gone] = worstOf(grown, bones, clip);
+        worst = std::max(worst, off), way = std::max(way, gone);
+        worstOnHead = std::max(worstOnHead, worstOf(grown, onHead, clip).first);
     }
+    EXPECT_GT(way, 0.01f * height) << "the skin moves";
+    // Corners of a triangle that bones turn apart move otherwise than a vertex between them.
+    EXPECT_LT(worst, GetParam().mostOff * height);
+    EXPECT_LT(worst, 0.5f * worstOnHead) << "better than all on the head's bone";
 }
 
 INSTANTIATE_TEST_SUITE_P(Real, CardCharacter,
                          testing::Values(Real{"CesiumMan.glb", 0.75f, 0.005f},
-                                         Real{"raylib_greenman.glb", 0.6f, 0.005f},
-                                         Real{"ufbx_blender_279_sausage_7400_binary.fbx", 0.3f, 0.005f}));
+                                         Real{"raylib_greenman.glb", 0.6f, 0.025f},
+                                         Real{"ufbx_blender_279_sausage_7400_binary.fbx", 0.3f, 0.006f}));
 
 TEST(CardCharacterRoots, AreRenumberedBehindAnAddedBody) {
     const test::Character sample = test::character();
