@@ -124,7 +124,8 @@ Groom oddSettings() {
     Groom groom = smallHead();
     groom.simulation.windSpeed = 0.1f;
     groom.material.rootColour = Vec3f(0.1f, 1.0f / 3, 0.7f);
-    groom.layers[0].name = "a \"b\" \\ ä\n{};";
+    groom.layers[0].name = "a \"b\" \\ ä {};";
+    groom.spheres[0].name = "c\n\td";
     return groom;
 }
 
