@@ -180,7 +180,9 @@ TEST_F(LiveTest, WhatChangedWhileItPlaysStaysOnTheOtherDevice) {
         document().perform(editing::setInterpolation(document().editing().model(), more, "Follow hairs"));
         ASSERT_TRUE(played(before + 0.2)) << "it goes on from where it was";
         EXPECT_EQ(engine(), kind);
-        const std::uint64_t all = std::uint64_t{groom().strandCount()} * more.followPerGuide;
+        // Of hair that the CPU moves a software device draws the guides while it plays.
+        std::uint64_t all = groom().strandCount();
+        if (kind == EngineKind::gpu) all *= more.followPerGuide;
         ASSERT_TRUE(QTest::qWaitFor([&] { return drawn == all; }, 60'000)) << drawn << " of " << all;
     }
     trigger("play.reset");

@@ -171,15 +171,18 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
     scene.longestPointCount = 16;
     scene.longestStrand = 1.0f;
     const runtime::Sphere sphere{{}, 0.1f};
-    const BatchShape threads{16, true, true, StrandStorage::threads};
+    BatchShape one{16, true, true, StrandStorage::threads}, shared = one;
+    shared.members = 16;
     std::vector<std::string> asked;
     for (const float wind : {0.0f, 3.0f}) {
         for (const std::size_t spheres : {0u, 1u}) {
             scene.settings.windSpeed = wind;
             scene.spheres = {&sphere, spheres};
             const runtime::EffectPlan plan = runtime::plan(scene);
-            for (const bool velocities : {false, true})
-                asked.push_back(keyFor(plan, scene.settings, threads, spheres, velocities).defines());
+            for (const bool velocities : {false, true}) {
+                for (const BatchShape& shape : {one, shared})
+                    asked.push_back(keyFor(plan, scene.settings, shape, spheres, velocities).defines());
+            }
         }
     }
     std::vector<std::string> built;

@@ -14,8 +14,8 @@ macro(build_installed_sample name)
     run(${CMAKE_COMMAND} --build "${WORK}/build")
 endmacro()
 
-# Writes ${WORK}/STYLE.hairrt of that sample hairstyle.
+# Writes ${WORK}/STYLE.hairrt of that sample hairstyle. More options for make_hairstyle.sh may follow.
 macro(write_sample_asset style)
-    run(${CMAKE_COMMAND} -E env "HAIRLOOM_CLI=${CLI}" "${SOURCE}/samples/make_hairstyle.sh" --project-only ${style} "${WORK}")
+    run(${CMAKE_COMMAND} -E env "HAIRLOOM_CLI=${CLI}" "${SOURCE}/samples/make_hairstyle.sh" ${ARGN} --project-only ${style} "${WORK}")
     run("${CLI}" export "${WORK}/${style}.hairloom" --format runtime -o "${WORK}/${style}.hairrt")
 endmacro()

@@ -35,7 +35,7 @@ if(NOT "${bound}" STREQUAL "${listed}")
 endif()
 
 foreach(style IN ITEMS short shoulder)
-    write_sample_asset(${style})
+    write_sample_asset(${style} --spheres-only)  # guides on the GPU meet spheres, not the skin
     set(image "${PICTURES}/vulkan-${style}.ppm")
     run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${style}.hairrt"
         "${shaders}" -o "${image}" --frames 20 --compare)
