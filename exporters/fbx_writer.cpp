@@ -17,7 +17,8 @@ Result<WrittenCards> writeFbx(const CardsToWrite& cards, const std::filesystem::
 }  // namespace
 
 HairWriter fbxWriter() {
-    return cardWriter("fbx", "Cards as FBX", "a skin on the character's bones, with textures next to the file",
+    return cardWriter("fbx", "Cards as FBX",
+                      "a skin on the character's bones, with textures next to the file",
                       {"cards-fbx", "Engines without strands: cards (FBX)", "", {}}, "fbx", writeFbx);
 }
 
