@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -48,7 +48,7 @@ void nod(double time, const float pivot[3], float head[12]) {
     const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
     const float y = pivot[1] - c * pivot[1] + s * pivot[2], z = pivot[2] - s * pivot[1] - c * pivot[2];
     const float rows[12] = {1, 0, 0, 0, 0, c, -s, y, 0, s, c, z};
-    std::memcpy(head, rows, sizeof rows);
+    std::copy(std::begin(rows), std::end(rows), head);
 }
 
 /// One character for `frames` frames; false where the library refuses something.
@@ -100,8 +100,7 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
     const float pivot[3] = {0, info.bounds_max[1], 0};
     const int before = options.resting ? 600 : 0;  // until they sleep
     double measured = 0, planned = 0, predicted = 0;
-    std::vector<double> effects;
-    while (hairs[0].describeEffect(static_cast<std::uint32_t>(effects.size())).name) effects.push_back(0);
+    std::map<std::string, double> cost;
     int timedFrames = 0, levels[HL_LEVEL_COUNT] = {};
     for (int f = 1; f <= before + options.frames; ++f) {
         // A clock around every stage makes steps longer: it runs in every eighth frame, which does not count.
@@ -127,9 +126,9 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
             if (!hairs[i].step(frame, &error)) return false;
         }
         if (counts && !timed) measured += millisecondsSince(begin);
-        for (std::uint32_t e = 0; timed && e < effects.size(); ++e)
+        for (std::uint32_t e = 0; timed && hairs[0].describeEffect(e).name; ++e)
             for (const hairloom::game::Instance& hair : hairs)
-                effects[e] += static_cast<double>(hair.describeEffect(e).milliseconds);
+                cost[hair.describeEffect(e).name] += static_cast<double>(hair.describeEffect(e).milliseconds);
     }
     unsigned long long asleep = 0, guides = 0, state = 0;
     for (const hairloom::game::Instance& hair : hairs) {
@@ -145,9 +144,8 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
         "%llu of %llu guides asleep, %d %d %d %d %d at levels 0 to 4, error %.2f pixels, state %016llx\n",
         asleep, guides, levels[0], levels[1], levels[2], levels[3], levels[4],
         static_cast<double>(crowd.report.error_pixels), state);
-    for (std::uint32_t e = 0; e < effects.size(); ++e)
-        std::printf("  %-20s %.4f ms a frame\n", hairs[0].describeEffect(e).name,
-                    effects[e] / std::max(timedFrames, 1));
+    for (const auto& [name, milliseconds] : cost)
+        std::printf("  %-20s %.4f ms a frame\n", name.c_str(), milliseconds / std::max(timedFrames, 1));
     return true;
 }
 
