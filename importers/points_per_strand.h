@@ -11,9 +11,9 @@
 
 namespace hairloom {
 
-/// The number of points that every strand of the run has, where the points tell it: at least seven in eight steps from
-/// one strand to the next are more than twice as long as any step within these two. 0 where no number of
-/// points has that, or more than one, and for less than two strands.
+/// The number of points that every strand of the run has, where the points tell it: at least seven in eight
+/// steps from one strand to the next are more than twice as long as any step within these two. 0 where no
+/// number of points has that, or more than one, and for less than two strands.
 std::uint32_t guessPointsPerStrand(std::span<const Vec3f> points);
 
 /// How a run of points was cut.

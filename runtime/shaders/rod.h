@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // One segment of an elastic rod in a substep, written once for C++, where a number is a vector of strands,
 // and for HLSL, where it is a number (docs/engine.md, "Rods"). Who includes it defines ROD_FUNCTION, Real,
-// Real3, Real4, ROD_INOUT, ROD_OUT and ROD_NUMBER and has RodNumbers, cross, dot, mad (a b + c), mad3 (a s + b), negMad
-// (c − a b), negMad3 (b − a s), maximum, minimum, absolute, root, xyz, real3, real4 and withSignOf.
+// Real3, Real4, ROD_INOUT, ROD_OUT and ROD_NUMBER and has RodNumbers, cross, dot, mad (a b + c), mad3 (a s +
+// b), negMad (c − a b), negMad3 (b − a s), maximum, minimum, absolute, root, xyz, real3, real4 and
+// withSignOf.
 //
 // A segment is a rotation q, from its place in the rest shape, in the root's frame, to the world. A vertex
 // lies between an inner and an outer segment; its strain is ε = 2 vec(p), p = q_inner⁻¹ q_outer, in the
@@ -205,7 +206,8 @@ ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segm
     const Real3 swing = rodTimes(m, v), bv = swing * bend;
     RodSymmetric S;
     // Nothing but the vertex resists the twist of a segment. Where it hardly does, rounding would.
-    const Real firm = mad(absolute(Y0) + absolute(Y3) + absolute(Y5), ROD_NUMBER(HAIRLOOM_ROD_FIRMNESS), bend);
+    const Real firm =
+        mad(absolute(Y0) + absolute(Y3) + absolute(Y5), ROD_NUMBER(HAIRLOOM_ROD_FIRMNESS), bend);
     S.m[0] = Y0 + negMad(bv.x, swing.x, firm);
     S.m[1] = negMad(bv.x, swing.y, Y1);
     S.m[2] = negMad(bv.x, swing.z, Y2);

@@ -7,7 +7,8 @@
 /// rounding takes.
 #define HAIRLOOM_ROD_LEAST_PIVOT 0.0375
 #define HAIRLOOM_ROD_PIVOT_ROUNDING 9.5367431640625e-7
-/// Share of what resists a segment's turns by inertia that a vertex resists it with at least, while it is solved.
+/// Share of what resists a segment's turns by inertia that a vertex resists it with at least, while it is
+/// solved.
 #define HAIRLOOM_ROD_FIRMNESS 1e-5
 /// Radians by which the predicted rotation of a substep turns a segment at most.
 #define HAIRLOOM_ROD_LARGEST_PREDICTION 0.5
@@ -25,8 +26,8 @@
 #define HAIRLOOM_ROD_ROUNDING 1.1920929e-7
 /// Stiffness of a contact over m/h², h the substep.
 #define HAIRLOOM_ROD_CONTACT 1000.0
-/// Metres outside a shape within which a node stays in contact that was pressed in the last substep: how deep it is
-/// there, weight over stiffness, can be less than rounding.
+/// Metres outside a shape within which a node stays in contact that was pressed in the last substep: how deep
+/// it is there, weight over stiffness, can be less than rounding.
 #define HAIRLOOM_ROD_CONTACT_REACH 5e-6
 /// Metres inside a shape from which on a node is held at the surface where it comes out.
 #define HAIRLOOM_ROD_CONTACT_DEEP 1e-4
@@ -41,8 +42,8 @@
 #define HAIRLOOM_ROD_CONTACT_SLOW 0.2
 /// Share of the way along a shape that its surface may have turned away by.
 #define HAIRLOOM_ROD_CONTACT_CURVED 0.25
-/// Metres per second: below, contact is rest. Of a strand's points in the root mean square, below which contacts
-/// with shapes that rest are not looked at for energy that they add; of a point's approach.
+/// Metres per second: below, contact is rest. Of a strand's points in the root mean square, below which
+/// contacts with shapes that rest are not looked at for energy that they add; of a point's approach.
 #define HAIRLOOM_ROD_CONTACT_SPEED 5e-3
 
 #endif

@@ -35,11 +35,11 @@ struct RodNumbers {
 struct RodConstants {
     float4 gravity;  ///< m/s²; w: drag of the air, 1/s, 0 without air
     RodNumbers numbers;
-    float stepRatio;        ///< the first substep over the one before it
-    uint points;            ///< that a strand of the batch may have
-    uint sweeps;            ///< not 0: spheres are met where fast points come in
-    uint conservative;      ///< not 0: nothing but motion of roots and spheres adds energy; 2: nor do spheres
-    uint fresh;             ///< HAIRLOOM_RODS_FRESH, HAIRLOOM_RODS_OF_OTHER_ENERGY or 0
+    float stepRatio;    ///< the first substep over the one before it
+    uint points;        ///< that a strand of the batch may have
+    uint sweeps;        ///< not 0: spheres are met where fast points come in
+    uint conservative;  ///< not 0: nothing but motion of roots and spheres adds energy; 2: nor do spheres
+    uint fresh;         ///< HAIRLOOM_RODS_FRESH, HAIRLOOM_RODS_OF_OTHER_ENERGY or 0
     uint unused0, unused1, unused2;
     float4 windTurns[HAIRLOOM_WIND_MODES];  ///< x: turns of a wave in a substep
 };

@@ -137,8 +137,12 @@ TEST(Determinism, SeparateStagesPassTheDisplacementOn) {
     const auto singles = [](std::initializer_list<StageId> stages) {
         return callsFor(stages, singlePassesOf);
     };
-    const auto opens = [](StageId id) { return springKernels().partsOfMove[0][static_cast<std::size_t>(id)]; };
-    const auto follows = [](StageId id) { return springKernels().partsOfMove[1][static_cast<std::size_t>(id)]; };
+    const auto opens = [](StageId id) {
+        return springKernels().partsOfMove[0][static_cast<std::size_t>(id)];
+    };
+    const auto follows = [](StageId id) {
+        return springKernels().partsOfMove[1][static_cast<std::size_t>(id)];
+    };
     EXPECT_EQ(singles({roots, damping, wind, gravity, verlet, angular, length}),
               (std::vector<Stage>{alone(roots), opens(damping), follows(wind), follows(gravity),
                                   follows(verlet), alone(angular), alone(length)}));

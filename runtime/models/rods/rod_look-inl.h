@@ -57,7 +57,8 @@ void RodStrip<kBends, kTwists, kContacts>::forEachNode(Visit&& visit) {
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
 /// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
 /// false: nowhere. Looks after the first are for hair that comes to rest: one step leaves what it has
-/// turned far a little inside, the next pushes it out, and what that takes for motion lifts it off after that.
+/// turned far a little inside, the next pushes it out, and what that takes for motion lifts it off after
+/// that.
 template <bool kBends, bool kTwists, bool kContacts>
 bool RodStrip<kBends, kTwists, kContacts>::lookAgain(bool isFirst) {
     if (HWY_LIKELY(!anyMayTouch())) return false;
