@@ -20,6 +20,8 @@
 #include <QToolButton>
 #include <QWheelEvent>
 
+#include "core/groom/strand_subset.h"
+#include "editor/dialogs/export_dialog.h"
 #include "editor/fields/number_box.h"
 #include "tests/editor/window_fixture.h"
 
@@ -176,6 +178,25 @@ class MouseTest : public WindowTest {
         onceAsked<QFileDialog>([this](QFileDialog& dialog) {
             clickAt(*dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save), {8, 8});
         });
+    }
+    /// Exports under the name that is proposed: all strands leave.
+    void exportAllOf(ExportDialog& dialog) {
+        onceAskedForAFileTakeIt();
+        auto* buttons = dialog.findChild<QDialogButtonBox*>();
+        for (QAbstractButton* button : buttons->buttons()) {
+            if (buttons->buttonRole(button) == QDialogButtonBox::AcceptRole)
+                clickAt(*button, button->rect().center());
+        }
+        finishWork();
+        EXPECT_EQ(dialog.report().strands, groom().strandCount());
+        clickAt(*buttons->button(QDialogButtonBox::Close), {8, 8});
+    }
+    /// The selected strands become the second layer.
+    void addLayerOfSelection() {
+        open("layers");
+        click("layerAdd");
+        ASSERT_EQ(groom().layers.size(), 2u);
+        EXPECT_GT(strandsOfLayer(groom(), 1).size(), 0u);
     }
     Vec3f onHead(float x, float down, float z) const { return top + Vec3f(x, -down, z); }
 

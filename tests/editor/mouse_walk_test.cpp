@@ -7,9 +7,7 @@
 #include <QTreeWidget>
 
 #include "core/groom/file/project_file.h"
-#include "core/groom/strand_subset.h"
 #include "core/operations/stack.h"
-#include "editor/dialogs/export_dialog.h"
 #include "editor/document/autosave.h"
 #include "importers/strands.h"
 #include "tests/editor/mouse_fixture.h"
@@ -100,10 +98,7 @@ TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
     tool("select");
     drag({at(onHead(-0.05f, 0.01f, 0.06f)), at(onHead(0.05f, 0.01f, 0.06f)), at(onHead(0.05f, 0.06f, 0.08f)),
           at(onHead(-0.05f, 0.06f, 0.08f))});
-    open("layers");
-    click("layerAdd");
-    ASSERT_EQ(groom().layers.size(), 2u);
-    EXPECT_GT(strandsOfLayer(groom(), 1).size(), 0u);
+    ASSERT_NO_FATAL_FAILURE(addLayerOfSelection());
     chooseInMenu("Select", "None");
     open("operators");
     chooseOperator(5);
@@ -145,17 +140,7 @@ TEST_F(MouseWalkTest, FromTheBustToAnExportedHairstyleWithAFringeAndABraid) {
     EXPECT_EQ(hash(), unsaved);
 
     // Out.
-    onceAsked<ExportDialog>([this](ExportDialog& dialog) {
-        onceAskedForAFileTakeIt();
-        auto* buttons = dialog.findChild<QDialogButtonBox*>();
-        for (QAbstractButton* button : buttons->buttons()) {
-            if (buttons->buttonRole(button) == QDialogButtonBox::AcceptRole)
-                clickAt(*button, button->rect().center());
-        }
-        finishWork();
-        EXPECT_EQ(dialog.report().strands, groom().strandCount());
-        clickAt(*buttons->button(QDialogButtonBox::Close), {8, 8});
-    });
+    onceAsked<ExportDialog>([this](ExportDialog& dialog) { exportAllOf(dialog); });
     chooseInMenu("File", "Export hair…");
     const QStringList written = QDir(folder.path()).entryList({"*.tfx", "*.hair", "*.abc", "*.usd*"});
     ASSERT_EQ(written.size(), 1) << "the first target's format";

@@ -8,9 +8,7 @@
 #include "core/base/file.h"
 #include "core/documents/hair_import.h"
 #include "core/geometry/curve.h"
-#include "core/groom/strand_subset.h"
 #include "core/operations/stack.h"
-#include "editor/dialogs/export_dialog.h"
 #include "importers/strands.h"
 #include "tests/editor/mouse_fixture.h"
 
@@ -92,15 +90,7 @@ class StyleWalkTest : public MouseTest {
             targets.setCurrentIndex(entry);
             Q_EMIT targets.activated(entry);
             clicks += 2;
-            onceAskedForAFileTakeIt();
-            auto* buttons = dialog.findChild<QDialogButtonBox*>();
-            for (QAbstractButton* button : buttons->buttons()) {
-                if (buttons->buttonRole(button) == QDialogButtonBox::AcceptRole)
-                    clickAt(*button, button->rect().center());
-            }
-            finishWork();
-            EXPECT_EQ(dialog.report().strands, groom().strandCount());
-            clickAt(*buttons->button(QDialogButtonBox::Close), {8, 8});
+            exportAllOf(dialog);
         });
         trigger("file.export");
         EXPECT_FALSE(QDir(folder.path()).entryList({"*.abc", "*.usd*", "*.hairrt"}).isEmpty());
@@ -191,10 +181,7 @@ TEST_F(StyleWalkTest, LongWavesWithAPartingAndABraid) {
     tool("select");
     stroke({at(onHead(-0.03f, 0.06f, -0.1f)), at(onHead(0.03f, 0.06f, -0.1f)),
             at(onHead(0.03f, 0.12f, -0.1f)), at(onHead(-0.03f, 0.12f, -0.1f))});
-    open("layers");
-    click("layerAdd");
-    ASSERT_EQ(groom().layers.size(), 2u);
-    EXPECT_GT(strandsOfLayer(groom(), 1).size(), 0u);
+    ASSERT_NO_FATAL_FAILURE(addLayerOfSelection());
     shortcut("select.none");
     open("operators");
     chooseOperator(2);
@@ -222,10 +209,7 @@ TEST_F(StyleWalkTest, AShortFadeWithABeard) {
     tool("select");
     stroke({at(onHead(-0.09f, 0.13f, 0.05f)), at(onHead(-0.09f, 0.28f, 0.05f)),
             at(onHead(0.09f, 0.28f, 0.05f)), at(onHead(0.09f, 0.13f, 0.05f))});
-    open("layers");
-    click("layerAdd");
-    ASSERT_EQ(groom().layers.size(), 2u);
-    EXPECT_GT(strandsOfLayer(groom(), 1).size(), 0u);
+    ASSERT_NO_FATAL_FAILURE(addLayerOfSelection());
     shortcut("select.none");
     open("operators");
     addOperator("Set length");
