@@ -115,6 +115,7 @@ Status measureFigure(Rows& rows, const Extent& extent, GpuBench& bench) {
     for (const std::uint32_t strands : extent.strands) {
         auto row = rows.measure(strands, LeftOut::nothing, kRods, rows.layouts().front());
         if (!row) return tl::unexpected(row.error());
+        bench.layouts.push_back(*row);
         row->cpuOne = rows.onCpu(strands, false);
         row->cpuAll = rows.onCpu(strands, true);
         counts.push_back(strands);

@@ -174,9 +174,8 @@ std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
 }
 
 std::vector<NamedLayout> measuredRodLayouts(gpu::DeviceType type) {
-    if (type == gpu::DeviceType::Cpu) return {{"chosen", {}}};
-    return {{"chosen", {}},
-            {"1 thread a strand", {.members = 1}},
+    if (type == gpu::DeviceType::Cpu) return {};
+    return {{"1 thread a strand", {.members = 1}},
             {"4 threads a strand", {.members = 4}},
             {"8 threads a strand", {.members = 8}},
             {"16 threads a strand", {.members = 16}}};

@@ -29,7 +29,7 @@ struct NamedLayout {
 /// Those worth measuring on such a device, its own first: a driver that compiles for a CPU takes minutes for
 /// unrolled loops.
 std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type);
-/// Of rods: by the threads that share a strand.
+/// Of rods, beside their own: by the threads that share a strand.
 std::vector<NamedLayout> measuredRodLayouts(gpu::DeviceType type);
 
 /// Milliseconds a frame, medians.

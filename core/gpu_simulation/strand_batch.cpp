@@ -30,7 +30,7 @@ constexpr std::size_t kMaxBlocksInLanes = 100'000 / kBlockLanes;
 /// Blocks of strands up to which lanes have a point each, and not two: as measured there.
 constexpr std::size_t kMaxBlocksOfOne = 4'000 / kBlockLanes;
 
-/// Blocks of rods up to which some threads share a strand, and how many: as measured there.
+/// Blocks of rods up to which some threads share a strand, and how many: docs/performance.md, "On a GPU".
 constexpr std::size_t kMaxBlocksOfMembers = 12'000 / kBlockLanes;
 constexpr std::uint32_t kMembers = 16;
 

@@ -29,7 +29,6 @@ void main(uint3 groupId : SV_GroupID, uint thread : SV_GroupIndex) {
         if (slept) ALL_POINTS(p) setPrevious(p, position(p));
     }
     enterFrame();
-    if (gFrame.rescale != 1.0) ALONE rescaleMotion();
     runSubsteps();
     ALONE finishStrand(block, gSlot % HAIRLOOM_GROUP_STRANDS);
     MEET
