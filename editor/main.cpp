@@ -39,13 +39,13 @@ int main(int argc, char** argv) {
     QCoreApplication::setOrganizationName("Hairloom");
     QCoreApplication::setApplicationVersion(HAIRLOOM_VERSION);
     QCommandLineParser parser;
-    parser.setApplicationDescription(QObject::tr("Hairstyles for games: groom, simulate, export."));
+    parser.setApplicationDescription("Hairstyles for games: groom, simulate, export.");
     parser.addHelpOption();
     parser.addVersionOption();
     const QCommandLineOption quit("quit-when-shown",
-                                  QObject::tr("Exit when the window is shown, to measure startup time."));
+                                  "Exit when the window is shown, to measure startup time.");
     parser.addOption(quit);
-    parser.addPositionalArgument("file", QObject::tr("Project, head or hair file to open"), "[file]");
+    parser.addPositionalArgument("file", "Project, head or hair file to open", "[file]");
     parser.process(application);
     applyTheme(application, Preferences().theme());
     MainWindow window;

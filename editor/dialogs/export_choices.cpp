@@ -66,7 +66,7 @@ const ExportChoice& exportChoice(int program, int format) {
 
 QString problemOf(const ExportChoice& choice) {
     if (choice.isPage && findWebPlayer(programFolder()).empty())
-        return QObject::tr(
+        return QString(
             "Not available: this program was built without the page's player. Build it with `./dev web`, or "
             "set HAIRLOOM_WEB to its folder.");
     return {};

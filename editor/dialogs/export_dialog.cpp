@@ -73,17 +73,17 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       note_(new QLabel),
       problem_(new QLabel),
       many_(new QLabel),
-      cluster_(new QPushButton(tr("Guides by clustering…"))),
+      cluster_(new QPushButton("Guides by clustering…")),
       unit_(new QComboBox),
       up_(new QComboBox),
       points_(new QSpinBox),
       cards_(new QSpinBox),
       textures_(new QSpinBox),
-      certify_(new QCheckBox(tr("What your game may do to this hair"))),
-      physics_(new QCheckBox(tr("Physics of curves"))),
+      certify_(new QCheckBox("What your game may do to this hair")),
+      physics_(new QCheckBox("Physics of curves")),
       summary_(new QLabel),
       findings_(new QTreeWidget) {
-    setWindowTitle(tr("Export hair"));
+    setWindowTitle("Export hair");
     resize(620, 640);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(20, 20, 20, 16);
@@ -94,26 +94,26 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     layout->addLayout(form_);
     for (const ExportProgram& program : programsToExportFor()) target_->addItem(program.name);
     target_->setObjectName("target");
-    target_->setToolTip(tr("Sets the format, unit, up axis and point count that this program expects"));
+    target_->setToolTip("Sets the format, unit, up axis and point count that this program expects");
     format_->setObjectName("format");
-    format_->setToolTip(tr("Formats that the program reads, with the most complete one first"));
-    what_->addItem(tr("Guides: the strands of the document"), static_cast<int>(ExportedHair::guides));
-    what_->addItem(tr("Rendered hairs: what the viewport shows"), static_cast<int>(ExportedHair::hairs));
+    format_->setToolTip("Formats that the program reads, with the most complete one first");
+    what_->addItem("Guides: the strands of the document", static_cast<int>(ExportedHair::guides));
+    what_->addItem("Rendered hairs: what the viewport shows", static_cast<int>(ExportedHair::hairs));
     what_->setObjectName("what");
-    what_->setToolTip(tr(
-        "Choose guides for programs that interpolate hair themselves. Choose rendered hairs for all others"));
+    what_->setToolTip(
+        "Choose guides for programs that interpolate hair themselves. Choose rendered hairs for all others");
     layers_->setObjectName("layers");
-    layers_->addItem(tr("All layers"));
-    layers_->addItem(tr("Visible layers"));
+    layers_->addItem("All layers");
+    layers_->addItem("Visible layers");
     for (const Layer& layer : document_.groom().layers)
         layers_->addItem(QString::fromStdString(layer.name), QString::fromStdString(layer.name));
-    layers_->setToolTip(tr("Which layers to export"));
+    layers_->setToolTip("Which layers to export");
     frames_->setObjectName("frames");
     frames_->setRange(0, kMostFrames);
-    frames_->setSpecialValueText(tr("at rest"));
+    frames_->setSpecialValueText("at rest");
     frames_->setToolTip(
-        tr("Number of 1/60 s frames to simulate for the file, with the motion of the viewport or a nod. "
-           "Formats without animation hold one frame"));
+        "Number of 1/60 s frames to simulate for the file, with the motion of the viewport or a nod. "
+        "Formats without animation hold one frame");
     note_->setProperty("role", "dim");
     note_->setWordWrap(true);
     problem_->setObjectName("problem");
@@ -123,59 +123,58 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     many_->setWordWrap(true);
     cluster_->setObjectName("cluster");
     cluster_->setAutoDefault(false);
-    cluster_->setToolTip(
-        tr("Closes this dialog and reduces the strands to a few guides that the others follow"));
+    cluster_->setToolTip("Closes this dialog and reduces the strands to a few guides that the others follow");
     connect(cluster_, &QPushButton::clicked, this, [this] { done(kWantsClustering); });
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
     unit_->setToolTip(
-        tr("Length of one unit in the file. A wrong unit makes hair a hundred times too large or too small"));
-    up_->addItems({tr("Y up"), tr("Z up")});
-    up_->setToolTip(tr("Up axis of the file"));
+        "Length of one unit in the file. A wrong unit makes hair a hundred times too large or too small");
+    up_->addItems({"Y up", "Z up"});
+    up_->setToolTip("Up axis of the file");
     points_->setRange(0, 1024);
-    points_->setSpecialValueText(tr("unchanged"));
-    points_->setToolTip(tr("Resamples every strand to this number of evenly spaced points"));
-    form_->addRow(tr("Target"), target_);
-    form_->addRow(tr("Format"), format_);
+    points_->setSpecialValueText("unchanged");
+    points_->setToolTip("Resamples every strand to this number of evenly spaced points");
+    form_->addRow("Target", target_);
+    form_->addRow("Format", format_);
     form_->addRow(QString(), note_);
     form_->addRow(QString(), problem_);
-    form_->addRow(tr("Strands"), what_);
-    form_->addRow(tr("Layers"), layers_);
-    form_->addRow(tr("Frames"), frames_);
+    form_->addRow("Strands", what_);
+    form_->addRow("Layers", layers_);
+    form_->addRow("Frames", frames_);
     motion_->addTo(*form_);
-    form_->addRow(tr("Unit"), unit_);
-    form_->addRow(tr("Axis"), up_);
-    form_->addRow(tr("Points per strand"), points_);
+    form_->addRow("Unit", unit_);
+    form_->addRow("Axis", up_);
+    form_->addRow("Points per strand", points_);
     const LevelBudget budget;
     cards_->setObjectName("cards");
     cards_->setRange(1, 4096);
     cards_->setValue(static_cast<int>(budget.cards));
     cards_->setToolTip(
-        tr("Maximum number of cards in the nearest level. Farther levels have a half and a quarter of them"));
+        "Maximum number of cards in the nearest level. Farther levels have a half and a quarter of them");
     textures_->setObjectName("textures");
     textures_->setRange(1, 256);
     textures_->setValue(static_cast<int>(budget.chain.textures));
-    textures_->setToolTip(tr("Maximum number of textures in a level. Cards that look alike share one"));
-    form_->addRow(tr("Cards"), cards_);
-    form_->addRow(tr("Textures"), textures_);
+    textures_->setToolTip("Maximum number of textures in a level. Cards that look alike share one");
+    form_->addRow("Cards", cards_);
+    form_->addRow("Textures", textures_);
     certify_->setObjectName("certify");
     certify_->setToolTip(
-        tr("Tests the hair in a thousand random storms, which takes about half a minute. The report has the "
-           "result, and a runtime asset carries it"));
-    form_->addRow(tr("Stress test"), certify_);
+        "Tests the hair in a thousand random storms, which takes about half a minute. The report has the "
+        "result, and a runtime asset carries it");
+    form_->addRow("Stress test", certify_);
     physics_->setObjectName("physics");
     physics_->setToolTip(
-        tr("Adds deformable curves for simulators that read USD's physics (PhysicsCurvesDeformableSimAPI), "
-           "with the "
-           "stiffness and thickness of the hair"));
-    form_->addRow(tr("Simulators"), physics_);
+        "Adds deformable curves for simulators that read USD's physics (PhysicsCurvesDeformableSimAPI), "
+        "with the "
+        "stiffness and thickness of the hair");
+    form_->addRow("Simulators", physics_);
     layout->addWidget(many_);
     layout->addWidget(cluster_, 0, Qt::AlignLeft);
     summary_->setObjectName("willWrite");
     summary_->setWordWrap(true);
     layout->addWidget(summary_);
     findings_->setObjectName("findings");
-    findings_->setAccessibleName(tr("Findings"));
-    findings_->setHeaderLabels({tr("Finding"), tr("Where"), tr("What to do")});
+    findings_->setAccessibleName("Findings");
+    findings_->setHeaderLabels({"Finding", "Where", "What to do"});
     findings_->setRootIsDecorated(false);
     findings_->setWordWrap(true);
     findings_->header()->resizeSection(0, 240);
@@ -184,9 +183,9 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     findings_->setSelectionMode(QAbstractItemView::NoSelection);
     layout->addWidget(findings_, 1);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
-    write_ = buttons->addButton(tr("Export…"), QDialogButtonBox::AcceptRole);
+    write_ = buttons->addButton("Export…", QDialogButtonBox::AcceptRole);
     write_->setDefault(true);
-    write_->setToolTip(tr("Choose a file name and export"));
+    write_->setToolTip("Choose a file name and export");
     layout->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     connect(write_, &QPushButton::clicked, this, &ExportDialog::choosePath);
@@ -252,12 +251,13 @@ void ExportDialog::showWhatWillBeWritten() {
     }
     many_->setVisible(isAsset && guides > kManyGuides);
     cluster_->setVisible(isAsset && guides > kManyGuides);
-    many_->setText(tr("A game would simulate all %L1 guides, which is slow. Fewer guides with follow hairs "
-                      "look the same and cost a tenth.")
-                       .arg(guides));
+    many_->setText(
+        QString("A game would simulate all %L1 guides, which is slow. Fewer guides with follow hairs "
+                "look the same and cost a tenth.")
+            .arg(guides));
     if (choice.writer->holdsCards()) {
-        summary_->setText(tr("Will write up to %L1 cards and a shell, for %L2 strands. Each level is "
-                             "compared with the strands at its distance.")
+        summary_->setText(QString("Will write up to %L1 cards and a shell, for %L2 strands. Each level is "
+                                  "compared with the strands at its distance.")
                               .arg(cards_->value())
                               .arg(strands.size()));
         return;
@@ -277,8 +277,9 @@ void ExportDialog::showWhatWillBeWritten() {
     const bool hasOperators = !isBaked && usdHasOperators(groom, optionsAsked());
     if (frames_->value() == 0) bytes += bytesBeside(*choice.writer, groom, hasOperators ? points : 0);
     summary_->setText(
-        tr("Will write %L1 strands with %L2 points, about %3. The file is read back and compared with the "
-           "hair.")
+        QString(
+            "Will write %L1 strands with %L2 points, about %3. The file is read back and compared with the "
+            "hair.")
             .arg(count)
             .arg(points)
             .arg(numberLocale().formattedDataSize(static_cast<qint64>(bytes), 1, QLocale::DataSizeSIFormat)));
@@ -295,7 +296,7 @@ void ExportDialog::takeTarget() {
     frames_->setMaximum(cards ? 1 : kMostFrames);
     const int all = what_->findData(static_cast<int>(ExportedHair::all));
     if (all < 0 && choice.writer->keepsGuides)
-        what_->addItem(tr("Rendered hairs, with guides beside them"), static_cast<int>(ExportedHair::all));
+        what_->addItem("Rendered hairs, with guides beside them", static_cast<int>(ExportedHair::all));
     else if (all >= 0 && !choice.writer->keepsGuides)
         what_->removeItem(all);
     note_->setText(QString::fromStdString(target.note));
@@ -316,7 +317,7 @@ void ExportDialog::choosePath() {
     const ExportChoice& choice = exportChoice(target_->currentIndex(), format_->currentIndex());
     const QString title = QFileInfo(document_.title()).completeBaseName();
     if (choice.isPage) {
-        const QString folder = QFileDialog::getExistingDirectory(this, tr("Folder for the web page"));
+        const QString folder = QFileDialog::getExistingDirectory(this, "Folder for the web page");
         if (!folder.isEmpty()) exportTo(folder + "/" + title);
         return;
     }
@@ -347,9 +348,9 @@ void ExportDialog::exportTo(const QString& path) {
     wanted.levels.chain.textures = static_cast<std::uint32_t>(textures_->value());
     wanted.layers = layersToWrite();
     if (layers_->currentIndex() == 1 && wanted.layers.empty())
-        return messages_.warn(tr("No layer is visible, so there is nothing to export"));
+        return messages_.warn("No layer is visible, so there is nothing to export");
     if (choice.isPage && frames_->value() > 0)
-        return messages_.warn(tr("A web page simulates the hair itself: set Frames to “at rest”"));
+        return messages_.warn("A web page simulates the hair itself: set Frames to “at rest”");
     auto motion = player_.makeMeasuredMotion();
     if (!motion) return messages_.warn(errorText(motion.error()));
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
@@ -359,7 +360,7 @@ void ExportDialog::exportTo(const QString& path) {
     const auto count = static_cast<std::uint32_t>(frames_->value()) + (hasShutter ? 1u : 0u);
     write_->setEnabled(false);
     const bool started = tasks_.run<ExportReport>(
-        tr("Exporting %1").arg(QFileInfo(path).fileName()),
+        QString("Exporting %1").arg(QFileInfo(path).fileName()),
         [groom = document_.groom(), wanted, moves, count, preRoll, path, options, &writer,
          isPage = choice.isPage](TaskControl& control) mutable -> Result<ExportReport> {
             if (count > 0) {
@@ -381,8 +382,9 @@ void ExportDialog::exportTo(const QString& path) {
             return exportHair(groom, wanted, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
-            messages.say((report.levels.empty() ? tr("Exported %1 and read it back") : tr("Exported %1"))
-                             .arg(QFileInfo(path).fileName()));
+            messages.say(
+                (report.levels.empty() ? QString("Exported %1 and read it back") : QString("Exported %1"))
+                    .arg(QFileInfo(path).fileName()));
             if (!self) return;
             self->report_ = std::move(report);
             self->showReport();
@@ -394,18 +396,18 @@ QString ExportDialog::summary() const {
     const QString size =
         locale().formattedDataSize(static_cast<qint64>(report_.bytes), 1, QLocale::DataSizeSIFormat);
     if (!report_.levels.empty())
-        return tr("%1: %L2 strands as cards, %L3 vertices, %4.")
+        return QString("%1: %L2 strands as cards, %L3 vertices, %4.")
             .arg(QString::fromStdString(report_.format))
             .arg(report_.strands)
             .arg(report_.points)
             .arg(size);
-    QString words = tr("%1: %L2 strands, %L3 points, %4.")
+    QString words = QString("%1: %L2 strands, %L3 points, %4.")
                         .arg(QString::fromStdString(report_.format))
                         .arg(report_.strands)
                         .arg(report_.points)
                         .arg(size);
     if (report_.maxErrorMm)
-        words += ' ' + tr("Largest distance of a point in the file from the hair: %1.")
+        words += ' ' + QString("Largest distance of a point in the file from the hair: %1.")
                            .arg(lengthText(1e-3 * *report_.maxErrorMm, preferences_));
     return words;
 }
@@ -423,28 +425,28 @@ void ExportDialog::showReport() {
                 inWords(StormStrength{static_cast<double>(limits->largestStep),
                                       static_cast<double>(limits->rootSpeed),
                                       static_cast<double>(limits->turn), static_cast<double>(limits->wind)}),
-            tr("certificate"),
-            tr("%1 random storms; %2 failed beyond these limits")
+            "certificate",
+            QString("%1 random storms; %2 failed beyond these limits")
                 .arg(limits->storms)
                 .arg(limits->failed)
                 .toStdString());
     for (const std::string& companion : report_.companions)
-        add(companion, tr("in a separate file"), tr("exported with the strands").toStdString());
-    for (const LeftBehind& left : report_.leftBehind) add(left.what, tr("not exported"), left.fix);
+        add(companion, "in a separate file", "exported with the strands");
+    for (const LeftBehind& left : report_.leftBehind) add(left.what, "not exported", left.fix);
     for (const Finding& finding : report_.findings)
         add(finding.what, QString::fromStdString(finding.where), finding.fix);
     for (const ComparedAttribute& attribute : report_.attributes)
-        add(attribute.name, tr("attribute"),
-            tr("exported as %1").arg(attribute.maxError, 0, 'g', 3).toStdString());
+        add(attribute.name, "attribute",
+            QString("exported as %1").arg(attribute.maxError, 0, 'g', 3).toStdString());
     for (const WrittenLevel& level : report_.levels)
-        add(level.name, tr("from %1 m").arg(level.distance, 0, 'f', 2),
-            tr("coverage %1, light %2 of the strands, FLIP %3")
+        add(level.name, QString("from %1 m").arg(level.distance, 0, 'f', 2),
+            QString("coverage %1, light %2 of the strands, FLIP %3")
                 .arg(level.coverage, 0, 'f', 3)
                 .arg(level.light, 0, 'f', 3)
                 .arg(level.flip, 0, 'f', 3)
                 .toStdString());
     if (findings_->topLevelItemCount() == 0)
-        findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to fix")}));
+        findings_->addTopLevelItem(new QTreeWidgetItem({QString("Nothing to fix")}));
     wrapRows(*findings_);
 }
 

@@ -20,14 +20,12 @@ struct RoleWords {
     const char *name, *button, *word, *act, *tip;
 };
 constexpr std::array<RoleWords, 3> kWords{
-    {{"groupHead", QT_TR_NOOP("Keep"), QT_TR_NOOP("Head"),
-      QT_TR_NOOP("Use the selected groups as part of the head, where hair can grow"),
-      QT_TR_NOOP("Part of the head: visible, and hair can grow on it")},
-     {"groupLeaveOut", QT_TR_NOOP("Leave out"), QT_TR_NOOP("Left out"),
-      QT_TR_NOOP("Do not load the selected groups"), QT_TR_NOOP("Not loaded")},
-     {"groupCollide", QT_TR_NOOP("Collide with"), QT_TR_NOOP("Collides"),
-      QT_TR_NOOP("Hide the selected groups and fit collision spheres to them, as for a collar or a hat"),
-      QT_TR_NOOP("Hidden, but hair collides with spheres fitted to it")}}};
+    {{"groupHead", "Keep", "Head", "Use the selected groups as part of the head, where hair can grow",
+      "Part of the head: visible, and hair can grow on it"},
+     {"groupLeaveOut", "Leave out", "Left out", "Do not load the selected groups", "Not loaded"},
+     {"groupCollide", "Collide with", "Collides",
+      "Hide the selected groups and fit collision spheres to them, as for a collar or a hat",
+      "Hidden, but hair collides with spheres fitted to it"}}};
 
 GroupRole roleOf(const QTreeWidgetItem& item) {
     return static_cast<GroupRole>(item.data(kRole, Qt::UserRole).toInt());
@@ -44,13 +42,13 @@ GroupRoles::GroupRoles(const Preferences& preferences, QWidget* parent)
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(6);
     search_->setObjectName("headSearch");
-    search_->setPlaceholderText(tr("Search groups"));
-    search_->setToolTip(tr("Filter groups by name"));
+    search_->setPlaceholderText("Search groups");
+    search_->setToolTip("Filter groups by name");
     layout->addWidget(search_);
     list_->setObjectName("headGroups");
-    list_->setHeaderLabels({tr("Group"), tr("Role")});
+    list_->setHeaderLabels({"Group", "Role"});
     list_->headerItem()->setToolTip(
-        kRole, tr("Click to change the role, or press the space bar to change all selected groups"));
+        kRole, "Click to change the role, or press the space bar to change all selected groups");
     list_->setRootIsDecorated(false);
     list_->setUniformRowHeights(true);
     list_->setAllColumnsShowFocus(true);
@@ -63,7 +61,7 @@ GroupRoles::GroupRoles(const Preferences& preferences, QWidget* parent)
     auto* row = new QHBoxLayout;
     row->setSpacing(6);
     for (std::size_t role = 0; role < kWords.size(); ++role) {
-        auto* button = pushButton(kWords[role].name, tr(kWords[role].button), tr(kWords[role].act),
+        auto* button = pushButton(kWords[role].name, QString(kWords[role].button), QString(kWords[role].act),
                                   [this, role] { giveSelected(static_cast<GroupRole>(role)); });
         button->setEnabled(false);
         button->setAutoDefault(false);
@@ -90,7 +88,7 @@ void GroupRoles::setGroups(const ScalpMesh& mesh, const std::vector<std::string>
         const auto count = faces.find(name);
         if (count == faces.end()) continue;
         auto* item = new QTreeWidgetItem(list_, {QString::fromStdString(name)});
-        item->setToolTip(kName, tr("%1: %L2 triangles").arg(item->text(kName)).arg(count->second));
+        item->setToolTip(kName, QString("%1: %L2 triangles").arg(item->text(kName)).arg(count->second));
         const bool helper = std::ranges::find(helpers, name) != helpers.end();
         setRole(*item, helper ? GroupRole::LeftOut : GroupRole::Head);
         faces.erase(count);
@@ -151,8 +149,8 @@ void GroupRoles::setRole(QTreeWidgetItem& item, GroupRole role) const {
                           : role == GroupRole::LeftOut ? colours.dimText
                                                        : colours.caution;
     item.setData(kRole, Qt::UserRole, static_cast<int>(role));
-    item.setText(kRole, tr(wordsOf(role).word));
-    item.setToolTip(kRole, tr(wordsOf(role).tip));
+    item.setText(kRole, QString(wordsOf(role).word));
+    item.setToolTip(kRole, QString(wordsOf(role).tip));
     for (const int column : {kName, kRole}) item.setForeground(column, colour);
 }
 

@@ -62,7 +62,7 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
       summary_(new QLabel),
       view_(new StrandPreview) {
     setObjectName("headDialog");
-    setWindowTitle(tr("Head %1").arg(QFileInfo(path).fileName()));
+    setWindowTitle(QString("Head %1").arg(QFileInfo(path).fileName()));
     resize(820, 620);
     auto* layout = new QHBoxLayout(this);
     layout->setContentsMargins(16, 16, 16, 16);
@@ -78,27 +78,27 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     side->addLayout(form);
     QStringList units;
     for (const LengthUnit& unit : lengthUnits()) units.append(unit.name);
-    form->addRow(tr("Unit"), choices(*unit_, "headUnit", units,
-                                     tr("Length of one unit in the file. FBX, glTF and most USD files state "
-                                        "their unit, so it is fixed for them")));
-    form->addRow(tr("Up"), choices(*up_, "headUp", {tr("Y"), tr("Z")},
-                                   tr("Up axis of the file. Change it if the head lies on its back")));
+    form->addRow("Unit", choices(*unit_, "headUnit", units,
+                                 "Length of one unit in the file. FBX, glTF and most USD files state "
+                                 "their unit, so it is fixed for them"));
+    form->addRow("Up", choices(*up_, "headUp", {QString("Y"), QString("Z")},
+                               "Up axis of the file. Change it if the head lies on its back"));
     side->addWidget(groups_, 1);
     spheres_->setObjectName("colliderSpheres");
     spheres_->setRange(1, static_cast<int>(editing::kMaxPartSpheres));
     spheres_->setValue(static_cast<int>(HeadImportOptions().colliderSpheres));
     spheres_->setKeyboardTracking(false);
     spheres_->setToolTip(
-        tr("Number of spheres for all groups that collide, shared by area. Each group gets 1 to 64. More "
-           "spheres fit closer and cost more"));
+        "Number of spheres for all groups that collide, shared by area. Each group gets 1 to 64. More "
+        "spheres fit closer and cost more");
     auto* colliders = new QFormLayout;
-    colliders->addRow(tr("Spheres"), spheres_);
+    colliders->addRow("Spheres", spheres_);
     side->addLayout(colliders);
     fit_->setObjectName("colliderFit");
     fit_->setProperty("role", "dim");
     fit_->setWordWrap(true);
     side->addWidget(fit_);
-    open_ = acceptOrCancel(*this, *side, tr("Open"), tr("Open the head as shown"));
+    open_ = acceptOrCancel(*this, *side, "Open", "Open the head as shown");
     open_->setObjectName("headOpen");
     connect(unit_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
     connect(up_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
@@ -112,10 +112,10 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
 }
 
 void HeadDialog::read() {
-    summary_->setText(tr("Reading…"));
+    summary_->setText("Reading…");
     using Read = std::pair<std::shared_ptr<const ImportedScene>, QString>;
     tasks_.run<Read>(
-        tr("Reading %1").arg(QFileInfo(path_).fileName()),
+        QString("Reading %1").arg(QFileInfo(path_).fileName()),
         [path = path_.toStdString()](TaskControl&) -> Result<Read> {
             auto scene = importSceneLoud(path, {});
             if (!scene) return Read{nullptr, errorText(scene.error())};
@@ -143,7 +143,7 @@ void HeadDialog::take(std::shared_ptr<const ImportedScene> scene) {
     if (known != units.end()) unit_->button(static_cast<int>(known - units.begin()))->setChecked(true);
     for (QAbstractButton* button : unit_->buttons()) {
         button->setEnabled(!statesUnit_);
-        if (statesUnit_) button->setToolTip(tr("The file states its unit, so it is fixed"));
+        if (statesUnit_) button->setToolTip("The file states its unit, so it is fixed");
     }
     up_->button(guess.zUp ? 1 : 0)->setChecked(true);
     groups_->setGroups(scene_->mesh, guess.helpers);
@@ -180,11 +180,12 @@ void HeadDialog::refresh() {
     } else {
         const Vec3f size = head_->bounds().sizes();
         const auto odd = implausibleSize(static_cast<double>(size.maxCoeff()), 1);
-        summary_->setText(tr("<p><b>%1</b> high, %2 wide, %3 deep</p><p>%L4 triangles</p>%5")
-                              .arg(lengthText(size.y(), preferences_), lengthText(size.x(), preferences_),
-                                   lengthText(size.z(), preferences_))
-                              .arg(head_->triangleCount())
-                              .arg(odd ? tr("<p>Unlikely size for a head: check the unit.</p>") : QString()));
+        summary_->setText(
+            QString("<p><b>%1</b> high, %2 wide, %3 deep</p><p>%L4 triangles</p>%5")
+                .arg(lengthText(size.y(), preferences_), lengthText(size.x(), preferences_),
+                     lengthText(size.z(), preferences_))
+                .arg(head_->triangleCount())
+                .arg(odd ? QString("<p>Unlikely size for a head: check the unit.</p>") : QString()));
     }
     fit();
 }
@@ -199,13 +200,13 @@ void HeadDialog::fit() {
     spheres_->setEnabled(!wanted.collideWith.empty());
     view_->show(Groom(), head_);
     if (!scene_ || wanted.collideWith.empty()) {
-        fit_->setText(tr("No group is set to collide"));
+        fit_->setText("No group is set to collide");
         return;
     }
-    fit_->setText(tr("Fitting spheres…"));
+    fit_->setText("Fitting spheres…");
     using Fit = std::pair<editing::SphereFit, QString>;
     fitting_ = tasks_.run<Fit>(
-        tr("Fitting spheres"),
+        "Fitting spheres",
         [scene = scene_, wanted, scale = toMetres()](TaskControl& control) -> Result<Fit> {
             auto fit = fitColliders(scaled(scene->mesh, scale), {}, wanted, control.cancelFlag());
             if (!fit) return Fit{{}, errorText(fit.error())};
@@ -226,8 +227,8 @@ void HeadDialog::show(const editing::SphereFit& fit) {
     const auto length = [this](float metres) {
         return lengthText(static_cast<double>(metres), preferences_);
     };
-    fit_->setText(tr("%n spheres: worst gap %1, mean %2; largest bulge %3", nullptr,
-                     static_cast<int>(fit.spheres.size()))
+    fit_->setText(QString("%1 spheres: worst gap %2, mean %3, largest bulge %4")
+                      .arg(fit.spheres.size())
                       .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
     view_->show(Groom(), head_, fit.spheres);
 }

@@ -27,7 +27,7 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
       form_(new QFormLayout),
       summary_(new QLabel),
       view_(new StrandPreview) {
-    setWindowTitle(tr("Import %1").arg(QFileInfo(path).fileName()));
+    setWindowTitle(QString("Import %1").arg(QFileInfo(path).fileName()));
     resize(760, 480);
     auto* layout = new QHBoxLayout(this);
     layout->setContentsMargins(16, 16, 16, 16);
@@ -40,47 +40,46 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
     unit_->setObjectName("unit");
     unit_->setToolTip(
-        tr("Length of one unit in the file. Change it if the strands are far too large or too small for the "
-           "head."));
+        "Length of one unit in the file. Change it if the strands are far too large or too small for the "
+        "head.");
     up_->setObjectName("up");
-    up_->addItems({tr("Y up"), tr("Z up")});
-    up_->setToolTip(tr("Up axis of the file. Change it if the hair lies on its side."));
+    up_->addItems({"Y up", "Z up"});
+    up_->setToolTip("Up axis of the file. Change it if the hair lies on its side.");
     segments_->setObjectName("segments");
     segments_->setRange(0, 65535);
-    segments_->setSpecialValueText(tr("found"));
-    segments_->setToolTip(tr("Segments of each Cinema 4D ribbon. 0 detects them from the faces"));
+    segments_->setSpecialValueText("found");
+    segments_->setToolTip("Segments of each Cinema 4D ribbon. 0 detects them from the faces");
     order_->setObjectName("order");
-    order_->addItems(
-        {tr("Found"), tr("Left and right in turn"), tr("One edge, then the other"), tr("Around")});
+    order_->addItems({"Found", "Left and right in turn", "One edge, then the other", "Around"});
     order_->setToolTip(
-        tr("Vertex order of a Cinema 4D ribbon. If it is wrong, strands zigzag, or tips are where roots "
-           "should be"));
+        "Vertex order of a Cinema 4D ribbon. If it is wrong, strands zigzag, or tips are where roots "
+        "should be");
     particle_->setObjectName("particle");
-    particle_->addItems({tr("First edge"), tr("Middle")});
-    particle_->setToolTip(tr(
-        "Position of the particles within a Cinema 4D ribbon: on every second vertex, or between its edges"));
+    particle_->addItems({"First edge", "Middle"});
+    particle_->setToolTip(
+        "Position of the particles within a Cinema 4D ribbon: on every second vertex, or between its edges");
     points_->setObjectName("pointsPerStrand");
     points_->setRange(0, 65536);
-    points_->setSpecialValueText(tr("found"));
+    points_->setSpecialValueText("found");
     points_->setToolTip(
-        tr("Points per strand, for files that only have points. 0 detects them from the distances between "
-           "the points"));
-    form_->addRow(tr("Unit"), unit_);
-    form_->addRow(tr("Axis"), up_);
-    form_->addRow(tr("Vertex order"), order_);
-    form_->addRow(tr("Particles"), particle_);
-    form_->addRow(tr("Segments"), segments_);
-    form_->addRow(tr("Points per strand"), points_);
+        "Points per strand, for files that only have points. 0 detects them from the distances between "
+        "the points");
+    form_->addRow("Unit", unit_);
+    form_->addRow("Axis", up_);
+    form_->addRow("Vertex order", order_);
+    form_->addRow("Particles", particle_);
+    form_->addRow("Segments", segments_);
+    form_->addRow("Points per strand", points_);
     auto* legend =
-        new QLabel(tr("<span style='color:%1'>●</span> root &nbsp; <span style='color:%2'>●</span> tip")
+        new QLabel(QString("<span style='color:%1'>●</span> root &nbsp; <span style='color:%2'>●</span> tip")
                        .arg(StrandPreview::rootColour().name(), StrandPreview::tipColour().name()));
     form_->addRow(QString(), legend);
     summary_->setWordWrap(true);
     summary_->setFixedWidth(240);
     summary_->setAlignment(Qt::AlignTop);
     side->addWidget(summary_, 1);
-    take_ = acceptOrCancel(*this, *side, tr("Import"),
-                           tr("Import the strands as shown. On a head, they are bound to its scalp"));
+    take_ = acceptOrCancel(*this, *side, "Import",
+                           "Import the strands as shown. On a head, they are bound to its scalp");
     connect(unit_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(up_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(order_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
@@ -108,30 +107,30 @@ namespace {
 
 /// "Vertex order: around; 12 segments"
 QString wordsFor(const RibbonsFound& found) {
-    const QString orders[] = {QObject::tr("mixed"), QObject::tr("left and right in turn"),
-                              QObject::tr("one edge, then the other"), QObject::tr("around")};
+    const QString orders[] = {QString("mixed"), QString("left and right in turn"),
+                              QString("one edge, then the other"), QString("around")};
     const QString order = found.sides > 2 && found.order == RibbonOrder::Interleaved
-                              ? QObject::tr("ring after ring")
+                              ? QString("ring after ring")
                               : orders[static_cast<std::size_t>(found.order)];
-    QString text = QObject::tr("<p>Vertex order: %1; ").arg(order);
+    QString text = QString("<p>Vertex order: %1; ").arg(order);
     text += found.fewestSegments == found.mostSegments
-                ? QObject::tr("%L1 segments</p>").arg(found.mostSegments)
-                : QObject::tr("%L1 to %L2 segments</p>").arg(found.fewestSegments).arg(found.mostSegments);
-    if (found.sides > 2) text += QObject::tr("<p>Tubes of %1 sides</p>").arg(found.sides);
+                ? QString("%L1 segments</p>").arg(found.mostSegments)
+                : QString("%L1 to %L2 segments</p>").arg(found.fewestSegments).arg(found.mostSegments);
+    if (found.sides > 2) text += QString("<p>Tubes of %1 sides</p>").arg(found.sides);
     return text;
 }
 
 }  // namespace
 
 void ImportDialog::read() {
-    summary_->setText(tr("Reading…"));
+    summary_->setText("Reading…");
     take_->setEnabled(false);
     // A later change of the options supersedes what is being read.
     tasks_.cancel();
     tasks_.finish();
     StrandImportOptions wanted = options();
     tasks_.run<Preview>(
-        tr("Reading %1").arg(QFileInfo(path_).fileName()),
+        QString("Reading %1").arg(QFileInfo(path_).fileName()),
         [path = path_, wanted, scalp = document_.groom().scalp](TaskControl&) -> Result<Preview> {
             StrandImportOptions onHead = wanted;
             onHead.scalp = scalp.get();
@@ -147,19 +146,18 @@ void ImportDialog::read() {
                 return preview;
             }
             preview.hasRibbons = asked || imported->ribbons.has_value();
-            preview.text = QObject::tr("<p><b>%1</b></p><p>%L2 strands, %L3 points</p>")
+            preview.text = QString("<p><b>%1</b></p><p>%L2 strands, %L3 points</p>")
                                .arg(QString::fromStdString(imported->format).toHtmlEscaped())
                                .arg(imported->groom.strandCount())
                                .arg(imported->groom.pointCount());
             if (imported->ribbons) preview.text += wordsFor(*imported->ribbons);
             const Vec3f size = imported->groom.bounds().sizes();
-            preview.text += QObject::tr("<p>%1 × %2 × %3 m</p>")
+            preview.text += QString("<p>%1 × %2 × %3 m</p>")
                                 .arg(size.x(), 0, 'g', 3)
                                 .arg(size.y(), 0, 'g', 3)
                                 .arg(size.z(), 0, 'g', 3);
             if (!imported->dropped.empty()) {
-                preview.text +=
-                    QObject::tr("<p>%L1 strands cannot be used.</p>").arg(imported->dropped.size());
+                preview.text += QString("<p>%L1 strands cannot be used.</p>").arg(imported->dropped.size());
             }
             for (const Finding& finding : imported->warnings) {
                 preview.text += "<p>" + QString::fromStdString(finding.what).toHtmlEscaped() + "</p>";

@@ -26,7 +26,7 @@ class Pages : public QTextBrowser {
     Pages() {
         setOpenLinks(false);
         setObjectName("manualText");
-        setAccessibleName(tr("Page"));
+        setAccessibleName("Page");
     }
 
     QVariant loadResource(int type, const QUrl& name) override {
@@ -63,7 +63,7 @@ QString headingName(const QString& heading) {
 
 ManualWindow::ManualWindow(QWidget* parent)
     : QDialog(parent), contents_(new QListWidget), text_(new Pages), search_(new QLineEdit) {
-    setWindowTitle(tr("Manual"));
+    setWindowTitle("Manual");
     setObjectName("manualWindow");
     resize(1060, 760);
     auto* layout = new QVBoxLayout(this);
@@ -75,19 +75,18 @@ ManualWindow::ManualWindow(QWidget* parent)
         step->setText(words);
         step->setShortcut(key);
         step->setEnabled(false);
-        step->setToolTip(tr("%1 (%2)").arg(words, key.toString(QKeySequence::NativeText)));
+        step->setToolTip(QString("%1 (%2)").arg(words, key.toString(QKeySequence::NativeText)));
         connect(step, &QToolButton::clicked, text_, go);
         connect(text_, can, step, &QToolButton::setEnabled);
         bar->addWidget(step);
     };
-    addStep(tr("Back"), QKeySequence("Alt+Left"), &QTextBrowser::backward, &QTextBrowser::backwardAvailable);
-    addStep(tr("Forward"), QKeySequence("Alt+Right"), &QTextBrowser::forward,
-            &QTextBrowser::forwardAvailable);
+    addStep("Back", QKeySequence("Alt+Left"), &QTextBrowser::backward, &QTextBrowser::backwardAvailable);
+    addStep("Forward", QKeySequence("Alt+Right"), &QTextBrowser::forward, &QTextBrowser::forwardAvailable);
     bar->addStretch(1);
     search_->setObjectName("manualSearch");
-    search_->setPlaceholderText(tr("Find on this page"));
-    search_->setToolTip(tr("Enter finds the next place, Shift+Enter the one before"));
-    search_->setAccessibleName(tr("Find on this page"));
+    search_->setPlaceholderText("Find on this page");
+    search_->setToolTip("Enter finds the next place, Shift+Enter the one before");
+    search_->setAccessibleName("Find on this page");
     search_->setClearButtonEnabled(true);
     search_->setMaximumWidth(280);
     bar->addWidget(search_, 1);
@@ -97,7 +96,7 @@ ManualWindow::ManualWindow(QWidget* parent)
     connect(focusSearch, &QAction::triggered, search_, qOverload<>(&QWidget::setFocus));
     auto* split = new QSplitter;
     contents_->setObjectName("manualContents");
-    contents_->setAccessibleName(tr("Contents"));
+    contents_->setAccessibleName("Contents");
     contents_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     split->addWidget(contents_);
     split->addWidget(text_);

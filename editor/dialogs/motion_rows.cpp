@@ -31,31 +31,31 @@ MotionRows::MotionRows(QObject* parent)
       exposure_(sideBySide(shutter_, samples_)) {
     preRoll_->setObjectName("preRoll");
     preRoll_->setRange(0, kMostRunUp);
-    preRoll_->setSpecialValueText(tr("none"));
-    preRoll_->setSuffix(tr(" frames"));
-    preRoll_->setAccessibleName(tr("Run-up"));
+    preRoll_->setSpecialValueText("none");
+    preRoll_->setSuffix(" frames");
+    preRoll_->setAccessibleName("Run-up");
     preRoll_->setToolTip(
-        tr("Number of frames to simulate before the first one, on the motion's first pose, so that the hair "
-           "settles"));
+        "Number of frames to simulate before the first one, on the motion's first pose, so that the hair "
+        "settles");
     start_->setObjectName("startFrame");
     start_->setRange(-kFarthestFrame, kFarthestFrame);
-    start_->setPrefix(tr("first frame "));
-    start_->setAccessibleName(tr("First frame"));
-    start_->setToolTip(tr("Number of the first frame in the file"));
+    start_->setPrefix("first frame ");
+    start_->setAccessibleName("First frame");
+    start_->setToolTip("Number of the first frame in the file");
     shutter_->setObjectName("shutter");
-    shutter_->setAccessibleName(tr("Shutter"));
-    shutter_->addItem(tr("none: one sample per frame"));
-    shutter_->addItem(tr("180° around the frame"), QVariant::fromValue(QPointF(-0.25, 0.25)));
-    shutter_->addItem(tr("180° after the frame"), QVariant::fromValue(QPointF(0, 0.5)));
-    shutter_->addItem(tr("360° around the frame"), QVariant::fromValue(QPointF(-0.5, 0.5)));
+    shutter_->setAccessibleName("Shutter");
+    shutter_->addItem("none: one sample per frame");
+    shutter_->addItem("180° around the frame", QVariant::fromValue(QPointF(-0.25, 0.25)));
+    shutter_->addItem("180° after the frame", QVariant::fromValue(QPointF(0, 0.5)));
+    shutter_->addItem("360° around the frame", QVariant::fromValue(QPointF(-0.5, 0.5)));
     shutter_->setToolTip(
-        tr("When the camera sees a frame. The file has samples within that time, for motion blur"));
+        "When the camera sees a frame. The file has samples within that time, for motion blur");
     samples_->setObjectName("shutterSamples");
     samples_->setRange(2, static_cast<int>(kMaxShutterSamples));
     samples_->setValue(3);
-    samples_->setSuffix(tr(" samples"));
-    samples_->setAccessibleName(tr("Samples"));
-    samples_->setToolTip(tr("Number of samples while the shutter is open"));
+    samples_->setSuffix(" samples");
+    samples_->setAccessibleName("Samples");
+    samples_->setToolTip("Number of samples while the shutter is open");
     connect(shutter_, &QComboBox::currentIndexChanged, this, [this] {
         samples_->setEnabled(shutter_->currentIndex() > 0);
         Q_EMIT changed();
@@ -65,8 +65,8 @@ MotionRows::MotionRows(QObject* parent)
 }
 
 void MotionRows::addTo(QFormLayout& form) {
-    form.addRow(tr("Run-up"), settling_);
-    form.addRow(tr("Shutter"), exposure_);
+    form.addRow("Run-up", settling_);
+    form.addRow("Shutter", exposure_);
 }
 
 void MotionRows::show(QFormLayout& form, bool visible) {

@@ -20,7 +20,7 @@ class CurveView : public QWidget {
   public:
     explicit CurveView(const Preferences& preferences) : preferences_(preferences) {
         setFixedSize(120, 90);
-        setToolTip(QObject::tr("Right: more pen pressure. Up: more brush strength."));
+        setToolTip("Right: more pen pressure. Up: more brush strength.");
         connect(&preferences, &Preferences::changed, this, [this] { update(); });
     }
 
@@ -62,7 +62,7 @@ QComboBox* choice(const QStringList& names, Enum now, const QString& tip, std::f
 }  // namespace
 
 PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) : QDialog(parent) {
-    setWindowTitle(tr("Preferences"));
+    setWindowTitle("Preferences");
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(20, 20, 20, 16);
     layout->setSpacing(16);
@@ -73,60 +73,61 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
     layout->addLayout(form);
 
     auto* theme =
-        choice<Theme>({tr("Dark"), tr("Light")}, preferences.theme(), tr("Colour theme of the window"),
+        choice<Theme>({QString("Dark"), QString("Light")}, preferences.theme(), "Colour theme of the window",
                       [&preferences](Theme value) { preferences.setTheme(value); });
     theme->setObjectName("theme");
-    form->addRow(tr("Theme"), theme);
-    auto* unit = choice<DisplayUnit>({tr("Metres"), tr("Centimetres"), tr("Millimetres"), tr("Inches")},
-                                     preferences.unit(),
-                                     tr("Display unit for lengths. Documents are always in metres"),
-                                     [&preferences](DisplayUnit value) { preferences.setUnit(value); });
+    form->addRow("Theme", theme);
+    auto* unit = choice<DisplayUnit>(
+        {QString("Metres"), QString("Centimetres"), QString("Millimetres"), QString("Inches")},
+        preferences.unit(), "Display unit for lengths. Documents are always in metres",
+        [&preferences](DisplayUnit value) { preferences.setUnit(value); });
     unit->setObjectName("unit");
-    form->addRow(tr("Lengths in"), unit);
+    form->addRow("Lengths in", unit);
     auto* orbit = choice<OrbitStyle>(
-        {tr("Maya: Alt and a mouse button"), tr("Blender: middle mouse button")}, preferences.orbitStyle(),
-        tr("Maya: Alt + left orbits, Alt + middle pans, Alt + right zooms.\nBlender: middle orbits, Shift + "
-           "middle pans, Ctrl + middle zooms.\nThe wheel zooms in both."),
+        {QString("Maya: Alt and a mouse button"), QString("Blender: middle mouse button")},
+        preferences.orbitStyle(),
+        "Maya: Alt + left orbits, Alt + middle pans, Alt + right zooms.\nBlender: middle orbits, Shift + "
+        "middle pans, Ctrl + middle zooms.\nThe wheel zooms in both.",
         [&preferences](OrbitStyle value) { preferences.setOrbitStyle(value); });
     orbit->setObjectName("orbitStyle");
-    form->addRow(tr("Viewport navigation"), orbit);
+    form->addRow("Viewport navigation", orbit);
 
     auto* curve = new NumberBox(0.25, 4, false);
     curve->setObjectName("tabletCurve");
-    curve->setToolTip(tr("Exponent from pen pressure to brush strength. Above 1 needs more pressure"));
+    curve->setToolTip("Exponent from pen pressure to brush strength. Above 1 needs more pressure");
     curve->setValue(preferences.tabletCurve());
     connect(curve, &NumberBox::edited, &preferences, &Preferences::setTabletCurve);
-    form->addRow(tr("Pen pressure"), curve);
+    form->addRow("Pen pressure", curve);
     form->addRow(QString(), new CurveView(preferences));
 
     auto* simulateOn = choice<SimulateOn>(
-        {tr("Automatic"), tr("GPU"), tr("CPU")}, preferences.simulateOn(),
-        tr("Device that simulates hair during playback. Automatic uses the one that was faster with a "
-           "similar hairstyle. After a change the hair continues from its current state."),
+        {QString("Automatic"), QString("GPU"), QString("CPU")}, preferences.simulateOn(),
+        "Device that simulates hair during playback. Automatic uses the one that was faster with a "
+        "similar hairstyle. After a change the hair continues from its current state.",
         [&preferences](SimulateOn value) { preferences.setSimulateOn(value); });
     simulateOn->setObjectName("simulateOn");
-    form->addRow(tr("Simulate hair on"), simulateOn);
+    form->addRow("Simulate hair on", simulateOn);
 
     auto* autosave = new QSpinBox;
     autosave->setObjectName("autosave");
     autosave->setRange(0, 60);
-    autosave->setSuffix(tr(" min"));
-    autosave->setSpecialValueText(tr("never"));
+    autosave->setSuffix(" min");
+    autosave->setSpecialValueText("never");
     autosave->setValue(preferences.autosaveMinutes());
-    autosave->setToolTip(tr("Minutes between recovery copies of unsaved work"));
+    autosave->setToolTip("Minutes between recovery copies of unsaved work");
     connect(autosave, &QSpinBox::valueChanged, &preferences, &Preferences::setAutosaveMinutes);
-    form->addRow(tr("Autosave every"), autosave);
+    form->addRow("Autosave every", autosave);
 
     auto* undo = new QSpinBox;
     undo->setObjectName("undoMemory");
     undo->setRange(kLeastUndoMegabytes, kMostUndoMegabytes);
     undo->setSingleStep(64);
-    undo->setSuffix(tr(" MB"));
+    undo->setSuffix(" MB");
     undo->setKeyboardTracking(false);
     undo->setValue(preferences.undoMegabytes());
-    undo->setToolTip(tr("Memory for undo steps. The oldest steps are dropped when it is full"));
+    undo->setToolTip("Memory for undo steps. The oldest steps are dropped when it is full");
     connect(undo, &QSpinBox::valueChanged, &preferences, &Preferences::setUndoMegabytes);
-    form->addRow(tr("Undo memory"), undo);
+    form->addRow("Undo memory", undo);
 
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);

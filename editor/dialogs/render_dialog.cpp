@@ -48,10 +48,10 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
       passes_(new QSpinBox),
       rate_(new QComboBox),
       files_(new QComboBox),
-      transparent_(new QCheckBox(tr("Transparent"))),
+      transparent_(new QCheckBox("Transparent")),
       note_(new QLabel),
       progress_(new QProgressBar) {
-    setWindowTitle(tr("Render"));
+    setWindowTitle("Render");
     resize(440, 0);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(20, 20, 20, 16);
@@ -64,45 +64,44 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
     layout->addWidget(rows_);
 
     of_->setObjectName("renderOf");
-    of_->addItems({tr("Image of the current view"), tr("Turntable: the camera circles the head"),
-                   tr("Animation: the simulation from rest")});
-    of_->setToolTip(tr("The animation has the motion of the viewport, or a nod if the head is at rest"));
-    form_->addRow(tr("Render"), of_);
+    of_->addItems({"Image of the current view", "Turntable: the camera circles the head",
+                   "Animation: the simulation from rest"});
+    of_->setToolTip("The animation has the motion of the viewport, or a nod if the head is at rest");
+    form_->addRow("Render", of_);
     const PictureRequest view = viewport_.requestOfView();
-    width_ = pixels("renderWidth", static_cast<int>(view.width), tr("Width in pixels"));
-    height_ = pixels("renderHeight", static_cast<int>(view.height), tr("Height in pixels"));
+    width_ = pixels("renderWidth", static_cast<int>(view.width), "Width in pixels");
+    height_ = pixels("renderHeight", static_cast<int>(view.height), "Height in pixels");
     auto* size = new QWidget;
     auto* sides = new QHBoxLayout(size);
     sides->setContentsMargins(0, 0, 0, 0);
     sides->addWidget(width_, 1);
     sides->addWidget(new QLabel(QStringLiteral("×")));
     sides->addWidget(height_, 1);
-    form_->addRow(tr("Size"), size);
+    form_->addRow("Size", size);
     passes_->setObjectName("renderPasses");
     passes_->setRange(1, 256);
     passes_->setValue(static_cast<int>(viewport_.quality().frames));
-    passes_->setToolTip(tr("Frames averaged for each image. More frames resolve finer hair and take longer"));
-    form_->addRow(tr("Averaged frames"), passes_);
+    passes_->setToolTip("Frames averaged for each image. More frames resolve finer hair and take longer");
+    form_->addRow("Averaged frames", passes_);
     transparent_->setObjectName("renderTransparent");
-    transparent_->setToolTip(tr("Saves the background as transparent, to composite the hair elsewhere"));
-    form_->addRow(tr("Background"), transparent_);
+    transparent_->setToolTip("Saves the background as transparent, to composite the hair elsewhere");
+    form_->addRow("Background", transparent_);
     images_->setObjectName("renderImages");
     images_->setRange(2, kMostImages);
     images_->setValue(72);
-    images_->setToolTip(tr("Number of images in the film"));
-    form_->addRow(tr("Images"), images_);
+    images_->setToolTip("Number of images in the film");
+    form_->addRow("Images", images_);
     rate_->setObjectName("renderRate");
     for (const int rate : {60, 30, 20, 15, 12, 10}) rate_->addItem(QString::number(rate), rate);
     rate_->setCurrentIndex(1);
-    rate_->setToolTip(
-        tr("Images per second of the film. The hair is always simulated at 60 frames per second"));
-    form_->addRow(tr("Frame rate"), rate_);
+    rate_->setToolTip("Images per second of the film. The hair is always simulated at 60 frames per second");
+    form_->addRow("Frame rate", rate_);
     files_->setObjectName("renderFiles");
-    files_->addItems({tr("Numbered PNG images"), tr("Animated PNG"), tr("Animated WebP")});
+    files_->addItems({"Numbered PNG images", "Animated PNG", "Animated WebP"});
     files_->setToolTip(
-        tr("Numbered images for editing, one animated file to show. WebP is lossy and a tenth "
-           "as large"));
-    form_->addRow(tr("Files"), files_);
+        "Numbered images for editing, one animated file to show. WebP is lossy and a tenth "
+        "as large");
+    form_->addRow("Files", files_);
     note_->setObjectName("renderNote");
     note_->setWordWrap(true);
     layout->addWidget(note_);
@@ -114,10 +113,10 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     close_ = buttons->button(QDialogButtonBox::Close);
     close_->setObjectName("renderClose");
-    render_ = buttons->addButton(tr("Render…"), QDialogButtonBox::AcceptRole);
+    render_ = buttons->addButton("Render…", QDialogButtonBox::AcceptRole);
     render_->setObjectName("render");
     render_->setDefault(true);
-    render_->setToolTip(tr("Choose a file name and render"));
+    render_->setToolTip("Choose a file name and render");
     layout->addWidget(buttons);
     connect(render_, &QPushButton::clicked, this, &RenderDialog::choosePath);
     connect(buttons, &QDialogButtonBox::rejected, this, &RenderDialog::reject);
@@ -131,7 +130,7 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
         if (isWorking()) end(problem, true);
     });
     connect(&tasks_, &Tasks::stopped, this, [this] {
-        if (work_ == Work::Cancels) end(tr("Cancelled. No file was written"), false);
+        if (work_ == Work::Cancels) end("Cancelled. No file was written", false);
     });
     showRows();
 }
@@ -165,16 +164,16 @@ void RenderDialog::showRows() {
     note_->style()->polish(note_);
     if (!fits) {
         note_->setText(
-            tr("An animation of this size needs %1 of memory. Choose numbered images, fewer images "
-               "or a smaller size.")
+            QString("An animation of this size needs %1 of memory. Choose numbered images, fewer images "
+                    "or a smaller size.")
                 .arg(numberLocale().formattedDataSize(static_cast<qint64>(film.bytesHeld()), 1,
                                                       QLocale::DataSizeSIFormat)));
     } else if (isFilm) {
-        note_->setText(tr("%1 images last %2 s.")
+        note_->setText(QString("%1 images last %2 s.")
                            .arg(film.images)
                            .arg(static_cast<double>(film.images) / film.imagesPerSecond, 0, 'f', 1));
     } else {
-        note_->setText(tr("Camera, lights and look are those of the viewport, without its overlays."));
+        note_->setText("Camera, lights and look are those of the viewport, without its overlays.");
     }
     // Rows that come or go change the height that is needed.
     adjustSize();
@@ -187,9 +186,10 @@ bool RenderDialog::mayReplace(const QString& path, const Film& film) {
         std::error_code code;
         if (std::filesystem::exists(numbered(path.toStdString(), i), code)) ++there;
     }
-    return there == 0 || QMessageBox::question(this, tr("Replace images"),
-                                               tr("%Ln images of this name are there. Replace them?", nullptr,
-                                                  there)) == QMessageBox::Yes;
+    return there == 0 ||
+           QMessageBox::question(this, "Replace images",
+                                 QString("%L1 images of this name are there. Replace them?").arg(there)) ==
+               QMessageBox::Yes;
 }
 
 void RenderDialog::choosePath() {
@@ -224,7 +224,7 @@ void RenderDialog::renderTo(const QString& path) {
     count_ = film.images;
     clock_.start();
     const bool started = tasks_.run<bool>(
-        tr("Rendering %1").arg(QFileInfo(path).fileName()),
+        QString("Rendering %1").arg(QFileInfo(path).fileName()),
         [film = std::move(film), &viewport = viewport_](TaskControl& control) -> Result<bool> {
             const auto isCancelled = [&control] { return control.isCancelled(); };
             auto made = makeFilm(
@@ -238,10 +238,10 @@ void RenderDialog::renderTo(const QString& path) {
             return true;
         },
         [self = QPointer(this), &messages = messages_, path](bool) {
-            const QString words = tr("Rendered %1").arg(QFileInfo(path).fileName());
+            const QString words = QString("Rendered %1").arg(QFileInfo(path).fileName());
             messages.say(words);
             if (self)
-                self->end(tr("%1 in %2 s")
+                self->end(QString("%1 in %2 s")
                               .arg(words)
                               .arg(static_cast<double>(self->clock_.elapsed()) / 1000, 0, 'f', 1),
                           false);
@@ -250,7 +250,7 @@ void RenderDialog::renderTo(const QString& path) {
     viewport_.setHeld(true);
     rows_->setEnabled(false);
     render_->setEnabled(false);
-    close_->setText(tr("Cancel"));
+    close_->setText("Cancel");
     progress_->show();
     poll_.start();
     showWork();
@@ -259,12 +259,13 @@ void RenderDialog::renderTo(const QString& path) {
 void RenderDialog::showWork() {
     const double share = std::max(0.0, static_cast<double>(tasks_.progress()));
     progress_->setValue(static_cast<int>(std::lround(1000 * share)));
-    if (work_ == Work::Cancels) return note_->setText(tr("Cancelling…"));
+    if (work_ == Work::Cancels) return note_->setText("Cancelling…");
     const int image = std::min(static_cast<int>(count_), static_cast<int>(share * count_) + 1);
-    QString words = count_ > 1 ? tr("Rendering image %1 of %2").arg(image).arg(count_) : tr("Rendering");
+    QString words =
+        count_ > 1 ? QString("Rendering image %1 of %2").arg(image).arg(count_) : QString("Rendering");
     const double elapsed = static_cast<double>(clock_.elapsed()) / 1000;
     if (share > 0 && share < 1 && elapsed > 2)
-        words += ", " + tr("about %1 s left").arg(std::ceil(elapsed * (1 - share) / share), 0, 'f', 0);
+        words += ", " + QString("about %1 s left").arg(std::ceil(elapsed * (1 - share) / share), 0, 'f', 0);
     note_->setText(words);
 }
 
@@ -274,7 +275,7 @@ void RenderDialog::end(const QString& words, bool isWarning) {
     viewport_.setHeld(false);
     progress_->hide();
     rows_->setEnabled(true);
-    close_->setText(tr("Close"));
+    close_->setText("Close");
     showRows();
     note_->setProperty("role", isWarning ? "problem" : "dim");
     note_->style()->polish(note_);

@@ -18,18 +18,18 @@ QString plainText(QString text) {
 
 ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     : QDialog(parent), actions_(actions), list_(new QTreeWidget), message_(new QLabel) {
-    setWindowTitle(tr("Keyboard shortcuts"));
+    setWindowTitle("Keyboard shortcuts");
     resize(620, 560);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(16, 16, 16, 16);
     layout->setSpacing(10);
     auto* search = new QLineEdit;
-    search->setPlaceholderText(tr("Search actions"));
+    search->setPlaceholderText("Search actions");
     search->setClearButtonEnabled(true);
-    search->setToolTip(tr("Show only actions whose name contains this text"));
+    search->setToolTip("Show only actions whose name contains this text");
     layout->addWidget(search);
-    list_->setHeaderLabels({tr("Action"), tr("Shortcut")});
-    list_->setAccessibleName(tr("Actions and their shortcuts"));
+    list_->setHeaderLabels({"Action", "Shortcut"});
+    list_->setAccessibleName("Actions and their shortcuts");
     list_->setRootIsDecorated(false);
     list_->header()->setStretchLastSection(false);
     list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
@@ -41,8 +41,8 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     message_->hide();
     layout->addWidget(message_);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
-    auto* reset = buttons->addButton(tr("Reset all"), QDialogButtonBox::ResetRole);
-    reset->setToolTip(tr("Restore the default shortcut of every action"));
+    auto* reset = buttons->addButton("Reset all", QDialogButtonBox::ResetRole);
+    reset->setToolTip("Restore the default shortcut of every action");
     // Enter would press the first that may be pressed so.
     reset->setAutoDefault(false);
     buttons->button(QDialogButtonBox::Close)->setDefault(true);
@@ -65,13 +65,13 @@ void ShortcutDialog::fill() {
         list_->addTopLevelItem(item);
         auto* edit = new QKeySequenceEdit(actions_.get(info.id).shortcut());
         edit->setObjectName(info.id);
-        edit->setToolTip(tr("Click and press a new shortcut for: %1").arg(plainText(info.text)));
+        edit->setToolTip(QString("Click and press a new shortcut for: %1").arg(plainText(info.text)));
         list_->setItemWidget(item, 1, edit);
         connect(edit, &QKeySequenceEdit::editingFinished, this, [this, edit, id = info.id] {
             if (edit->keySequence() == actions_.get(id).shortcut()) return;
             const QString robbed = actions_.setShortcut(id, edit->keySequence());
             if (robbed.isEmpty()) return;
-            message_->setText(tr("Removed from %1").arg(plainText(actions_.get(robbed).text())));
+            message_->setText(QString("Removed from %1").arg(plainText(actions_.get(robbed).text())));
             message_->show();
             if (auto* other = list_->findChild<QKeySequenceEdit*>(robbed)) other->clear();
         });

@@ -158,10 +158,11 @@ void Autosave::written(quint64 generation, const Status& status) {
         Q_EMIT upToDate();
     } else {
         dirty_ = true;
-        Q_EMIT failed(tr("Unsaved work could not be copied: %1. Free some space, change the folder's rights, "
-                         "or save the project. The next attempt is in %n seconds",
-                         nullptr, kRetry_ms / 1000)
-                          .arg(errorText(status.error())));
+        Q_EMIT failed(
+            QString("Unsaved work could not be copied: %1. Free some space, change the folder's rights, "
+                    "or save the project. The next attempt is in %2 seconds")
+                .arg(errorText(status.error()))
+                .arg(kRetry_ms / 1000));
     }
     schedule();
 }

@@ -57,7 +57,7 @@ void QtDocument::notify(const editing::Change& change) {
 
 QString QtDocument::title() const {
     if (!path_.isEmpty()) return QFileInfo(path_).fileName();
-    return name_.isEmpty() ? tr("Untitled") : name_;
+    return name_.isEmpty() ? QString("Untitled") : name_;
 }
 
 void QtDocument::open(Groom groom, const QString& path, const QString& name) {

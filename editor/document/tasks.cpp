@@ -15,7 +15,7 @@ Tasks::~Tasks() {
 
 bool Tasks::start(const QString& name, std::function<Finish(TaskControl&)> work) {
     if (isBusy()) {
-        Q_EMIT failed(tr("%1 is still running").arg(name_));
+        Q_EMIT failed(QString("%1 is still running").arg(name_));
         return false;
     }
     control_ = std::make_shared<TaskControl>();
@@ -48,8 +48,9 @@ void Tasks::finish() {
     if (!finish || dropped) return;
     finish(*this);
     if (others > kBusyShare)
-        Q_EMIT disturbed(tr("Other programs used %1 % of the processors meanwhile: the times may be too high")
-                             .arg(100 * others, 0, 'f', 0));
+        Q_EMIT disturbed(
+            QString("Other programs used %1 % of the processors meanwhile: the times may be too high")
+                .arg(100 * others, 0, 'f', 0));
 }
 
 void Tasks::end() {

@@ -134,7 +134,7 @@ QWidget* collapsible(const QString& title, QWidget* content, bool open) {
     button->setArrowType(open ? Qt::DownArrow : Qt::RightArrow);
     button->setProperty("role", "fold");
     button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    button->setToolTip(QObject::tr("Show or hide these controls"));
+    button->setToolTip("Show or hide these controls");
     layout->addWidget(button);
     layout->addWidget(content);
     content->setVisible(open);

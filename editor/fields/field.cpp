@@ -156,7 +156,7 @@ std::vector<Field> placementFields() {
 }
 
 Field layerDensityField(std::size_t index) {
-    Field field{kDensity, QObject::tr("Density"), {1, 0, 0}, editing::Part::Layers, {}, {}, setLayersOf, {}};
+    Field field{kDensity, QString("Density"), {1, 0, 0}, editing::Part::Layers, {}, {}, setLayersOf, {}};
     field.value = [index](const Groom& groom, std::uint32_t) {
         return index < groom.layers.size() ? static_cast<double>(groom.layers[index].density) : 1;
     };
@@ -228,13 +228,13 @@ QString tooltipOf(const Field& field, DisplayUnit lengths) {
     QString text = QStringLiteral("<p><b>%1</b></p><p>%2</p>")
                        .arg(field.label, sentence(QString::fromUtf8(field.meaning)));
     if (field.kind == FieldKind::Choice) {
-        return text + QObject::tr("<p>Default: %1</p>")
+        return text + QString("<p>Default: %1</p>")
                           .arg(field.choiceLabels().value(static_cast<int>(field.defaultValue[0])));
     }
     if (field.kind == FieldKind::Bool || field.kind == FieldKind::Colour) return text;
     const Shown shown = shownAs(QString::fromUtf8(field.unit), field.min, field.max, lengths);
     const auto number = [&](double value) { return numberLocale().toString(value * shown.factor, 'g', 6); };
-    text += QObject::tr("<p>%1 to %2 %3; default %4</p>")
+    text += QString("<p>%1 to %2 %3; default %4</p>")
                 .arg(number(field.min), number(field.max),
                      shown.unit.isEmpty() ? QString() : shown.unit.toHtmlEscaped(),
                      number(field.defaultValue[0]));

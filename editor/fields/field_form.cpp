@@ -73,8 +73,8 @@ void FieldForm::addRow(const Field& field) {
     defaultValue->setIcon(icon("reset"));
     defaultValue->setIconSize({12, 12});
     defaultValue->setAutoRaise(true);
-    defaultValue->setToolTip(tr("Reset to the default value"));
-    defaultValue->setAccessibleName(tr("%1: back to the default value").arg(field.label));
+    defaultValue->setToolTip("Reset to the default value");
+    defaultValue->setAccessibleName(QString("%1: back to the default value").arg(field.label));
     connect(defaultValue, &QToolButton::clicked, this, [this, &field] {
         begin();
         for (std::uint32_t c = 0; c < field.components(); ++c) store(field, field.defaultValue[c], c);
@@ -108,10 +108,10 @@ void FieldForm::addRow(const Field& field) {
 }
 
 QWidget* FieldForm::pickButton(const Field& field) {
-    auto* button = new QPushButton(tr("Pick on head"));
+    auto* button = new QPushButton("Pick on head");
     button->setObjectName(QString::fromUtf8(field.name) + "Pick");
     button->setToolTip(
-        tr("Activates the handles: click the head to place the point, or drag it in the viewport"));
+        "Activates the handles: click the head to place the point, or drag it in the viewport");
     connect(button, &QPushButton::clicked, this, [&field] { field.pick(); });
     return button;
 }
@@ -126,8 +126,8 @@ QWidget* FieldForm::withFormula(const Field& field, QWidget* number, int row) {
     button->setText(QStringLiteral("ƒ"));
     button->setCheckable(true);
     button->setAutoRaise(true);
-    button->setToolTip(tr("Use a formula instead of the number: a value for each strand"));
-    button->setAccessibleName(tr("%1: formula").arg(field.label));
+    button->setToolTip("Use a formula instead of the number: a value for each strand");
+    button->setAccessibleName(QString("%1: formula").arg(field.label));
     layout->addWidget(number, 1);
     layout->addWidget(button);
     FormulaEdit* const edit = field.formula();

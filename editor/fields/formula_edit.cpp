@@ -25,21 +25,22 @@ FormulaEdit::FormulaEdit(QtDocument& document, std::size_t index, const QString&
     const QString name = (field.isEmpty() ? QStringLiteral("mask") : field) + "Formula";
     edit_->setObjectName(name);
     edit_->setMaxLength(static_cast<int>(Formula::kMostCharacters));
-    edit_->setPlaceholderText(field.isEmpty() ? tr("Formula, as 0.5 + 0.5*noise(u*20, v*20)")
-                                              : tr("Formula, as 0.02*random + 0.1*length"));
-    edit_->setAccessibleName(field.isEmpty() ? tr("Formula of the mask")
-                                             : tr("Formula of %1").arg(labelOf(field)));
-    const QString names =
-        tr("u, v (UV of the root), length (m), random (of the strand), x, y, z (of the root, m), density, "
-           "dye, mask1 to mask4, pi. + - * / % ^, comparisons, abs, floor, fract, sqrt, sin, cos, min, max, "
-           "pow, clamp, mix, smoothstep, noise, if(a, b, c).");
+    edit_->setPlaceholderText(field.isEmpty() ? QString("Formula, as 0.5 + 0.5*noise(u*20, v*20)")
+                                              : QString("Formula, as 0.02*random + 0.1*length"));
+    edit_->setAccessibleName(field.isEmpty() ? QString("Formula of the mask")
+                                             : QString("Formula of %1").arg(labelOf(field)));
+    const QString names = QString(
+        "u, v (UV of the root), length (m), random (of the strand), x, y, z (of the root, m), density, "
+        "dye, mask1 to mask4, pi. + - * / % ^, comparisons, abs, floor, fract, sqrt, sin, cos, min, max, "
+        "pow, clamp, mix, smoothstep, noise, if(a, b, c).");
     edit_->setToolTip(
         field.isEmpty()
-            ? tr("<p><b>Formula</b></p><p>Multiplies the mask; 0 to 1, empty is 1. Names: t (0 root, 1 tip), "
-                 "%1</p>")
+            ? QString("<p><b>Formula</b></p><p>Multiplies the mask; 0 to 1, empty is 1. Names: t (0 root, 1 "
+                      "tip), "
+                      "%1</p>")
                   .arg(names)
-            : tr("<p><b>Formula</b></p><p>Replaces the number, one value for each strand; lengths in "
-                 "metres. Names: %1</p>")
+            : QString("<p><b>Formula</b></p><p>Replaces the number, one value for each strand; lengths in "
+                      "metres. Names: %1</p>")
                   .arg(names));
     problem_->setObjectName(name + "Problem");
     problem_->setWordWrap(true);
@@ -100,7 +101,7 @@ void FormulaEdit::store() {
     Operator changed = *one;
     if (const Status status = put(changed, typed); !status) return say(status.error());
     const QString of =
-        field_.empty() ? tr("formula") : tr("formula of %1").arg(QString::fromStdString(field_));
+        field_.empty() ? QString("formula") : QString("formula of %1").arg(QString::fromStdString(field_));
     auto made = editing::setOperator(
         document_.editing().model(), index_, changed,
         QStringLiteral("%1: %2").arg(labelOf(QString::fromStdString(op_)), of).toStdString());

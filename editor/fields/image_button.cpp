@@ -14,8 +14,7 @@ QPushButton* imageButton(const char* name, const QString& text, const QString& t
     button->setObjectName(name);
     button->setToolTip(tip);
     QObject::connect(button, &QPushButton::clicked, button, [button, take = std::move(take), failed] {
-        const QString path =
-            QFileDialog::getOpenFileName(button, QObject::tr("Mask image"), {}, QObject::tr("PNG (*.png)"));
+        const QString path = QFileDialog::getOpenFileName(button, "Mask image", {}, "PNG (*.png)");
         if (path.isEmpty()) return;
         const auto image = MaskImage::read(path.toStdString());
         const Status taken = image ? take(*image) : tl::unexpected(image.error());

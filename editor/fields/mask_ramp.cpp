@@ -15,9 +15,9 @@ MaskRamp::MaskRamp(QtDocument& document, std::size_t index, SayError failed, QWi
       failed_(std::move(failed)) {
     setObjectName("maskRamp");
     setToolTip(
-        tr("<p><b>Strength from root to tip</b></p><p>Drag a key to change the operator's strength there, "
-           "from 0 (off) to 1 (full). Click the line to add a key. Right-click or press Delete to remove "
-           "one. Arrow keys move the last key you touched.</p>"));
+        "<p><b>Strength from root to tip</b></p><p>Drag a key to change the operator's strength there, "
+        "from 0 (off) to 1 (full). Click the line to add a key. Right-click or press Delete to remove "
+        "one. Arrow keys move the last key you touched.</p>");
     connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
         if (contains(parts, editing::Part::Operators)) refresh();
     });
@@ -43,7 +43,7 @@ void MaskRamp::store(const runtime::Ramp& ramp) {
     mask.ramp = ramp;
     setMaskOf(changed, mask);
     const std::string name =
-        tr("%1: ramp").arg(labelOf(QString::fromStdString(op_)).replace('_', ' ')).toStdString();
+        QString("%1: ramp").arg(labelOf(QString::fromStdString(op_)).replace('_', ' ')).toStdString();
     document_.performMerged(interaction_,
                             [&](const editing::Model& model) -> std::unique_ptr<editing::Command> {
                                 auto made = editing::setOperator(model, index_, changed, name);

@@ -29,7 +29,7 @@ void OptionForm::addNumber(const QString& name, const QString& label, const QStr
         const Shown shown = shownAs(unit, min, max, preferences_.unit());
         box->setShown(shown.factor, shown.unit, shown.decimals);
         box->setValue(get());
-        box->setToolTip(tr("<p><b>%1</b></p><p>%2</p><p>%3 to %4 %5</p>")
+        box->setToolTip(QString("<p><b>%1</b></p><p>%2</p><p>%3 to %4 %5</p>")
                             .arg(label, tip, QString::number(min * shown.factor, 'g', 5),
                                  QString::number(max * shown.factor, 'g', 5), shown.unit));
     });

@@ -36,7 +36,7 @@ QString PriceTag::words() const {
     if (!prices) return {};
     const auto now = nowOf(*prices);
     if (now == prices->values.end()) return {};
-    QString text = tr("%1, %2.").arg(amount(now->milliseconds, tr("ms")), amount(now->error, prices->unit));
+    QString text = QString("%1, %2.").arg(amount(now->milliseconds, "ms"), amount(now->error, prices->unit));
     // The cheapest that is nearer to the truth.
     const Price* next = nullptr;
     for (const Price& other : prices->values) {
@@ -46,8 +46,8 @@ QString PriceTag::words() const {
     const double more = next->milliseconds - now->milliseconds;
     const QString less = amount(now->error - next->error, prices->unit);
     return text + ' ' +
-           (more > 0 ? tr("%1 adds %2 and saves %3.").arg(next->value, amount(more, tr("ms")), less)
-                     : tr("%1 saves %2 and %3.").arg(next->value, amount(-more, tr("ms")), less));
+           (more > 0 ? QString("%1 adds %2 and saves %3.").arg(next->value, amount(more, "ms"), less)
+                     : QString("%1 saves %2 and %3.").arg(next->value, amount(-more, "ms"), less));
 }
 
 void PriceTag::refresh() {
@@ -59,15 +59,17 @@ void PriceTag::refresh() {
         const QString row = QStringLiteral(
                                 "<tr><td>%1&nbsp;</td><td align=right>%2&nbsp;</td>"
                                 "<td align=right>%3</td></tr>")
-                                .arg(price.value.toHtmlEscaped(), amount(price.milliseconds, tr("ms")),
+                                .arg(price.value.toHtmlEscaped(), amount(price.milliseconds, "ms"),
                                      amount(price.error, prices->unit));
         rows += price.now ? "<b>" + row + "</b>" : row;
     }
     const QString age =
-        prices->outdated ? tr("before the last change")
-                         : tr("at %1").arg(QLocale().toString(prices->measured.time(), QLocale::ShortFormat));
-    setToolTip(tr("<p>Frame time, and error against the reference</p><table>%1</table><p>%2 Measured %3.</p>")
-                   .arg(rows, words().toHtmlEscaped(), age));
+        prices->outdated
+            ? QString("before the last change")
+            : QString("at %1").arg(QLocale().toString(prices->measured.time(), QLocale::ShortFormat));
+    setToolTip(
+        QString("<p>Frame time, and error against the reference</p><table>%1</table><p>%2 Measured %3.</p>")
+            .arg(rows, words().toHtmlEscaped(), age));
     setAccessibleDescription(words());
     update();
 }
@@ -106,7 +108,7 @@ void PriceTag::paintEvent(QPaintEvent*) {
     painter.setFont(font);
     painter.drawText(
         QRectF(x + kGap_px, 0, width() - x - kGap_px, height()), Qt::AlignVCenter | Qt::AlignLeft,
-        amount(now->milliseconds, tr("ms")) + QStringLiteral(" · ") + amount(now->error, prices->unit));
+        amount(now->milliseconds, "ms") + QStringLiteral(" · ") + amount(now->error, prices->unit));
 }
 
 }  // namespace hairloom::editor

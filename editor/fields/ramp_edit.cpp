@@ -118,8 +118,8 @@ void RampEdit::drawGrid(QPainter& painter) const {
                          QString::number(level, 'g', 2));
     }
     const QRectF below(plot.left(), plot.bottom() + 4, plot.width(), 18);
-    painter.drawText(below, Qt::AlignLeft, tr("Root"));
-    painter.drawText(below, Qt::AlignRight, tr("Tip"));
+    painter.drawText(below, Qt::AlignLeft, "Root");
+    painter.drawText(below, Qt::AlignRight, "Tip");
 }
 
 void RampEdit::drawCurve(QPainter& painter) const {

@@ -9,9 +9,9 @@ StiffnessCurve::StiffnessCurve(QtDocument& document, QWidget* parent)
     : RampEdit(parent), document_(document) {
     setObjectName("stiffnessCurve");
     setToolTip(
-        tr("<p><b>Stiffness from root to tip</b></p><p>Drag a key to change how strongly hair returns to its "
-           "shape there: 0 is off, 0.5 is real hair, 1 is rigid. Click the line to add a key. Right-click or "
-           "press Delete to remove one. Arrow keys move the last key you touched.</p>"));
+        "<p><b>Stiffness from root to tip</b></p><p>Drag a key to change how strongly hair returns to its "
+        "shape there: 0 is off, 0.5 is real hair, 1 is rigid. Click the line to add a key. Right-click or "
+        "press Delete to remove one. Arrow keys move the last key you touched.</p>");
     connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
         if (contains(parts, editing::Part::Physics)) refresh();
     });
@@ -34,7 +34,7 @@ void StiffnessCurve::store(const runtime::Ramp& levels) {
     for (runtime::Ramp::Key& key : settings.angularCurve.keys)
         key.value = settings.angularStiffness > 0 ? key.value / settings.angularStiffness : 1;
     document_.performMerged(interaction_, [&](const editing::Model& model) {
-        return editing::setPhysics(model, settings, tr("Stiffness curve").toStdString());
+        return editing::setPhysics(model, settings, "Stiffness curve");
     });
 }
 

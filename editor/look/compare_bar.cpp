@@ -28,12 +28,11 @@ class CompareBar : public QWidget {
             row->addWidget(button, 1);
             return button;
         };
-        keep_ =
-            add("compareKeep", tr("Set as A"), tr("Stores the current look as A, to compare others with it"));
-        show_ = add(
-            "compareShow", tr("A | B"),
-            tr("Split view: A on the left, the current look on the right. Drag the line to move the split"));
-        swap_ = add("compareSwap", tr("Swap"), tr("Swaps the current look with A. You can undo this"));
+        keep_ = add("compareKeep", "Set as A", "Stores the current look as A, to compare others with it");
+        show_ =
+            add("compareShow", "A | B",
+                "Split view: A on the left, the current look on the right. Drag the line to move the split");
+        swap_ = add("compareSwap", "Swap", "Swaps the current look with A. You can undo this");
         show_->setCheckable(true);
         note_->setProperty("role", "dim");
         note_->setWordWrap(true);
@@ -71,17 +70,16 @@ class CompareBar : public QWidget {
         groom.interpolation = kept_->interpolation;
         const PictureQuality quality = kept_->quality;
         kept_ = before;
-        document_.perform(
-            editing::setSettings(document_.editing().model(), groom, tr("Swap looks").toStdString()));
+        document_.perform(editing::setSettings(document_.editing().model(), groom, "Swap looks"));
         viewport_.setQuality(quality);
         if (show_->isChecked()) viewport_.setComparison(kept_);
     }
 
     void refresh() {
         swap_->setEnabled(kept_.has_value());
-        note_->setText(!kept_               ? tr("Store a look, change it, and compare.")
-                       : show_->isChecked() ? tr("Drag the line in the viewport.")
-                                            : tr("A is stored."));
+        note_->setText(!kept_               ? QString("Store a look, change it, and compare.")
+                       : show_->isChecked() ? QString("Drag the line in the viewport.")
+                                            : QString("A is stored."));
     }
 
     QtDocument& document_;

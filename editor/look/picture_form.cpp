@@ -61,41 +61,42 @@ class PictureForm : public OptionForm {
     }
 
     void addEdges() {
-        addPower("samples", tr("Samples"),
-                 tr("MSAA samples per pixel. More samples give smoother edges and cost more. Your device may "
-                    "support fewer."),
-                 1, 4, tr("%1 per pixel"), &PictureQuality::samples);
-        addPower("frames", tr("Frames"),
-                 tr("Number of frames averaged while nothing moves, each with a sub-pixel offset. More "
-                    "frames resolve finer hair"),
-                 1, 7, tr("%1 averaged"), &PictureQuality::frames);
+        addPower("samples", "Samples",
+                 "MSAA samples per pixel. More samples give smoother edges and cost more. Your device may "
+                 "support fewer.",
+                 1, 4, "%1 per pixel", &PictureQuality::samples);
+        addPower("frames", "Frames",
+                 "Number of frames averaged while nothing moves, each with a sub-pixel offset. More "
+                 "frames resolve finer hair",
+                 1, 7, "%1 averaged", &PictureQuality::frames);
         addBool(
-            "joinsFrames", tr("Temporal anti-aliasing"),
-            tr("While hair moves, reprojects and accumulates earlier frames. Thin hair looks smooth instead "
-               "of grainy, at a small cost"),
+            "joinsFrames", "Temporal anti-aliasing",
+            "While hair moves, reprojects and accumulates earlier frames. Thin hair looks smooth instead "
+            "of grainy, at a small cost",
             [this] { return viewport_.quality().joinsFrames; },
             [this](bool on) {
                 PictureQuality quality = viewport_.quality();
                 quality.joinsFrames = on;
                 viewport_.setQuality(quality);
             });
-        addEnum("filter", tr("Filter"), tr("Filters the remaining edges in the finished image"),
-                {tr("None"), tr("FXAA"), tr("FXAA, long search")}, &PictureQuality::filter);
-        addEnum("transparency", tr("Transparency"),
-                tr("How hair thinner than a sample shows what is behind it. Automatic picks the most "
-                   "accurate method for your device. Sorted blends the nearest hairs of a pixel in order. "
-                   "Stochastic covers a random part of the samples, Fixed samples a fixed part. Weighted "
-                   "blends in any order"),
-                {tr("Automatic"), tr("Sorted"), tr("Stochastic"), tr("Fixed samples"), tr("Weighted")},
+        addEnum("filter", "Filter", "Filters the remaining edges in the finished image",
+                {QString("None"), QString("FXAA"), QString("FXAA, long search")}, &PictureQuality::filter);
+        addEnum("transparency", "Transparency",
+                "How hair thinner than a sample shows what is behind it. Automatic picks the most "
+                "accurate method for your device. Sorted blends the nearest hairs of a pixel in order. "
+                "Stochastic covers a random part of the samples, Fixed samples a fixed part. Weighted "
+                "blends in any order",
+                {QString("Automatic"), QString("Sorted"), QString("Stochastic"), QString("Fixed samples"),
+                 QString("Weighted")},
                 &PictureQuality::transparency);
-        addEnum("ribbons", tr("Curves"),
-                tr("How curves become ribbons. Automatic picks the fastest method for your device. "
-                   "Tessellated curves are finer close up and need device support"),
-                {tr("Automatic"), tr("Strips"), tr("Tessellated")}, &PictureQuality::ribbons);
+        addEnum("ribbons", "Curves",
+                "How curves become ribbons. Automatic picks the fastest method for your device. "
+                "Tessellated curves are finer close up and need device support",
+                {QString("Automatic"), QString("Strips"), QString("Tessellated")}, &PictureQuality::ribbons);
         addNumber(
-            "subdivisions", tr("Subdivisions"),
-            tr("Segments drawn for each segment of a strand. More segments give rounder curves"), "", 1, 8,
-            true, [this] { return static_cast<double>(viewport_.quality().subdivisions); },
+            "subdivisions", "Subdivisions",
+            "Segments drawn for each segment of a strand. More segments give rounder curves", "", 1, 8, true,
+            [this] { return static_cast<double>(viewport_.quality().subdivisions); },
             [this](double value) {
                 PictureQuality quality = viewport_.quality();
                 quality.subdivisions = static_cast<std::uint32_t>(value);
@@ -104,26 +105,26 @@ class PictureForm : public OptionForm {
     }
 
     void addShadows() {
-        addEnum("shadows", tr("Shadows"),
-                tr("How hair shadows hair: opacity layers behind the first hair, absorption by depth alone, "
-                   "opacity maps at fixed depths, or none"),
-                {tr("None"), tr("Deep opacity"), tr("Absorption"), tr("Opacity maps")},
+        addEnum("shadows", "Shadows",
+                "How hair shadows hair: opacity layers behind the first hair, absorption by depth alone, "
+                "opacity maps at fixed depths, or none",
+                {QString("None"), QString("Deep opacity"), QString("Absorption"), QString("Opacity maps")},
                 &PictureQuality::shadows);
-        addPower("shadowResolution", tr("Shadow map"),
-                 tr("Width and height of each light's shadow map. More pixels give sharper shadows"), 256, 5,
-                 tr("%1 px"), &PictureQuality::shadowResolution);
-        addAmount("headAbsorption", tr("Through the head"),
-                  tr("Makes light on hair behind the head fade with depth, by this much per metre. This is "
-                     "softer and less noisy, but light leaks through thin parts. 0 blocks all light"),
+        addPower("shadowResolution", "Shadow map",
+                 "Width and height of each light's shadow map. More pixels give sharper shadows", 256, 5,
+                 "%1 px", &PictureQuality::shadowResolution);
+        addAmount("headAbsorption", "Through the head",
+                  "Makes light on hair behind the head fade with depth, by this much per metre. This is "
+                  "softer and less noisy, but light leaks through thin parts. 0 blocks all light",
                   "1/m", render::kMaxHeadAbsorption, &PictureQuality::headAbsorption);
-        addAmount("shadowBlur", tr("Shadow blur"),
-                  tr("Radius of the screen-space shadow blur while nothing moves. Hair looks less sharp, and "
-                     "shadows leak over edges into lit areas"),
+        addAmount("shadowBlur", "Shadow blur",
+                  "Radius of the screen-space shadow blur while nothing moves. Hair looks less sharp, and "
+                  "shadows leak over edges into lit areas",
                   "px", render::kMaxShadowBlur, &PictureQuality::shadowBlur);
-        addEnum("scattering", tr("Scattered light"),
-                tr("Light scattered by other hairs: ignored (single) or added by dual scattering (dual). For "
-                   "Marschner and Sadeghi"),
-                {tr("Single"), tr("Dual")}, &PictureQuality::scattering);
+        addEnum("scattering", "Scattered light",
+                "Light scattered by other hairs: ignored (single) or added by dual scattering (dual). For "
+                "Marschner and Sadeghi",
+                {QString("Single"), QString("Dual")}, &PictureQuality::scattering);
     }
 
     Viewport& viewport_;

@@ -23,11 +23,11 @@ class PicturePrices : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(6);
-        auto* measure = new QPushButton(tr("Measure costs"));
+        auto* measure = new QPushButton("Measure costs");
         measure->setObjectName("pictureMeasure");
         measure->setToolTip(
-            tr("Renders this view with other values of each setting, and shows their frame time and their "
-               "difference from the best image (FLIP)"));
+            "Renders this view with other values of each setting, and shows their frame time and their "
+            "difference from the best image (FLIP)");
         note_->setProperty("role", "dim");
         note_->setWordWrap(true);
         note_->setObjectName("pictureMeasured");
@@ -62,7 +62,7 @@ class PicturePrices : public QWidget {
         options.view.fibre.scattering = quality.scattering;
         options.picture.exposure = viewport_.exposure();
         tasks_.measure<PictureCost>(
-            tr("Measuring render settings"),
+            "Measuring render settings",
             [groom, quality, size_px, options](TaskControl& control) mutable -> Result<PictureCost> {
                 const auto device = gpu::createDevice();
                 if (!device) return tl::unexpected(device.error());
@@ -97,14 +97,15 @@ class PicturePrices : public QWidget {
         QHash<QString, SettingPrices> prices;
         for (const PictureCostRun& run : cost.runs) {
             SettingPrices& setting = prices[QString::fromStdString(run.setting)];
-            setting.unit = tr("FLIP");
+            setting.unit = QString("FLIP");
             setting.values.push_back({labelOf(QString::fromStdString(run.value)).toLower(),
                                       run.milliseconds.median, run.flip, run.now});
         }
         prices_.set(Prices::Of::Picture, prices);
         note_->setText(
-            tr("Columns up: frame time while hair moves, at %1×%2 pixels on %3. Columns down: difference "
-               "from the best image. Highlighted: the current value. Drew %L4 of %L5 hairs.")
+            QString(
+                "Columns up: frame time while hair moves, at %1×%2 pixels on %3. Columns down: difference "
+                "from the best image. Highlighted: the current value. Drew %L4 of %L5 hairs.")
                 .arg(cost.width)
                 .arg(cost.height)
                 .arg(QString::fromStdString(cost.device))

@@ -65,12 +65,12 @@ class PresetList : public QWidget {
         list_->setGridSize({kSide + 18, kSide + 28});
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         list_->setFixedHeight(2 * (kSide + 28) + 16);
-        list_->setToolTip(tr("Click a look to apply it to the hair"));
+        list_->setToolTip("Click a look to apply it to the hair");
         layout->addWidget(list_);
         auto* row = new QHBoxLayout;
-        auto* save = new QPushButton(tr("Save preset…"));
+        auto* save = new QPushButton("Save preset…");
         save->setObjectName("saveLook");
-        save->setToolTip(tr("Saves all material settings of this panel as a preset for any document"));
+        save->setToolTip("Saves all material settings of this panel as a preset for any document");
         row->addWidget(save);
         row->addStretch(1);
         layout->addLayout(row);
@@ -115,7 +115,7 @@ class PresetList : public QWidget {
         }
         for (const std::string& name : savedLooks(folderOfLooks())) {
             if (auto material = loadLook(folderOfLooks(), name)) {
-                add({words(name), *material, nullptr}, tr("A preset that you saved"));
+                add({words(name), *material, nullptr}, "A preset that you saved");
             } else {
                 messages_.warn(errorText(material.error()));
             }
@@ -137,13 +137,13 @@ class PresetList : public QWidget {
         HairMaterial material = look.preset ? document_.groom().material : look.material;
         if (look.preset) applyLook(*look.preset, material);
         document_.perform(editing::setMaterial(document_.editing().model(), material,
-                                               tr("Look %1").arg(item->text()).toStdString()));
+                                               QString("Look %1").arg(item->text()).toStdString()));
     }
 
     void save() {
         bool taken = false;
         const QString name =
-            QInputDialog::getText(this, tr("Save preset"), tr("Name"), QLineEdit::Normal, {}, &taken);
+            QInputDialog::getText(this, "Save preset", "Name", QLineEdit::Normal, {}, &taken);
         if (!taken || name.trimmed().isEmpty()) return;
         const auto& material = document_.groom().material;
         if (auto saved = saveLook(folderOfLooks(), name.trimmed().toStdString(), material); !saved) {

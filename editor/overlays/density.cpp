@@ -59,13 +59,12 @@ void drawDensity(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode densityOverlay() {
-    return {
-        "density",
-        QT_TR_NOOP("Density"),
-        QT_TR_NOOP("Colours roots by how many are within 1 cm, and shows the painted density. Red is dense"),
-        drawDensity,
-        90,
-        {"density_paint"}};
+    return {"density",
+            "Density",
+            "Colours roots by how many are within 1 cm, and shows the painted density. Red is dense",
+            drawDensity,
+            90,
+            {"density_paint"}};
 }
 
 }  // namespace hairloom::editor

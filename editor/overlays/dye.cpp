@@ -22,8 +22,7 @@ void drawDye(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode dyeOverlay() {
-    return {"dye", QT_TR_NOOP("Dye"), QT_TR_NOOP("Shows the painted dye mask in pink"), drawDye,
-            100,   {"dye_paint"}};
+    return {"dye", "Dye", "Shows the painted dye mask in pink", drawDye, 100, {"dye_paint"}};
 }
 
 }  // namespace hairloom::editor

@@ -71,9 +71,9 @@ void drawEffectCost(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode effectCostOverlay() {
-    return {"effectCost", QT_TR_NOOP("Effect cost"),
-            QT_TR_NOOP("Colours strands by their simulation cost during playback. Red costs most, grey is at "
-                       "rest and costs nothing"),
+    return {"effectCost", "Effect cost",
+            "Colours strands by their simulation cost during playback. Red costs most, grey is at "
+            "rest and costs nothing",
             drawEffectCost, 110};
 }
 

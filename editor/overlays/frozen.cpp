@@ -20,12 +20,8 @@ void drawFrozen(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode frozenOverlay() {
-    return {"frozen",
-            QT_TR_NOOP("Frozen"),
-            QT_TR_NOOP("Shows hair that brushes do not affect, in ice blue"),
-            drawFrozen,
-            35,
-            {"freeze"}};
+    return {"frozen",   "Frozen", "Shows hair that brushes do not affect, in ice blue",
+            drawFrozen, 35,       {"freeze"}};
 }
 
 }  // namespace hairloom::editor

@@ -48,10 +48,9 @@ void drawGuides(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode guidesOverlay() {
-    return {
-        "guides", QT_TR_NOOP("Guides"),
-        QT_TR_NOOP("Shows the simulated strands as lines, dimmer where hidden. Selected strands are orange"),
-        drawGuides, 30};
+    return {"guides", "Guides",
+            "Shows the simulated strands as lines, dimmer where hidden. Selected strands are orange",
+            drawGuides, 30};
 }
 
 }  // namespace hairloom::editor

@@ -36,12 +36,8 @@ void drawMasks(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode masksOverlay() {
-    return {"masks",
-            QT_TR_NOOP("Masks"),
-            QT_TR_NOOP("Shows the painted operator masks 1 to 4 in red, green, blue and yellow"),
-            drawMasks,
-            105,
-            {"mask_paint"}};
+    return {"masks",   "Masks", "Shows the painted operator masks 1 to 4 in red, green, blue and yellow",
+            drawMasks, 105,     {"mask_paint"}};
 }
 
 }  // namespace hairloom::editor

@@ -28,9 +28,8 @@ void drawPenetration(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode penetrationOverlay() {
-    return {"penetration", QT_TR_NOOP("Penetration"),
-            QT_TR_NOOP("Shows points inside a sphere. A deeper red is a deeper penetration"), drawPenetration,
-            80};
+    return {"penetration", "Penetration",
+            "Shows points inside a sphere. A deeper red is a deeper penetration", drawPenetration, 80};
 }
 
 }  // namespace hairloom::editor

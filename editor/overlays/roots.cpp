@@ -14,7 +14,7 @@ void drawRoots(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode rootsOverlay() {
-    return {"roots", QT_TR_NOOP("Roots"), QT_TR_NOOP("Shows a dot at each root"), drawRoots, 20};
+    return {"roots", "Roots", "Shows a dot at each root", drawRoots, 20};
 }
 
 }  // namespace hairloom::editor

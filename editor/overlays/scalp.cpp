@@ -19,12 +19,8 @@ void drawScalp(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode scalpOverlay() {
-    return {"scalp",
-            QT_TR_NOOP("Scalp"),
-            QT_TR_NOOP("Tints the faces where hair grows"),
-            drawScalp,
-            10,
-            {"scalp_paint", "scalp_box", "scalp_lasso"}};
+    return {"scalp",   "Scalp", "Tints the faces where hair grows",
+            drawScalp, 10,      {"scalp_paint", "scalp_box", "scalp_lasso"}};
 }
 
 }  // namespace hairloom::editor

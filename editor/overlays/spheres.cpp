@@ -22,7 +22,7 @@ void drawSpheres(const OverlayView& view, Marks& marks) {
 }
 
 OverlayMode spheresOverlay() {
-    return {"spheres", QT_TR_NOOP("Spheres"), QT_TR_NOOP("Shows the collision spheres"), drawSpheres, 50};
+    return {"spheres", "Spheres", "Shows the collision spheres", drawSpheres, 50};
 }
 
 }  // namespace hairloom::editor

@@ -24,9 +24,8 @@ void drawStrain(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode strainOverlay() {
-    return {"strain", QT_TR_NOOP("Strain"),
-            QT_TR_NOOP("Colours segments by stretch. Green is the authored length, red is 1 % or more"),
-            drawStrain, 70};
+    return {"strain", "Strain",
+            "Colours segments by stretch. Green is the authored length, red is 1 % or more", drawStrain, 70};
 }
 
 }  // namespace hairloom::editor

@@ -20,9 +20,9 @@ void drawTriangulation(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode triangulationOverlay() {
-    return {"triangulation", QT_TR_NOOP("Root triangles"),
-            QT_TR_NOOP("Shows the triangles between roots in which follow hairs are interpolated"),
-            drawTriangulation, 40};
+    return {"triangulation", "Root triangles",
+            "Shows the triangles between roots in which follow hairs are interpolated", drawTriangulation,
+            40};
 }
 
 }  // namespace hairloom::editor

@@ -38,8 +38,7 @@ void drawWind(const OverlayView& view, Marks& marks) {
 }
 
 OverlayMode windOverlay() {
-    return {"wind", QT_TR_NOOP("Wind"),
-            QT_TR_NOOP("Shows wind direction as arrows. Longer arrows are stronger wind"), drawWind, 120};
+    return {"wind", "Wind", "Shows wind direction as arrows. Longer arrows are stronger wind", drawWind, 120};
 }
 
 }  // namespace hairloom::editor

@@ -26,8 +26,7 @@ void drawWireframe(const OverlayView& view, Marks& marks) {
 }  // namespace
 
 OverlayMode wireframeOverlay() {
-    return {"wireframe", QT_TR_NOOP("Wireframe"), QT_TR_NOOP("Shows the edges of the head mesh"),
-            drawWireframe, 60};
+    return {"wireframe", "Wireframe", "Shows the edges of the head mesh", drawWireframe, 60};
 }
 
 }  // namespace hairloom::editor

@@ -52,12 +52,12 @@ class AccuracyPanel : public QWidget {
           plot_(new AccuracyPlot),
           parts_(new ErrorBars(parts.preferences)),
           words_(new QLabel),
-          measure_(new QPushButton(tr("Measure"))),
+          measure_(new QPushButton("Measure")),
           chosenWords_(new QLabel),
-          show_(new QPushButton(tr("Show in viewport"))),
+          show_(new QPushButton("Show in viewport")),
           beside_(new QComboBox),
-          adopt_(new QPushButton(tr("Apply"))),
-          worst_(new QPushButton(tr("Select worst strands"))),
+          adopt_(new QPushButton("Apply")),
+          worst_(new QPushButton("Select worst strands")),
           view_(new RunView(parts, this)),
           pixels_(new NumberBox(0.01, 100, false)),
           milliseconds_(new NumberBox(0.01, 100, false)) {
@@ -70,35 +70,34 @@ class AccuracyPanel : public QWidget {
         layout->addWidget(measure_);
         addMeasures(*layout);
         layout->addWidget(plot_, 1);
-        addChoice(*layout, *pixels_, "accuracyPixels", tr("Fastest within"), "px",
-                  tr("Cheapest settings within this error in the view"));
-        addChoice(*layout, *milliseconds_, "accuracyMs", tr("Most accurate within"), "ms",
-                  tr("Most accurate settings within this frame time"));
+        addChoice(*layout, *pixels_, "accuracyPixels", "Fastest within", "px",
+                  "Cheapest settings within this error in the view");
+        addChoice(*layout, *milliseconds_, "accuracyMs", "Most accurate within", "ms",
+                  "Most accurate settings within this frame time");
         adopt_->setObjectName("accuracyAdopt");
         adopt_->setToolTip(
-            tr("Applies these settings to the document. You can undo this. A different number of points "
-               "bakes the operators"));
+            "Applies these settings to the document. You can undo this. A different number of points "
+            "bakes the operators");
         measure_->setObjectName("accuracyMeasure");
         measure_->setToolTip(
-            tr("Simulates this hair with a grid of settings and compares each with a reference in double "
-               "precision. Uses the motion of the viewport or a nod. Takes about half a minute"));
+            "Simulates this hair with a grid of settings and compares each with a reference in double "
+            "precision. Uses the motion of the viewport or a nod. Takes about half a minute");
         chosenWords_->setObjectName("accuracyChosen");
         chosenWords_->setWordWrap(true);
         show_->setObjectName("accuracyShow");
         show_->setCheckable(true);
         show_->setToolTip(
-            tr("Loops the measured motion with these settings and leaves the document unchanged. The "
-               "compared strands are drawn on top, from green (exact) to red (5 px error). Blue strands show "
-               "the comparison"));
+            "Loops the measured motion with these settings and leaves the document unchanged. The "
+            "compared strands are drawn on top, from green (exact) to red (5 px error). Blue strands show "
+            "the comparison");
         beside_->setObjectName("accuracyBeside");
-        beside_->addItems({tr("vs. reference"), tr("vs. same frame time"), tr("vs. same error"),
-                           tr("vs. current settings")});
+        beside_->addItems({"vs. reference", "vs. same frame time", "vs. same error", "vs. current settings"});
         beside_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
         beside_->setMinimumContentsLength(8);
         beside_->setToolTip(
-            tr("What the blue strands show. Reference: the exact motion. Same frame time: within a fifth, "
-               "with the largest difference in error. Same error: with the largest difference in time. "
-               "Current settings: those of the document"));
+            "What the blue strands show. Reference: the exact motion. Same frame time: within a fifth, "
+            "with the largest difference in error. Same error: with the largest difference in time. "
+            "Current settings: those of the document");
         connect(beside_, &QComboBox::currentIndexChanged, this, [this] { choose(by_); });
         layout->addWidget(chosenWords_);
         layout->addWidget(parts_);
@@ -107,7 +106,7 @@ class AccuracyPanel : public QWidget {
         layout->addWidget(adopt_);
         worst_->setObjectName("accuracyWorst");
         worst_->setToolTip(
-            tr("Selects the 5 % of strands where this setting differs most from the most accurate one"));
+            "Selects the 5 % of strands where this setting differs most from the most accurate one");
         connect(worst_, &QPushButton::clicked, this, &AccuracyPanel::selectWorst);
         layout->addWidget(worst_);
         pixels_->setValue(1);
@@ -168,7 +167,7 @@ class AccuracyPanel : public QWidget {
             measures_->setItemData(measures_->count() - 1, QString::fromUtf8(measure.meaning),
                                    Qt::ToolTipRole);
         }
-        measures_->setToolTip(tr("Error shown on the vertical axis. Lower is better"));
+        measures_->setToolTip("Error shown on the vertical axis. Lower is better");
         connect(measures_, &QComboBox::currentIndexChanged, this, [this] { refresh(); });
         layout.addWidget(measures_);
     }
@@ -186,8 +185,8 @@ class AccuracyPanel : public QWidget {
     }
     QString numbers(std::size_t run) const {
         const WorkPrecisionRun& measured = measured_->runs[run];
-        if (measured.diverged) return tr("diverges");
-        return tr("%1 ms, %2 px (%3)")
+        if (measured.diverged) return QString("diverges");
+        return QString("%1 ms, %2 px (%3)")
             .arg(measured.milliseconds.median * timeScale(), 0, 'g', 3)
             .arg(measured.error.rmsMm * pixelsPerMm(), 0, 'g', 2)
             .arg(lengthText(1e-3 * measured.error.rmsMm, preferences_));
@@ -210,7 +209,7 @@ class AccuracyPanel : public QWidget {
             refresh();
         };
         const bool began = tasks_.measure<WorkPrecision>(
-            tr("Measuring accuracy"),
+            "Measuring accuracy",
             [this, groom, moves, keep](TaskControl& control) {
                 return measureGrid(*groom, *moves, control, [&](const WorkPrecision& result) {
                     const auto keepUnlessDone = [this, keep, result] {
@@ -273,8 +272,8 @@ class AccuracyPanel : public QWidget {
     QString besideInWords() const {
         if (static_cast<Beside>(beside_->currentIndex()) == Beside::reference) return {};
         const auto other = beside();
-        if (!other) return tr(" No matching measurement. The reference is shown in blue.");
-        return tr(" Shown in blue: %1: %2.").arg(setting(*other), numbers(*other));
+        if (!other) return QString(" No matching measurement. The reference is shown in blue.");
+        return QString(" Shown in blue: %1: %2.").arg(setting(*other), numbers(*other));
     }
 
     /// Those of all strands that the chosen setting, or that of the document, takes farthest from the most
@@ -283,13 +282,13 @@ class AccuracyPanel : public QWidget {
         const auto run = chosen_ ? chosen_ : runOf(*measured_, document_.groom());
         const auto best = mostExactWithinTime(*measured_, std::numeric_limits<double>::infinity());
         if (!run || !best || *run == *best || measured_->runs[*run].diverged)
-            return messages_.say(tr("Choose a setting other than the most accurate one"));
+            return messages_.say("Choose a setting other than the most accurate one");
         auto motion = player_.makeMeasuredMotion();
         if (!motion) return messages_.warn(errorText(motion.error()));
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
         tasks_.run<std::vector<std::uint32_t>>(
-            tr("Comparing strands"),
+            "Comparing strands",
             [groom, moves, measured = measured_, run = *run,
              best = *best](TaskControl& control) -> Result<std::vector<std::uint32_t>> {
                 const auto cancelled = [&] { return control.isCancelled(); };
@@ -304,7 +303,7 @@ class AccuracyPanel : public QWidget {
                 document_.perform(
                     editing::selectStrands(document_.editing().model(), strands, editing::Choice::Replace));
                 messages_.say(
-                    tr("Selected %L1 strands: the 5 % that differ most from the most accurate setting")
+                    QString("Selected %L1 strands: the 5 % that differ most from the most accurate setting")
                         .arg(strands.size()));
             });
     }
@@ -341,31 +340,32 @@ class AccuracyPanel : public QWidget {
         const double pixels = (from.error.rmsMm - run.error.rmsMm) * pixelsPerMm();
         const double ms = (run.milliseconds.median - from.milliseconds.median) * timeScale();
         const QString nearer = QString::number(pixels, 'g', 2), time = QString::number(std::abs(ms), 'g', 2);
-        return ms > 0 ? tr("The next step, %1, reduces the error by %2 px for %3 ms more.")
-                            .arg(setting(to), nearer, time)
-                      : tr("%1 is more accurate by %2 px and saves %3 ms.").arg(setting(to), nearer, time);
+        return ms > 0
+                   ? QString("The next step, %1, reduces the error by %2 px for %3 ms more.")
+                         .arg(setting(to), nearer, time)
+                   : QString("%1 is more accurate by %2 px and saves %3 ms.").arg(setting(to), nearer, time);
     }
 
     QString sentence() const {
-        if (document_.groom().strandCount() == 0) return tr("Place hair to measure its accuracy.");
+        if (document_.groom().strandCount() == 0) return QString("Place hair to measure its accuracy.");
         if (!measured_)
-            return tr(
+            return QString(
                 "How accurate is this hair, and what would improve it? Measure it with other substeps and "
                 "points.");
         QString text;
         const auto now = runOf(*measured_, document_.groom());
         if (now) {
-            text = tr("Now %1: %2.").arg(setting(*now), numbers(*now));
+            text = QString("Now %1: %2.").arg(setting(*now), numbers(*now));
             const WorkPrecisionRun& has = measured_->runs[*now];
             if (const auto next = nextStep(*measured_, *now); next && !has.diverged) {
                 text += ' ' + step(has, *next);
             } else if (!next) {
-                text += ' ' + tr("No measured setting has a smaller error.");
+                text += ' ' + QString("No measured setting has a smaller error.");
             }
         }
         if (measured_->strands < measured_->groomStrands)
-            text += ' ' + tr("Times are scaled to all %L1 strands.").arg(measured_->strands);
-        if (isOutdated()) text += ' ' + tr("Measured before the last change.");
+            text += ' ' + QString("Times are scaled to all %L1 strands.").arg(measured_->strands);
+        if (isOutdated()) text += ' ' + QString("Measured before the last change.");
         return text;
     }
 
@@ -376,7 +376,7 @@ class AccuracyPanel : public QWidget {
         const std::vector<GridAxis>& axes = measured_->options.axes;
         for (std::size_t a = 0; a < axes.size() && now; ++a) {
             SettingPrices& setting = prices[QString::fromStdString(axes[a].field)];
-            setting.unit = tr("px");
+            setting.unit = QString("px");
             setting.measured = measuredAt_;
             setting.outdated = isOutdated();
             for (const std::size_t r : runsAlong(*measured_, *now, a)) {
@@ -413,18 +413,20 @@ class AccuracyPanel : public QWidget {
     }
 
     QString chosenInWords() const {
-        const QString limits[] = {QString(), tr("within %1 px").arg(pixels_->value(), 0, 'g', 3),
-                                  tr("within %1 ms").arg(milliseconds_->value(), 0, 'g', 3)};
+        const QString limits[] = {QString(), QString("within %1 px").arg(pixels_->value(), 0, 'g', 3),
+                                  QString("within %1 ms").arg(milliseconds_->value(), 0, 'g', 3)};
         const QString& limit = limits[static_cast<int>(by_)];
         if (!chosen_)
-            return by_ == Choice::click ? tr("Click a point or set a limit")
-                                        : tr("No measured setting is %1.").arg(limit);
-        const QString which = by_ == Choice::pixels         ? tr("Fastest %1").arg(limit)
-                              : by_ == Choice::milliseconds ? tr("Most accurate %1").arg(limit)
-                                                            : tr("Chosen");
-        const QString has =
-            chosen_ == runOf(*measured_, document_.groom()) ? tr(" This is the current setting.") : QString();
-        return tr("%1: %2: %3.").arg(which, setting(*chosen_), numbers(*chosen_)) + has + besideInWords();
+            return by_ == Choice::click ? QString("Click a point or set a limit")
+                                        : QString("No measured setting is %1.").arg(limit);
+        const QString which = by_ == Choice::pixels         ? QString("Fastest %1").arg(limit)
+                              : by_ == Choice::milliseconds ? QString("Most accurate %1").arg(limit)
+                                                            : QString("Chosen");
+        const QString has = chosen_ == runOf(*measured_, document_.groom())
+                                ? QString(" This is the current setting.")
+                                : QString();
+        return QString("%1: %2: %3.").arg(which, setting(*chosen_), numbers(*chosen_)) + has +
+               besideInWords();
     }
 
     /// What the error of the chosen setting, or of the document's, is made of.
@@ -449,8 +451,8 @@ class AccuracyPanel : public QWidget {
                               run.diverged ? 0 : valueOf(run, measure.measure) * upwards, run.diverged,
                               front[r], setting(r)});
         }
-        plot_->setAxes(tr("Cost: time per frame"), tr("ms"), QString::fromUtf8(measure.label));
-        plot_->setPoints(std::move(points), measure.length ? tr("px") : QString::fromUtf8(measure.unit));
+        plot_->setAxes("Cost: time per frame", "ms", QString::fromUtf8(measure.label));
+        plot_->setPoints(std::move(points), measure.length ? QString("px") : QString::fromUtf8(measure.unit));
         plot_->setMarked(runOf(*measured_, document_.groom()), chosen_);
     }
 
@@ -486,13 +488,13 @@ class AccuracyPanel : public QWidget {
 
 PanelInfo accuracyPanel() {
     return {"accuracy",
-            QObject::tr("Accuracy"),
+            QString("Accuracy"),
             "effects",
             Qt::RightDockWidgetArea,
             95,
             true,
             [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column({heading(QObject::tr("Cost and error")), new AccuracyPanel(parts)}));
+                return scrolled(column({heading("Cost and error"), new AccuracyPanel(parts)}));
             }};
 }
 

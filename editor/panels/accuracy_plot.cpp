@@ -204,10 +204,10 @@ void AccuracyPlot::mouseMoveEvent(QMouseEvent* event) {
     hovered_ = pointAt(event->position());
     if (!hovered_) return QToolTip::hideText();
     const AccuracyPoint& point = points_[*hovered_];
-    const QString error = point.diverged ? tr("diverges") : inUnit(short_(point.error), unit_);
+    const QString error = point.diverged ? QString("diverges") : inUnit(short_(point.error), unit_);
     QToolTip::showText(
         event->globalPosition().toPoint(),
-        tr("%1: %2, %3").arg(point.words, inUnit(short_(point.milliseconds), costUnit_), error), this);
+        QString("%1: %2, %3").arg(point.words, inUnit(short_(point.milliseconds), costUnit_), error), this);
 }
 
 void AccuracyPlot::mousePressEvent(QMouseEvent* event) {

@@ -55,7 +55,7 @@ class AccuracyPlot : public QWidget {
     void drawPoint(QPainter& painter, std::size_t point) const;
 
     std::vector<AccuracyPoint> points_;
-    QString cost_ = tr("time a frame"), costUnit_ = "ms", errorName_ = tr("error"), unit_ = "mm";
+    QString cost_ = QString("time a frame"), costUnit_ = "ms", errorName_ = QString("error"), unit_ = "mm";
     Span time_, error_;
     std::optional<std::size_t> now_, chosen_, hovered_;
 };

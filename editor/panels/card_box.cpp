@@ -31,36 +31,34 @@ CardBox::CardBox(QtDocument& document, Messages& messages, ToolBox& tools)
     auto* form = new QFormLayout;
     form->setVerticalSpacing(6);
     width_->setObjectName("cardWidth");
-    width_->setToolTip(tr("Width of the card relative to the width of its hair"));
+    width_->setToolTip("Width of the card relative to the width of its hair");
     bend_->setObjectName("cardBend");
     bend_->setToolTip(
-        tr("How far the edges of the card bend outwards relative to half its width. Below 0 they bend "
-           "inwards, around the head"));
-    form->addRow(tr("Width"), width_);
-    form->addRow(tr("Bend"), bend_);
+        "How far the edges of the card bend outwards relative to half its width. Below 0 they bend "
+        "inwards, around the head");
+    form->addRow("Width", width_);
+    form->addRow("Bend", bend_);
     layout->addLayout(form);
-    pick_ = pushButton("cardPick", tr("Pick"), tr("Activate the tool that picks cards in the view (Shift+K)"),
+    pick_ = pushButton("cardPick", "Pick", "Activate the tool that picks cards in the view (Shift+K)",
                        [this, &tools] { tools.activate(tool_); });
     pin_ = pushButton(
-        "cardPin", tr("Pin"),
-        tr("Keeps the card in place when levels are created again, whatever its hair does"), [this] {
-            change(QtDocument::nextMergeKey(), pin_->isChecked() ? tr("Pin card") : tr("Unpin card"),
-                   [this](CardEdit& edit) {
+        "cardPin", "Pin", "Keeps the card in place when levels are created again, whatever its hair does",
+        [this] {
+            change(QtDocument::nextMergeKey(),
+                   pin_->isChecked() ? QString("Pin card") : QString("Unpin card"), [this](CardEdit& edit) {
                        edit.strip.clear();
                        if (pin_->isChecked()) edit.strip = stationsOf(cards()->cards[*picked_].strip);
                    });
         });
     pin_->setCheckable(true);
-    delete_ =
-        pushButton("cardDelete", tr("Delete"), tr("Remove the card and leave its hair without one"), [this] {
-            change(QtDocument::nextMergeKey(), tr("Delete card"),
-                   [](CardEdit& edit) { edit.deleted = true; });
-        });
-    forget_ = pushButton("cardForget", tr("Reset"), tr("Resets the card to the shape of its hair"),
+    delete_ = pushButton("cardDelete", "Delete", "Remove the card and leave its hair without one", [this] {
+        change(QtDocument::nextMergeKey(), "Delete card", [](CardEdit& edit) { edit.deleted = true; });
+    });
+    forget_ = pushButton("cardForget", "Reset", "Resets the card to the shape of its hair",
                          [this] { forget(false); });
     forgetAll_ =
-        pushButton("cardForgetAll", tr("Reset all"),
-                   tr("Resets all cards of this level to the shape of their hair and restores deleted cards"),
+        pushButton("cardForgetAll", "Reset all",
+                   "Resets all cards of this level to the shape of their hair and restores deleted cards",
                    [this] { forget(true); });
     // In pairs they fit into a narrow panel.
     auto* buttons = new QGridLayout;
@@ -75,11 +73,10 @@ CardBox::CardBox(QtDocument& document, Messages& messages, ToolBox& tools)
     for (NumberBox* box : {width_, bend_})
         connect(box, &NumberBox::begun, this, [this] { drag_ = QtDocument::nextMergeKey(); });
     connect(width_, &NumberBox::edited, this, [this](double value) {
-        change(drag_, tr("Width of card"),
-               [value](CardEdit& edit) { edit.width = static_cast<float>(value); });
+        change(drag_, "Width of card", [value](CardEdit& edit) { edit.width = static_cast<float>(value); });
     });
     connect(bend_, &NumberBox::edited, this, [this](double value) {
-        change(drag_, tr("Bend of card"), [value](CardEdit& edit) { edit.bend = static_cast<float>(value); });
+        change(drag_, "Bend of card", [value](CardEdit& edit) { edit.bend = static_cast<float>(value); });
     });
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
         if (!contains(changed, editing::Part::Cards)) return;
@@ -156,7 +153,7 @@ void CardBox::forget(bool all) {
     } else if (const auto index = editIndex()) {
         edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(*index));
     }
-    perform(QtDocument::nextMergeKey(), all ? tr("Reset cards") : tr("Reset card"), edits);
+    perform(QtDocument::nextMergeKey(), all ? QString("Reset cards") : QString("Reset card"), edits);
 }
 
 void CardBox::perform(quint64 key, const QString& name, const std::vector<CardEdit>& edits) {
@@ -185,10 +182,10 @@ void CardBox::refresh() {
     pin_->setChecked(!shown.strip.empty());
     if (any) {
         words_->setText(
-            tr("Card %1, of %L2 hairs.").arg(*picked_ + 1).arg(cards()->cards[*picked_].strands.size()));
+            QString("Card %1, of %L2 hairs.").arg(*picked_ + 1).arg(cards()->cards[*picked_].strands.size()));
     } else {
         words_->setText(
-            tr("Pick a card in the view to edit it. Your edits survive when levels are created again."));
+            "Pick a card in the view to edit it. Your edits survive when levels are created again.");
     }
 }
 

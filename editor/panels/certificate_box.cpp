@@ -14,7 +14,7 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
       document_(document),
       tasks_(tasks),
       words_(new QLabel),
-      certify_(new QPushButton(tr("Stress test"))) {
+      certify_(new QPushButton("Stress test")) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(8);
@@ -22,8 +22,8 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
     words_->setWordWrap(true);
     certify_->setObjectName("certify");
     certify_->setToolTip(
-        tr("Tests this hair in a thousand random storms to find the head speed, wind and frame time that it "
-           "withstands in a game. Takes about half a minute"));
+        "Tests this hair in a thousand random storms to find the head speed, wind and frame time that it "
+        "withstands in a game. Takes about half a minute");
     layout->addWidget(words_);
     layout->addWidget(certify_);
     connect(certify_, &QPushButton::clicked, this, &CertificateBox::certify);
@@ -43,7 +43,7 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
 void CertificateBox::certify() {
     const auto groom = std::make_shared<const Groom>(document_.groom());
     tasks_.run<Certificate>(
-        tr("Stress test"),
+        "Stress test",
         [groom](TaskControl& control) {
             CertificateOptions options;
             options.progress = [&](std::size_t done, std::size_t total) {
@@ -63,8 +63,8 @@ void CertificateBox::certify() {
 
 void CertificateBox::refresh() {
     certify_->setEnabled(document_.groom().strandCount() > 0);
-    const QString age = triedChange_ != changes_ ? tr("Before the last change: ") : QString();
-    words_->setText(certificate_ ? tr("%1%2 Tested at %3.")
+    const QString age = triedChange_ != changes_ ? QString("Before the last change: ") : QString();
+    words_->setText(certificate_ ? QString("%1%2 Tested at %3.")
                                        .arg(age, QString::fromStdString(inWords(*certificate_)),
                                             QLocale().toString(triedAt_, QLocale::ShortFormat))
                                  : QString());

@@ -43,7 +43,7 @@ class EffectsPanel : public QWidget {
           table_(new QTreeWidget),
           bars_(new CostBars(parts.preferences, table_)),
           note_(new QLabel),
-          measure_(new QPushButton(tr("Measure on/off"))),
+          measure_(new QPushButton("Measure on/off")),
           trial_(new QWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
@@ -87,13 +87,13 @@ class EffectsPanel : public QWidget {
   private:
     void makeBudget(QVBoxLayout& layout) {
         auto* row = new QHBoxLayout;
-        auto* words = new QLabel(tr("Frame budget"));
+        auto* words = new QLabel("Frame budget");
         words->setBuddy(budget_);
         budget_->setObjectName("effectsBudget");
         budget_->setToolTip(
-            tr("Simulation time that a frame may take, drawn as the line through the bars. Time beyond it is "
-               "red"));
-        budget_->setShown(1, tr("ms"), 1);
+            "Simulation time that a frame may take, drawn as the line through the bars. Time beyond it is "
+            "red");
+        budget_->setShown(1, "ms", 1);
         budget_->setValue(std::clamp(QSettings().value(kBudgetKey, kUsualBudget_ms).toDouble(), 0.1, 100.0));
         connect(budget_, &NumberBox::edited, this, [this](double milliseconds) {
             QSettings().setValue(kBudgetKey, milliseconds);
@@ -106,7 +106,7 @@ class EffectsPanel : public QWidget {
 
     void makeTable() {
         table_->setObjectName("effects");
-        table_->setHeaderLabels({tr("Effect"), tr("ms"), tr("MB"), tr("Why")});
+        table_->setHeaderLabels({"Effect", "ms", "MB", "Why"});
         table_->setRootIsDecorated(false);
         table_->setWordWrap(true);
         table_->setSelectionMode(QAbstractItemView::NoSelection);
@@ -118,16 +118,16 @@ class EffectsPanel : public QWidget {
         table_->header()->setSectionResizeMode(kWhy, QHeaderView::Stretch);
         table_->setItemDelegateForColumn(kMs, bars_);
         table_->setToolTip(
-            tr("Frame time of each effect, averaged over the last half second of playback, its memory in "
-               "megabytes, and why it runs or does not. Clear a checkbox to preview the hair without that "
-               "effect."));
+            "Frame time of each effect, averaged over the last half second of playback, its memory in "
+            "megabytes, and why it runs or does not. Clear a checkbox to preview the hair without that "
+            "effect.");
     }
 
     void makeMeasure() {
         measure_->setObjectName("effectsMeasure");
         measure_->setToolTip(
-            tr("Runs the hair with and without each effect on the CPU and shows what each adds to a frame. "
-               "Effects that share one solve can only be measured this way"));
+            "Runs the hair with and without each effect on the CPU and shows what each adds to a frame. "
+            "Effects that share one solve can only be measured this way");
         connect(measure_, &QPushButton::clicked, this, &EffectsPanel::measure);
     }
 
@@ -138,7 +138,7 @@ class EffectsPanel : public QWidget {
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
         tasks_.measure<EffectCosts>(
-            tr("Measuring effects"),
+            "Measuring effects",
             [groom, moves](TaskControl& control) {
                 EffectCostOptions options;
                 options.time.frames = kMeasuredFrames;
@@ -186,13 +186,14 @@ class EffectsPanel : public QWidget {
         const EffectCost* const cost = costOf(effect.name);
         if (cost && cost->costMilliseconds) {
             const Quartiles& ms = *cost->costMilliseconds;
-            item.setText(kMs, lostInSpread(ms) ? tr("≈ 0")
+            item.setText(kMs, lostInSpread(ms) ? QString("≈ 0")
                               : cost->price()  ? QString::number(ms.median, 'f', 3)
-                                               : tr("< 0"));
+                                               : QString("< 0"));
             item.setData(kMs, CostBars::kMilliseconds, std::max(ms.median, 0.0));
             item.setToolTip(
                 kMs,
-                tr("%1 ms per frame with it, %2 without. The middle half of the runs is between %3 and %4")
+                QString(
+                    "%1 ms per frame with it, %2 without. The middle half of the runs is between %3 and %4")
                         .arg(costs_->milliseconds.median, 0, 'f', 2)
                         .arg(cost->millisecondsOff->median, 0, 'f', 2)
                         .arg(ms.q1, 0, 'f', 3)
@@ -203,9 +204,9 @@ class EffectsPanel : public QWidget {
         } else if (measured && live > 0) {
             item.setText(kMs, QString::number(live, 'f', 3));
             item.setData(kMs, CostBars::kMilliseconds, live);
-            item.setToolTip(kMs, tr("Share of the frame time"));
+            item.setToolTip(kMs, "Share of the frame time");
         } else if (measured) {
-            item.setToolTip(kMs, tr("Part of the shared strand solve. Use Measure on/off to get its cost"));
+            item.setToolTip(kMs, "Part of the shared strand solve. Use Measure on/off to get its cost");
         }
     }
 
@@ -213,7 +214,7 @@ class EffectsPanel : public QWidget {
     void showFrame(QTreeWidgetItem& item) const {
         const double ms = costs() ? costs()->milliseconds.median : live_.frame();
         const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu && !costs();
-        item.setText(kName, tr("Whole frame"));
+        item.setText(kName, "Whole frame");
         item.setData(kName, Qt::UserRole, "frame");
         item.setData(kName, Qt::CheckStateRole, {});
         item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
@@ -222,8 +223,8 @@ class EffectsPanel : public QWidget {
         item.setText(kMs, ms > 0 ? QString::number(ms, 'f', decimals) : QStringLiteral("–"));
         item.setData(kMs, CostBars::kMilliseconds, ms > 0 ? QVariant(ms) : QVariant());
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
-        const QString of = tr("%1 % of the budget").arg(100 * ms / budget_->value(), 0, 'f', 0);
-        item.setText(kWhy, ms > 0 ? (onGpu ? tr("%1, on the GPU").arg(of) : of) : QString());
+        const QString of = QString("%1 % of the budget").arg(100 * ms / budget_->value(), 0, 'f', 0);
+        item.setText(kWhy, ms > 0 ? (onGpu ? QString("%1, on the GPU").arg(of) : of) : QString());
         QFont bold = font();
         bold.setBold(true);
         for (int c = 0; c < kColumns; ++c) item.setFont(c, bold);
@@ -232,12 +233,12 @@ class EffectsPanel : public QWidget {
     void makeTrial() {
         auto* row = new QHBoxLayout(trial_);
         row->setContentsMargins(0, 0, 0, 0);
-        auto* keep = new QPushButton(tr("Remove from document"));
+        auto* keep = new QPushButton("Remove from document");
         keep->setObjectName("effectsKeep");
-        keep->setToolTip(tr("Turns these effects off in the document. You can undo this"));
-        auto* all = new QPushButton(tr("Re-enable all"));
+        keep->setToolTip("Turns these effects off in the document. You can undo this");
+        auto* all = new QPushButton("Re-enable all");
         all->setObjectName("effectsAll");
-        all->setToolTip(tr("Re-enable all effects"));
+        all->setToolTip("Re-enable all effects");
         row->addWidget(keep);
         row->addWidget(all);
         connect(keep, &QPushButton::clicked, this, &EffectsPanel::keepTrial);
@@ -252,8 +253,7 @@ class EffectsPanel : public QWidget {
             if (effect.toStdString() == kBodyEffect) groom.body.reset();
         }
         player_.setLeftOut({});
-        document_.perform(
-            editing::setSettings(document_.editing().model(), groom, tr("Disable effects").toStdString()));
+        document_.perform(editing::setSettings(document_.editing().model(), groom, "Disable effects"));
     }
 
     void takeCheck(QTreeWidgetItem* item, int column) {
@@ -267,17 +267,17 @@ class EffectsPanel : public QWidget {
     }
 
     QString words(bool nothing) const {
-        if (nothing) return tr("Place hair to see which effects its simulation runs.");
+        if (nothing) return QString("Place hair to see which effects its simulation runs.");
         if (const EffectCosts* costs = this->costs()) {
-            const QString age = costsChange_ != changes_ ? tr(" before the last change") : QString();
-            return tr("Measured on and off, of %1 ms per frame on the CPU%2.")
+            const QString age = costsChange_ != changes_ ? QString(" before the last change") : QString();
+            return QString("Measured on and off, of %1 ms per frame on the CPU%2.")
                 .arg(costs->milliseconds.median, 0, 'f', 2)
                 .arg(age);
         }
-        if (!player_.frame()) return tr("Effects that will run. Press Play (Space) to see their cost.");
+        if (!player_.frame()) return QString("Effects that will run. Press Play (Space) to see their cost.");
         const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu;
-        return onGpu ? tr("Live, on the GPU: one kernel simulates the strands with all their effects")
-                     : tr("Live, on the CPU: mean of the last half second");
+        return onGpu ? QString("Live, on the GPU: one kernel simulates the strands with all their effects")
+                     : QString("Live, on the CPU: mean of the last half second");
     }
 
     void refresh() {
@@ -315,13 +315,13 @@ class EffectsPanel : public QWidget {
             item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
             item.setData(kName, Qt::CheckStateRole, {});
         }
-        item.setToolTip(kName, known ? tr("Clear to preview the hair without this effect")
-                                     : tr("Depends on the shape and speed of the hair"));
+        item.setToolTip(kName, known ? QString("Clear to preview the hair without this effect")
+                                     : QString("Depends on the shape and speed of the hair"));
         const QString none = QStringLiteral("–");
         showMilliseconds(item, effect, measured);
         item.setText(kMb,
                      effect.on ? QString::number(static_cast<double>(effect.bytes) / 1e6, 'f', 1) : none);
-        item.setText(kWhy, leftOut ? tr("disabled for preview") : QString::fromStdString(effect.why));
+        item.setText(kWhy, leftOut ? QString("disabled for preview") : QString::fromStdString(effect.why));
         item.setToolTip(kWhy, item.text(kWhy));
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
         item.setTextAlignment(kMb, Qt::AlignRight | Qt::AlignVCenter);
@@ -350,16 +350,16 @@ class EffectsPanel : public QWidget {
 
 PanelInfo effectsPanel() {
     return {"effects",
-            QObject::tr("Effects"),
+            QString("Effects"),
             "effects",
             Qt::RightDockWidgetArea,
             90,
             true,
             [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column({heading(QObject::tr("Stability")),
-                                        new StabilityGauge(parts.document, parts.preferences),
-                                        new CertificateBox(parts.document, parts.tasks),
-                                        heading(QObject::tr("Effects")), new EffectsPanel(parts)}));
+                return scrolled(
+                    column({heading("Stability"), new StabilityGauge(parts.document, parts.preferences),
+                            new CertificateBox(parts.document, parts.tasks), heading("Effects"),
+                            new EffectsPanel(parts)}));
             }};
 }
 

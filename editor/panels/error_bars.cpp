@@ -16,7 +16,7 @@ constexpr int kGap_px = 6;
 
 QString pixels(double px) {
     constexpr double kNothing_px = 0.001;
-    return px < kNothing_px ? QObject::tr("< 0.001 px") : QObject::tr("%1 px").arg(px, 0, 'g', 2);
+    return px < kNothing_px ? QString("< 0.001 px") : QString("%1 px").arg(px, 0, 'g', 2);
 }
 
 }  // namespace
@@ -24,20 +24,20 @@ QString pixels(double px) {
 ErrorBars::ErrorBars(const Preferences& preferences, QWidget* parent)
     : QWidget(parent), preferences_(preferences) {
     setObjectName("accuracyParts");
-    bars_[0].name = tr("Steps");
+    bars_[0].name = QString("Steps");
     bars_[0].meaning =
-        tr("difference from the same setting with up to %1 substeps. Use more substeps to reduce it")
+        QString("difference from the same setting with up to %1 substeps. Use more substeps to reduce it")
             .arg(kConvergedSubsteps);
-    bars_[1].name = tr("Points");
-    bars_[1].meaning =
-        tr("difference from strands with twice as many points as the finest measured setting. Use more "
-           "points to reduce it");
-    bars_[2].name = tr("Model");
-    bars_[2].meaning = tr(
+    bars_[1].name = QString("Points");
+    bars_[1].meaning = QString(
+        "difference from strands with twice as many points as the finest measured setting. Use more "
+        "points to reduce it");
+    bars_[2].name = QString("Model");
+    bars_[2].meaning = QString(
         "difference between the elastic rod and the finest strands of this model: stretching springs, "
         "contact, single precision, a head sampled once per frame. More substeps or points do not reduce it");
-    bars_[3].name = tr("Uncertainty");
-    bars_[3].meaning = tr("of the reference (half the steps): smaller differences are noise");
+    bars_[3].name = QString("Uncertainty");
+    bars_[3].meaning = QString("of the reference (half the steps): smaller differences are noise");
 }
 
 void ErrorBars::setParts(const ErrorParts& parts, double doubtMm, double pixelsPerMm) {
@@ -52,7 +52,7 @@ void ErrorBars::setParts(const ErrorParts& parts, double doubtMm, double pixelsP
 
 QString ErrorBars::words() const {
     QStringList words;
-    for (const Bar& bar : bars_) words << tr("%1 %2").arg(bar.name, pixels(bar.px));
+    for (const Bar& bar : bars_) words << QString("%1 %2").arg(bar.name, pixels(bar.px));
     return words.join(", ");
 }
 
@@ -92,9 +92,9 @@ bool ErrorBars::event(QEvent* event) {
     if (event->type() != QEvent::ToolTip) return QWidget::event(event);
     const auto* help = static_cast<QHelpEvent*>(event);
     const Bar& bar = bars_[std::clamp(help->pos().y() / rowHeight(), 0, kBars - 1)];
-    QToolTip::showText(help->globalPos(),
-                       tr("%1, %2: %3").arg(bar.name, lengthText(1e-3 * bar.mm, preferences_), bar.meaning),
-                       this);
+    QToolTip::showText(
+        help->globalPos(),
+        QString("%1, %2: %3").arg(bar.name, lengthText(1e-3 * bar.mm, preferences_), bar.meaning), this);
     return true;
 }
 

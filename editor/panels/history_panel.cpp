@@ -16,9 +16,9 @@ class HistoryPanel : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(12, 8, 12, 12);
         list_->setObjectName("steps");
-        list_->setToolTip(tr("Click a step, or press Return, to undo or redo to it"));
+        list_->setToolTip("Click a step, or press Return, to undo or redo to it");
         memory_->setProperty("role", "dim");
-        memory_->setToolTip(tr("Memory limit of the undo history. Beyond it, the oldest steps are deleted"));
+        memory_->setToolTip("Memory limit of the undo history. Beyond it, the oldest steps are deleted");
         layout->addWidget(list_, 1);
         layout->addWidget(memory_);
         connect(list_, &QListWidget::itemClicked, this,
@@ -33,7 +33,7 @@ class HistoryPanel : public QWidget {
   private:
     void fill() {
         list_->clear();
-        list_->addItem(tr("As opened"));
+        list_->addItem("As opened");
         for (int step = 0; step < document_.stepCount(); ++step) {
             auto* item = new QListWidgetItem(document_.stepName(step));
             if (step >= document_.doneSteps()) {
@@ -47,7 +47,7 @@ class HistoryPanel : public QWidget {
         }
         list_->setCurrentRow(document_.doneSteps());
         constexpr double kMega = 1 << 20;
-        memory_->setText(tr("Memory: %1 of %2 MB")
+        memory_->setText(QString("Memory: %1 of %2 MB")
                              .arg(static_cast<double>(document_.historyBytes()) / kMega, 0, 'f', 1)
                              .arg(static_cast<double>(document_.historyLimit()) / kMega, 0, 'f', 0));
     }
@@ -61,7 +61,7 @@ class HistoryPanel : public QWidget {
 
 PanelInfo historyPanel() {
     return {"history",
-            QObject::tr("History"),
+            QString("History"),
             "history",
             Qt::LeftDockWidgetArea,
             40,

@@ -28,30 +28,30 @@ class LayersPanel : public QWidget {
           preferences_(preferences),
           messages_(messages),
           list_(new QTreeWidget),
-          ownMaterial_(new QCheckBox(tr("Own material"))) {
+          ownMaterial_(new QCheckBox("Own material")) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
         makeList();
         layout->addWidget(list_);
         auto* first = new QHBoxLayout;
-        first->addWidget(pushButton(
-            "layerAdd", tr("Add"), tr("Add a layer and move the selected strands to it"), [this] { add(); }));
-        first->addWidget(pushButton("layerRemove", tr("Remove"),
-                                    tr("Remove the layer and move its strands to the first remaining one"),
+        first->addWidget(pushButton("layerAdd", "Add", "Add a layer and move the selected strands to it",
+                                    [this] { add(); }));
+        first->addWidget(pushButton("layerRemove", "Remove",
+                                    "Remove the layer and move its strands to the first remaining one",
                                     [this] { perform(editing::removeLayer(model(), chosen())); }));
-        first->addWidget(pushButton("layerSolo", tr("Solo"),
-                                    tr("Show only this layer. Click again to show all"), [this] { solo(); }));
+        first->addWidget(pushButton("layerSolo", "Solo", "Show only this layer. Click again to show all",
+                                    [this] { solo(); }));
         layout->addLayout(first);
         auto* second = new QHBoxLayout;
-        second->addWidget(pushButton("layerSelect", tr("Select strands"),
-                                     tr("Select the strands of this layer"), [this] { select(); }));
+        second->addWidget(pushButton("layerSelect", "Select strands", "Select the strands of this layer",
+                                     [this] { select(); }));
         second->addWidget(
-            pushButton("layerMove", tr("Move here"), tr("Move the selected strands to this layer"),
+            pushButton("layerMove", "Move here", "Move the selected strands to this layer",
                        [this] { perform(editing::moveToLayer(model(), selected(), chosen())); }));
         layout->addLayout(second);
         ownMaterial_->setObjectName("layerOwnMaterial");
-        ownMaterial_->setToolTip(tr("Gives the layer its own colour, thickness and shading"));
+        ownMaterial_->setToolTip("Gives the layer its own colour, thickness and shading");
         connect(ownMaterial_, &QCheckBox::clicked, this, &LayersPanel::giveMaterial);
         settings_ = new QVBoxLayout;
         layout->addLayout(settings_);
@@ -79,7 +79,7 @@ class LayersPanel : public QWidget {
 
     void makeList() {
         list_->setObjectName("layers");
-        list_->setHeaderLabels({tr("Layer"), tr("Shown"), tr("Locked"), tr("Strands")});
+        list_->setHeaderLabels({"Layer", "Shown", "Locked", "Strands"});
         list_->setRootIsDecorated(false);
         list_->setMinimumHeight(120);
         list_->header()->setStretchLastSection(false);
@@ -87,8 +87,8 @@ class LayersPanel : public QWidget {
         for (const int column : {kVisible, kLocked, kStrands})
             list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
         list_->setToolTip(
-            tr("Show, lock, edit and export strands together. Double-click a name to rename a layer. The "
-               "region of an operator can select a layer."));
+            "Show, lock, edit and export strands together. Double-click a name to rename a layer. The "
+            "region of an operator can select a layer.");
     }
 
     void giveMaterial(bool own) {
@@ -136,7 +136,7 @@ class LayersPanel : public QWidget {
         }
         settings_->addWidget(new FieldForm(document_, preferences_, pick(layerMaterialFields(layer), most)));
         settings_->addWidget(
-            collapsible(tr("More material settings"), new FieldForm(document_, preferences_, others), false));
+            collapsible("More material settings", new FieldForm(document_, preferences_, others), false));
     }
 
     void perform(Result<std::unique_ptr<editing::Command>> command) {
@@ -149,7 +149,7 @@ class LayersPanel : public QWidget {
 
     QString freeName() const {
         for (std::size_t number = layers().size() + 1;; ++number) {
-            const QString name = tr("Layer %1").arg(number);
+            const QString name = QString("Layer %1").arg(number);
             if (std::ranges::none_of(layers(), [&](const Layer& l) { return l.name == name.toStdString(); }))
                 return name;
         }
@@ -233,7 +233,7 @@ class LayersPanel : public QWidget {
 
 PanelInfo layersPanel() {
     return {"layers",
-            QObject::tr("Layers"),
+            QString("Layers"),
             "overlay",
             Qt::LeftDockWidgetArea,
             28,

@@ -52,9 +52,9 @@ void LevelView::paintEvent(QPaintEvent*) {
         painter.setPen(Qt::white);
         painter.drawText(box, Qt::AlignCenter, text);
     };
-    const QString strands = tr("strands");
+    const QString strands = QString("strands");
     word(strands, line - fontMetrics().horizontalAdvance(strands) - 14);
-    word(tr("level"), line + 4);
+    word("level", line + 4);
 }
 
 void LevelView::mousePressEvent(QMouseEvent* event) {

@@ -60,19 +60,18 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     layout->addWidget(makeBudget());
     table_->setObjectName("levelsTable");
     table_->setRootIsDecorated(false);
-    table_->setHeaderLabels({tr("Level"), tr("Cards"), tr("Tri."), tr("MB"), tr("m"), tr("Cov."), tr("Light"),
-                             tr("FLIP"), tr("Step")});
+    table_->setHeaderLabels({"Level", "Cards", "Tri.", "MB", "m", "Cov.", "Light", "FLIP", "Step"});
     table_->setToolTip(
-        tr("Cards, triangles and memory of each level, and the distance at which it starts. Compared with "
-           "all strands at that distance: coverage and light as a share, and FLIP, the visible difference, "
-           "where 0 is none. Step: the largest change in light, in %, when the level replaces the one before "
-           "it or on the way to the next. Click a level to see it"));
+        "Cards, triangles and memory of each level, and the distance at which it starts. Compared with "
+        "all strands at that distance: coverage and light as a share, and FLIP, the visible difference, "
+        "where 0 is none. Step: the largest change in light, in %, when the level replaces the one before "
+        "it or on the way to the next. Click a level to see it");
     table_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->header()->setMinimumSectionSize(24);
     table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
     layout->addWidget(table_);
     plot_->setObjectName("levelsPlot");
-    plot_->setAxes(tr("triangles"), {}, tr("FLIP vs. all strands"));
+    plot_->setAxes("triangles", {}, "FLIP vs. all strands");
     layout->addWidget(plot_);
     layout->addWidget(makeLook(parts));
     connect(table_, &QTreeWidget::currentItemChanged, this, &LevelsPanel::showChosen);
@@ -111,35 +110,35 @@ QWidget* LevelsPanel::makeBudget() {
     form->setVerticalSpacing(6);
     layout->addLayout(form);
     const LevelBudget standard;
-    cards_ = addBudget(
-        *form, "levelCards", tr("Cards"),
-        tr("Maximum number of cards in the nearest level. The next levels have a half and a quarter of them"),
-        1, 1000, standard.cards);
-    textures_ = addBudget(*form, "levelTextures", tr("Textures"),
-                          tr("Maximum number of textures in a level. Cards that look alike share one"), 1,
-                          128, standard.chain.textures);
-    segments_ = addBudget(*form, "levelSegments", tr("Segments"),
-                          tr("Maximum number of segments per card. A card has fewer if they would not change "
-                             "its outline by a third of a pixel"),
+    cards_ = addBudget(*form, "levelCards", "Cards",
+                       "Maximum number of cards in the nearest level. The next levels have a half "
+                       "and a quarter of them",
+                       1, 1000, standard.cards);
+    textures_ = addBudget(*form, "levelTextures", "Textures",
+                          "Maximum number of textures in a level. Cards that look alike share one", 1, 128,
+                          standard.chain.textures);
+    segments_ = addBudget(*form, "levelSegments", "Segments",
+                          "Maximum number of segments per card. A card has fewer if they would not change "
+                          "its outline by a third of a pixel",
                           1, 24, standard.chain.segments);
     distance_ = new NumberBox(cards::distanceOf(512), cards::distanceOf(16), false);
     distance_->setObjectName("levelDistance");
-    distance_->setShown(1, tr("m"), 2);
+    distance_->setShown(1, "m", 2);
     distance_->setValue(cards::distanceOf(standard.headPx));
     distance_->setToolTip(
-        tr("Distance in metres at which the nearest cards start, in an image of 1080 lines and 40° field of "
-           "view. Each further level starts at twice that distance. The choices are distances where a head "
-           "is 512, 256 … 16 pixels high"));
-    form->addRow(tr("From"), distance_);
+        "Distance in metres at which the nearest cards start, in an image of 1080 lines and 40° field of "
+        "view. Each further level starts at twice that distance. The choices are distances where a head "
+        "is 512, 256 … 16 pixels high");
+    form->addRow("From", distance_);
     connect(distance_, &NumberBox::edited, this,
             [this](double metres) { distance_->setValue(cards::distanceOf(headPxAt(metres))); });
     auto* row = new QHBoxLayout;
-    make_ = pushButton("levelsMake", tr("Create"),
-                       tr("Creates the levels and compares each with all strands. Takes one or two minutes "
-                          "for a full head of hair. You can cancel it in the status line"),
+    make_ = pushButton("levelsMake", "Create",
+                       "Creates the levels and compares each with all strands. Takes one or two minutes "
+                       "for a full head of hair. You can cancel it in the status line",
                        [this] { make(); });
-    export_ = pushButton("levelsExport", tr("Export glTF…"),
-                         tr("Export the cards and the shell as shown, with textures, joints and springs"),
+    export_ = pushButton("levelsExport", "Export glTF…",
+                         "Export the cards and the shell as shown, with textures, joints and springs",
                          [this] { choosePath(); });
     row->addWidget(make_);
     row->addWidget(export_);
@@ -152,10 +151,10 @@ QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
     auto* layout = new QVBoxLayout(look_);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(8);
-    over_ = new QCheckBox(tr("Cards over strands"));
+    over_ = new QCheckBox("Cards over strands");
     over_->setObjectName("levelOver");
-    over_->setToolTip(tr(
-        "Draws the cards of this level in the viewport, each in its own colour, while the hair is at rest"));
+    over_->setToolTip(
+        "Draws the cards of this level in the viewport, each in its own colour, while the hair is at rest");
     connect(over_, &QCheckBox::toggled, this, [this] { viewport_.redraw(); });
     layout->addWidget(over_);
     card_ = new CardBox(document_, messages_, parts.tools);
@@ -167,7 +166,7 @@ QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
         if (dynamic_cast<CardTool*>(tool) != nullptr) over_->setChecked(true);
     });
     layout->addWidget(card_);
-    layout->addWidget(heading(tr("At its distance")));
+    layout->addWidget(heading("At its distance"));
     viewWords_ = new QLabel;
     viewWords_->setObjectName("levelViewWords");
     viewWords_->setWordWrap(true);
@@ -175,28 +174,28 @@ QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
     layout->addWidget(viewWords_);
     view_ = new LevelView;
     view_->setObjectName("levelView");
-    view_->setToolTip(tr("All strands on the left, the level on the right. Drag the line to move the split"));
+    view_->setToolTip("All strands on the left, the level on the right. Drag the line to move the split");
     layout->addWidget(view_);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(6);
     direction_ = new NumberBox(1, 4, true);
     direction_->setObjectName("levelDirection");
     direction_->setValue(1);
-    direction_->setToolTip(tr("View from the front, left, back or right"));
+    direction_->setToolTip("View from the front, left, back or right");
     connect(direction_, &NumberBox::edited, this, &LevelsPanel::showChosen);
-    form->addRow(tr("Side"), direction_);
+    form->addRow("Side", direction_);
     layout->addLayout(form);
-    layout->addWidget(heading(tr("Textures")));
+    layout->addWidget(heading("Textures"));
     map_ = new QComboBox;
     map_->setObjectName("levelMap");
     map_->setToolTip(
-        tr("Colour: albedo and coverage. Shape: flow, depth, ambient occlusion. Normal. Strand: root to tip, "
-           "strand number"));
+        "Colour: albedo and coverage. Shape: flow, depth, ambient occlusion. Normal. Strand: root to tip, "
+        "strand number");
     connect(map_, &QComboBox::currentIndexChanged, this, &LevelsPanel::showTexture);
     layout->addWidget(map_);
     texture_ = new QLabel;
     texture_->setObjectName("levelTexture");
-    texture_->setToolTip(tr("The texture atlas of the level. Cards that look alike share a region"));
+    texture_->setToolTip("The texture atlas of the level. Cards that look alike share a region");
     layout->addWidget(texture_);
     return look_;
 }
@@ -213,7 +212,7 @@ LevelBudget LevelsPanel::budget() const {
 void LevelsPanel::make() {
     const auto groom = std::make_shared<const Groom>(document_.groom());
     tasks_.measure<MadeLevels>(
-        tr("Creating levels"),
+        "Creating levels",
         [groom, budget = budget()](TaskControl& control) { return makeShownLevels(*groom, budget, control); },
         [this, document = documents_, change = changes_](MadeLevels made) {
             if (document != documents_) return;
@@ -227,7 +226,7 @@ void LevelsPanel::make() {
 
 void LevelsPanel::choosePath() {
     const QString name = QFileInfo(document_.title()).completeBaseName() + ".glb";
-    const QString path = QFileDialog::getSaveFileName(this, tr("Export glTF"), name, "*.glb");
+    const QString path = QFileDialog::getSaveFileName(this, "Export glTF", name, "*.glb");
     if (!path.isEmpty()) exportTo(path);
 }
 
@@ -238,11 +237,11 @@ void LevelsPanel::exportTo(const QString& path) {
         return messages_.warn(errorText(written.error()));
     const QString size =
         locale().formattedDataSize(static_cast<qint64>(file.bytes.size()), 1, QLocale::DataSizeSIFormat);
-    QString words = tr("Exported %1: %2 levels, %3")
+    QString words = QString("Exported %1: %2 levels, %3")
                         .arg(QFileInfo(path).fileName())
                         .arg(file.report.levels.size())
                         .arg(size);
-    if (madeAt_ != changes_) words += "; " + tr("as created before the last change");
+    if (madeAt_ != changes_) words += "; " + QString("as created before the last change");
     const auto warning = std::ranges::find(file.report.findings, Severity::Warning, &Finding::severity);
     if (warning == file.report.findings.end()) return messages_.say(words);
     messages_.warn(words + "; " + QString::fromStdString(warning->what));
@@ -256,15 +255,15 @@ void LevelsPanel::noteChange(editing::Part changed) {
 }
 
 QString LevelsPanel::sentence() const {
-    if (document_.groom().strandCount() == 0) return tr("Place hair to create levels of detail.");
+    if (document_.groom().strandCount() == 0) return QString("Place hair to create levels of detail.");
     if (!made_)
-        return tr(
+        return QString(
             "Replacements for this hair at a distance: fewer strands, cards and a shell. Each is compared "
             "with all strands at its distance.");
-    QString text = tr("For %L1 hairs in %2 s.").arg(made_->strands).arg(made_->seconds, 0, 'f', 1);
+    QString text = QString("For %L1 hairs in %2 s.").arg(made_->strands).arg(made_->seconds, 0, 'f', 1);
     for (const Finding& finding : made_->file.report.findings)
         if (finding.where == kCardEditsPlace) text += ' ' + QString::fromStdString(finding.what) + '.';
-    if (madeAt_ != changes_) text += ' ' + tr("The hair has changed: create the levels again.");
+    if (madeAt_ != changes_) text += ' ' + QString("The hair has changed: create the levels again.");
     return text;
 }
 
@@ -322,7 +321,7 @@ void LevelsPanel::showChosen() {
     if (made == nullptr) return view_->show({}, {});
     const std::size_t side = std::min(made->shots.size(), static_cast<std::size_t>(direction_->value())) - 1;
     view_->show(made->strands[side], made->shots[side]);
-    viewWords_->setText(tr("Strands | %1, as seen from %2 m: a head of %3 pixels in 1080 lines")
+    viewWords_->setText(QString("Strands | %1, as seen from %2 m: a head of %3 pixels in 1080 lines")
                             .arg(QString::fromStdString(made->level.name))
                             .arg(cards::distanceOf(made->level.spec.headPx), 0, 'f', 2)
                             .arg(made->level.spec.headPx));
@@ -363,13 +362,13 @@ void LevelsPanel::refresh() {
 
 PanelInfo levelsPanel() {
     return {"levels",
-            QObject::tr("Levels"),
+            QString("Levels"),
             "overlay",
             Qt::RightDockWidgetArea,
             97,
             true,
             [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column({heading(QObject::tr("Levels of detail")), new LevelsPanel(parts)}));
+                return scrolled(column({heading("Levels of detail"), new LevelsPanel(parts)}));
             }};
 }
 

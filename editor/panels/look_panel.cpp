@@ -30,46 +30,40 @@ struct Group {
 
 const std::vector<Group>& groups() {
     static const std::vector<Group> all{
-        {QT_TR_NOOP("Colour"),
+        {"Colour",
          {"rootColour", "tipColour", "gradientStart", "gradientEnd", "colourVariation"},
          kAll,
          true},
-        {QT_TR_NOOP("Pigment"),
+        {"Pigment",
          {"colourSource", "eumelanin", "pheomelanin", "tipMelanin", "melaninVariation"},
          kAll,
          true},
-        {QT_TR_NOOP("Streaks"),
+        {"Streaks",
          {"streakShare", "streakWidth", "streakSoftness", "streakColourSource", "streakColour",
           "streakMelanin", "streakSeed"},
          kAll,
          false},
-        {QT_TR_NOOP("Dye"), {"dyeStrength", "dyeColour", "dyeStart", "dyeEnd"}, kAll, false},
-        {QT_TR_NOOP("Fibre"),
+        {"Dye", {"dyeStrength", "dyeColour", "dyeStart", "dyeEnd"}, kAll, false},
+        {"Fibre",
          {"rootRadius", "tipScale", "radiusVariation", "scaleTiltDegrees", "rootOpacity", "tipOpacity"},
          kAll,
          true},
-        {QT_TR_NOOP("Highlights"), {"specular", "shininess"}, kKajiya, true},
-        {QT_TR_NOOP("Energy"), {"energy"}, kKajiya | kSadeghi, false},
-        {QT_TR_NOOP("Fibre optics"),
-         {"indexOfRefraction", "longitudinalRoughness", "azimuthalRoughness"},
-         kFibres,
-         true},
-        {QT_TR_NOOP("Cross-section"), {"eccentricity"}, kMarschner, false},
-        {QT_TR_NOOP("First highlight (R)"), {"rIntensity", "rWidth", "rShiftDegrees"}, kFibres, false},
-        {QT_TR_NOOP("Transmission (TT)"), {"ttIntensity", "ttWidth", "ttShiftDegrees"}, kFibres, false},
-        {QT_TR_NOOP("Second highlight (TRT)"),
-         {"trtIntensity", "trtWidth", "trtShiftDegrees"},
-         kFibres,
-         false},
-        {QT_TR_NOOP("Colours of the highlights"),
+        {"Highlights", {"specular", "shininess"}, kKajiya, true},
+        {"Energy", {"energy"}, kKajiya | kSadeghi, false},
+        {"Fibre optics", {"indexOfRefraction", "longitudinalRoughness", "azimuthalRoughness"}, kFibres, true},
+        {"Cross-section", {"eccentricity"}, kMarschner, false},
+        {"First highlight (R)", {"rIntensity", "rWidth", "rShiftDegrees"}, kFibres, false},
+        {"Transmission (TT)", {"ttIntensity", "ttWidth", "ttShiftDegrees"}, kFibres, false},
+        {"Second highlight (TRT)", {"trtIntensity", "trtWidth", "trtShiftDegrees"}, kFibres, false},
+        {"Colours of the highlights",
          {"rColour", "ttColour", "trtColour", "ttAzimuthalWidth"},
          kSadeghi,
          false},
-        {QT_TR_NOOP("Glints"),
+        {"Glints",
          {"glintIntensity", "glintWidthDegrees", "glintNearDegrees", "glintFarDegrees"},
          kSadeghi,
          false},
-        {QT_TR_NOOP("Emission and tentacles"),
+        {"Emission and tentacles",
          {"emission", "emissionRootColour", "emissionTipColour", "tubes"},
          kAll,
          false},
@@ -89,16 +83,16 @@ class LookPanel : public QWidget {
         layout_->setContentsMargins(0, 0, 0, 0);
         layout_->setSpacing(8);
         layout_->addWidget(
-            collapsible(tr("Presets"), makePresetList(document_, preferences_, messages_, viewport_)));
-        layout_->addWidget(collapsible(tr("Compare"), makeCompareBar(document_, viewport_)));
+            collapsible("Presets", makePresetList(document_, preferences_, messages_, viewport_)));
+        layout_->addWidget(collapsible("Compare", makeCompareBar(document_, viewport_)));
         layout_->addWidget(form(pick(materialFields(), {kModel})));
         makeGroups();
         layout_->addWidget(
-            collapsible(tr("Edges and shadows"),
+            collapsible("Edges and shadows",
                         column({makePictureForm(preferences_, prices_, viewport_),
                                 makePicturePrices(document_, parts.tasks, viewport_, parts.prices)}),
                         false));
-        layout_->addWidget(collapsible(tr("Interpolated hairs"), form(followHairFields()), false));
+        layout_->addWidget(collapsible("Interpolated hairs", form(followHairFields()), false));
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
             if (contains(changed, editing::Part::Material)) refresh();
         });
@@ -115,7 +109,7 @@ class LookPanel : public QWidget {
         for (const Group& group : groups()) {
             QWidget* rows = form(pick(fields, group.fields));
             if (QLatin1String(group.title) == QLatin1String("Pigment")) rows = withColourButton(rows);
-            QWidget* const section = collapsible(tr(group.title), rows, group.open);
+            QWidget* const section = collapsible(QString(group.title), rows, group.open);
             layout_->addWidget(section);
             shownFor_.emplace_back(section, group.models);
         }
@@ -126,7 +120,7 @@ class LookPanel : public QWidget {
             if (QLatin1String(field.name) != QLatin1String(kModel) && std::ranges::none_of(groups(), has))
                 others.push_back(field);
         }
-        if (!others.empty()) layout_->addWidget(collapsible(tr("More"), form(others), false));
+        if (!others.empty()) layout_->addWidget(collapsible("More", form(others), false));
     }
 
     /// For Kajiya-Kay, which knows colours only, and for those who want to go on from a natural colour.
@@ -136,14 +130,14 @@ class LookPanel : public QWidget {
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(5);
         layout->addWidget(rows);
-        auto* button = new QPushButton(tr("Colours from the pigment"));
+        auto* button = new QPushButton("Colours from the pigment");
         button->setObjectName("colourByMelanin");
-        button->setToolTip(tr("Set root and tip colour from melanin"));
+        button->setToolTip("Set root and tip colour from melanin");
         connect(button, &QPushButton::clicked, this, [this] {
             HairMaterial material = document_.groom().material;
             colourByMelanin(material);
-            document_.perform(editing::setMaterial(document_.editing().model(), material,
-                                                   tr("Colours from the pigment").toStdString()));
+            document_.perform(
+                editing::setMaterial(document_.editing().model(), material, "Colours from the pigment"));
         });
         layout->addWidget(button);
         return widget;
@@ -167,7 +161,7 @@ class LookPanel : public QWidget {
 
 PanelInfo lookPanel() {
     return {"look",
-            QObject::tr("Look"),
+            QString("Look"),
             "look",
             Qt::RightDockWidgetArea,
             50,

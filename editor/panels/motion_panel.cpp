@@ -28,7 +28,7 @@ class MotionPanel : public QWidget {
         layout->setSpacing(8);
         motion_->setObjectName("motion");
         motion_->setToolTip(
-            tr("Motion of the head: at rest, a nod, a spin, or an animation clip of the character"));
+            "Motion of the head: at rest, a nod, a spin, or an animation clip of the character");
         layout->addWidget(motion_);
         auto* row = new QHBoxLayout;
         const auto add = [&](const char* name, const char* iconName, const QString& text,
@@ -39,9 +39,9 @@ class MotionPanel : public QWidget {
             row->addWidget(made);
             return made;
         };
-        auto* play = add("motionPlay", "play", tr("Play"), tr("Play or pause the simulation (Space)"));
-        auto* step = add("motionStep", "step", tr("Step"), tr("Advance by one frame of 1/60 s"));
-        auto* reset = add("motionReset", "reset", tr("Reset"), tr("Reset the hair to its authored shape"));
+        auto* play = add("motionPlay", "play", "Play", "Play or pause the simulation (Space)");
+        auto* step = add("motionStep", "step", "Step", "Advance by one frame of 1/60 s");
+        auto* reset = add("motionReset", "reset", "Reset", "Reset the hair to its authored shape");
         layout->addLayout(row);
         state_->setObjectName("motionState");
         state_->setTextFormat(Qt::RichText);
@@ -52,7 +52,7 @@ class MotionPanel : public QWidget {
         connect(reset, &QPushButton::clicked, &player_, &Player::reset);
         connect(&player_, &Player::stateChanged, this, [this, play] {
             play->setIcon(icon(player_.isPlaying() ? "pause" : "play"));
-            play->setText(player_.isPlaying() ? tr("Pause") : tr("Play"));
+            play->setText(player_.isPlaying() ? QString("Pause") : QString("Play"));
         });
         connect(motion_, &QComboBox::activated, this, [this](int index) {
             if (auto set = player_.setMotion(motion_->itemData(index).toString()); !set) {
@@ -69,7 +69,7 @@ class MotionPanel : public QWidget {
     void fill() {
         motion_->clear();
         for (const QString& name : player_.motions()) {
-            QString label = name.startsWith("clip:") ? tr("Clip: %1").arg(name.mid(5)) : name;
+            QString label = name.startsWith("clip:") ? QString("Clip: %1").arg(name.mid(5)) : name;
             label[0] = label[0].toUpper();
             motion_->addItem(label, name);
         }
@@ -79,7 +79,7 @@ class MotionPanel : public QWidget {
     void showState() {
         const auto& frame = player_.frame();
         if (!frame) {
-            state_->setText(tr("At rest."));
+            state_->setText("At rest.");
             return;
         }
         const auto row = [](const QString& what, const QString& value) {
@@ -89,13 +89,12 @@ class MotionPanel : public QWidget {
                 .arg(what, value);
         };
         const SimulationStats& stats = frame->stats;
-        state_->setText(
-            "<table width='100%' cellspacing='0' cellpadding='0'>" +
-            row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
-            row(tr("Frame"), tr("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
-            row(tr("Maximum stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
-            row(tr("Deepest penetration"), lengthText(1e-3 * stats.maxPenetrationMm, preferences_)) +
-            row(tr("Strands reset"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
+        state_->setText("<table width='100%' cellspacing='0' cellpadding='0'>" +
+                        row("Time", QString("%1 s").arg(frame->time, 0, 'f', 2)) +
+                        row("Frame", QString("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
+                        row("Maximum stretch", QString("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
+                        row("Deepest penetration", lengthText(1e-3 * stats.maxPenetrationMm, preferences_)) +
+                        row("Strands reset", QString("%1 strands").arg(stats.restoredStrands)) + "</table>");
     }
 
     const Preferences& preferences_;
@@ -109,7 +108,7 @@ class MotionPanel : public QWidget {
 
 PanelInfo motionPanel() {
     return {"motion",
-            QObject::tr("Motion"),
+            QString("Motion"),
             "play",
             Qt::RightDockWidgetArea,
             70,

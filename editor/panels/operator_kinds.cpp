@@ -12,21 +12,21 @@ namespace hairloom::editor {
 
 QString operatorKind(std::string_view name) {
     static const std::vector<std::pair<QString, std::vector<std::string_view>>> kinds{
-        {QObject::tr("Direction"), {"flow", "part", "attract", "shrinkwrap", "drape", "mirror"}},
-        {QObject::tr("Length"), {"set_length", "trim"}},
-        {QObject::tr("Locks"), {"clump", "braid", "bun"}},
-        {QObject::tr("Texture"), {"curl", "wave", "noise", "frizz", "flyaways"}},
-        {QObject::tr("Shape"), {"smooth", "straighten", "bend", "collide", "sculpt"}}};
+        {QString("Direction"), {"flow", "part", "attract", "shrinkwrap", "drape", "mirror"}},
+        {QString("Length"), {"set_length", "trim"}},
+        {QString("Locks"), {"clump", "braid", "bun"}},
+        {QString("Texture"), {"curl", "wave", "noise", "frizz", "flyaways"}},
+        {QString("Shape"), {"smooth", "straighten", "bend", "collide", "sculpt"}}};
     for (const auto& [kind, names] : kinds) {
         if (std::ranges::find(names, name) != names.end()) return kind;
     }
-    return QObject::tr("Others");
+    return QString("Others");
 }
 
 std::vector<StackOperator> operatorsByKind() {
     std::vector<StackOperator> sorted = stackOperators();
-    const QStringList order{QObject::tr("Direction"), QObject::tr("Length"), QObject::tr("Locks"),
-                            QObject::tr("Texture"),   QObject::tr("Shape"),  QObject::tr("Others")};
+    const QStringList order{QString("Direction"), QString("Length"), QString("Locks"),
+                            QString("Texture"),   QString("Shape"),  QString("Others")};
     std::ranges::stable_sort(sorted, {},
                              [&](const StackOperator& one) { return order.indexOf(operatorKind(one.name)); });
     return sorted;

@@ -49,15 +49,15 @@ class OperatorsPanel : public QWidget {
         layout->setSpacing(8);
         auto* first = new QHBoxLayout;
         first->addWidget(makeAddButton());
-        first->addWidget(pushButton("operatorBake", tr("Bake"),
-                                    tr("Apply all operators permanently and clear the stack"),
+        first->addWidget(pushButton("operatorBake", "Bake",
+                                    "Apply all operators permanently and clear the stack",
                                     [this] { perform(editing::bakeOperators(model()), kNone); }));
         layout->addLayout(first);
         list_->setObjectName("operators");
         list_->setMinimumHeight(150);
         list_->setToolTip(
-            tr("Operators that build the hair from its base shape, in order from the top. Clear a checkbox "
-               "to mute an operator. Brush strokes go into a Sculpt operator at the end."));
+            "Operators that build the hair from its base shape, in order from the top. Clear a checkbox "
+            "to mute an operator. Brush strokes go into a Sculpt operator at the end.");
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         list_->installEventFilter(this);
         layout->addWidget(list_);
@@ -107,9 +107,9 @@ class OperatorsPanel : public QWidget {
     }
 
     QWidget* makeAddButton() {
-        auto* add = new QPushButton(tr("Add"));
+        auto* add = new QPushButton("Add");
         add->setObjectName("operatorAdd");
-        add->setToolTip(tr("Add an operator after the selected one"));
+        add->setToolTip("Add an operator after the selected one");
         auto* menu = new QMenu(add);
         menu->setToolTipsVisible(true);
         QString last;
@@ -129,37 +129,35 @@ class OperatorsPanel : public QWidget {
 
     QLayout* makeButtons() {
         QWidget* const buttons[] = {
-            pushButton("operatorUp", tr("Move up"), tr("Move the operator up, to apply it earlier (Alt+Up)"),
+            pushButton("operatorUp", "Move up", "Move the operator up, to apply it earlier (Alt+Up)",
                        [this] {
                            if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
                        }),
-            pushButton("operatorDown", tr("Move down"),
-                       tr("Move the operator down, to apply it later (Alt+Down)"),
+            pushButton("operatorDown", "Move down", "Move the operator down, to apply it later (Alt+Down)",
                        [this] {
                            if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
                        }),
-            pushButton("operatorRemove", tr("Remove"), tr("Remove the operator (Delete)"),
+            pushButton("operatorRemove", "Remove", "Remove the operator (Delete)",
                        [this] {
                            if (chosen() != kNone)
                                perform(editing::removeOperator(model(), chosen()), chosen());
                        }),
-            pushButton("operatorSolo", tr("Solo"), tr("Apply only this operator. Click again to apply all"),
+            pushButton("operatorSolo", "Solo", "Apply only this operator. Click again to apply all",
                        [this] {
                            if (chosen() != kNone) perform(editing::soloOperator(model(), chosen()), chosen());
                        }),
-            pushButton("operatorCopy", tr("Duplicate"), tr("Duplicate the operator"),
+            pushButton("operatorCopy", "Duplicate", "Duplicate the operator",
                        [this] {
                            if (chosen() != kNone)
                                perform(editing::copyOperator(model(), chosen()), chosen() + 1);
                        }),
             makePresetsButton(),
-            pushButton("operatorClip", tr("Copy"),
-                       tr("Copy the operator to the clipboard, also for other projects"),
+            pushButton("operatorClip", "Copy", "Copy the operator to the clipboard, also for other projects",
                        [this] {
                            if (chosen() != kNone) copy();
                        }),
-            pushButton("operatorPaste", tr("Paste"),
-                       tr("Paste operators from the clipboard after the selected one"), [this] { paste(); })};
+            pushButton("operatorPaste", "Paste", "Paste operators from the clipboard after the selected one",
+                       [this] { paste(); })};
         auto* grid = new QGridLayout;
         constexpr int kColumns = 3;
         for (int i = 0; i < static_cast<int>(std::size(buttons)); ++i)
@@ -168,9 +166,9 @@ class OperatorsPanel : public QWidget {
     }
 
     QWidget* makePresetsButton() {
-        auto* presets = new QPushButton(tr("Presets"));
+        auto* presets = new QPushButton("Presets");
         presets->setObjectName("operatorPresets");
-        presets->setToolTip(tr("Operators that you saved for any project"));
+        presets->setToolTip("Operators that you saved for any project");
         auto* menu = new QMenu(presets);
         connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillPresets(*menu); });
         fillPresets(*menu);
@@ -184,7 +182,7 @@ class OperatorsPanel : public QWidget {
     }
     void paste() {
         const std::string text = QGuiApplication::clipboard()->text().toStdString();
-        insert(parseOperators(tr("clipboard").toStdString(), text), tr("Paste operators"));
+        insert(parseOperators("clipboard", text), "Paste operators");
     }
     /// Behind the chosen one.
     void insert(Result<std::vector<Operator>> added, const QString& name) {
@@ -210,7 +208,7 @@ class OperatorsPanel : public QWidget {
             shown->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
             shown->setIconSize({kThumbnail_px, kThumbnail_px});
             shown->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-            shown->setToolTip(tr("Adds these operators after the selected one"));
+            shown->setToolTip("Adds these operators after the selected one");
             if (const auto file = stackPresetFile(folderOfStacks(), name))
                 shown->setIcon(QIcon(QString::fromStdString(pictureOf(*file).string())));
             action->setDefaultWidget(shown);
@@ -222,20 +220,20 @@ class OperatorsPanel : public QWidget {
             connect(action, &QAction::triggered, this, [this, name] {
                 const auto file = stackPresetFile(folderOfStacks(), name);
                 insert(file ? loadOperators(*file) : tl::unexpected(file.error()),
-                       tr("Preset %1").arg(QString::fromStdString(name)));
+                       QString("Preset %1").arg(QString::fromStdString(name)));
             });
         }
         menu.addSeparator();
-        connect(menu.addAction(tr("Save operator as preset…")), &QAction::triggered, this, [this] {
+        connect(menu.addAction("Save operator as preset…"), &QAction::triggered, this, [this] {
             if (chosen() != kNone) keep({operators()[chosen()]});
         });
-        connect(menu.addAction(tr("Save stack as preset…")), &QAction::triggered, this,
+        connect(menu.addAction("Save stack as preset…"), &QAction::triggered, this,
                 [this] { keep(operators()); });
     }
     void keep(const std::vector<Operator>& kept) {
         bool taken = false;
         const QString name =
-            QInputDialog::getText(this, tr("Save preset"), tr("Name"), QLineEdit::Normal, {}, &taken);
+            QInputDialog::getText(this, "Save preset", "Name", QLineEdit::Normal, {}, &taken);
         if (!taken || name.trimmed().isEmpty()) return;
         const auto file = stackPresetFile(folderOfStacks(), name.trimmed().toStdString());
         std::error_code problem;
@@ -259,24 +257,22 @@ class OperatorsPanel : public QWidget {
         auto* row = new QWidget;
         auto* layout = new QHBoxLayout(row);
         layout->setContentsMargins(0, 0, 0, 0);
-        layout->addWidget(new QLabel(tr("Curve")));
-        layout->addWidget(pushButton("curveDraw", tr("Draw"),
-                                     tr("Draw over the head with the pen, or click point by point"),
-                                     [this, index] {
-                                         auto* tool = dynamic_cast<CurveTool*>(tools_.find("curve"));
-                                         if (!tool) return;
-                                         tool->setOperator(index);
-                                         tools_.activate(tool);
-                                     }));
+        layout->addWidget(new QLabel("Curve"));
         layout->addWidget(pushButton(
-            "curveClear", tr("Clear"), tr("Delete the curve. Without a curve the operator has no effect"),
-            [this, index] {
-                if (index >= operators().size()) return;
-                Operator changed = operators()[index];
-                setCurveOf(changed, {});
-                perform(editing::setOperator(model(), index, changed, tr("Clear curve").toStdString()),
-                        index);
+            "curveDraw", "Draw", "Draw over the head with the pen, or click point by point", [this, index] {
+                auto* tool = dynamic_cast<CurveTool*>(tools_.find("curve"));
+                if (!tool) return;
+                tool->setOperator(index);
+                tools_.activate(tool);
             }));
+        layout->addWidget(
+            pushButton("curveClear", "Clear", "Delete the curve. Without a curve the operator has no effect",
+                       [this, index] {
+                           if (index >= operators().size()) return;
+                           Operator changed = operators()[index];
+                           setCurveOf(changed, {});
+                           perform(editing::setOperator(model(), index, changed, "Clear curve"), index);
+                       }));
         return row;
     }
 
@@ -300,7 +296,7 @@ class OperatorsPanel : public QWidget {
         if (index >= operators().size() || operators()[index].enabled == !muted) return;
         Operator changed = operators()[index];
         changed.enabled = !muted;
-        const QString name = (muted ? tr("Mute %1") : tr("Unmute %1")).arg(labelOf(changed));
+        const QString name = (muted ? QString("Mute %1") : QString("Unmute %1")).arg(labelOf(changed));
         perform(editing::setOperator(model(), index, changed, name.toStdString()), index);
         refresh();  // where it failed, the check goes back
     }
@@ -341,9 +337,9 @@ class OperatorsPanel : public QWidget {
             delete item;
         }
         if (index == kNone) {
-            auto* none =
-                new QLabel(tr("No operators yet. Add one to shape all hair. You can change it at any time. "
-                              "Start with Flow, which lays hair along the head."));
+            auto* none = new QLabel(
+                "No operators yet. Add one to shape all hair. You can change it at any time. "
+                "Start with Flow, which lays hair along the head.");
             none->setObjectName("operatorsNone");
             none->setProperty("role", "dim");
             none->setWordWrap(true);
@@ -358,12 +354,12 @@ class OperatorsPanel : public QWidget {
             withFormulas(pickable(operatorFields(document_.groom(), index, failed), index, SettingsPart::own),
                          index)));
         settings_->addWidget(
-            collapsible(tr("Mask"), maskForm(index, failed), !maskOf(operators()[index]).isWhole()));
+            collapsible("Mask", maskForm(index, failed), !maskOf(operators()[index]).isWhole()));
         if (!findStackOperator(op)->hasRegion) return;
         auto* region = new FieldForm(
             document_, preferences_,
             pickable(operatorRegionFields(document_.groom(), index, failed), index, SettingsPart::region));
-        settings_->addWidget(collapsible(tr("Region"), region, false));
+        settings_->addWidget(collapsible("Region", region, false));
     }
 
     /// Places can be pointed at.
@@ -399,14 +395,15 @@ class OperatorsPanel : public QWidget {
         rows->addWidget(
             new FieldForm(document_, preferences_, operatorMaskFields(document_.groom(), index, failed)));
         rows->addWidget(imageButton(
-            "maskImage", tr("Mask from image…"),
-            tr("Fills the painted mask of the operator with the values of a PNG at the root UVs. If the "
-               "operator has no mask, it gets the first unused one"),
+            "maskImage", "Mask from image…",
+            "Fills the painted mask of the operator with the values of a PNG at the root UVs. If the "
+            "operator has no mask, it gets the first unused one",
             [this, index](const MaskImage& image) { return takeMask(index, image); }, failed));
         rows->addWidget(imageButton(
-            "regionsImage", tr("Regions from image…"),
-            tr("Fills an unused painted mask for each colour of a PNG at the root UVs. Operators then choose "
-               "a region by its mask"),
+            "regionsImage", "Regions from image…",
+            "Fills an unused painted mask for each colour of a PNG at the root UVs. Operators then "
+            "choose "
+            "a region by its mask",
             [this](const MaskImage& image) { return takeRegions(image); }, failed));
         rows->addWidget(new MaskRamp(document_, index, failed));
         rows->addWidget(new FormulaEdit(document_, index));
@@ -432,14 +429,13 @@ class OperatorsPanel : public QWidget {
         for (std::size_t i = 0; i < regions->size(); ++i) {
             const ColourRegion& region = (*regions)[i];
             values.push_back(region.shares);
-            told += tr("mask %1: %2 (%L3 strands)")
+            told += QString("mask %1: %2 (%L3 strands)")
                         .arg((*numbers)[i])
                         .arg(QString::fromStdString(region.name))
                         .arg(region.strands);
         }
-        document_.perform(
-            editing::fillMasks(model(), tr("Regions from image").toStdString(), *numbers, values));
-        messages_.say(tr("Regions from image: %1").arg(told.join(QStringLiteral(", "))));
+        document_.perform(editing::fillMasks(model(), "Regions from image", *numbers, values));
+        messages_.say(QString("Regions from image: %1").arg(told.join(QStringLiteral(", "))));
         return {};
     }
 
@@ -458,7 +454,7 @@ class OperatorsPanel : public QWidget {
 PanelInfo operatorsPanel() {
     return {
         "operators",
-        QObject::tr("Operators"),
+        QString("Operators"),
         "comb",
         Qt::LeftDockWidgetArea,
         25,

@@ -26,21 +26,19 @@ struct Group {
 
 std::vector<Group> groups() {
     return {
-        {QObject::tr("Strands"),
+        {QString("Strands"),
          {"strandModel", "angularStiffness", "torsionRatio", "sectionRatio", "bendDampingTime",
           "restGravity"},
          true},
-        {QObject::tr("Time"),
-         {"substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"},
-         true},
-        {QObject::tr("Wind and gravity"),
+        {QString("Time"), {"substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"}, true},
+        {QString("Wind and gravity"),
          {"windSpeed", "windKind", "windDirection", "windGustiness", "windFrequency", "windGustSize",
           "windSeed", "airDrag", "gravity"},
          true},
-        {QObject::tr("Collision"),
+        {QString("Collision"),
          {"collisionRadiusRoot", "collisionRadiusTip", "friction", "restitution"},
          false},
-        {QObject::tr("Springs only"),
+        {QString("Springs only"),
          {"integrator", "angularMethod", "lengthMethod", "lengthIterations", "maximalExtension",
           "springFrequency", "collisionResponse", "penaltyFrequency"},
          false},
@@ -50,9 +48,8 @@ std::vector<Group> groups() {
 QWidget* makePresets(QtDocument& document) {
     auto* box = new QComboBox;
     box->setObjectName("preset");
-    box->setToolTip(
-        QObject::tr("Stiffness, cross-section and colour of measured hair. Motion settings do not change"));
-    box->addItem(QObject::tr("Measured hair preset…"));
+    box->setToolTip("Stiffness, cross-section and colour of measured hair. Motion settings do not change");
+    box->addItem("Measured hair preset…");
     for (const runtime::HairPreset& preset : runtime::presets()) {
         box->addItem(labelOf(preset.name));
         box->setItemData(box->count() - 1, QString::fromUtf8(preset.description), Qt::ToolTipRole);
@@ -62,7 +59,7 @@ QWidget* makePresets(QtDocument& document) {
         const runtime::HairPreset& preset = runtime::presets()[static_cast<std::size_t>(index - 1)];
         Groom groom = document.groom();
         applyPreset(preset, groom);
-        const QString step = QObject::tr("Preset %1").arg(box->itemText(index));
+        const QString step = QString("Preset %1").arg(box->itemText(index));
         document.perform(editing::setSettings(document.editing().model(), groom, step.toStdString()));
         box->setCurrentIndex(0);
     });
@@ -70,15 +67,15 @@ QWidget* makePresets(QtDocument& document) {
 }
 
 QWidget* makeHoldButton(QtDocument& document) {
-    auto* button = new QPushButton(QObject::tr("Keep shape under gravity"));
+    auto* button = new QPushButton("Keep shape under gravity");
     button->setObjectName("hold-shape");
     button->setToolTip(
-        QObject::tr("Turns strands into rods whose rest shape already carries their weight, so the hair "
-                    "keeps the shape you drew"));
+        "Turns strands into rods whose rest shape already carries their weight, so the hair "
+        "keeps the shape you drew");
     QObject::connect(button, &QPushButton::clicked, button, [&document] {
         document.perform(editing::setPhysics(document.editing().model(),
                                              holdingItsShape(document.groom()).simulation,
-                                             QObject::tr("Keep shape under gravity").toStdString()));
+                                             "Keep shape under gravity"));
     });
     return button;
 }
@@ -88,16 +85,16 @@ QWidget* makeMethods(Player& player) {
     auto* box = new QComboBox;
     box->setObjectName("play-method");
     box->setToolTip(
-        QObject::tr("Method that simulates hair during playback here. Exported files and games use the "
-                    "strand engine. Try the others to compare their cost and accuracy"));
+        "Method that simulates hair during playback here. Exported files and games use the "
+        "strand engine. Try the others to compare their cost and accuracy");
     const std::pair<QString, SimulationMethod> methods[] = {
-        {QObject::tr("Strand engine (rods or springs)"), SimulationMethod::strands},
-        {QObject::tr("Projective equations"), SimulationMethod::projective},
-        {QObject::tr("Lattice, for distant hair"), SimulationMethod::lattice}};
+        {QString("Strand engine (rods or springs)"), SimulationMethod::strands},
+        {QString("Projective equations"), SimulationMethod::projective},
+        {QString("Lattice, for distant hair"), SimulationMethod::lattice}};
     for (const auto& [name, method] : methods) box->addItem(name, static_cast<int>(method));
-    auto* hairs = new QCheckBox(QObject::tr("Hair-hair collision"));
+    auto* hairs = new QCheckBox("Hair-hair collision");
     hairs->setObjectName("play-hair-hair");
-    hairs->setToolTip(QObject::tr("Keeps hair apart with a volume between frames, on the CPU"));
+    hairs->setToolTip("Keeps hair apart with a volume between frames, on the CPU");
     const auto choose = [&player, box, hairs] {
         const auto method = static_cast<SimulationMethod>(box->currentData().toInt());
         const bool takesVelocities = method == SimulationMethod::strands;
@@ -121,8 +118,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
         if (group.fields.contains("angularStiffness")) form = stacked({new StiffnessCurve(document), form});
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
-    layout->insertWidget(layout->count() - 1,
-                         collapsible(QObject::tr("During playback"), makeMethods(player), false));
+    layout->insertWidget(layout->count() - 1, collapsible("During playback", makeMethods(player), false));
     // Fields that the engine has gained since.
     QStringList others;
     for (const Field& field : fields) {
@@ -130,7 +126,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
     }
     if (!others.isEmpty()) {
         auto* form = new FieldForm(document, preferences, pick(fields, others), &prices);
-        layout->insertWidget(layout->count() - 1, collapsible(QObject::tr("More"), form, false));
+        layout->insertWidget(layout->count() - 1, collapsible("More", form, false));
     }
     return scrolled(content);
 }
@@ -139,7 +135,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
 
 PanelInfo physicsPanel() {
     return {"physics",
-            QObject::tr("Physics"),
+            QString("Physics"),
             "physics",
             Qt::RightDockWidgetArea,
             60,

@@ -55,7 +55,7 @@ void RunView::show(std::shared_ptr<const WorkPrecision> measured, std::size_t ru
     const auto groom = std::make_shared<const Groom>(document_.groom());
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
     const bool began = tasks_.run<RunPreview>(
-        tr("Simulating the preview"),
+        "Simulating the preview",
         [groom, moves, kept = measured_, run](TaskControl& control) {
             return previewRun(*groom, *moves, *kept, run, [&] { return control.isCancelled(); });
         },

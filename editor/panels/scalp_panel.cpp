@@ -40,17 +40,17 @@ class ScalpPanel : public QWidget {
         area_->setProperty("role", "dim");
         area_->setWordWrap(true);
         groups_->setObjectName("scalpGroup");
-        groups_->setToolTip(tr("Selects all faces of a group or material of the head file"));
+        groups_->setToolTip("Selects all faces of a group or material of the head file");
         connect(groups_, &QComboBox::activated, this, [this](int index) {
             if (index > 0) select(groups_->itemData(index).toString());
             groups_->setCurrentIndex(0);
         });
         expression_->setObjectName("scalpExpression");
-        expression_->setPlaceholderText(tr("cap:70, above:0.5 …"));
+        expression_->setPlaceholderText("cap:70, above:0.5 …");
         expression_->setToolTip(
-            tr("Select faces by expression, then press Enter: all, group:NAME, material:NAME, cap:DEGREES "
-               "(faces that lean up to this angle from up), above:SHARE of the height, grow:N, shrink:N, "
-               "invert, connected. A comma combines terms."));
+            "Select faces by expression, then press Enter: all, group:NAME, material:NAME, cap:DEGREES "
+            "(faces that lean up to this angle from up), above:SHARE of the height, grow:N, shrink:N, "
+            "invert, connected. A comma combines terms.");
         connect(expression_, &QLineEdit::returnPressed, this, [this] { select(expression_->text()); });
         layout->addWidget(groups_);
         layout->addWidget(expression_);
@@ -76,20 +76,20 @@ class ScalpPanel : public QWidget {
             });
             grid->addWidget(button, grid->count() / 3, grid->count() % 3);
         };
-        add("scalpGrow", tr("Grow"), tr("Grow selection"),
+        add("scalpGrow", "Grow", "Grow selection",
             [this] { return growSelection(mesh(), groom().scalpSelection, 1); });
-        add("scalpShrink", tr("Shrink"), tr("Shrink selection"),
+        add("scalpShrink", "Shrink", "Shrink selection",
             [this] { return shrinkSelection(mesh(), groom().scalpSelection, 1); });
-        add("scalpInvert", tr("Invert"), tr("Invert selection"),
+        add("scalpInvert", "Invert", "Invert selection",
             [this] { return invertSelection(mesh(), groom().scalpSelection); });
-        add("scalpSymmetric", tr("Mirror"), tr("Mirror selection"), [this] {
+        add("scalpSymmetric", "Mirror", "Mirror selection", [this] {
             return editing::symmetricFaces(mesh(), *document_.editing().surface(), groom().scalpSelection);
         });
-        add("scalpConnected", tr("Largest"), tr("Keep only the largest connected piece"), [this] {
+        add("scalpConnected", "Largest", "Keep only the largest connected piece", [this] {
             const auto pieces = connectedPieces(mesh(), groom().scalpSelection);
             return pieces.empty() ? FaceSet() : pieces.front();
         });
-        add("scalpClear", tr("Clear"), tr("Clear selection"), [] { return FaceSet(); });
+        add("scalpClear", "Clear", "Clear selection", [] { return FaceSet(); });
         return grid;
     }
 
@@ -115,23 +115,23 @@ class ScalpPanel : public QWidget {
     void refresh() {
         setEnabled(groom().scalp != nullptr);
         if (!groom().scalp) {
-            area_->setText(tr("Open a head first."));
+            area_->setText("Open a head first.");
             return;
         }
         const FaceSet& faces = groom().scalpSelection;
-        area_->setText(faces.empty() ? tr("No faces selected: paint them (P) or choose a group.")
-                                     : tr("%L1 faces, %2 cm²")
+        area_->setText(faces.empty() ? QString("No faces selected: paint them (P) or choose a group.")
+                                     : QString("%L1 faces, %2 cm²")
                                            .arg(faces.size())
                                            .arg(selectionArea(mesh(), faces) * 1e4, 0, 'f', 0));
         if (shownHead_ == groom().scalp) return;
         shownHead_ = groom().scalp;
         groups_->clear();
-        groups_->addItem(tr("Group or material…"));
+        groups_->addItem("Group or material…");
         for (const std::string& name : mesh().groupNames()) {
             groups_->addItem(QString::fromStdString(name), "group:" + QString::fromStdString(name));
         }
         for (const std::string& name : mesh().materialNames()) {
-            groups_->addItem(tr("%1 (material)").arg(QString::fromStdString(name)),
+            groups_->addItem(QString("%1 (material)").arg(QString::fromStdString(name)),
                              "material:" + QString::fromStdString(name));
         }
     }
@@ -161,13 +161,13 @@ class PlacePanel : public QWidget {
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
         layout->addWidget(new FieldForm(document, preferences, placementFields(), &prices));
-        auto* preview = new QPushButton(tr("Preview roots"));
+        auto* preview = new QPushButton("Preview roots");
         preview->setObjectName("placePreview");
         preview->setCheckable(true);
-        preview->setToolTip(tr("Shows where roots will be placed and updates as you change settings"));
-        auto* place = new QPushButton(tr("Place hair"));
+        preview->setToolTip("Shows where roots will be placed and updates as you change settings");
+        auto* place = new QPushButton("Place hair");
         place->setObjectName("place");
-        place->setToolTip(tr("Grows strands on the whole scalp and replaces the existing ones"));
+        place->setToolTip("Grows strands on the whole scalp and replaces the existing ones");
         auto* row = new QHBoxLayout;
         row->addWidget(preview);
         row->addWidget(place);
@@ -177,21 +177,21 @@ class PlacePanel : public QWidget {
         density->setShown(1, QStringLiteral("%"), 0);
         density->setValue(100);
         density->setToolTip(
-            tr("Share of the follow hairs that the viewport draws, to work faster. Renders and exports have "
-               "all hairs"));
+            "Share of the follow hairs that the viewport draws, to work faster. Renders and exports have "
+            "all hairs");
         connect(density, &NumberBox::edited, this,
                 [this](double percent) { viewport_.setPreviewDensity(static_cast<float>(0.01 * percent)); });
         auto* form = new QFormLayout;
-        form->addRow(tr("Preview density"), density);
+        form->addRow("Preview density", density);
         layout->addLayout(form);
         count_->setObjectName("placeCount");
         count_->setWordWrap(true);
         count_->setProperty("role", "dim");
         layout->addWidget(count_);
         layout->addWidget(imageButton(
-            "densityImage", tr("Density from image…"),
-            tr("Reads the root density from a PNG at the UVs of the head's vertices. The next Place hair "
-               "uses it"),
+            "densityImage", "Density from image…",
+            "Reads the root density from a PNG at the UVs of the head's vertices. The next Place hair "
+            "uses it",
             [this](const MaskImage& image) -> Status {
                 if (!document_.groom().scalp)
                     return fail("there is no head to apply densities to", "open one");
@@ -238,11 +238,13 @@ class PlacePanel : public QWidget {
         const double density = static_cast<double>(groom.placement.densityPerCm2);
         const double strands = density > 0 ? density * area_cm2 : groom.placement.count;
         const auto whole = [](double number) { return static_cast<qlonglong>(std::llround(number)); };
-        QString text = tr("Places about %L1 strands on %L2 cm²").arg(whole(strands)).arg(whole(area_cm2));
-        if (area_cm2 > 0) text += tr(", %1 per cm²").arg(numberLocale().toString(strands / area_cm2, 'f', 1));
+        QString text =
+            QString("Places about %L1 strands on %L2 cm²").arg(whole(strands)).arg(whole(area_cm2));
+        if (area_cm2 > 0)
+            text += QString(", %1 per cm²").arg(numberLocale().toString(strands / area_cm2, 'f', 1));
         if (const std::uint32_t each = groom.interpolation.followPerGuide; each > 0)
             text +=
-                tr(". With %L1 follow hairs each: %L2 hairs, %3 per cm²")
+                QString(". With %L1 follow hairs each: %L2 hairs, %3 per cm²")
                     .arg(each)
                     .arg(whole(strands * (each + 1.0)))
                     .arg(numberLocale().toString(strands * (each + 1.0) / std::max(area_cm2, 1e-9), 'f', 0));
@@ -255,11 +257,11 @@ class PlacePanel : public QWidget {
         viewport_.redraw();
         if (!previewing_ || !document_.groom().scalp) return;
         tasks_.run<Roots>(
-            tr("Placing roots"),
+            "Placing roots",
             [groom = document_.groom()](TaskControl&) { return editing::placeRoots(groom, {}); },
             [this](Roots roots) {
                 roots_ = std::move(roots);
-                note_->setText(tr("%L1 roots").arg(roots_.size()));
+                note_->setText(QString("%L1 roots").arg(roots_.size()));
                 viewport_.redraw();
             });
     }
@@ -267,7 +269,7 @@ class PlacePanel : public QWidget {
     void place() {
         using Command = std::shared_ptr<std::unique_ptr<editing::Command>>;
         tasks_.run<Command>(
-            tr("Placing hair"),
+            "Placing hair",
             [groom = document_.groom()](TaskControl&) -> Result<Command> {
                 auto command = editing::place(groom, {}, {});
                 if (!command) return tl::unexpected(command.error());
@@ -277,11 +279,11 @@ class PlacePanel : public QWidget {
              selection = document_.groom().scalpSelection](const Command& command) {
                 const Groom& groom = document_.groom();
                 if (groom.offsets.version() != strandsBefore || groom.scalpSelection != selection) {
-                    messages_.warn(tr("The hair has changed in the meantime: place it again"));
+                    messages_.warn("The hair has changed in the meantime: place it again");
                     return;
                 }
                 document_.perform(std::move(*command));
-                messages_.say(tr("%L1 strands placed").arg(document_.groom().strandCount()));
+                messages_.say(QString("%L1 strands placed").arg(document_.groom().strandCount()));
             });
     }
 
@@ -299,15 +301,14 @@ class PlacePanel : public QWidget {
 
 PanelInfo scalpPanel() {
     return {"scalp",
-            QObject::tr("Scalp"),
+            QString("Scalp"),
             "scalp-paint",
             Qt::LeftDockWidgetArea,
             20,
             true,
             [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column({heading(QObject::tr("Where hair grows")),
-                                        new ScalpPanel(parts.document, parts.messages),
-                                        heading(QObject::tr("Place hair")),
+                return scrolled(column({heading("Where hair grows"),
+                                        new ScalpPanel(parts.document, parts.messages), heading("Place hair"),
                                         new PlacePanel(parts.document, parts.preferences, parts.prices,
                                                        parts.tasks, parts.messages, parts.viewport)}));
             }};

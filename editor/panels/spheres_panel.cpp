@@ -49,7 +49,7 @@ class SpheresPanel : public QWidget {
           bone_(new QComboBox),
           count_(new QSpinBox),
           fit_(new QLabel),
-          skin_(new QCheckBox(tr("Collide with the skin"))),
+          skin_(new QCheckBox("Collide with the skin")),
           skinFit_(new QLabel),
           skinNote_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
@@ -57,27 +57,26 @@ class SpheresPanel : public QWidget {
         layout->setSpacing(8);
         makeSkin(*layout);
         list_->setObjectName("spheres");
-        list_->setHeaderLabels({tr("Sphere"), tr("Radius"), tr("Bone")});
+        list_->setHeaderLabels({"Sphere", "Radius", "Bone"});
         list_->setRootIsDecorated(false);
         list_->setMinimumHeight(200);
         list_->header()->setStretchLastSection(false);
         list_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
         list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
-        list_->setToolTip(
-            tr("Spheres that hair collides with. Double-click a name, or press F2, to change it"));
+        list_->setToolTip("Spheres that hair collides with. Double-click a name, or press F2, to change it");
         list_->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
         for (const int column : {1, 2}) list_->setItemDelegateForColumn(column, new ShownOnly(list_));
         connect(list_, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { rename(*item); });
         layout->addWidget(list_, 1);
 
         auto* row = new QHBoxLayout;
-        row->addWidget(pushButton("sphereMirror", tr("Mirror"),
-                                  tr("Add a copy of the sphere on the other side of the head"), [this] {
+        row->addWidget(pushButton("sphereMirror", "Mirror",
+                                  "Add a copy of the sphere on the other side of the head", [this] {
                                       onSelected([](const editing::Model& model, std::size_t index) {
                                           return editing::mirrorSphere(model, index);
                                       });
                                   }));
-        row->addWidget(pushButton("sphereRemove", tr("Remove"), tr("Remove the sphere"), [this] {
+        row->addWidget(pushButton("sphereRemove", "Remove", "Remove the sphere", [this] {
             onSelected([](const editing::Model& model, std::size_t index) {
                 return editing::removeSphere(model, index);
             });
@@ -85,16 +84,16 @@ class SpheresPanel : public QWidget {
         layout->addLayout(row);
         makeNumbers(*layout);
 
-        layout->addWidget(heading(tr("Fit to head")));
+        layout->addWidget(heading("Fit to head"));
         auto* fitRow = new QHBoxLayout;
         count_->setObjectName("sphereCount");
         count_->setRange(1, 64);
         count_->setValue(12);
-        count_->setSuffix(tr(" spheres"));
-        count_->setToolTip(tr("Number of spheres. More spheres fit closer to the skin and cost more"));
-        auto* fit = pushButton("sphereFit", tr("Fit"),
-                               tr("Replaces the spheres with ones that cover head, neck and shoulders near "
-                                  "the hair. Spheres of colliding groups stay"),
+        count_->setSuffix(" spheres");
+        count_->setToolTip("Number of spheres. More spheres fit closer to the skin and cost more");
+        auto* fit = pushButton("sphereFit", "Fit",
+                               "Replaces the spheres with ones that cover head, neck and shoulders near "
+                               "the hair. Spheres of colliding groups stay",
                                [this] { this->fit(); });
         fitRow->addWidget(count_, 1);
         fitRow->addWidget(fit);
@@ -124,13 +123,12 @@ class SpheresPanel : public QWidget {
     const std::vector<CollisionSphere>& spheres() const { return document_.groom().spheres; }
 
     void makeSkin(QVBoxLayout& layout) {
-        layout.addWidget(heading(tr("Skin of the head")));
+        layout.addWidget(heading("Skin of the head"));
         skin_->setObjectName("bodyCheck");
-        skin_->setToolTip(
-            tr("Keeps hair out of the head's own skin, wherever it bends. The CPU simulates it"));
-        auto* again = pushButton("bodyFit", tr("Fit"),
-                                 tr("Measures the skin again, where the hair reaches. Do this after hair has "
-                                    "become longer or the head has changed"),
+        skin_->setToolTip("Keeps hair out of the head's own skin, wherever it bends. The CPU simulates it");
+        auto* again = pushButton("bodyFit", "Fit",
+                                 "Measures the skin again, where the hair reaches. Do this after hair has "
+                                 "become longer or the head has changed",
                                  [this] { fitSkin(); });
         auto* row = new QHBoxLayout;
         row->addWidget(skin_, 1);
@@ -160,7 +158,7 @@ class SpheresPanel : public QWidget {
         skin_->setEnabled(document_.groom().scalp != nullptr);
         sayWhatPasses();
         if (body && body == fitted_) return;  // says how well it fits
-        skinFit_->setText(body ? tr("%1 kB").arg(static_cast<double>(body->bytes()) / 1000, 0, 'f', 0)
+        skinFit_->setText(body ? QString("%1 kB").arg(static_cast<double>(body->bytes()) / 1000, 0, 'f', 0)
                                : QString());
     }
 
@@ -172,10 +170,10 @@ class SpheresPanel : public QWidget {
         skinNote_->setVisible(passes);
         skinNote_->setText(!passes ? QString()
                            : springs
-                               ? tr("Springs pass through the skin. Select rods as the strand model, or "
-                                    "fit spheres")
-                               : tr("This simulation method ignores the skin. Select the strand "
-                                    "engine, or fit spheres"));
+                               ? QString("Springs pass through the skin. Select rods as the strand model, or "
+                                         "fit spheres")
+                               : QString("This simulation method ignores the skin. Select the strand "
+                                         "engine, or fit spheres"));
     }
 
     void fitSkin() {
@@ -183,7 +181,7 @@ class SpheresPanel : public QWidget {
         const Groom& groom = document_.groom();
         if (!groom.scalp) return;
         tasks_.run<BakedBody>(
-            tr("Fitting the skin"),
+            "Fitting the skin",
             [groom, actor = player_.actor()](TaskControl&) { return fitBody(groom, actor.get()); },
             [this, scalp = groom.scalp](BakedBody baked) {
                 // Another head has other skin.
@@ -191,7 +189,7 @@ class SpheresPanel : public QWidget {
                 const auto length = [this](float metres) {
                     return lengthText(static_cast<double>(metres), preferences_);
                 };
-                QString words = tr("Worst gap %1, mean %2; largest bulge %3; %4 kB")
+                QString words = QString("Worst gap %1, mean %2, largest bulge %3; %4 kB")
                                     .arg(length(baked.fit.worstGap), length(baked.fit.meanGap),
                                          length(baked.fit.worstBulge))
                                     .arg(static_cast<double>(baked.field->bytes()) / 1000, 0, 'f', 0);
@@ -207,7 +205,7 @@ class SpheresPanel : public QWidget {
     void makeNumbers(QVBoxLayout& layout) {
         numbers_ = new OptionForm(preferences_);
         numbers_->addNumber(
-            "selectedRadius", tr("Radius"), tr("Radius of the selected sphere"), "m", 0.001, 0.5, false,
+            "selectedRadius", "Radius", "Radius of the selected sphere", "m", 0.001, 0.5, false,
             [this] { return selected() ? static_cast<double>(spheres()[*selected()].radius) : 0.001; },
             [this](double radius) {
                 onSelected([radius](const editing::Model& model, std::size_t index) {
@@ -215,14 +213,14 @@ class SpheresPanel : public QWidget {
                 });
             });
         bone_->setObjectName("sphereBone");
-        bone_->setToolTip(tr("Bone that carries the sphere. Without one it moves with the head"));
+        bone_->setToolTip("Bone that carries the sphere. Without one it moves with the head");
         connect(bone_, &QComboBox::activated, this, [this](int index) {
             const std::string bone = index == 0 ? std::string() : bone_->itemText(index).toStdString();
             onSelected([bone](const editing::Model& model, std::size_t at) {
                 return editing::attachSphere(model, at, bone);
             });
         });
-        numbers_->addWidget(tr("Bone"), bone_);
+        numbers_->addWidget("Bone", bone_);
         layout.addWidget(numbers_);
     }
 
@@ -236,7 +234,7 @@ class SpheresPanel : public QWidget {
     void onSelected(MakeCommand make) {
         const auto index = selected();
         if (!index) {
-            messages_.say(tr("Select a sphere in the list first"));
+            messages_.say("Select a sphere in the list first");
             return;
         }
         document_.perform(make(document_.editing().model(), *index));
@@ -280,7 +278,7 @@ class SpheresPanel : public QWidget {
         numbers_->setEnabled(selected().has_value());
         numbers_->refresh();
         bone_->clear();
-        bone_->addItem(tr("none"));
+        bone_->addItem("none");
         if (const auto& actor = player_.actor()) {
             for (const Bone& bone : actor->skeleton().bones())
                 bone_->addItem(QString::fromStdString(bone.name));
@@ -296,7 +294,7 @@ class SpheresPanel : public QWidget {
         const Groom& groom = document_.groom();
         if (!groom.scalp) return;
         tasks_.run<editing::SphereFit>(
-            tr("Fitting spheres"),
+            "Fitting spheres",
             [groom, count = count_->value(), actor = player_.actor()](TaskControl&) {
                 editing::SphereFitOptions options;
                 options.count = static_cast<std::uint32_t>(count);
@@ -310,7 +308,7 @@ class SpheresPanel : public QWidget {
                 const auto length = [this](float metres) {
                     return lengthText(static_cast<double>(metres), preferences_);
                 };
-                fit_->setText(tr("Worst gap %1, mean %2; largest bulge %3")
+                fit_->setText(QString("Worst gap %1, mean %2, largest bulge %3")
                                   .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
                 auto all = editing::spheresOfParts(spheres());
                 all.insert(all.end(), fit.spheres.begin(), fit.spheres.end());
@@ -340,7 +338,7 @@ class SpheresPanel : public QWidget {
 
 PanelInfo spheresPanel() {
     return {"spheres",
-            QObject::tr("Spheres"),
+            QString("Spheres"),
             "sphere",
             Qt::RightDockWidgetArea,
             80,

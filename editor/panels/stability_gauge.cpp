@@ -42,7 +42,7 @@ StabilityGauge::StabilityGauge(QtDocument& document, const Preferences& preferen
     bar_->setTextVisible(false);
     bar_->setFixedHeight(10);
     bar_->setToolTip(
-        tr("Margin to the longest stable time step. When empty, the simulation is about to explode"));
+        "Margin to the longest stable time step. When empty, the simulation is about to explode");
     words_->setWordWrap(true);
     words_->setProperty("role", "dim");
     layout->addWidget(bar_);
@@ -95,15 +95,14 @@ void StabilityGauge::update() {
     bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));
     words_->setText(!advice_.words.empty() ? QString::fromStdString(advice_.words)
                     : factor > 0
-                        ? tr("Stable: at %1 % of the longest stable step").arg(100 * factor, 0, 'f', 0)
-                        : tr("Stable at any step: all stiff forces are implicit"));
+                        ? QString("Stable: at %1 % of the longest stable step").arg(100 * factor, 0, 'f', 0)
+                        : QString("Stable at any step: all stiff forces are implicit"));
     for (const runtime::StableOffer& offer : advice_.offers) {
         auto* button = new QPushButton(QString::fromStdString(offer.words));
-        button->setToolTip(tr("Applies these settings. You can undo this"));
+        button->setToolTip("Applies these settings. You can undo this");
         offers_->addWidget(button);
         connect(button, &QPushButton::clicked, this, [this, settings = offer.settings] {
-            document_.perform(editing::setPhysics(document_.editing().model(), settings,
-                                                  tr("Stable settings").toStdString()));
+            document_.perform(editing::setPhysics(document_.editing().model(), settings, "Stable settings"));
         });
     }
 }

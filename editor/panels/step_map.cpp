@@ -17,7 +17,7 @@ constexpr int kGap_px = 6;
 constexpr double kDot_px = 4.5;
 
 QString milliseconds(double seconds) {
-    return QObject::tr("%1 ms").arg(1e3 * seconds, 0, 'g', 2);
+    return QString("%1 ms").arg(1e3 * seconds, 0, 'g', 2);
 }
 
 QString wordsOf(const StableStep& row) {
@@ -45,7 +45,7 @@ QString StepMap::words() const {
     for (const StableStep& row : rows_) {
         words << wordsOf(row);
         if (row.isOfGroom)
-            now = tr("now %1 at %2").arg(QString::fromStdString(row.method), milliseconds(step_));
+            now = QString("now %1 at %2").arg(QString::fromStdString(row.method), milliseconds(step_));
     }
     return words.join(", ") + "; " + now;
 }
@@ -97,7 +97,7 @@ void StepMap::paintEvent(QPaintEvent*) {
         top += rowHeight();
     }
     painter.setPen(colours.dimText);
-    painter.drawText(QRect(0, top, names, rowHeight()), Qt::AlignLeft | Qt::AlignVCenter, tr("substep"));
+    painter.drawText(QRect(0, top, names, rowHeight()), Qt::AlignLeft | Qt::AlignVCenter, "substep");
     for (const double tick : {1e-4, 1e-3, 1e-2}) {
         const QString label = milliseconds(tick);
         const double wide = fontMetrics().horizontalAdvance(label);
@@ -112,8 +112,8 @@ bool StepMap::event(QEvent* event) {
     const std::size_t at =
         std::min(static_cast<std::size_t>(std::max(help->pos().y() / rowHeight(), 0)), rows_.size() - 1);
     const StableStep& row = rows_[at];
-    QString words = tr("%1, by linear theory around the rest shape").arg(wordsOf(row));
-    if (row.isOfGroom) words += tr(", while the hair has %1").arg(milliseconds(step_));
+    QString words = QString("%1, by linear theory around the rest shape").arg(wordsOf(row));
+    if (row.isOfGroom) words += QString(", while the hair has %1").arg(milliseconds(step_));
     QToolTip::showText(help->globalPos(), words, this);
     return true;
 }

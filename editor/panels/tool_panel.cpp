@@ -18,9 +18,9 @@ QWidget* makePages(ToolBox& tools) {
         text->setWordWrap(true);
         return options ? column({heading(title), text, options}) : column({heading(title), text});
     };
-    pages->addWidget(page(QObject::tr("Navigate"),
-                          QObject::tr("Drag to orbit, drag with the middle button to pan, scroll to zoom. "
-                                      "Choose a tool on the left to edit."),
+    pages->addWidget(page("Navigate",
+                          "Drag to orbit, drag with the middle button to pan, scroll to zoom. "
+                          "Choose a tool on the left to edit.",
                           nullptr));
     QHash<Tool*, QWidget*> pageOf;
     for (const auto& tool : tools.all()) {
@@ -37,10 +37,9 @@ QWidget* makePages(ToolBox& tools) {
 }  // namespace
 
 PanelInfo toolPanel() {
-    return {
-        "tool", QObject::tr("Tool"), "brush", Qt::LeftDockWidgetArea, 10, true, [](const PanelParts& parts) {
-            return makePages(parts.tools);
-        }};
+    return {"tool", QString("Tool"), "brush", Qt::LeftDockWidgetArea, 10, true, [](const PanelParts& parts) {
+                return makePages(parts.tools);
+            }};
 }
 
 }  // namespace hairloom::editor

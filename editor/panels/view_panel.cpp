@@ -37,8 +37,8 @@ QToolButton* overlayButton(const Actions& actions) {
     button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     button->setPopupMode(QToolButton::InstantPopup);
     button->setToolTip(
-        QObject::tr("Overlays drawn on the viewport, such as roots, guides and strain. Some appear with "
-                    "their tool, for example density while you paint it"));
+        "Overlays drawn on the viewport, such as roots, guides and strain. Some appear with "
+        "their tool, for example density while you paint it");
     auto* menu = new QMenu(button);
     menu->setToolTipsVisible(true);
     button->setMenu(menu);
@@ -47,7 +47,7 @@ QToolButton* overlayButton(const Actions& actions) {
     menu->addActions(all);
     const auto say = [button, all] {
         const auto chosen = std::ranges::count_if(all, [](const QAction* one) { return one->isChecked(); });
-        button->setText(chosen == 0 ? QObject::tr("Overlays") : QObject::tr("Overlays: %1").arg(chosen));
+        button->setText(chosen == 0 ? QString("Overlays") : QString("Overlays: %1").arg(chosen));
     };
     for (QAction* action : all) QObject::connect(action, &QAction::toggled, button, say);
     say();
@@ -74,8 +74,8 @@ QWidget* makeParts(const Actions& actions, Viewport& viewport) {
     auto* layout = new QHBoxLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(14);
-    auto* hair = check("hair", QObject::tr("Hair"), QObject::tr("Show the hair"), true);
-    auto* head = check("head", QObject::tr("Head"), QObject::tr("Show the head"), true);
+    auto* hair = check("hair", "Hair", "Show the hair", true);
+    auto* head = check("head", "Head", "Show the head", true);
     QObject::connect(hair, &QCheckBox::toggled, &viewport, &Viewport::setHairShown);
     QObject::connect(head, &QCheckBox::toggled, &viewport, &Viewport::setHeadShown);
     layout->addWidget(hair);
@@ -101,22 +101,19 @@ QWidget* makeLight(Viewport& viewport) {
         layout->addRow(label, box);
         return box;
     };
-    auto* turn = number("lightTurn", QObject::tr("Light angle"),
-                        QObject::tr("Rotates the three lights around the head, in degrees. The Light tool "
-                                    "drags them in the viewport (Shift+V)"),
+    auto* turn = number("lightTurn", "Light angle",
+                        "Rotates the three lights around the head, in degrees. The Light tool "
+                        "drags them in the viewport (Shift+V)",
                         {-180, 180}, 0, [&viewport](float degrees) { viewport.setLightTurn(degrees); });
     turn->setShown(1, QStringLiteral("°"), 0);
     QObject::connect(&viewport, &Viewport::lightTurned, turn,
                      [turn](float degrees) { turn->setValue(static_cast<double>(degrees)); });
-    number("exposure", QObject::tr("Exposure"),
-           QObject::tr("Brightness of the image. 1.6 shows skin as it is"), {0.2, 6}, 1.6,
+    number("exposure", "Exposure", "Brightness of the image. 1.6 shows skin as it is", {0.2, 6}, 1.6,
            [&viewport](float factor) { viewport.setExposure(factor); });
-    number("lightScale", QObject::tr("Lights"),
-           QObject::tr("Strength of the key, fill and rim lights. 1 is the default"), {0, 3}, 1,
+    number("lightScale", "Lights", "Strength of the key, fill and rim lights. 1 is the default", {0, 3}, 1,
            [&viewport](float factor) { viewport.setLight(factor, viewport.environment()); });
-    number("environment", QObject::tr("Environment"),
-           QObject::tr("Strength of the environment light. 0 leaves only the lights"), {0, 3}, 1,
-           [&viewport](float factor) { viewport.setLight(viewport.lightScale(), factor); });
+    number("environment", "Environment", "Strength of the environment light. 0 leaves only the lights",
+           {0, 3}, 1, [&viewport](float factor) { viewport.setLight(viewport.lightScale(), factor); });
     return widget;
 }
 
@@ -126,12 +123,12 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(6);
     auto* row = new QHBoxLayout;
-    auto* choose = new QPushButton(QObject::tr("Choose…"));
+    auto* choose = new QPushButton("Choose…");
     choose->setObjectName("referenceChoose");
-    choose->setToolTip(QObject::tr("A reference image behind the head: PNG, JPEG or OpenEXR"));
-    auto* clear = new QPushButton(QObject::tr("Remove"));
+    choose->setToolTip("A reference image behind the head: PNG, JPEG or OpenEXR");
+    auto* clear = new QPushButton("Remove");
     clear->setObjectName("referenceClear");
-    clear->setToolTip(QObject::tr("Remove the reference image"));
+    clear->setToolTip("Remove the reference image");
     clear->setEnabled(false);
     row->addWidget(choose);
     row->addWidget(clear);
@@ -139,7 +136,7 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
     auto* opacity = new NumberBox(0, 1, false);
     opacity->setObjectName("referenceOpacity");
     opacity->setValue(1);
-    opacity->setToolTip(QObject::tr("Opacity of the reference image"));
+    opacity->setToolTip("Opacity of the reference image");
     opacity->setEnabled(false);
     layout->addWidget(opacity);
     const auto show = [&viewport, opacity, clear](const QImage& image) {
@@ -148,8 +145,8 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
         clear->setEnabled(!image.isNull());
     };
     QObject::connect(choose, &QPushButton::clicked, widget, [&messages, widget, show] {
-        const QString path = QFileDialog::getOpenFileName(widget, QObject::tr("Reference image"), {},
-                                                          QObject::tr("Images (*.png *.jpg *.jpeg *.exr)"));
+        const QString path =
+            QFileDialog::getOpenFileName(widget, "Reference image", {}, "Images (*.png *.jpg *.jpeg *.exr)");
         if (path.isEmpty()) return;
         const auto picture =
             readPicture(path.toStdString(), {PictureKind::Png, PictureKind::Jpeg, PictureKind::Exr});
@@ -170,15 +167,14 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
 PanelInfo viewPanel() {
     return {
         "view",
-        QObject::tr("View"),
+        QString("View"),
         "overlay",
         Qt::LeftDockWidgetArea,
         30,
         true,
         [](const PanelParts& parts) -> QWidget* {
-            return scrolled(column({heading(QObject::tr("Show")), makeParts(parts.actions, parts.viewport),
-                                    heading(QObject::tr("Light")), makeLight(parts.viewport),
-                                    heading(QObject::tr("Reference image")),
+            return scrolled(column({heading("Show"), makeParts(parts.actions, parts.viewport),
+                                    heading("Light"), makeLight(parts.viewport), heading("Reference image"),
                                     makeReference(parts.viewport, parts.messages)}));
         }};
 }

@@ -54,8 +54,7 @@ Result<DocumentFiles::Opened> DocumentFiles::readHead(const std::string& path,
     opened.groom.spheres = std::move(head->colliders.spheres);
     QStringList notes;
     if (!opened.groom.spheres.empty()) {
-        notes += QObject::tr("Hair will collide with %n separate spheres", nullptr,
-                             static_cast<int>(opened.groom.spheres.size()));
+        notes += QString("Spheres that hair will collide with: %1").arg(opened.groom.spheres.size());
     }
     if (!scene.warnings.empty()) notes += QString::fromStdString(scene.warnings.front());
     opened.note = notes.join("; ");
@@ -73,7 +72,7 @@ Result<DocumentFiles::Opened> DocumentFiles::openProject(const std::string& path
     const QString head = QString::fromStdString(groom->characterFile);
     if (!head.isEmpty() && !QFileInfo::exists(head)) {
         opened.missing = head;
-        opened.note = QObject::tr("the head file %1 was not found, and its clips are missing").arg(head);
+        opened.note = QString("the head file %1 was not found, and its clips are missing").arg(head);
     }
     opened.groom = std::move(*groom);
     return opened;
@@ -84,8 +83,7 @@ Result<DocumentFiles::Opened> DocumentFiles::openedStrands(Result<ImportedStrand
     Opened opened;
     opened.groom = std::move(imported->groom);
     if (!imported->dropped.empty()) {
-        opened.note =
-            QObject::tr("%n strands could not be used", nullptr, static_cast<int>(imported->dropped.size()));
+        opened.note = QString("Strands that could not be used: %1").arg(imported->dropped.size());
     } else if (!imported->warnings.empty()) {
         opened.note = QString::fromStdString(imported->warnings.front().what);
     }
@@ -96,10 +94,10 @@ void DocumentFiles::show(Opened opened, const QString& path, const QString& name
     document_.open(std::move(opened.groom), path, name);
     player_.setActor(std::move(opened.actor));
     const Groom& groom = document_.groom();
-    const QString what = groom.strandCount() > 0 ? QObject::tr("%L1 strands").arg(groom.strandCount())
-                                                 : QObject::tr("a head. Next, paint its scalp");
-    messages_.say(opened.note.isEmpty() ? QObject::tr("%1: %2").arg(name, what)
-                                        : QObject::tr("%1: %2. %3").arg(name, what, opened.note));
+    const QString what = groom.strandCount() > 0 ? QString("%L1 strands").arg(groom.strandCount())
+                                                 : QString("a head. Next, paint its scalp");
+    messages_.say(opened.note.isEmpty() ? QString("%1: %2").arg(name, what)
+                                        : QString("%1: %2. %3").arg(name, what, opened.note));
 }
 
 namespace {
@@ -131,21 +129,21 @@ FileKind kindOf(const QString& path) {
 QString openFilter() {
     const QString project = "*.hairloom", heads = patternsOf(meshFormats()),
                   hair = patternsOf(strandFormats());
-    return QObject::tr(
+    return QString(
                "All supported files (%1 %2 %3);;Hairloom projects (%1);;Heads (%2);;Hair (%3);;All files (*)")
         .arg(project, heads, hair);
 }
 
 QString strandFilter() {
-    return QObject::tr("Hair (%1);;All files (*)").arg(patternsOf(strandFormats()));
+    return QString("Hair (%1);;All files (*)").arg(patternsOf(strandFormats()));
 }
 
 QString blendFilter() {
-    return QObject::tr("Hairstyles and hair (*.hairloom %1);;All files (*)").arg(patternsOf(strandFormats()));
+    return QString("Hairstyles and hair (*.hairloom %1);;All files (*)").arg(patternsOf(strandFormats()));
 }
 
 QString headFilter() {
-    return QObject::tr("Heads (%1);;All files (*)").arg(patternsOf(meshFormats()));
+    return QString("Heads (%1);;All files (*)").arg(patternsOf(meshFormats()));
 }
 
 std::filesystem::path samplesFolder() {
@@ -165,14 +163,14 @@ void DocumentFiles::reload() {
 bool DocumentFiles::mayShow(quint64 before, const QString& name) {
     const bool changed = document_.isModified() && document_.editing().state() != before;
     if (!changed || !mayReplace_ || mayReplace_()) return true;
-    messages_.say(QObject::tr("%1 was not opened").arg(name));
+    messages_.say(QString("%1 was not opened").arg(name));
     return false;
 }
 
 void DocumentFiles::openFile(const QString& path, Opening opening, std::function<void()> done) {
     const QString name = QFileInfo(path).fileName();
     tasks_.run<std::pair<Opened, FileKind>>(
-        QObject::tr("Opening %1").arg(name),
+        QString("Opening %1").arg(name),
         [path](TaskControl&) -> Result<std::pair<Opened, FileKind>> {
             const FileKind kind = kindOf(path);
             const std::string file = path.toStdString();
@@ -201,7 +199,7 @@ void DocumentFiles::openFile(const QString& path, Opening opening, std::function
 void DocumentFiles::openHead(const QString& path, const HeadImportOptions& options) {
     const QString name = QFileInfo(path).fileName();
     tasks_.run<Opened>(
-        QObject::tr("Opening %1").arg(name),
+        QString("Opening %1").arg(name),
         [file = path.toStdString(), options](TaskControl&) { return readHead(file, options); },
         [this, path, name, before = document_.editing().state()](Opened opened) {
             if (!mayShow(before, name)) return;
@@ -213,7 +211,7 @@ void DocumentFiles::openHead(const QString& path, const HeadImportOptions& optio
 void DocumentFiles::findHead(const QString& path) {
     const QString name = QFileInfo(path).fileName();
     tasks_.run<Opened>(
-        QObject::tr("Reading %1").arg(name),
+        QString("Reading %1").arg(name),
         [file = path.toStdString(), groom = document_.groom()](TaskControl&) -> Result<Opened> {
             Opened opened;
             opened.groom = groom;
@@ -227,9 +225,9 @@ void DocumentFiles::findHead(const QString& path) {
             Groom groom = document_.groom();
             groom.characterFile = opened.groom.characterFile;
             document_.perform(editing::replaceGroom(document_.editing().model(), std::move(groom),
-                                                    QObject::tr("Find %1").arg(name).toStdString()));
+                                                    QString("Find %1").arg(name).toStdString()));
             player_.setActor(std::move(opened.actor));
-            messages_.say(QObject::tr("%1 is the head file again. Save to keep it").arg(name));
+            messages_.say(QString("%1 is the head file again. Save to keep it").arg(name));
         });
 }
 
@@ -240,7 +238,7 @@ void DocumentFiles::openSample(const QString& name) {
         return;
     }
     tasks_.run<Opened>(
-        QObject::tr("Making the sample “%1”").arg(name),
+        QString("Making the sample “%1”").arg(name),
         [samples, name](TaskControl&) -> Result<Opened> {
             auto groom = makeSample(samples, name.toStdString());
             if (!groom) return tl::unexpected(groom.error());
@@ -257,7 +255,7 @@ void DocumentFiles::openSample(const QString& name) {
 void DocumentFiles::importStrands(const QString& path, const StrandImportOptions& options) {
     const QString name = QFileInfo(path).fileName();
     tasks_.run<Opened>(
-        QObject::tr("Importing %1").arg(name),
+        QString("Importing %1").arg(name),
         [path, options, groom = document_.groom()](TaskControl&) -> Result<Opened> {
             return openedStrands(importHairFor(groom, path.toStdString(), options));
         },
@@ -267,16 +265,15 @@ void DocumentFiles::importStrands(const QString& path, const StrandImportOptions
             if (!groom.scalp) {
                 show(std::move(opened), {}, name);
             } else if (groom.scalp != head || groom.scalpSelection != selection) {
-                messages_.warn(QObject::tr("The scalp has changed in the meantime: import the hair again"));
+                messages_.warn("The scalp has changed in the meantime: import the hair again");
                 return;
             } else {
                 replaceHair(groom, opened.groom);
                 document_.perform(editing::replaceGroom(document_.editing().model(), std::move(groom),
-                                                        QObject::tr("Import %1").arg(name).toStdString(),
+                                                        QString("Import %1").arg(name).toStdString(),
                                                         importRecord(path.toStdString(), options)));
-                messages_.say(QObject::tr("%1: %L2 strands on the head")
-                                  .arg(name)
-                                  .arg(document_.groom().strandCount()));
+                messages_.say(
+                    QString("%1: %L2 strands on the head").arg(name).arg(document_.groom().strandCount()));
             }
             preferences_.addRecentFile(path);
         });
@@ -286,7 +283,7 @@ void DocumentFiles::transferTo(const QString& path) {
     const QString name = QFileInfo(path).fileName();
     const std::string file = path.toStdString();
     tasks_.run<Opened>(
-        QObject::tr("Transferring to %1").arg(name),
+        QString("Transferring to %1").arg(name),
         [file, groom = document_.groom()](TaskControl& control) -> Result<Opened> {
             Opened opened;
             opened.groom = groom;
@@ -298,7 +295,7 @@ void DocumentFiles::transferTo(const QString& path) {
             if (!done) return tl::unexpected(done.error());
             opened.record = transferRecord(file, done->taken);
             opened.farthest = *std::ranges::max_element(done->transfer.distances);
-            if (done->transfer.baked) opened.note = QObject::tr(". Operators were baked");
+            if (done->transfer.baked) opened.note = QString(". Operators were baked");
             for (const std::string& word : done->words) opened.note += "; " + QString::fromStdString(word);
             return opened;
         },
@@ -306,12 +303,12 @@ void DocumentFiles::transferTo(const QString& path) {
             const Groom& now = document_.groom();
             if (now.scalp != before.scalp || now.pointAttributes.version(attribute::kPosition) !=
                                                  before.pointAttributes.version(attribute::kPosition))
-                return messages_.warn(QObject::tr("The hair has changed in the meantime: transfer it again"));
+                return messages_.warn("The hair has changed in the meantime: transfer it again");
             document_.perform(editing::replaceGroom(document_.editing().model(), std::move(opened.groom),
-                                                    QObject::tr("Transfer to %1").arg(name).toStdString(),
+                                                    QString("Transfer to %1").arg(name).toStdString(),
                                                     opened.record));
             messages_.say(
-                QObject::tr("On %1: the farthest root was %2 off the new head%3")
+                QString("On %1: the farthest root was %2 off the new head%3")
                     .arg(name, lengthText(static_cast<double>(opened.farthest), preferences_), opened.note));
             preferences_.addRecentFile(QString::fromStdString(file));
         });
@@ -322,7 +319,7 @@ void DocumentFiles::blendWith(const QString& path) {
     const BlendSettings settings;
     // The command is made for the hair as it is now.
     tasks_.run<std::shared_ptr<HairBlend>>(
-        QObject::tr("Blending with %1").arg(name),
+        QString("Blending with %1").arg(name),
         [file = path.toStdString(), settings,
          groom = document_.groom()](TaskControl&) -> Result<std::shared_ptr<HairBlend>> {
             auto blend = blendWithFile(editing::Model{groom, {}}, file, settings);
@@ -332,13 +329,13 @@ void DocumentFiles::blendWith(const QString& path) {
         [this, path, name, settings,
          before = document_.editing().state()](const std::shared_ptr<HairBlend>& blend) {
             if (document_.editing().state() != before)
-                return messages_.warn(QObject::tr("The hair has changed in the meantime: blend it again"));
+                return messages_.warn("The hair has changed in the meantime: blend it again");
             const std::size_t strands = document_.groom().strandCount();
             if (!blend->command)
-                return messages_.say(QObject::tr("%1 has the same shape, so nothing changed").arg(name));
+                return messages_.say(QString("%1 has the same shape, so nothing changed").arg(name));
             document_.perform(std::move(blend->command));
-            messages_.say(QObject::tr("Blended with %1 by %2: %L3 of %L4 strands. The sculpt on top of the "
-                                      "operators has the weight and the mask")
+            messages_.say(QString("Blended with %1 by %2: %L3 of %L4 strands. The sculpt on top of the "
+                                  "operators has the weight and the mask")
                               .arg(name)
                               .arg(static_cast<double>(settings.weight))
                               .arg(blend->shape.matched)
@@ -350,7 +347,7 @@ void DocumentFiles::blendWith(const QString& path) {
 void DocumentFiles::openRecovered(const RecoveryCopy& copy) {
     const QString name = QString::fromStdString(copy.of.name);
     tasks_.run<Opened>(
-        QObject::tr("Recovering %1").arg(name),
+        QString("Recovering %1").arg(name),
         [file = copy.file](TaskControl&) { return openProject(file.string()); },
         [this, copy, name, before = document_.editing().state()](Opened opened) {
             if (!mayShow(before, name)) return;
@@ -361,7 +358,7 @@ void DocumentFiles::openRecovered(const RecoveryCopy& copy) {
             document_.restore(std::move(opened.groom), QString::fromStdString(copy.of.project.string()),
                               name);
             player_.setActor(std::move(opened.actor));
-            messages_.say(QObject::tr("%1 is recovered. Save it to keep it").arg(name));
+            messages_.say(QString("%1 is recovered. Save it to keep it").arg(name));
             recovered_ = copy;
         });
 }

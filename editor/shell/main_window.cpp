@@ -79,7 +79,7 @@ MainWindow::MainWindow()
     setTabPosition(Qt::RightDockWidgetArea, QTabWidget::East);
     resize(QSize(1440, 900).boundedTo(screen()->availableSize()));
     // Inputs and what others write are kept as on the command line.
-    if (!writeRules().keepInputs) setWriteRules({false, true, tr("give another name").toStdString()});
+    if (!writeRules().keepInputs) setWriteRules({false, true, "give another name"});
 
     viewport_ = new Viewport(document_, preferences_);
     tools_.fill({document_, preferences_, messages_, player_, *viewport_});
@@ -200,7 +200,7 @@ void MainWindow::sizeColumns() {
 }
 
 void MainWindow::makeBars() {
-    auto* main = addToolBar(tr("Main"));
+    auto* main = addToolBar("Main");
     main->setObjectName("bar:main");
     main->setIconSize({20, 20});
     main->setMovable(false);
@@ -214,7 +214,7 @@ void MainWindow::makeBars() {
     for (const char* id : {"view.frame", "view.turntable", "view.orthographic"})
         main->addAction(&actions_->get(id));
 
-    auto* tools = new QToolBar(tr("Tools"));
+    auto* tools = new QToolBar("Tools");
     tools->setObjectName("bar:tools");
     tools->setMovable(false);
     addToolBar(Qt::LeftToolBarArea, tools);
@@ -233,7 +233,7 @@ void MainWindow::resetLayout() {
 }
 
 void MainWindow::showTitle() {
-    setWindowTitle(tr("%1[*] – Hairloom").arg(document_.title()));
+    setWindowTitle(QString("%1[*] – Hairloom").arg(document_.title()));
     setWindowModified(document_.isModified());
 }
 

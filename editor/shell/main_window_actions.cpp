@@ -45,7 +45,7 @@ Box3f boundsOfSelection(const Groom& groom) {
 void MainWindow::frameSelection() {
     const Box3f box = boundsOfSelection(document_.groom());
     if (box.isEmpty()) {
-        messages_.say(QObject::tr("Nothing is selected"));
+        messages_.say("Nothing is selected");
         return;
     }
     Viewport& viewport = *viewport_;
@@ -56,120 +56,126 @@ void MainWindow::frameSelection() {
 }
 
 void MainWindow::addFileActions() {
-    QMenu* menu = menuBar()->addMenu(tr("&File"));
+    QMenu* menu = menuBar()->addMenu("&File");
     menu->setToolTipsVisible(true);
     const auto add = [&](const ActionInfo& info, std::function<void()> run) {
         menu->addAction(&actions_->add(info, std::move(run)));
     };
-    add({"file.new", tr("&New"), "new", tr("Close the document and show the start page"), QKeySequence::New},
+    add({"file.new", QString("&New"), "new", QString("Close the document and show the start page"),
+         QKeySequence::New},
         [this] { newDocument(); });
-    add({"file.open", tr("&Open…"), "open", tr("Open a project, a head or hair"), QKeySequence::Open},
+    add({"file.open", QString("&Open…"), "open", QString("Open a project, a head or hair"),
+         QKeySequence::Open},
         [this] { chooseAndOpen(); });
-    add({"file.openHead", tr("Open &head…"), "",
-         tr("Check the size, unit, axis and groups of a head before you open it"),
+    add({"file.openHead", QString("Open &head…"), "",
+         QString("Check the size, unit, axis and groups of a head before you open it"),
          QKeySequence("Ctrl+Shift+O")},
         [this] {
-            const QString path = QFileDialog::getOpenFileName(this, tr("Open a head"), {}, headFilter());
+            const QString path = QFileDialog::getOpenFileName(this, "Open a head", {}, headFilter());
             if (!path.isEmpty()) showHeadDialog(path);
         });
-    recentMenu_ = menu->addMenu(icon("history"), tr("Open &recent"));
+    recentMenu_ = menu->addMenu(icon("history"), "Open &recent");
     recentMenu_->setToolTipsVisible(true);
     menu->addSeparator();
-    add({"file.save", tr("&Save"), "save", tr("Save the project"), QKeySequence::Save}, [this] { save(); });
-    add({"file.saveAs", tr("Save &as…"), "", tr("Save the project to another file"),
+    add({"file.save", QString("&Save"), "save", QString("Save the project"), QKeySequence::Save},
+        [this] { save(); });
+    add({"file.saveAs", QString("Save &as…"), "", QString("Save the project to another file"),
          QKeySequence("Ctrl+Shift+S")},
         [this] { saveAs(); });
     add({"file.revert",
-         tr("Re&vert to saved"),
+         QString("Re&vert to saved"),
          "",
-         tr("Reload the saved project. Asks before it discards changes"),
+         QString("Reload the saved project. Asks before it discards changes"),
          {}},
         [this] {
             if (mayLeaveDocument()) reload();
         });
     add({"file.saveScript",
-         tr("Save s&cript…"),
+         QString("Save s&cript…"),
          "",
-         tr("Save your steps since the document was opened, for hairloom-cli groom to replay"),
+         QString("Save your steps since the document was opened, for hairloom-cli groom to replay"),
          {}},
         [this] { chooseAndSaveScript(); });
     menu->addSeparator();
-    add({"file.import", tr("&Import hair…"), "import",
-         tr("Preview strands from another program and import them onto the head"), QKeySequence("Ctrl+I")},
+    add({"file.import", QString("&Import hair…"), "import",
+         QString("Preview strands from another program and import them onto the head"),
+         QKeySequence("Ctrl+I")},
         [this] { chooseAndImport(); });
     add({"file.transfer",
-         tr("&Transfer to another head…"),
+         QString("&Transfer to another head…"),
          "",
-         tr("Fit the hairstyle to the size and position of another head"),
+         QString("Fit the hairstyle to the size and position of another head"),
          {}},
         [this] {
-            const QString path =
-                QFileDialog::getOpenFileName(this, tr("Transfer to a head"), {}, headFilter());
+            const QString path = QFileDialog::getOpenFileName(this, "Transfer to a head", {}, headFilter());
             if (!path.isEmpty()) files_.transferTo(path);
         });
     add({"file.blend",
-         tr("&Blend with hair…"),
+         QString("&Blend with hair…"),
          "",
-         tr("Blend the shape of the hair with another hairstyle on the same head. The blend is a Sculpt "
-            "operator: change its weight and mask to adjust it"),
+         QString("Blend the shape of the hair with another hairstyle on the same head. The blend is a Sculpt "
+                 "operator: change its weight and mask to adjust it"),
          {}},
         [this] {
-            const QString path = QFileDialog::getOpenFileName(this, tr("Blend with hair"), {}, blendFilter());
+            const QString path = QFileDialog::getOpenFileName(this, "Blend with hair", {}, blendFilter());
             if (!path.isEmpty()) files_.blendWith(path);
         });
-    add({"file.export", tr("&Export hair…"), "export",
-         tr("Export the hair for a game, then read it back and compare"), QKeySequence("Ctrl+E")},
+    add({"file.export", QString("&Export hair…"), "export",
+         QString("Export the hair for a game, then read it back and compare"), QKeySequence("Ctrl+E")},
         [this] {
             ExportDialog dialog(document_, preferences_, tasks_, messages_, player_, this);
             if (dialog.exec() == ExportDialog::kWantsClustering) chooseGuidesByClustering();
         });
-    add({"file.render", tr("Re&nder…"), "",
-         tr("Render the view, a turntable or the simulation to images or an animation"), QKeySequence("F12")},
+    add({"file.render", QString("Re&nder…"), "",
+         QString("Render the view, a turntable or the simulation to images or an animation"),
+         QKeySequence("F12")},
         [this] {
             RenderDialog dialog(*viewport_, player_, tasks_, messages_,
                                 QFileInfo(document_.title()).completeBaseName(), this);
             dialog.exec();
         });
     menu->addSeparator();
-    add({"file.quit", tr("&Quit"), "", tr("Quit Hairloom"), QKeySequence("Ctrl+Q")}, [this] { close(); });
+    add({"file.quit", QString("&Quit"), "", QString("Quit Hairloom"), QKeySequence("Ctrl+Q")},
+        [this] { close(); });
 }
 
 void MainWindow::addEditActions() {
-    QMenu* menu = menuBar()->addMenu(tr("&Edit"));
+    QMenu* menu = menuBar()->addMenu("&Edit");
     menu->setToolTipsVisible(true);
     const auto add = [&](const ActionInfo& info, std::function<void()> run) -> QAction& {
         QAction& action = actions_->add(info, std::move(run));
         menu->addAction(&action);
         return action;
     };
-    QAction& undo = add({"edit.undo", tr("&Undo"), "undo", tr("Undo the last step"), QKeySequence("Ctrl+Z")},
-                        [this] { document_.undo(); });
-    QAction& redo =
-        add({"edit.redo", tr("&Redo"), "redo", tr("Redo the last undone step"), QKeySequence("Ctrl+Shift+Z")},
-            [this] { document_.redo(); });
+    QAction& undo =
+        add({"edit.undo", QString("&Undo"), "undo", QString("Undo the last step"), QKeySequence("Ctrl+Z")},
+            [this] { document_.undo(); });
+    QAction& redo = add({"edit.redo", QString("&Redo"), "redo", QString("Redo the last undone step"),
+                         QKeySequence("Ctrl+Shift+Z")},
+                        [this] { document_.redo(); });
     const auto enable = [this, &undo, &redo] {
         const QtDocument& document = document_;
         undo.setEnabled(document.doneSteps() > 0);
         redo.setEnabled(document.doneSteps() < document.stepCount());
-        undo.setText(undo.isEnabled() ? tr("&Undo %1").arg(document.stepName(document.doneSteps() - 1))
-                                      : tr("&Undo"));
-        redo.setText(redo.isEnabled() ? tr("&Redo %1").arg(document.stepName(document.doneSteps()))
-                                      : tr("&Redo"));
+        undo.setText(undo.isEnabled() ? QString("&Undo %1").arg(document.stepName(document.doneSteps() - 1))
+                                      : QString("&Undo"));
+        redo.setText(redo.isEnabled() ? QString("&Redo %1").arg(document.stepName(document.doneSteps()))
+                                      : QString("&Redo"));
     };
     connect(&document_, &QtDocument::historyChanged, this, enable);
     connect(&document_, &QtDocument::replaced, this, enable);
     enable();
     menu->addSeparator();
-    add({"edit.preferences", tr("&Preferences…"), "settings",
-         tr("Theme, units, navigation, pen, autosave, undo memory"), QKeySequence("Ctrl+,")},
+    add({"edit.preferences", QString("&Preferences…"), "settings",
+         QString("Theme, units, navigation, pen, autosave, undo memory"), QKeySequence("Ctrl+,")},
         [this] {
             PreferencesDialog dialog(preferences_, this);
             dialog.exec();
         });
     add({"edit.shortcuts",
-         tr("&Keyboard shortcuts…"),
+         QString("&Keyboard shortcuts…"),
          "keyboard",
-         tr("Show and change keyboard shortcuts"),
+         QString("Show and change keyboard shortcuts"),
          {}},
         [this] {
             ShortcutDialog dialog(*actions_, this);
@@ -178,50 +184,51 @@ void MainWindow::addEditActions() {
 }
 
 void MainWindow::addViewActions() {
-    QMenu* menu = menuBar()->addMenu(tr("&View"));
+    QMenu* menu = menuBar()->addMenu("&View");
     menu->setToolTipsVisible(true);
     const auto add = [&](const ActionInfo& info, std::function<void()> run) -> QAction& {
         QAction& action = actions_->add(info, std::move(run));
         menu->addAction(&action);
         return action;
     };
-    add({"view.frame", tr("&Frame all"), "frame", tr("Frame all hair"), QKeySequence("Home")},
+    add({"view.frame", QString("&Frame all"), "frame", QString("Frame all hair"), QKeySequence("Home")},
         [this] { viewport_->frameAll(); });
-    add({"view.frameSelection", tr("Frame s&election"), "",
-         tr("Frame the selected strands, or the selected part of the head if no strand is selected"),
+    add({"view.frameSelection", QString("Frame s&election"), "",
+         QString("Frame the selected strands, or the selected part of the head if no strand is selected"),
          QKeySequence("Shift+Home")},
         [this] { frameSelection(); });
     const struct {
         const char *id, *text, *key;
         render::View view;
     } kViews[] = {
-        {"view.front", QT_TR_NOOP("From the &front"), "1", render::View::Front},
-        {"view.back", QT_TR_NOOP("From the &back"), "Ctrl+1", render::View::Back},
-        {"view.left", QT_TR_NOOP("From the &left"), "3", render::View::Left},
-        {"view.right", QT_TR_NOOP("From the &right"), "Ctrl+3", render::View::Right},
-        {"view.top", QT_TR_NOOP("From &above"), "7", render::View::Top},
-        {"view.bottom", QT_TR_NOOP("From bel&ow"), "Ctrl+7", render::View::Bottom},
-        {"view.threeQuarter", QT_TR_NOOP("Three &quarters"), "0", render::View::ThreeQuarter},
+        {"view.front", "From the &front", "1", render::View::Front},
+        {"view.back", "From the &back", "Ctrl+1", render::View::Back},
+        {"view.left", "From the &left", "3", render::View::Left},
+        {"view.right", "From the &right", "Ctrl+3", render::View::Right},
+        {"view.top", "From &above", "7", render::View::Top},
+        {"view.bottom", "From bel&ow", "Ctrl+7", render::View::Bottom},
+        {"view.threeQuarter", "Three &quarters", "0", render::View::ThreeQuarter},
     };
     for (const auto& view : kViews) {
-        add({view.id, tr(view.text), "", tr("View the head from this side"), QKeySequence(view.key)},
+        add({view.id, QString(view.text), "", QString("View the head from this side"),
+             QKeySequence(view.key)},
             [this, at = view.view] { viewport_->look(at); });
     }
     menu->addSeparator();
-    QAction& ortho = add({"view.orthographic", tr("&Orthographic"), "ortho",
-                          tr("Switch between perspective and orthographic"), QKeySequence("5"), true},
+    QAction& ortho = add({"view.orthographic", QString("&Orthographic"), "ortho",
+                          QString("Switch between perspective and orthographic"), QKeySequence("5"), true},
                          [] {});
     connect(&ortho, &QAction::toggled, viewport_, &Viewport::setOrthographic);
-    QAction& turntable = add({"view.turntable", tr("&Turntable"), "turntable",
-                              tr("Rotate the view around the head"), QKeySequence("Shift+T"), true},
+    QAction& turntable = add({"view.turntable", QString("&Turntable"), "turntable",
+                              QString("Rotate the view around the head"), QKeySequence("Shift+T"), true},
                              [] {});
     connect(&turntable, &QAction::toggled, viewport_, &Viewport::setTurntable);
     menu->addSeparator();
     addOverlayActions(*menu);
-    panelMenu_ = menu->addMenu(tr("&Panels"));
-    add({"view.resetLayout", tr("Reset la&yout"), "", tr("Restore the default panel layout"), {}},
+    panelMenu_ = menu->addMenu("&Panels");
+    add({"view.resetLayout", QString("Reset la&yout"), "", QString("Restore the default panel layout"), {}},
         [this] { resetLayout(); });
-    add({"view.theme", tr("Light or &dark"), "theme", tr("Switch between the two themes"),
+    add({"view.theme", QString("Light or &dark"), "theme", QString("Switch between the two themes"),
          QKeySequence("Ctrl+T")},
         [this] {
             Preferences& preferences = preferences_;
@@ -230,11 +237,11 @@ void MainWindow::addViewActions() {
 }
 
 void MainWindow::addOverlayActions(QMenu& menu) {
-    QMenu* overlays = menu.addMenu(icon("overlay"), tr("Ov&erlays"));
+    QMenu* overlays = menu.addMenu(icon("overlay"), "Ov&erlays");
     overlays->setToolTipsVisible(true);
     for (const OverlayMode& mode : overlayModes()) {
-        QAction& action =
-            actions_->add({QString("overlay.") + mode.id, tr(mode.title), "", tr(mode.tip), {}, true}, [] {});
+        QAction& action = actions_->add(
+            {QString("overlay.") + mode.id, QString(mode.title), "", QString(mode.tip), {}, true}, [] {});
         connect(&action, &QAction::toggled, viewport_, [this] { viewport_->redraw(); });
         overlays->addAction(&action);
     }
@@ -251,32 +258,32 @@ void MainWindow::drawOverlays(Marks& marks) const {
 }
 
 void MainWindow::addPlayActions() {
-    QMenu* menu = menuBar()->addMenu(tr("&Simulation"));
+    QMenu* menu = menuBar()->addMenu("&Simulation");
     menu->setToolTipsVisible(true);
     const auto add = [&](const ActionInfo& info, std::function<void()> run) -> QAction& {
         QAction& action = actions_->add(info, std::move(run));
         menu->addAction(&action);
         return action;
     };
-    QAction& toggle =
-        add({"play.toggle", tr("&Play"), "play", tr("Play or pause the simulation"), QKeySequence("Space")},
-            [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
-    add({"play.step", tr("&Step"), "step", tr("Advance the simulation by one frame of 1/60 s"),
+    QAction& toggle = add({"play.toggle", QString("&Play"), "play", QString("Play or pause the simulation"),
+                           QKeySequence("Space")},
+                          [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
+    add({"play.step", QString("&Step"), "step", QString("Advance the simulation by one frame of 1/60 s"),
          QKeySequence(".")},
         [this] { player_.step(); });
-    add({"play.reset", tr("&Reset to rest"), "reset", tr("Reset the hair to its authored shape"),
+    add({"play.reset", QString("&Reset to rest"), "reset", QString("Reset the hair to its authored shape"),
          QKeySequence("Shift+Space")},
         [this] { player_.reset(); });
     add({"play.take",
-         tr("Set as rest s&hape"),
+         QString("Set as rest s&hape"),
          "grow",
-         tr("Makes the current hair the authored shape on the head at rest. It keeps this shape under "
-            "gravity"),
+         QString("Makes the current hair the authored shape on the head at rest. It keeps this shape under "
+                 "gravity"),
          {}},
         [this] { takeShape(); });
     connect(&player_, &Player::stateChanged, this, [this, &toggle] {
         toggle.setIcon(icon(player_.isPlaying() ? "pause" : "play"));
-        toggle.setText(player_.isPlaying() ? tr("&Pause") : tr("&Play"));
+        toggle.setText(player_.isPlaying() ? QString("&Pause") : QString("&Play"));
     });
 }
 
@@ -284,11 +291,11 @@ void MainWindow::takeShape() {
     player_.pause();
     const auto frame = player_.frame();
     if (!frame) {
-        messages_.say(tr("Play the simulation first: its current shape becomes the rest shape"));
+        messages_.say("Play the simulation first: its current shape becomes the rest shape");
         return;
     }
     if (frame->pose->positions_ws.size() != document_.groom().pointCount()) {
-        messages_.warn(tr("This frame is only on the GPU. Set the simulation to CPU (Edit ▸ Preferences)"));
+        messages_.warn("This frame is only on the GPU. Set the simulation to CPU (Edit ▸ Preferences)");
         return;
     }
     const std::vector<Vec3f> shape =
@@ -300,11 +307,11 @@ void MainWindow::takeShape() {
     }
     player_.reset();
     document_.perform(std::move(*command));
-    messages_.say(tr("The current shape is now the rest shape"));
+    messages_.say("The current shape is now the rest shape");
 }
 
 void MainWindow::addToolActions() {
-    QMenu* menu = menuBar()->addMenu(tr("&Tools"));
+    QMenu* menu = menuBar()->addMenu("&Tools");
     menu->setToolTipsVisible(true);
     toolGroup_->setExclusive(true);
     const auto add = [&](const ActionInfo& info, Tool* tool) {
@@ -314,8 +321,9 @@ void MainWindow::addToolActions() {
         connect(&tools_, &ToolBox::activeChanged, &action,
                 [&action, tool](Tool* active) { action.setChecked(active == tool); });
     };
-    add({"tool.view", tr("Move the view"), "navigate",
-         tr("Drag to orbit, drag with the middle button to pan, scroll to zoom"), QKeySequence("Q"), true},
+    add({"tool.view", QString("Move the view"), "navigate",
+         QString("Drag to orbit, drag with the middle button to pan, scroll to zoom"), QKeySequence("Q"),
+         true},
         nullptr);
     for (const auto& tool : tools_.all()) {
         const ToolInfo& info = tool->info();
@@ -325,24 +333,26 @@ void MainWindow::addToolActions() {
 }
 
 void MainWindow::addHelpActions() {
-    QMenu* menu = menuBar()->addMenu(tr("&Help"));
+    QMenu* menu = menuBar()->addMenu("&Help");
     menu->setToolTipsVisible(true);
+    menu->addAction(&actions_->add({"help.manual", QString("&Manual"), "",
+                                    QString("Open the manual at the section on the panel that has the focus"),
+                                    QKeySequence::HelpContents},
+                                   [this] { showManual(); }));
     menu->addAction(&actions_->add(
-        {"help.manual", tr("&Manual"), "",
-         tr("Open the manual at the section on the panel that has the focus"), QKeySequence::HelpContents},
-        [this] { showManual(); }));
-    menu->addAction(&actions_->add(
-        {"help.about", tr("&About Hairloom"), "hairloom", tr("Version and licence"), {}}, [this] {
-            QMessageBox::about(this, tr("Hairloom"),
-                               tr("<p><b>Hairloom %1</b></p><p>Hairstyles for games. GPL-3.0-or-later.</p>")
-                                   .arg(QCoreApplication::applicationVersion()));
+        {"help.about", QString("&About Hairloom"), "hairloom", QString("Version and licence"), {}}, [this] {
+            QMessageBox::about(
+                this, "Hairloom",
+                QString("<p><b>Hairloom %1</b></p><p>Hairstyles for games. GPL-3.0-or-later.</p>")
+                    .arg(QCoreApplication::applicationVersion()));
         }));
-    menu->addAction(&actions_->add({"help.security",
-                                    tr("&File reader sandbox…"),
-                                    "",
-                                    tr("Test what the process that reads imported files is kept from doing"),
-                                    {}},
-                                   [this] { showSecurity(); }));
+    menu->addAction(
+        &actions_->add({"help.security",
+                        QString("&File reader sandbox…"),
+                        "",
+                        QString("Test what the process that reads imported files is kept from doing"),
+                        {}},
+                       [this] { showSecurity(); }));
 }
 
 void MainWindow::showManual() {
@@ -360,11 +370,11 @@ void MainWindow::showManual() {
 void MainWindow::showSecurity() {
     using Rows = std::vector<std::pair<std::string, std::string>>;
     tasks_.run<Rows>(
-        tr("Testing the sandbox"), [](TaskControl&) { return readerSecurity(); },
+        "Testing the sandbox", [](TaskControl&) { return readerSecurity(); },
         [this](const Rows& rows) {
-            auto* box = new QMessageBox(QMessageBox::Information, tr("File reader sandbox"),
-                                        tr("A separate process reads files from other programs. Tested "
-                                           "on this system:"),
+            auto* box = new QMessageBox(QMessageBox::Information, "File reader sandbox",
+                                        "A separate process reads files from other programs. Tested "
+                                        "on this system:",
                                         QMessageBox::Close, this);
             box->setObjectName("security");
             box->setInformativeText(securityText(rows));

@@ -24,7 +24,7 @@ bool MainWindow::mayLeaveDocument() {
     Unsaved answer = unsaved_;
     if (answer == Unsaved::Ask) {
         const auto button = QMessageBox::question(
-            this, tr("Unsaved changes"), tr("Save the changes to %1?").arg(document_.title()),
+            this, "Unsaved changes", QString("Save the changes to %1?").arg(document_.title()),
             QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
         answer = button == QMessageBox::Save      ? Unsaved::Save
                  : button == QMessageBox::Discard ? Unsaved::Discard
@@ -60,30 +60,30 @@ void MainWindow::showHeadDialog(const QString& path, bool mayLeave) {
 
 void MainWindow::askForHead(const QString& missing) {
     auto* question = new QMessageBox(
-        QMessageBox::Question, tr("Head not found"),
-        tr("The head file %1 no longer exists. Without it the hairstyle has neither skeleton nor clips.")
+        QMessageBox::Question, "Head not found",
+        QString("The head file %1 no longer exists. Without it the hairstyle has neither skeleton nor clips.")
             .arg(missing),
         QMessageBox::NoButton, this);
     question->setObjectName("missingHead");
     question->setAttribute(Qt::WA_DeleteOnClose);
-    QAbstractButton* find = question->addButton(tr("Find it…"), QMessageBox::AcceptRole);
+    QAbstractButton* find = question->addButton("Find it…", QMessageBox::AcceptRole);
     find->setObjectName("findHead");
-    question->addButton(tr("Continue without it"), QMessageBox::RejectRole);
+    question->addButton("Continue without it", QMessageBox::RejectRole);
     connect(find, &QAbstractButton::clicked, this, [this, missing] {
         const QString path = QFileDialog::getOpenFileName(
-            this, tr("Find %1").arg(QFileInfo(missing).fileName()), {}, headFilter());
+            this, QString("Find %1").arg(QFileInfo(missing).fileName()), {}, headFilter());
         if (!path.isEmpty()) files_.findHead(path);
     });
     question->open();
 }
 
 void MainWindow::chooseAndOpen() {
-    const QString path = QFileDialog::getOpenFileName(this, tr("Open"), {}, openFilter());
+    const QString path = QFileDialog::getOpenFileName(this, "Open", {}, openFilter());
     if (!path.isEmpty()) open(path);
 }
 
 void MainWindow::chooseAndImport() {
-    const QString path = QFileDialog::getOpenFileName(this, tr("Import hair"), {}, strandFilter());
+    const QString path = QFileDialog::getOpenFileName(this, "Import hair", {}, strandFilter());
     if (path.isEmpty()) return;
     ImportDialog dialog(document_, tasks_, path, this);
     if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
@@ -141,7 +141,7 @@ bool MainWindow::saveTo(const QString& path) {
         }
     }
     if (!mayReplaceFile(path)) return false;
-    messages_.say(tr("Saving %1").arg(QFileInfo(path).fileName()));
+    messages_.say(QString("Saving %1").arg(QFileInfo(path).fileName()));
     const Status written = write(path);
     if (written) document_.noteSaved(path, savingState_);
     autosave_->pause(false);
@@ -150,7 +150,7 @@ bool MainWindow::saveTo(const QString& path) {
         return false;
     }
     preferences_.addRecentFile(path);
-    messages_.say(tr("%1 saved").arg(QFileInfo(path).fileName()));
+    messages_.say(QString("%1 saved").arg(QFileInfo(path).fileName()));
     return true;
 }
 
@@ -162,8 +162,7 @@ bool MainWindow::saveAs() {
     const QString name = document_.path().isEmpty()
                              ? QFileInfo(document_.title()).completeBaseName() + ".hairloom"
                              : document_.path();
-    const QString path =
-        QFileDialog::getSaveFileName(this, tr("Save"), name, tr("Hairloom projects (*.hairloom)"));
+    const QString path = QFileDialog::getSaveFileName(this, "Save", name, "Hairloom projects (*.hairloom)");
     return !path.isEmpty() && saveTo(path);
 }
 
@@ -172,16 +171,16 @@ bool MainWindow::saveScriptTo(const QString& path) {
     const Status saved =
         script ? writeFileAtomically(path.toStdString(), *script) : Status(tl::unexpected(script.error()));
     if (!saved) {
-        messages_.warn(tr("No script: %1").arg(errorText(saved.error())));
+        messages_.warn(QString("No script: %1").arg(errorText(saved.error())));
         return false;
     }
-    messages_.say(tr("%1: %Ln steps", nullptr, document_.doneSteps()).arg(QFileInfo(path).fileName()));
+    messages_.say(QString("%1: %L2 steps").arg(QFileInfo(path).fileName()).arg(document_.doneSteps()));
     return true;
 }
 
 void MainWindow::chooseAndSaveScript() {
     const QString name = QFileInfo(document_.title()).completeBaseName() + ".json";
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save script"), name, tr("Scripts (*.json)"));
+    const QString path = QFileDialog::getSaveFileName(this, "Save script", name, "Scripts (*.json)");
     if (!path.isEmpty()) saveScriptTo(path);
 }
 
@@ -212,7 +211,7 @@ Opening MainWindow::mayOpenProject(const QString& path) {
 }
 
 void MainWindow::reload() {
-    if (document_.path().isEmpty()) return messages_.say(tr("This document was never saved"));
+    if (document_.path().isEmpty()) return messages_.say("This document was never saved");
     files_.reload();
 }
 
@@ -222,14 +221,15 @@ void MainWindow::lookAtDisk() {
     const QString name = document_.title();
     if (const FileVersion now = fileVersion(file); isChangedByOthers(file) && now != toldOf_) {
         toldOf_ = now;
-        return messages_.warn(tr("%1 was saved by another program or window. Saving will ask what to do, and "
-                                 "File ▸ Revert to saved opens that version")
-                                  .arg(name));
+        return messages_.warn(
+            QString("%1 was saved by another program or window. Saving will ask what to do, and "
+                    "File ▸ Revert to saved opens that version")
+                .arg(name));
     }
     const std::size_t windows = autosave_->otherWindows().size();
     if (windows > toldWindows_)
         messages_.warn(
-            tr("%1 is also open in another window. Each window warns you before it overwrites the other")
+            QString("%1 is also open in another window. Each window warns you before it overwrites the other")
                 .arg(name));
     toldWindows_ = windows;
 }

@@ -16,10 +16,6 @@
 namespace hairloom::editor {
 namespace {
 
-QString tr(const char* text) {
-    return QCoreApplication::translate("Questions", text);
-}
-
 /// The buttons of a question in order; the last one is what Escape means.
 struct Choice {
     const char* name;
@@ -67,9 +63,9 @@ QString securityText(const std::vector<std::pair<std::string, std::string>>& row
     for (const auto& [name, value] : rows) {
         const QString shown = labelOf(QString::fromStdString(name).section('_', 1).replace('_', ' '));
         if (name.starts_with("layer_"))
-            lines += tr("Layer “%1”: %2").arg(shown, QString::fromStdString(value));
+            lines += QString("Layer “%1”: %2").arg(shown, QString::fromStdString(value));
         if (name.starts_with("refuses_"))
-            lines += (value == "true" ? tr("%1: refused") : tr("%1: NOT refused")).arg(shown);
+            lines += (value == "true" ? QString("%1: refused") : QString("%1: NOT refused")).arg(shown);
     }
     return lines.join('\n');
 }
@@ -83,56 +79,63 @@ QString timeText(std::filesystem::file_time_type time) {
 
 ChangedAnswer askAboutChangedProject(QWidget* parent, const QString& path) {
     const QString when = QLocale().toString(QFileInfo(path).lastModified(), QLocale::ShortFormat);
-    const int choice =
-        ask(parent, tr("Changed on disk"), tr("%1 was saved by another program or window.").arg(nameOf(path)),
-            tr("It was saved at %1, after you opened or saved it here. If you overwrite it, that version is "
-               "lost.")
-                .arg(when),
-            {{"changedSaveAs", tr("Save &as…"), tr("Keep both: save yours to another file"),
-              QMessageBox::AcceptRole},
-             {"changedOverwrite", tr("&Overwrite"), tr("Keep only yours"), QMessageBox::DestructiveRole},
-             {"changedReload", tr("&Reload"),
-              tr("Keep only theirs: reload the file and discard your changes"), QMessageBox::DestructiveRole},
-             {"changedCancel", tr("Cancel"), tr("Do not save"), QMessageBox::RejectRole}});
+    const int choice = ask(
+        parent, "Changed on disk", QString("%1 was saved by another program or window.").arg(nameOf(path)),
+        QString("It was saved at %1, after you opened or saved it here. If you overwrite it, that version is "
+                "lost.")
+            .arg(when),
+        {{"changedSaveAs", QString("Save &as…"), QString("Keep both: save yours to another file"),
+          QMessageBox::AcceptRole},
+         {"changedOverwrite", QString("&Overwrite"), QString("Keep only yours"),
+          QMessageBox::DestructiveRole},
+         {"changedReload", QString("&Reload"),
+          QString("Keep only theirs: reload the file and discard your changes"),
+          QMessageBox::DestructiveRole},
+         {"changedCancel", QString("Cancel"), QString("Do not save"), QMessageBox::RejectRole}});
     return static_cast<ChangedAnswer>(choice);
 }
 
 ElsewhereAnswer askAboutOpenProject(QWidget* parent, const QString& path,
                                     const std::vector<OpenDocument>& windows) {
     const int choice =
-        ask(parent, tr("Open in another window"), tr("%1 is open in another window.").arg(nameOf(path)),
-            tr("Process %1 has opened it. If both save, each warns you before it overwrites the other.")
+        ask(parent, "Open in another window", QString("%1 is open in another window.").arg(nameOf(path)),
+            QString("Process %1 has opened it. If both save, each warns you before it overwrites the other.")
                 .arg(processesOf(windows)),
-            {{"elsewhereOpen", tr("&Open anyway"), tr("Open the same file in this window, too"),
+            {{"elsewhereOpen", QString("&Open anyway"), QString("Open the same file in this window, too"),
               QMessageBox::AcceptRole},
-             {"elsewhereCopy", tr("Open a &copy"),
-              tr("Open its content, and ask for another name when you save"), QMessageBox::ActionRole},
-             {"elsewhereCancel", tr("Cancel"), tr("Do not open it"), QMessageBox::RejectRole}});
+             {"elsewhereCopy", QString("Open a &copy"),
+              QString("Open its content, and ask for another name when you save"), QMessageBox::ActionRole},
+             {"elsewhereCancel", QString("Cancel"), QString("Do not open it"), QMessageBox::RejectRole}});
     return static_cast<ElsewhereAnswer>(choice);
 }
 
 bool askToReplaceOpenProject(QWidget* parent, const QString& path, const std::vector<OpenDocument>& windows) {
-    return ask(parent, tr("Open in another window"), tr("%1 is open in another window.").arg(nameOf(path)),
-               tr("Process %1 has opened it. That window warns you when it saves. The current content of the "
-                  "file is replaced.")
+    return ask(parent, "Open in another window", QString("%1 is open in another window.").arg(nameOf(path)),
+               QString("Process %1 has opened it. That window warns you when it saves. The current content "
+                       "of the "
+                       "file is replaced.")
                    .arg(processesOf(windows)),
-               {{"replaceOverwrite", tr("&Overwrite"), tr("Replace the file"), QMessageBox::DestructiveRole},
-                {"replaceCancel", tr("Cancel"), tr("Do not save"), QMessageBox::RejectRole}}) == 0;
+               {{"replaceOverwrite", QString("&Overwrite"), QString("Replace the file"),
+                 QMessageBox::DestructiveRole},
+                {"replaceCancel", QString("Cancel"), QString("Do not save"), QMessageBox::RejectRole}}) == 0;
 }
 
 WaitingAnswer askAboutWaitingCopy(QWidget* parent, const QString& path, const RecoveryCopy& copy) {
-    QString more = tr("A copy from %1 has the work that was not saved when the program ended. If you open "
-                      "the saved project, the copy is kept and the start page shows it.")
+    QString more = QString(
+                       "A copy from %1 has the work that was not saved when the program ended. If you open "
+                       "the saved project, the copy is kept and the start page shows it.")
                        .arg(timeText(copy.when));
     if (copy.isProjectChanged)
-        more += ' ' + tr("Since then the project was saved by another program or window. The copy does not "
-                         "have those changes.");
+        more += ' ' + QString(
+                          "Since then the project was saved by another program or window. The copy does not "
+                          "have those changes.");
     const int choice =
-        ask(parent, tr("Unsaved work"), tr("There is unsaved work on %1.").arg(nameOf(path)), more,
-            {{"waitingRecover", tr("&Recover"), tr("Recover the unsaved work"), QMessageBox::AcceptRole},
-             {"waitingOpen", tr("&Open the saved project"), tr("Open the saved project"),
+        ask(parent, "Unsaved work", QString("There is unsaved work on %1.").arg(nameOf(path)), more,
+            {{"waitingRecover", QString("&Recover"), QString("Recover the unsaved work"),
+              QMessageBox::AcceptRole},
+             {"waitingOpen", QString("&Open the saved project"), QString("Open the saved project"),
               QMessageBox::ActionRole},
-             {"waitingCancel", tr("Cancel"), tr("Do not open it"), QMessageBox::RejectRole}});
+             {"waitingCancel", QString("Cancel"), QString("Do not open it"), QMessageBox::RejectRole}});
     return static_cast<WaitingAnswer>(choice);
 }
 

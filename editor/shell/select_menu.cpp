@@ -30,13 +30,13 @@ void MainWindow::chooseGuidesByClustering() {
     const Groom& groom = document_.groom();
     const std::vector<std::uint32_t> strands = strandsToEdit(groom, {});
     if (strands.size() < 2) {
-        messages_.say(tr("There are no strands to choose from"));
+        messages_.say("There are no strands to choose from");
         return;
     }
     bool taken = false;
     GuidesSettings settings;
     settings.count = static_cast<std::uint32_t>(QInputDialog::getInt(
-        this, tr("Cluster guides"), tr("Number of guides for %1 strands").arg(strands.size()),
+        this, "Cluster guides", QString("Number of guides for %1 strands").arg(strands.size()),
         std::min<int>(200, static_cast<int>(strands.size() / 2)), 1, static_cast<int>(strands.size()), 1,
         &taken));
     if (!taken) return;
@@ -44,9 +44,9 @@ void MainWindow::chooseGuidesByClustering() {
     Groom guided = groom;
     keepGuides(guided, strands, clusters, settings.alone);
     const std::string record = fmt::format(R"({{"op":"guides","count":{}}})", settings.count);
-    document_.perform(editing::replaceGroom(document_.editing().model(), std::move(guided),
-                                            tr("Cluster guides").toStdString(), record));
-    messages_.say(tr("%1 guides represent %2 strands, with a mean distance of %3 and at most %4")
+    document_.perform(
+        editing::replaceGroom(document_.editing().model(), std::move(guided), "Cluster guides", record));
+    messages_.say(QString("%1 guides represent %2 strands, with a mean distance of %3 and at most %4")
                       .arg(clusters.guides.size())
                       .arg(strands.size())
                       .arg(lengthText(1e-3 * clusters.meanMm, preferences_),
@@ -54,7 +54,7 @@ void MainWindow::chooseGuidesByClustering() {
 }
 
 void MainWindow::addSelectActions() {
-    QMenu* menu = menuBar()->addMenu(tr("&Select"));
+    QMenu* menu = menuBar()->addMenu("&Select");
     menu->setToolTipsVisible(true);
     using Strands = std::vector<std::uint32_t>;
     using Make =
@@ -64,7 +64,7 @@ void MainWindow::addSelectActions() {
             const editing::Model& model = document_.editing().model();
             const Strands selected = editing::strandsWithFlag(model.groom, attribute::kSelected);
             if (needsSelection && selected.empty()) {
-                messages_.say(tr("Select strands first (E)"));
+                messages_.say("Select strands first (E)");
                 return;
             }
             document_.perform(make(model, selected));
@@ -72,71 +72,74 @@ void MainWindow::addSelectActions() {
     };
     using editing::Choice;
     add(
-        {"select.all", tr("&All strands"), "", tr("Select all strands"), QKeySequence("Ctrl+A")},
+        {"select.all", QString("&All strands"), "", QString("Select all strands"), QKeySequence("Ctrl+A")},
         [](const editing::Model& model, const Strands&) {
             return editing::selectStrands(model, editing::allStrands(model.groom), Choice::Replace);
         },
         false);
     add(
-        {"select.none", tr("&None"), "", tr("Deselect all strands, so that brushes affect all of them"),
-         QKeySequence("Ctrl+Shift+A")},
+        {"select.none", QString("&None"), "",
+         QString("Deselect all strands, so that brushes affect all of them"), QKeySequence("Ctrl+Shift+A")},
         [](const editing::Model& model, const Strands&) {
             return editing::selectStrands(model, {}, Choice::Replace);
         },
         false);
     add(
-        {"select.invert", tr("&Invert"), "", tr("Invert the selection"), QKeySequence("Ctrl+Shift+I")},
+        {"select.invert", QString("&Invert"), "", QString("Invert the selection"),
+         QKeySequence("Ctrl+Shift+I")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::selectStrands(model, others(model.groom, selected), Choice::Replace);
         },
         false);
-    groupMenu_ = menu->addMenu(tr("By &group"));
+    groupMenu_ = menu->addMenu("By &group");
     groupMenu_->setToolTipsVisible(true);
     connect(groupMenu_, &QMenu::aboutToShow, this, &MainWindow::fillGroupMenu);
     menu->addSeparator();
     add(
-        {"select.hide", tr("&Hide selected"), "",
-         tr("Hide the selected strands and protect them from brushes"), QKeySequence("Ctrl+H")},
+        {"select.hide", QString("&Hide selected"), "",
+         QString("Hide the selected strands and protect them from brushes"), QKeySequence("Ctrl+H")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::hideStrands(model, selected);
         },
         true);
     add(
-        {"select.hideOthers", tr("Hide &others"), "", tr("Hide all strands that are not selected"),
+        {"select.hideOthers", QString("Hide &others"), "", QString("Hide all strands that are not selected"),
          QKeySequence("Ctrl+Shift+H")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::hideStrands(model, others(model.groom, selected));
         },
         true);
     add(
-        {"select.show", tr("&Show all"), "", tr("Show all hidden strands"), QKeySequence("Ctrl+Alt+H")},
+        {"select.show", QString("&Show all"), "", QString("Show all hidden strands"),
+         QKeySequence("Ctrl+Alt+H")},
         [](const editing::Model& model, const Strands&) { return editing::showStrands(model); }, false);
     menu->addSeparator();
     add(
         {"select.freeze",
-         tr("&Freeze selected"),
+         QString("&Freeze selected"),
          "freeze",
-         tr("Protect the selected strands from brushes"),
+         QString("Protect the selected strands from brushes"),
          {}},
         [](const editing::Model& model, const Strands& selected) {
             return editing::freezeStrands(model, selected, true);
         },
         true);
     add(
-        {"select.thaw", tr("&Thaw all"), "", tr("Let brushes affect all strands again"), {}},
+        {"select.thaw", QString("&Thaw all"), "", QString("Let brushes affect all strands again"), {}},
         [](const editing::Model& model, const Strands&) {
             return editing::freezeStrands(model, editing::allStrands(model.groom), false);
         },
         false);
     menu->addAction(&actions_->add(
         {"select.guides",
-         tr("&Cluster guides…"),
+         QString("&Cluster guides…"),
          "",
-         tr("Reduces many strands to a few guides by clustering, and interpolates follow hairs from them"),
+         QString(
+             "Reduces many strands to a few guides by clustering, and interpolates follow hairs from them"),
          {}},
         [this] { chooseGuidesByClustering(); }));
     add(
-        {"select.delete", tr("&Delete selected"), "delete", tr("Delete the selected strands"),
+        {"select.delete", QString("&Delete selected"), "delete", QString("Delete the selected strands"),
          QKeySequence("Del")},
         [](const editing::Model& model, const Strands& selected) {
             return editing::deleteStrands(model, selected);
@@ -150,15 +153,15 @@ void MainWindow::fillGroupMenu() {
     for (std::uint32_t g = 0; g < groom.groupNames.size(); ++g) {
         const std::vector<std::uint32_t> strands = editing::strandsOfGroup(groom, g);
         QAction* action = groupMenu_->addAction(
-            tr("%1 (%L2 strands)").arg(QString::fromStdString(groom.groupNames[g])).arg(strands.size()));
-        action->setToolTip(tr("Select the strands of this group"));
+            QString("%1 (%L2 strands)").arg(QString::fromStdString(groom.groupNames[g])).arg(strands.size()));
+        action->setToolTip("Select the strands of this group");
         connect(action, &QAction::triggered, this, [this, g] {
             const editing::Model& model = document_.editing().model();
             document_.perform(editing::selectStrands(model, editing::strandsOfGroup(model.groom, g),
                                                      editing::Choice::Replace));
         });
     }
-    if (groom.groupNames.empty()) groupMenu_->addAction(tr("The hair has no groups"))->setEnabled(false);
+    if (groom.groupNames.empty()) groupMenu_->addAction("The hair has no groups")->setEnabled(false);
 }
 
 }  // namespace hairloom::editor

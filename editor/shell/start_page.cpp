@@ -112,22 +112,21 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     auto* title = new QLabel("Hairloom");
     title->setProperty("role", "title");
     page->addWidget(title);
-    auto* first = new QLabel(tr("Open a head and paint where hair grows, or start from a sample."));
+    auto* first = new QLabel("Open a head and paint where hair grows, or start from a sample.");
     first->setObjectName("firstStep");
     first->setWordWrap(true);
     page->addWidget(first);
     page->addSpacing(8);
     page->addLayout(recoveries_);
 
-    auto* open =
-        card(tr("Open a head, hair or project…"), "open",
-             tr("Heads: OBJ, PLY, STL, FBX, glTF, USD, Alembic. Hair: Alembic, USD, .hair, .tfx, PLY, "
-                "OBJ, Cinema 4D and more. You can also drop a file anywhere in this window."));
+    auto* open = card("Open a head, hair or project…", "open",
+                      "Heads: OBJ, PLY, STL, FBX, glTF, USD, Alembic. Hair: Alembic, USD, .hair, .tfx, PLY, "
+                      "OBJ, Cinema 4D and more. You can also drop a file anywhere in this window.");
     open->setObjectName("open");
     connect(open, &QPushButton::clicked, this, &StartPage::openRequested);
     page->addWidget(open);
 
-    page->addWidget(heading(tr("Samples")));
+    page->addWidget(heading("Samples"));
     auto* samples = new QGridLayout;
     samples->setSpacing(8);
     for (int column = 0; column < kLessonColumns; ++column) samples->setColumnStretch(column, 1);
@@ -146,22 +145,24 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
         return button;
     };
     if (folder.empty()) {
-        samples->addWidget(dim(tr("The samples folder was not found next to the program.")));
+        samples->addWidget(dim("The samples folder was not found next to the program."));
     } else {
-        addSample({}, tr("Bare head"), tr("A bust with a skeleton and clips, no hair"));
+        addSample({}, "Bare head", "A bust with a skeleton and clips, no hair");
         for (const std::string& name : inOrderOfLessons(sampleNames(folder))) {
             const QString sample = QString::fromStdString(name);
             const auto lesson = std::ranges::find(kLessons, name, &SampleLesson::name);
-            const QString tip = tr("Creates the hairstyle “%1” on the bust in a few seconds").arg(sample);
-            QPushButton* button = addSample(
-                sample, labelOf(sample), lesson == std::end(kLessons) ? tip : tr(lesson->shows) + ". " + tip);
+            const QString tip =
+                QString("Creates the hairstyle “%1” on the bust in a few seconds").arg(sample);
+            QPushButton* button =
+                addSample(sample, labelOf(sample),
+                          lesson == std::end(kLessons) ? tip : QString(lesson->shows) + ". " + tip);
             const QPixmap picture = pictureOf(name);
             if (picture.isNull()) continue;
             button->setIcon(picture);
             button->setIconSize(picture.size());
         }
     }
-    page->addWidget(heading(tr("Recent files")));
+    page->addWidget(heading("Recent files"));
     page->addLayout(recent_);
     page->addStretch(3);
     connect(&preferences_, &Preferences::recentFilesChanged, this, &StartPage::fillRecent);
@@ -181,7 +182,7 @@ void StartPage::showEvent(QShowEvent* event) {
 void StartPage::fillRecent() {
     clear(*recent_);
     const QStringList files = preferences_.recentFiles();
-    if (files.isEmpty()) recent_->addWidget(dim(tr("Recent files appear here.")));
+    if (files.isEmpty()) recent_->addWidget(dim("Recent files appear here."));
     for (const QString& path : files.mid(0, 6)) {
         auto* button = card(QFileInfo(path).fileName(), "history", path);
         connect(button, &QPushButton::clicked, this, [this, path] { files_.open(path); });
@@ -196,19 +197,19 @@ void StartPage::fillRecoveries() {
         auto* layout = new QHBoxLayout(row);
         layout->setContentsMargins(0, 0, 0, 0);
         QString title =
-            tr("Unsaved work: %1, %2").arg(QString::fromStdString(copy.of.name), timeText(copy.when));
-        QString tip = tr("Recover the work that was not saved when the program ended");
+            QString("Unsaved work: %1, %2").arg(QString::fromStdString(copy.of.name), timeText(copy.when));
+        QString tip = QString("Recover the work that was not saved when the program ended");
         if (copy.isProjectChanged) {
-            title = tr("%1 (the project was saved elsewhere since)").arg(title);
-            tip +=
-                tr(". Since then the project was saved by another program or window, and the copy does not "
-                   "have those changes");
+            title = QString("%1 (the project was saved elsewhere since)").arg(title);
+            tip += QString(
+                ". Since then the project was saved by another program or window, and the copy does not "
+                "have those changes");
         }
         auto* restore = card(title, "warning", tip);
         restore->setObjectName("recover");
-        auto* discard = new QPushButton(tr("Discard"));
+        auto* discard = new QPushButton("Discard");
         discard->setObjectName("discardRecovery");
-        discard->setToolTip(tr("Delete this recovery copy permanently"));
+        discard->setToolTip("Delete this recovery copy permanently");
         layout->addWidget(restore, 1);
         layout->addWidget(discard);
         connect(restore, &QPushButton::clicked, this, [this, copy] { files_.openRecovered(copy); });
@@ -240,15 +241,15 @@ void StartPage::addLeftOver(const LeftOver& leftOver) {
     const QString target = QString::fromStdString(leftOver.target);
     const QString file = QString::fromStdString(leftOver.file.string());
     const QString size = QLocale().formattedDataSize(static_cast<qint64>(leftOver.bytes));
-    auto* label =
-        dim(leftOver.whole
-                ? tr("%1 may be damaged: the program ended while saving it. %2 has the complete content.")
-                      .arg(target, file)
-                : tr("The program ended while saving %1 and left %2.").arg(target, size));
+    auto* label = dim(
+        leftOver.whole
+            ? QString("%1 may be damaged: the program ended while saving it. %2 has the complete content.")
+                  .arg(target, file)
+            : QString("The program ended while saving %1 and left %2.").arg(target, size));
     label->setToolTip(file);
-    auto* remove = new QPushButton(tr("Remove"));
+    auto* remove = new QPushButton("Remove");
     remove->setObjectName("removeLeftOver");
-    remove->setToolTip(tr("Delete the leftover file. %1 is not changed").arg(target));
+    remove->setToolTip(QString("Delete the leftover file. %1 is not changed").arg(target));
     layout->addWidget(label, 1);
     layout->addWidget(remove);
     connect(remove, &QPushButton::clicked, row, [row, label, leftOver] {

@@ -39,11 +39,11 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     progress_->setTextVisible(false);
     cancel_->setIcon(icon("close"));
     cancel_->setIconSize({12, 12});
-    cancel_->setToolTip(tr("Cancel this task and discard its result"));
+    cancel_->setToolTip("Cancel this task and discard its result");
     counts_->setObjectName("counts");
-    counts_->setToolTip(tr("Strands and points in the document, and the number of selected strands"));
-    frameTime_->setToolTip(tr("Milliseconds of the last rendered image and of the last simulation frame"));
-    device_->setToolTip(tr("Graphics device for rendering"));
+    counts_->setToolTip("Strands and points in the document, and the number of selected strands");
+    frameTime_->setToolTip("Milliseconds of the last rendered image and of the last simulation frame");
+    device_->setToolTip("Graphics device for rendering");
     standing_->setObjectName("standing");
     standing_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     standing_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
@@ -90,18 +90,18 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     connect(&viewport_, &Viewport::failed, this, [this](const QString& text) { say(text, true); });
     connect(&viewport_, &Viewport::drawn, this, [this](const PictureReport& report) {
         const auto& frame = player_.frame();
-        const QString picture = tr("%1 ms").arg(report.milliseconds, 0, 'f', 1);
-        frameTime_->setText(frame ? tr("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1)
+        const QString picture = QString("%1 ms").arg(report.milliseconds, 0, 'f', 1);
+        frameTime_->setText(frame ? QString("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1)
                                   : picture);
     });
     connect(&viewport_, &Viewport::deviceReady, this, [this](const QString& name, const QString& note) {
         device_->setText(name.section(" (", 0, 0));
-        device_->setToolTip(note.isEmpty() ? tr("Graphics device for rendering") : note);
+        device_->setToolTip(note.isEmpty() ? QString("Graphics device for rendering") : note);
         // A warning stays for its time; the tooltip has the note for longer.
         const bool warns = warning_ && fade_.isActive();
         if (!note.isEmpty() && !warns) say(note, false);
     });
-    device_->setText(tr("looking for a device"));
+    device_->setText("looking for a device");
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
         if (contains(changed, editing::Part::Head)) showHead();
     });
@@ -142,32 +142,33 @@ void StatusLine::showCounts(editing::Part changed) {
     if (!contains(changed, editing::Part::Strands | editing::Part::StrandFlags)) return;
     const Groom& groom = document_.groom();
     const std::size_t selected = editing::strandsWithFlag(groom, attribute::kSelected).size();
-    const QString strands = selected == 0
-                                ? tr("%L1 strands").arg(groom.strandCount())
-                                : tr("%L1 of %L2 strands selected").arg(selected).arg(groom.strandCount());
-    counts_->setText(tr("%1   %L2 points").arg(strands).arg(groom.pointCount()));
+    const QString strands =
+        selected == 0 ? QString("%L1 strands").arg(groom.strandCount())
+                      : QString("%L1 of %L2 strands selected").arg(selected).arg(groom.strandCount());
+    counts_->setText(QString("%1   %L2 points").arg(strands).arg(groom.pointCount()));
 }
 
 void StatusLine::showHead() {
     const Groom& groom = document_.groom();
     head_->setVisible(groom.scalp != nullptr);
     if (!groom.scalp) return;
-    head_->setText(tr("head %1").arg(lengthText(groom.scalp->bounds().sizes().y(), preferences_)));
+    head_->setText(QString("head %1").arg(lengthText(groom.scalp->bounds().sizes().y(), preferences_)));
     const auto units = lengthUnits();
     const auto unit = std::ranges::find_if(units, [&](const LengthUnit& known) {
         return static_cast<float>(known.metres) == groom.characterMetresPerUnit;
     });
-    head_->setToolTip(unit == units.end() ? tr("Height of the head, in the unit of its file or in metres")
-                                          : tr("Height of the head. Its file is in %1").arg(unit->name));
+    head_->setToolTip(unit == units.end()
+                          ? QString("Height of the head, in the unit of its file or in metres")
+                          : QString("Height of the head. Its file is in %1").arg(unit->name));
 }
 
 void StatusLine::showEngine() {
     const auto& engine = player_.engine();
     engine_->setText(!engine                           ? QString()
-                     : engine->kind == EngineKind::gpu ? tr("hair on the GPU")
-                                                       : tr("hair on the CPU"));
+                     : engine->kind == EngineKind::gpu ? QString("hair on the GPU")
+                                                       : QString("hair on the CPU"));
     engine_->setToolTip(!engine ? QString()
-                                : tr("Simulated by: %1. To change this, choose Edit ▸ Preferences")
+                                : QString("Simulated by: %1. To change this, choose Edit ▸ Preferences")
                                       .arg(QString::fromStdString(engine->why)));
 }
 

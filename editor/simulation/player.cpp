@@ -57,7 +57,7 @@ void Player::request(const std::function<void(WorkerRequests&)>& change) {
 
 void Player::play() {
     if (document_.groom().strandCount() == 0) {
-        Q_EMIT failed(tr("There are no strands to simulate yet"));
+        Q_EMIT failed("There are no strands to simulate yet");
         return;
     }
     capture();

@@ -146,7 +146,7 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         WorkerRequests again = taken;
         again.regroomed = true;
         Q_EMIT failed(
-            tr("The GPU stopped simulating (%1). The CPU continues").arg(errorText(stepped.error())));
+            QString("The GPU stopped simulating (%1). The CPU continues").arg(errorText(stepped.error())));
         if (!prepare(playing, again)) return;
         stepped = playing.transport.step(kFrameTime, nullptr, *pose, refused);
     }

@@ -30,17 +30,15 @@ void BrushHand::addOptions(OptionForm& form, bool worksOnSkin, const std::functi
             });
     };
     if (!worksOnSkin)
-        add("brushThroughHair", QObject::tr("Through hair"),
-            QObject::tr(
-                "Affects all hair in front of the head. When off, the brush reaches as deep as Depth"),
+        add("brushThroughHair", "Through hair",
+            "Affects all hair in front of the head. When off, the brush reaches as deep as Depth",
             &BrushHand::throughHair, kThroughHair);
-    add("brushInPixels", QObject::tr("View size"),
-        QObject::tr(
-            "Keeps the brush size constant on screen: the brush is finer on near hair than on far hair"),
+    add("brushInPixels", "View size",
+        "Keeps the brush size constant on screen: the brush is finer on near hair than on far hair",
         &BrushHand::inPixels, kInPixels);
-    add("brushSame", QObject::tr("Unified size"),
-        QObject::tr("Shares radius and strength between all brushes. When off, each brush has its own"),
-        &BrushHand::same, kSame);
+    add("brushSame", "Unified size",
+        "Shares radius and strength between all brushes. When off, each brush has its own", &BrushHand::same,
+        kSame);
 }
 
 }  // namespace hairloom::editor

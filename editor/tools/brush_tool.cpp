@@ -57,8 +57,8 @@ BrushTool::BrushTool(const ToolParts& parts, std::string_view brush, std::shared
 
 QString BrushTool::hint() const {
     QString hint = info_.tip;
-    if (!brush_.inverse.empty()) hint += tr(". Ctrl: %1").arg(text(brush_.inverse));
-    return hint + tr(". Shift smooths, F and [ ] set the size, Esc cancels");
+    if (!brush_.inverse.empty()) hint += QString(". Ctrl: %1").arg(text(brush_.inverse));
+    return hint + QString(". Shift smooths, F and [ ] set the size, Esc cancels");
 }
 
 void BrushTool::activate() {
@@ -289,17 +289,15 @@ OptionForm* BrushTool::makeBasicOptions() {
                 changed();
             });
     };
-    number("brushRadius", tr("Radius"), tr("Brush radius. Press F and move, or press [ and ]"), "m",
-           kSmallest, kLargest, &editing::BrushSettings::radius);
-    number("brushStrength", tr("Strength"),
-           tr("Strength of one dab. Press Shift+F and move, or press { and }"), "", 0, 1,
-           &editing::BrushSettings::strength);
+    number("brushRadius", "Radius", "Brush radius. Press F and move, or press [ and ]", "m", kSmallest,
+           kLargest, &editing::BrushSettings::radius);
+    number("brushStrength", "Strength", "Strength of one dab. Press Shift+F and move, or press { and }", "",
+           0, 1, &editing::BrushSettings::strength);
     QStringList falloffs;
     for (const std::string_view name : editing::BrushCurve::falloffNames())
         falloffs.append(labelOf(text(name)));
     form->addChoice(
-        "brushFalloff", tr("Falloff"), tr("How the effect fades from the centre of the brush to its edge"),
-        falloffs,
+        "brushFalloff", "Falloff", "How the effect fades from the centre of the brush to its edge", falloffs,
         [this] {
             const auto names = editing::BrushCurve::falloffNames();
             return static_cast<int>(std::ranges::find(names, falloff_) - names.begin());
@@ -310,8 +308,8 @@ OptionForm* BrushTool::makeBasicOptions() {
         });
     if (!brush_.worksOnSkin) {
         form->addChoice(
-            "brushProfile", tr("Root to tip"), tr("Which part of the strand the brush affects most"),
-            {tr("Uniform"), tr("More at the tip"), tr("More at the root")},
+            "brushProfile", "Root to tip", "Which part of the strand the brush affects most",
+            {QString("Uniform"), QString("More at the tip"), QString("More at the root")},
             [this] {
                 const auto& values = settings_.profile.values();
                 return values.empty() ? 0 : values.front() < values.back() ? 1 : 2;
@@ -321,20 +319,19 @@ OptionForm* BrushTool::makeBasicOptions() {
                                     : index == 1 ? editing::BrushCurve({0.0f, 1.0f})
                                                  : editing::BrushCurve({1.0f, 0.0f});
             });
-        number("brushDepth", tr("Depth"),
-               tr("Minimum depth of the brush in front of and behind its position"), "m", 0, 0.3f,
-               &editing::BrushSettings::depth);
+        number("brushDepth", "Depth", "Minimum depth of the brush in front of and behind its position", "m",
+               0, 0.3f, &editing::BrushSettings::depth);
     }
     hand_->addOptions(*form, brush_.worksOnSkin, [this] { handChanged(); });
     if (brush_.movesHair) {
-        number("brushClearance", tr("Clearance"), tr("Minimum distance of hair from the skin"), "m", 0, 0.01f,
+        number("brushClearance", "Clearance", "Minimum distance of hair from the skin", "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
         form->addBool(
-            "brushCollide", tr("Collide with head"), tr("Prevents dabs from pushing hair into the head"),
+            "brushCollide", "Collide with head", "Prevents dabs from pushing hair into the head",
             [this] { return settings_.collide; }, [this](bool on) { settings_.collide = on; });
     }
     form->addBool(
-        "brushSymmetric", tr("Symmetric"), tr("Repeats each dab on the other side of the head"),
+        "brushSymmetric", "Symmetric", "Repeats each dab on the other side of the head",
         [this] { return settings_.symmetric; },
         [this](bool on) {
             settings_.symmetric = on;
@@ -342,8 +339,8 @@ OptionForm* BrushTool::makeBasicOptions() {
         });
     if (!brush_.inverse.empty()) {
         form->addBool(
-            "brushInvert", tr("Invert"),
-            tr("Does the opposite: %1. Hold Ctrl to invert a single stroke").arg(text(brush_.inverse)),
+            "brushInvert", "Invert",
+            QString("Does the opposite: %1. Hold Ctrl to invert a single stroke").arg(text(brush_.inverse)),
             [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
     }
     return form;

@@ -26,8 +26,8 @@ std::optional<float> hitOf(const Ray& ray, const Vec3f& a, const Vec3f& b, const
 }  // namespace
 
 QString CardTool::hint() const {
-    return mesh_ ? tr("%1. Press Delete to remove it").arg(info_.tip)
-                 : tr("Create levels in the Levels panel first");
+    return mesh_ ? QString("%1. Press Delete to remove it").arg(info_.tip)
+                 : QString("Create levels in the Levels panel first");
 }
 
 std::optional<std::uint32_t> CardTool::cardAt(const QPointF& at_px) const {

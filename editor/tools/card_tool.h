@@ -35,9 +35,9 @@ class CardTool : public Tool {
     Viewport& viewport_;
     std::shared_ptr<const cards::CardMesh> mesh_;
     ToolInfo info_{"card",
-                   tr("Pick cards"),
+                   QString("Pick cards"),
                    "card",
-                   tr("Click a card of the level shown in the Levels panel to edit it"),
+                   QString("Click a card of the level shown in the Levels panel to edit it"),
                    QKeySequence("Shift+K"),
                    410};
 };

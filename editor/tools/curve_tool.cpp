@@ -32,10 +32,10 @@ CurveTool::CurveTool(const ToolParts& parts)
       player_(parts.player),
       viewport_(parts.viewport),
       info_{"curve",
-            tr("Draw curve"),
+            QString("Draw curve"),
             "curve",
-            tr("Draw the curve of an operator over the head, such as a parting or a braid. Click to add "
-               "points"),
+            QString("Draw the curve of an operator over the head, such as a parting or a braid. Click to add "
+                    "points"),
             QKeySequence("Shift+C"),
             240} {
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
@@ -45,8 +45,8 @@ CurveTool::CurveTool(const ToolParts& parts)
 
 QString CurveTool::hint() const {
     const Operator* one = shown();
-    if (!one) return tr("Add a Part, Attract or Braid operator in the Operators panel first");
-    return tr("%1. Now for operator %2, %3")
+    if (!one) return QString("Add a Part, Attract or Braid operator in the Operators panel first");
+    return QString("%1. Now for operator %2, %3")
         .arg(info_.tip)
         .arg(shownIndex() + 1)
         .arg(QString::fromStdString(one->op));
@@ -123,8 +123,7 @@ void CurveTool::release(const Pointer& pointer) {
 void CurveTool::store(const std::vector<Vec3f>& points) {
     Operator changed = *shown();
     setCurveOf(changed, {points});
-    auto command = editing::setOperator(document_.editing().model(), shownIndex(), changed,
-                                        tr("Draw curve").toStdString());
+    auto command = editing::setOperator(document_.editing().model(), shownIndex(), changed, "Draw curve");
     if (!command) {
         messages_.warn(errorText(command.error()));
         return;

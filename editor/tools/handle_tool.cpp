@@ -54,9 +54,9 @@ HandleTool::HandleTool(const ToolParts& parts)
       player_(parts.player),
       viewport_(parts.viewport),
       info_{"handles",
-            tr("Handles"),
+            QString("Handles"),
             "frame",
-            tr("Drag the points, planes and directions of the selected operator"),
+            QString("Drag the points, planes and directions of the selected operator"),
             QKeySequence("Shift+H"),
             242} {
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
@@ -73,8 +73,9 @@ QString HandleTool::name(const Handle& handle) const {
 }
 
 QString HandleTool::hint() const {
-    if (picking_) return tr("Click the head to place “%1”").arg(name(*picking_));
-    if (handles().empty()) return tr("Select an operator with a point or a direction in the Operators panel");
+    if (picking_) return QString("Click the head to place “%1”").arg(name(*picking_));
+    if (handles().empty())
+        return QString("Select an operator with a point or a direction in the Operators panel");
     return info_.tip;
 }
 
@@ -156,7 +157,7 @@ void HandleTool::press(const Pointer& pointer) {
     if (picking_) {
         const BrushPlace place = skinUnder(document_, viewport_, pointer.at_px);
         if (!place.skin) {
-            messages_.warn(tr("The pointer is not on the head: click on it"));
+            messages_.warn("The pointer is not on the head: click on it");
             return;
         }
         store(*std::exchange(picking_, std::nullopt), place.position_ss);
@@ -198,7 +199,7 @@ void HandleTool::release(const Pointer&) {
 void HandleTool::cancel() {
     if (held_ && before_ && shown()) {
         document_.performMerged(step_, [&](const editing::Model& model) -> std::unique_ptr<editing::Command> {
-            auto made = editing::setOperator(model, index_, *before_, tr("Handles").toStdString());
+            auto made = editing::setOperator(model, index_, *before_, "Handles");
             return made ? std::move(*made) : nullptr;
         });
     }
@@ -214,7 +215,7 @@ void HandleTool::store(const Handle& handle, const Vec3f& value) {
     Operator changed = *one;
     for (std::uint32_t c = 0; c < 3; ++c) {
         if (setSettingOf(changed, handle.field, static_cast<double>(value[c]), c, handle.part)) continue;
-        messages_.warn(tr("%1: %2 is beyond what it takes, %3 to %4")
+        messages_.warn(QString("%1: %2 is beyond what it takes, %3 to %4")
                            .arg(name(handle))
                            .arg(static_cast<double>(value[c]))
                            .arg(handle.field.min)

@@ -15,7 +15,7 @@ class HeadTool : public Tool {
         });
     }
     const ToolInfo& info() const override { return info_; }
-    QString hint() const override { return tr("%1. Hold Shift to rotate it").arg(info_.tip); }
+    QString hint() const override { return QString("%1. Hold Shift to rotate it").arg(info_.tip); }
 
     void press(const Pointer& pointer) override {
         held_ = true;
@@ -55,9 +55,9 @@ class HeadTool : public Tool {
     Player& player_;
     Viewport& viewport_;
     ToolInfo info_{"head",
-                   tr("Drag the head"),
+                   QString("Drag the head"),
                    "drag-head",
-                   tr("Drag to move the head and watch the hair follow"),
+                   QString("Drag to move the head and watch the hair follow"),
                    QKeySequence("H"),
                    420};
     Eigen::Isometry3f offset_ = Eigen::Isometry3f::Identity();

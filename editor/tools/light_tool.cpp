@@ -19,7 +19,9 @@ class LightTool : public Tool {
     }
     const ToolInfo& info() const override { return info_; }
     QString hint() const override {
-        return tr("%1. Now %2°").arg(info_.tip).arg(static_cast<double>(viewport_.lightTurn()), 0, 'f', 0);
+        return QString("%1. Now %2°")
+            .arg(info_.tip)
+            .arg(static_cast<double>(viewport_.lightTurn()), 0, 'f', 0);
     }
 
     void press(const Pointer& pointer) override {
@@ -71,7 +73,8 @@ class LightTool : public Tool {
 
     Viewport& viewport_;
     ToolInfo info_{
-        "light", tr("Light"), "light", tr("Drag the lamp around the head"), QKeySequence("Shift+V"), 430};
+        "light", QString("Light"), "light", QString("Drag the lamp around the head"), QKeySequence("Shift+V"),
+        430};
     std::optional<float> before_;  ///< degrees, as the drag found it
     QPointF last_px_;
 };

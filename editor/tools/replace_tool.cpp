@@ -29,7 +29,7 @@ class ReplaceTool : public Tool {
           player_(player),
           viewport_(viewport) {}
     const ToolInfo& info() const override { return info_; }
-    QString hint() const override { return tr("%1. [ ] set the size, Esc cancels").arg(info_.tip); }
+    QString hint() const override { return QString("%1. [ ] set the size, Esc cancels").arg(info_.tip); }
 
     void activate() override {
         if (player_.hasFrame()) player_.reset();
@@ -100,7 +100,7 @@ class ReplaceTool : public Tool {
     QWidget* makeOptions() override {
         form_ = new OptionForm(preferences_);
         form_->addNumber(
-            "replaceRadius", tr("Radius"), tr("Brush radius on the skin. Press [ and ]"), "m",
+            "replaceRadius", "Radius", "Brush radius on the skin. Press [ and ]", "m",
             static_cast<double>(kSmallest), static_cast<double>(kLargest), false,
             [this] { return static_cast<double>(radius_); },
             [this](double value) {
@@ -108,8 +108,8 @@ class ReplaceTool : public Tool {
                 Q_EMIT updated();
             });
         form_->addNumber(
-            "replaceReach", tr("Copy shape"),
-            tr("New hair copies the shape of hair within this distance. 0 grows straight hair"), "m", 0, 0.2,
+            "replaceReach", "Copy shape",
+            "New hair copies the shape of hair within this distance. 0 grows straight hair", "m", 0, 0.2,
             false, [this] { return static_cast<double>(reach_); },
             [this](double value) { reach_ = static_cast<float>(value); });
         return form_;
@@ -124,7 +124,7 @@ class ReplaceTool : public Tool {
             return;
         }
         document_.perform(std::move(*command));
-        messages_.say(tr("%L1 strands now").arg(document.groom().strandCount()));
+        messages_.say(QString("%L1 strands now").arg(document.groom().strandCount()));
     }
 
     QtDocument& document_;
@@ -132,10 +132,12 @@ class ReplaceTool : public Tool {
     Messages& messages_;
     Player& player_;
     Viewport& viewport_;
-    ToolInfo info_{
-        "replace",         tr("Replant"),
-        "place",           tr("Paint over the scalp to regrow hair with the settings of the Scalp panel"),
-        QKeySequence("N"), 60};
+    ToolInfo info_{"replace",
+                   QString("Replant"),
+                   "place",
+                   QString("Paint over the scalp to regrow hair with the settings of the Scalp panel"),
+                   QKeySequence("N"),
+                   60};
     float radius_ = 0.02f;
     float reach_ = 0.03f;
     bool painting_ = false;

@@ -14,15 +14,15 @@ class ScalpOutlineTool : public OutlineTool {
   public:
     using OutlineTool::OutlineTool;
 
-    QString hint() const override { return tr("%1. Shift adds, Ctrl subtracts").arg(info().tip); }
+    QString hint() const override { return QString("%1. Shift adds, Ctrl subtracts").arg(info().tip); }
 
     QWidget* makeOptions() override {
         auto* form = new OptionForm(preferences());
         form->addBool(
-            "scalpThrough", tr("Through head"), tr("Include faces on the far side"),
-            [this] { return through_; }, [this](bool on) { through_ = on; });
+            "scalpThrough", "Through head", "Include faces on the far side", [this] { return through_; },
+            [this](bool on) { through_ = on; });
         form->addBool(
-            "scalpSymmetric", tr("Symmetric"), tr("Include faces on the other side of the head"),
+            "scalpSymmetric", "Symmetric", "Include faces on the other side of the head",
             [this] { return symmetric_; }, [this](bool on) { symmetric_ = on; });
         return form;
     }
@@ -49,12 +49,12 @@ ToolMaker scalpOutlineTool() {
         Tools tools;
         tools.push_back(std::make_unique<ScalpOutlineTool>(
             parts, OutlineTool::Shape::Box,
-            ToolInfo{"scalp_box", QObject::tr("Box scalp"), "box-select",
-                     QObject::tr("Drag a box over the faces where hair grows"), QKeySequence("M"), 40}));
+            ToolInfo{"scalp_box", QString("Box scalp"), "box-select",
+                     QString("Drag a box over the faces where hair grows"), QKeySequence("M"), 40}));
         tools.push_back(std::make_unique<ScalpOutlineTool>(
             parts, OutlineTool::Shape::Lasso,
-            ToolInfo{"scalp_lasso", QObject::tr("Lasso scalp"), "lasso",
-                     QObject::tr("Draw around the faces where hair grows"), QKeySequence("Shift+M"), 50}));
+            ToolInfo{"scalp_lasso", QString("Lasso scalp"), "lasso",
+                     QString("Draw around the faces where hair grows"), QKeySequence("Shift+M"), 50}));
         return tools;
     };
 }

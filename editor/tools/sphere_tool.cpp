@@ -43,7 +43,7 @@ class SphereTool : public Tool {
         const auto& actor = player_.actor();
         const std::string bone = actor ? boneNear(actor->skeleton(), place.position_ss) : std::string();
         document.perform(editing::placeSphere(document.model(), *place.skin, radius_, bone));
-        messages_.say(tr("Sphere added. Drag its centre to move it, its edge to resize it"));
+        messages_.say("Sphere added. Drag its centre to move it, its edge to resize it");
     }
 
     void drag(const Pointer& pointer) override {
@@ -94,7 +94,7 @@ class SphereTool : public Tool {
     QWidget* makeOptions() override {
         auto* form = new OptionForm(preferences_);
         form->addNumber(
-            "sphereRadius", tr("Radius"), tr("Radius of new spheres"), "m", 0.005, 0.2, false,
+            "sphereRadius", "Radius", "Radius of new spheres", "m", 0.005, 0.2, false,
             [this] { return static_cast<double>(radius_); },
             [this](double value) { radius_ = static_cast<float>(value); });
         return form;
@@ -114,12 +114,13 @@ class SphereTool : public Tool {
     Messages& messages_;
     Player& player_;
     Viewport& viewport_;
-    ToolInfo info_{"sphere",
-                   tr("Spheres"),
-                   "sphere",
-                   tr("Click the head to add a sphere. Drag its centre to move it, its edge to resize it"),
-                   QKeySequence("O"),
-                   400};
+    ToolInfo info_{
+        "sphere",
+        QString("Spheres"),
+        "sphere",
+        QString("Click the head to add a sphere. Drag its centre to move it, its edge to resize it"),
+        QKeySequence("O"),
+        400};
     float radius_ = 0.05f;
     std::optional<std::size_t> held_;
     bool resizing_ = false;

@@ -12,25 +12,27 @@ namespace {
 class StrandSelectTool : public OutlineTool {
   public:
     explicit StrandSelectTool(const ToolParts& parts)
-        : OutlineTool(parts, Shape::Lasso,
-                      {"select", tr("Select strands"), "select",
-                       tr("Click a strand or draw around several. Brushes then affect only the selection"),
-                       QKeySequence("E"), 70}) {}
+        : OutlineTool(
+              parts, Shape::Lasso,
+              {"select", QString("Select strands"), "select",
+               QString("Click a strand or draw around several. Brushes then affect only the selection"),
+               QKeySequence("E"), 70}) {}
 
-    QString hint() const override { return tr("%1. Shift adds, Ctrl subtracts").arg(info().tip); }
+    QString hint() const override { return QString("%1. Shift adds, Ctrl subtracts").arg(info().tip); }
 
     QWidget* makeOptions() override {
         auto* form = new OptionForm(preferences());
         form->addChoice(
-            "selectShape", tr("Shape"), tr("Shape of the selection"), {tr("Box"), tr("Lasso")},
+            "selectShape", "Shape", "Shape of the selection", {QString("Box"), QString("Lasso")},
             [this] { return static_cast<int>(shape()); },
             [this](int index) { setShape(static_cast<Shape>(index)); });
         form->addChoice(
-            "selectPart", tr("Part"), tr("Part of the strand that must be inside"),
-            {tr("Any"), tr("Root"), tr("Tip")}, [this] { return static_cast<int>(options_.part); },
+            "selectPart", "Part", "Part of the strand that must be inside",
+            {QString("Any"), QString("Root"), QString("Tip")},
+            [this] { return static_cast<int>(options_.part); },
             [this](int index) { options_.part = static_cast<editing::StrandPart>(index); });
         form->addBool(
-            "selectThrough", tr("Through head"), tr("Include strands behind the head"),
+            "selectThrough", "Through head", "Include strands behind the head",
             [this] { return options_.throughHead; }, [this](bool on) { options_.throughHead = on; });
         return form;
     }

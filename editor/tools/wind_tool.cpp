@@ -22,7 +22,9 @@ class WindTool : public Tool {
     const ToolInfo& info() const override { return info_; }
 
     QString hint() const override {
-        return tr("%1. Now %2 m/s").arg(info_.tip).arg(document_.groom().simulation.windSpeed, 0, 'f', 1);
+        return QString("%1. Now %2 m/s")
+            .arg(info_.tip)
+            .arg(document_.groom().simulation.windSpeed, 0, 'f', 1);
     }
 
     void press(const Pointer& pointer) override {
@@ -62,9 +64,8 @@ class WindTool : public Tool {
   private:
     Vec3f middle_ws() const { return viewport_.camera().target_ws(); }
     void store(const runtime::SimulationSettings& settings) {
-        document_.performMerged(drag_, [&](const editing::Model& model) {
-            return editing::setPhysics(model, settings, tr("Wind").toStdString());
-        });
+        document_.performMerged(
+            drag_, [&](const editing::Model& model) { return editing::setPhysics(model, settings, "Wind"); });
     }
 
     QtDocument& document_;
@@ -72,9 +73,10 @@ class WindTool : public Tool {
     Viewport& viewport_;
     ToolInfo info_{
         "wind",
-        tr("Wind"),
+        QString("Wind"),
         "wind",
-        tr("Drag from the middle of the view in the direction of the wind. A longer drag is stronger wind"),
+        QString(
+            "Drag from the middle of the view in the direction of the wind. A longer drag is stronger wind"),
         QKeySequence("W"),
         410};
     std::optional<runtime::SimulationSettings> before_;

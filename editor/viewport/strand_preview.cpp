@@ -15,7 +15,7 @@ constexpr std::size_t kMaxStrands = 3000;
 
 StrandPreview::StrandPreview(QWidget* parent) : QWidget(parent) {
     setMinimumSize(320, 320);
-    setToolTip(tr("Drag to turn, wheel to zoom"));
+    setToolTip("Drag to turn, wheel to zoom");
 }
 
 void StrandPreview::show(const Groom& strands, std::shared_ptr<const ScalpMesh> head,

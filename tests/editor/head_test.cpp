@@ -198,7 +198,7 @@ TEST_F(HeadTest, AHeadOpensWhileItsSpheresAreStillFitted) {
     finishWork();
     ASSERT_TRUE(groom().scalp) << window->statusLine().message().toStdString();
     EXPECT_EQ(groom().spheres.size(), 3u);
-    EXPECT_TRUE(window->statusLine().message().contains("3 separate spheres"))
+    EXPECT_TRUE(window->statusLine().message().contains("Spheres that hair will collide with: 3"))
         << window->statusLine().message().toStdString();
 }
 
