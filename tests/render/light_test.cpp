@@ -53,6 +53,36 @@ TEST(LightView, HoldsAllHairAndWhatShadesIt) {
     }
 }
 
+// Section 5.4 prints a near plane 2 d_h (1 − r_h/d) wide without saying what d_h is. With r_h it cuts the
+// hair that a light sees from the side.
+TEST(LightView, HoldsHairOnTheTangentsOfAPointLight) {
+    const float radius = 0.15f, distance = 0.5f;
+    Light light;
+    light.kind = LightKind::point;
+    light.position_ws = Vec3f(0, 1.6f, distance);
+    // Where rays of the light touch the sphere around the hair.
+    const float depth = radius * radius / distance;
+    const float ring = radius * std::sqrt(1 - radius * radius / (distance * distance));
+    std::vector<Vec3f> hair;
+    Box3f all;
+    for (int i = 0; i < 360; ++i) {
+        const float angle = static_cast<float>(i) * kPi / 180;
+        hair.push_back(Vec3f(ring * std::cos(angle), 1.6f + ring * std::sin(angle), depth));
+        all.extend(hair.back());
+    }
+    const LightView view = fitLight(light, hair, all);
+    float reach = 0;
+    for (const Vec3f& p : hair) {
+        const Vec4f clip = view.clipFromWorld * p.homogeneous();
+        reach = std::max({reach, std::abs(clip.x() / clip.w()), std::abs(clip.y() / clip.w())});
+    }
+    EXPECT_LE(reach, 1.0f);
+    const float toNear = distance - radius;
+    const float width = 2 * toNear * ring / (distance - depth);
+    EXPECT_NEAR(width, 0.220f, 5e-4f);
+    EXPECT_NEAR(2 * radius * (1 - radius / distance), 0.210f, 5e-4f) << "as printed";
+}
+
 TEST(LightView, RestingHairKeepsItsTexelsWhileOtherHairMoves) {
     Random random(4);
     for (const LightKind kind : {LightKind::directional, LightKind::point}) {

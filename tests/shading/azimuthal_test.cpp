@@ -171,6 +171,22 @@ TEST(Azimuthal, CubicApproximatesTheExactAngles) {
     }
 }
 
+// The roots of Eq. 42 are angles, so h is their sine. Section 5.2 takes the arcsine, which no angle over 1
+// has.
+TEST(Azimuthal, OffsetsAreTheSinesOfTheRoots) {
+    for (const double degrees : {0.0, 45.0}) {
+        AzimuthalParameters parameters;
+        const AzimuthalProfile exact(parameters, degrees * kDegrees);
+        parameters.roots = RootMethod::Cubic;
+        const AzimuthalProfile cubic(parameters, degrees * kDegrees);
+        // Reflected light does not enter: its cubic is the line −2γ, which is exact.
+        for (const double phi : {0.5, 1.9, 2.5, 3.0}) {
+            EXPECT_GT(exact(Lobe::R, phi).x(), 0);
+            EXPECT_NEAR(cubic(Lobe::R, phi).x(), exact(Lobe::R, phi).x(), 1e-9) << phi;
+        }
+    }
+}
+
 TEST(Azimuthal, RowsAgreeWithSinglePoints) {
     for (const double width : {0.0, 0.06, 0.2, 0.6}) {
         for (const double ratio : {1.0, 1.15}) {

@@ -58,6 +58,14 @@ TEST(KajiyaKay, NeverGainsEnergy) {
     }
 }
 
+// Eq. 32 divides the diffuse light by what the specular light reflects.
+TEST(KajiyaKay, DiffuseLightIsDividedByWhatItReflectsItself) {
+    const double m = 60;
+    const double diffuse = albedo({1, 0, m}, kPiDouble / 2);
+    EXPECT_LE(diffuse, 1 + 1e-6);
+    EXPECT_NEAR(diffuse * kajiyaReflectance(0) / kajiyaReflectance(m), 4.95, 5e-3) << "as printed";
+}
+
 TEST(KajiyaKay, LosesNoEnergyAcrossTheFibre) {
     for (const double m : {0.0, 1.0, 20.0, 400.0}) {
         EXPECT_NEAR(albedo({1, 0, m}, kPiDouble / 2), 1, 1e-6);

@@ -48,6 +48,17 @@ TEST(Optics, FresnelOfSkewRaysIsThatOfTheirAngleInSpace) {
     }
 }
 
+// Eq. 46 exchanges the two indices.
+TEST(Optics, EachPolarisationHasItsOwnIndex) {
+    const double sixty = std::numbers::pi / 3;
+    const BravaisIndices indices = bravaisIndices(1.55, sixty);
+    const double sineInside = std::sin(sixty) / indices.perpendicular;
+    const double cosInside = std::sqrt(1 - sineInside * sineInside);
+    EXPECT_NEAR(fresnel(indices, std::cos(sixty), cosInside), 0.273, 5e-4);
+    const BravaisIndices printed{indices.parallel, indices.perpendicular};
+    EXPECT_NEAR(fresnel(printed, std::cos(sixty), cosInside), 0.050, 5e-4);
+}
+
 TEST(Optics, PathInsideIsAnInclinedChord) {
     // Section 5.2 prints exp(−2σ cos γ_t) for all θ, and footnote 7 a chord of 2 cos 2γ_t.
     const Vec3d absorption(0.5, 1, 2);
