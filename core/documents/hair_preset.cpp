@@ -18,7 +18,7 @@ std::size_t applyPreset(const runtime::HairPreset& preset, Groom& groom) {
     groom.material.tipColour = colourOf(preset.tipColour);
     groom.material.eumelanin = preset.eumelanin;
     groom.material.pheomelanin = 0.0f;
-    return 8;
+    return 9;
 }
 
 }  // namespace hairloom

@@ -2,6 +2,7 @@
 #include "hairloom/presets.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hairloom::runtime {
 namespace {
@@ -62,7 +63,11 @@ float angularStiffnessOf(double bendingStiffness) {
 }
 
 void applyPreset(const HairPreset& preset, SimulationSettings& settings) {
-    settings.angularStiffness = angularStiffnessOf(bendingStiffness(preset.diameter, preset.eccentricity));
+    const double ratio = std::sqrt(1.0 - preset.eccentricity * preset.eccentricity);
+    settings.sectionRatio = static_cast<float>(ratio);
+    // Of a flat rod, B is the mean of both axes: the weak one has ρB.
+    settings.angularStiffness =
+        angularStiffnessOf(bendingStiffness(preset.diameter, preset.eccentricity) / ratio);
     settings.angularCurve = Ramp();
 }
 

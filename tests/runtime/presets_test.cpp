@@ -50,20 +50,24 @@ TEST(Presets, TheMomentIsThatOfTheEllipseAboutItsLongAxis) {
     EXPECT_NEAR(bendingStiffness(80e-6, 0.0) / kHairBendingStiffness, 1.0, 1e-12) << "round hair";
 }
 
-TEST(Presets, SetTheStiffnessAndLeaveTheRest) {
+TEST(Presets, SetStiffnessAndSectionAndLeaveTheRest) {
     for (const HairPreset& preset : presets()) {
         SimulationSettings settings;
         settings.windSpeed = 3.0f;
         applyPreset(preset, settings);
         EXPECT_TRUE(validate(settings).empty());
         const double s = static_cast<double>(settings.angularStiffness);
-        EXPECT_NEAR(
-            kHairBendingStiffness * s / (1.0 - s) / bendingStiffness(preset.diameter, preset.eccentricity),
-            1.0, 1e-6);
+        const double ratio = static_cast<double>(settings.sectionRatio);
+        EXPECT_NEAR(1.0 - ratio * ratio, preset.eccentricity * preset.eccentricity, 1e-6);
+        EXPECT_NEAR(ratio * kHairBendingStiffness * s / (1.0 - s) /
+                        bendingStiffness(preset.diameter, preset.eccentricity),
+                    1.0, 1e-6)
+            << "about the weak axis";
         SimulationSettings expected;
         expected.windSpeed = 3.0f;
         expected.angularStiffness = settings.angularStiffness;
         expected.angularCurve = {};
+        expected.sectionRatio = settings.sectionRatio;
         EXPECT_EQ(settings, expected);
     }
     EXPECT_EQ(angularStiffnessOf(0.0), 0.0f);
