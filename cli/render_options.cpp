@@ -54,6 +54,9 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.frames = aa.once || options.temporal ? 1 : options.passes;
     picture.shadows = kShadows.at(options.shadow);
     picture.shadowLights = options.shadowLights;
+    picture.shadowResolution =
+        options.shadowResolution.value_or(view.shadowResolution.value_or(picture.shadowResolution));
+    picture.subdivisions = options.subdivisions.value_or(view.subdivisions.value_or(picture.subdivisions));
     picture.headAbsorption = options.headAbsorption.value_or(view.headAbsorption.value_or(0));
     picture.shadowBlur = options.shadowBlur.value_or(view.shadowBlur.value_or(0));
     picture.ribbons = kRibbons.at(options.ribbons);
@@ -121,6 +124,12 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
                    "Maximum number of lights with shadow maps. Area lights and bright parts of images are "
                    "split into this many")
         ->check(CLI::Range(std::size_t{1}, render::kMaxLights));
+    job.add_option("--shadow-resolution", options->shadowResolution,
+                   "Width and height of each shadow map in pixels (default: the view's, or 1024)")
+        ->check(CLI::Range(render::kMinShadowResolution, render::kMaxShadowResolution));
+    job.add_option("--subdivisions", options->subdivisions,
+                   "Curve segments per segment of a strand (default: the view's, or 2)")
+        ->check(CLI::Range(std::uint32_t{1}, render::kMaxSubdivisions));
     job.add_option("--head-absorption", options->headAbsorption,
                    "Fades light on hair behind the head with depth, per metre. 0 blocks it")
         ->check(CLI::Range(0.0f, render::kMaxHeadAbsorption));

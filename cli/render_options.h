@@ -29,6 +29,8 @@ struct RenderJobOptions {
     std::string ribbons = "auto";
     std::string transparency = "auto";
     float detail = 0;
+    std::optional<std::uint32_t> shadowResolution;
+    std::optional<std::uint32_t> subdivisions;
     std::optional<float> headAbsorption;
     std::optional<float> shadowBlur;
     std::string record;

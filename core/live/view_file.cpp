@@ -186,6 +186,13 @@ Result<ViewFile> parseViewFile(const std::string& path, std::string_view text,
     }
     if (reader.has("background")) view.background = reader.vector("background", 0, kAnyRadiance);
     if (reader.has("head_albedo")) view.headAlbedo = reader.vector("head_albedo", 0, 1);
+    if (reader.has("shadow_resolution")) {
+        view.shadowResolution = static_cast<std::uint32_t>(
+            reader.count("shadow_resolution", render::kMinShadowResolution, render::kMaxShadowResolution));
+    }
+    if (reader.has("subdivisions"))
+        view.subdivisions =
+            static_cast<std::uint32_t>(reader.count("subdivisions", 1, render::kMaxSubdivisions));
     if (reader.has("head_absorption_per_m")) {
         view.headAbsorption = static_cast<float>(reader.number(
             "head_absorption_per_m", 0, static_cast<double>(render::kMaxHeadAbsorption), "1/m"));

@@ -47,8 +47,10 @@ struct ViewFile {
     std::optional<Vec3f> headAlbedo;
     std::optional<float> rootRadius;  ///< metres
     std::optional<float> tipScale;
-    std::optional<float> headAbsorption;  ///< 1/m, as render::RenderOptions
-    std::optional<float> shadowBlur;      ///< pixels, likewise
+    std::optional<std::uint32_t> shadowResolution;  ///< pixels, as render::RenderOptions
+    std::optional<std::uint32_t> subdivisions;      ///< likewise
+    std::optional<float> headAbsorption;            ///< 1/m, as render::RenderOptions
+    std::optional<float> shadowBlur;                ///< pixels, likewise
     FibreView fibre;
 };
 /// Images that it names are read, too: they lie in its own folder and below it, or in `imageFolders`.

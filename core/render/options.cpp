@@ -18,10 +18,11 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
                     fmt::format("1 to {} along a side and at most {} in all", limit, kMaxPixels));
     }
     if (o.frames < 1 || o.frames > 1024) return fail(fmt::format("{} frames", o.frames), "1 to 1024");
-    if (o.subdivisions < 1 || o.subdivisions > 64) {
+    if (o.subdivisions < 1 || o.subdivisions > kMaxSubdivisions) {
         return fail(fmt::format("{} subdivisions", o.subdivisions), "1 to 64");
     }
-    if (o.shadowResolution < 64 || o.shadowResolution > 4096 || o.shadowResolution > limit)
+    if (o.shadowResolution < kMinShadowResolution || o.shadowResolution > kMaxShadowResolution ||
+        o.shadowResolution > limit)
         return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
     if (o.shadowLights < 1 || o.shadowLights > kMaxLights)
         return fail(fmt::format("{} lights with shadows", o.shadowLights),

@@ -78,8 +78,10 @@ struct RenderOptions {
 
     bool operator==(const RenderOptions&) const = default;
 };
-inline constexpr float kMaxHeadAbsorption = 10'000;  ///< 1/m
-inline constexpr float kMaxShadowBlur = 32;          ///< pixels
+inline constexpr std::uint32_t kMaxSubdivisions = 64;
+inline constexpr std::uint32_t kMinShadowResolution = 64, kMaxShadowResolution = 4096;  ///< pixels
+inline constexpr float kMaxHeadAbsorption = 10'000;                                     ///< 1/m
+inline constexpr float kMaxShadowBlur = 32;                                             ///< pixels
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
 
 /// Shadow maps of this resolution that the device has room for, at most `shadowLights` of the options.

@@ -83,6 +83,25 @@ TEST_F(RenderJob, EachWayOfDrawingGivesItsOwnPicture) {
     picture(view("image.json", R"({"lights": [{"type": "environment", "image": "sky.png", "scale": 2}]})"));
 }
 
+TEST_F(RenderJob, AViewSetsShadowMapsAndCurvesAndOptionsOverrideIt) {
+    const auto drawn = [&](const std::string& way) {
+        picture("--engine software" + way);
+        return readText(folder / "hair.png");
+    };
+    const std::string usual = drawn("");
+    EXPECT_EQ(drawn(" --shadow-resolution 1024 --subdivisions 2"), usual);
+    const std::string coarse = view("coarse.json", R"({"shadow_resolution": 64})");
+    const std::string smooth = view("smooth.json", R"({"subdivisions": 8})");
+    EXPECT_NE(drawn(coarse), usual);
+    EXPECT_EQ(drawn(coarse), drawn(" --shadow-resolution 64"));
+    EXPECT_EQ(drawn(coarse + " --shadow-resolution 1024"), usual);
+    EXPECT_NE(drawn(smooth), usual);
+    EXPECT_EQ(drawn(smooth), drawn(" --subdivisions 8"));
+    EXPECT_EQ(drawn(smooth + " --subdivisions 2"), usual);
+    for (const char* const wrong : {"--shadow-resolution 63", "--shadow-resolution 4097", "--subdivisions 0"})
+        EXPECT_EQ(run(std::string("render hair.hairloom -o x.png ") + wrong).exitCode, 2) << wrong;
+}
+
 TEST_F(RenderJob, TheSoftwareRendererDrawsWhereThereIsNoGpu) {
     const auto asked = picture("--engine software");
     EXPECT_EQ(asked["device"], "software renderer");
@@ -136,6 +155,8 @@ TEST_F(RenderJob, BrokenViewsAreErrorsThatNameThem) {
     refuses(R"({"lights": [{"type": "candle"}]})", "candle");
     refuses(R"({"lights": [{"type": "point", "position": [0, 1, 0]}]})", "intensity");
     refuses(R"({"lights": [{"type": "environment", "sky": [1, 1, 1]}]})", "ground");
+    refuses(R"({"shadow_resolution": 63})", "shadow_resolution");
+    refuses(R"({"subdivisions": 1.5})", "subdivisions");
     const Outcome missing =
         run("render hair.hairloom -o none.png" +
             view("lost.json", R"({"lights": [{"type": "environment", "image": "no.png"}]})"));
