@@ -169,6 +169,9 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
                                            "skin",
                                            "export from a head with a skeleton, or have the game give roots "
                                            "or the scalp's vertices"));
+    if (!from.body().empty())
+        raw.warnings.push_back(fileNote("the skin collider goes with its head, which the file does not have",
+                                        "body", "fit it again on the head (colliders --fit field)"));
     return raw;
 }
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/base/file.h"
+#include "core/documents/body_fit.h"
 #include "core/documents/hair_import.h"
 #include "core/documents/open.h"
 #include "core/geometry/placement.h"
@@ -114,7 +115,7 @@ std::vector<std::string> sampleNames(const fs::path& samples) {
     return names;
 }
 
-Result<Groom> makeSample(const fs::path& samples, const std::string& name) {
+Result<Groom> makeSample(const fs::path& samples, const std::string& name, SampleColliders colliders) {
     const fs::path style = samples / "hairstyles" / name;
     auto groom = growOnBust(samples / "bust/bust.glb", style.string() + ".conf");
     if (!groom) return groom;
@@ -129,6 +130,13 @@ Result<Groom> makeSample(const fs::path& samples, const std::string& name) {
     groom->spheres = std::move(*spheres);
     if (auto status = readStyleSettings(style.string() + ".settings.json", *groom); !status) {
         return tl::unexpected(status.error());
+    }
+    if (colliders == SampleColliders::skin) {
+        const auto actor = actorForColliders({}, *groom);
+        if (!actor) return tl::unexpected(actor.error());
+        auto fitted = fitBody(*groom, actor->get());
+        if (!fitted) return tl::unexpected(fitted.error());
+        groom->body = std::move(fitted->field);
     }
     return groom;
 }

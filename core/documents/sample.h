@@ -18,8 +18,14 @@ std::filesystem::path findSamples(const std::filesystem::path& programFolder);
 /// Names of the hairstyles there, in order of name.
 std::vector<std::string> sampleNames(const std::filesystem::path& samples);
 
-/// Head, scalp, roots, grooming, spheres and settings of one hairstyle. Errors: a file that is missing or
-/// does not read.
-Result<Groom> makeSample(const std::filesystem::path& samples, const std::string& name);
+enum class SampleColliders {
+    spheres,  ///< alone, which all methods and the GPU know
+    skin,     ///< and the skin (fitBody()), which takes seconds: as people get samples
+};
+
+/// Head, scalp, roots, grooming, colliders and settings of one hairstyle. Errors: a file that is missing or
+/// does not read, those of fitBody().
+Result<Groom> makeSample(const std::filesystem::path& samples, const std::string& name,
+                         SampleColliders colliders = SampleColliders::spheres);
 
 }  // namespace hairloom

@@ -125,6 +125,7 @@ Result<Fitting> fittingTable(const ScalpMesh& mesh, const Body& body, const Box3
                              const BakeBodyOptions& options) {
     constexpr float kGrowth = 1.12f;
     constexpr double kForBones = 20'000;
+    constexpr double kEnough = 1.25;  // of what is expected
     // A flat skin passes through about so many cells for each square of their size.
     constexpr double kLayers = 1.3;
     double area = 0;
@@ -150,8 +151,9 @@ Result<Fitting> fittingTable(const ScalpMesh& mesh, const Body& body, const Box3
     return fail(fmt::format("the body is {:.1f} m large and takes about {:.0f} kB in cells of {:.0f} mm",
                             static_cast<double>(bounds.sizes().maxCoeff()), 1e-3 * bytes,
                             1e3 * static_cast<double>(kCoarsest)),
-                fmt::format("{:.0f} kB at most: import a head in metres, without what hair never reaches",
-                            1e-3 * most));
+                fmt::format("{:.0f} kB at most: allow {:.0f} kB, or import a head in metres, without what "
+                            "hair never reaches",
+                            1e-3 * most, 1e-3 * kEnough * bytes));
 }
 
 void measureCorners(const Table& table, const Body& body, BodyField& field) {

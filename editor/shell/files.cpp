@@ -240,7 +240,7 @@ void DocumentFiles::openSample(const QString& name) {
     tasks_.run<Opened>(
         QString("Making the sample “%1”").arg(name),
         [samples, name](TaskControl&) -> Result<Opened> {
-            auto groom = makeSample(samples, name.toStdString());
+            auto groom = makeSample(samples, name.toStdString(), SampleColliders::skin);
             if (!groom) return tl::unexpected(groom.error());
             Opened opened;
             opened.actor = actorOf(*groom);

@@ -61,4 +61,11 @@ BodyTable::BodyTable(const BodyField& field) {
     finer.assign(field.finer.begin(), field.finer.end());
 }
 
+std::size_t BodyTable::bytesFor(const BodyField& field) {
+    const std::size_t blocks = field.values.size() / BodyField::kBlockValues;
+    return (field.blocks.size() + std::max<std::size_t>(blocks, 1) * kBlockQuads + field.distances.size() +
+            field.refinements.size() + field.finer.size()) *
+           sizeof(std::int32_t);
+}
+
 }  // namespace hairloom::runtime

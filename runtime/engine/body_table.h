@@ -30,6 +30,8 @@ struct BodyTable {
     std::vector<std::int32_t> refinements;  ///< of each block, BodyField::refinements
     std::vector<std::int32_t> finer;        ///< BodyField::finer
 
+    /// Of the table of a field, which is not made.
+    static std::size_t bytesFor(const BodyField& field);
     std::size_t bytes() const {
         return (cells.size() + quads.size() + pairs.size() + refinements.size() + finer.size()) *
                sizeof(std::int32_t);

@@ -209,7 +209,10 @@ void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, float near
     const PosedBody::Contact start = at_[substep].at(visit.point_ws - visit.displacement);
     touch.before = std::min(start.distance, near);
     const float whole = length(moved);
-    if (touch.before < visit.radius || !(touch.distance < visit.radius) || !(whole > 0.0f)) return;
+    // What lay on the skin is swept off it, too: far inside, the nearest way out may be on the other side.
+    constexpr float kLay = 3e-3f, kSwept = 1e-3f;  // metres
+    const float depth = visit.radius - touch.distance, inside = visit.radius - touch.before;
+    if (!(depth > (inside > 0.0f ? kSwept : 0.0f)) || inside > kLay || !(whole > 0.0f)) return;
     // From place to place, as far as nothing is, along its way by the body as it is at the end.
     constexpr int kSteps = 16;
     constexpr float kThere = 1e-4f;  // metres

@@ -127,7 +127,7 @@ InstanceMemory instanceMemory(const Asset& asset) {
     const std::size_t thread = sizeof(LaneFrame) + (work + kSolverPadding) * sizeof(float);
     const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
     const BodyFieldRead body = asset.readBody();
-    const std::size_t bodyTable = body.field ? BodyTable(*body.field).bytes() : 0;
+    const std::size_t bodyTable = body.field ? BodyTable::bytesFor(*body.field) : 0;
     const std::size_t guides =
         engineBytes(strandsOf, bodyTable > 0) + bodyTable + thread + (body.field ? body.field->bytes() : 0) +
         asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +

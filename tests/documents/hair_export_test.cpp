@@ -15,6 +15,7 @@
 #include "core/base/file.h"
 #include "core/documents/hair_import.h"
 #include "core/operations/stack.h"
+#include "core/simulation/bake_body.h"
 #include "core/stability/certificate.h"
 #include "hairloom/asset.h"
 #include "importers/authored_settings.h"
@@ -82,6 +83,32 @@ TEST_F(HairExportTest, WithoutStormsThereIsNoCertificate) {
     EXPECT_FALSE(report->safeLimits);
     const auto bytes = readFile(folder_ / "a.hairrt").value();
     EXPECT_EQ(valueOf(*runtime::Asset::open(bytes).asset, "certificate.wind"), -1);
+}
+
+/// Of a file of a shell alone, the quickest that holds what stands for hair.
+TEST_F(HairExportTest, CardsSayThatTheyLoseTheSkin) {
+    Groom groom = smallHead();
+    groom.interpolation.followPerGuide = 1;
+    HairToExport wanted;
+    wanted.levels.levels = "shell";
+    wanted.levels.chain.directions = 1;
+    wanted.levels.chain.mostSide = 64;
+    const HairWriter* gltf = nullptr;
+    for (const HairWriter& writer : hairWriters())
+        if (writer.name == "gltf") gltf = &writer;
+    ASSERT_TRUE(gltf);
+    const auto skinFindings = [&] {
+        const auto report = exportHair(groom, wanted, *gltf, folder_ / "a.glb", {});
+        EXPECT_TRUE(report) << report.error().message();
+        std::vector<std::string> found;
+        for (const Finding& finding : report->findings)
+            if (finding.where == "body") found.push_back(finding.what);
+        return found;
+    };
+    EXPECT_THAT(skinFindings(), testing::IsEmpty());
+    groom.body = bakeBodyOf(groom, nullptr).value().field;
+    EXPECT_THAT(skinFindings(),
+                testing::ElementsAre("the skin collider is left out: hair meets 1 spheres there"));
 }
 
 TEST_F(HairExportTest, StormsAreCancelledAndNothingIsWritten) {

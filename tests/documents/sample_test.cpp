@@ -39,6 +39,16 @@ TEST(SampleTest, SamplesAreCompleteAndDeterministic) {
     EXPECT_FALSE(makeSample(kSamples, "no such style"));
 }
 
+TEST(SampleTest, TheSkinProtectsWhatPeopleOpen) {
+    const auto made = makeSample(kSamples, "bob", SampleColliders::skin);
+    ASSERT_TRUE(made) << made.error().message();
+    ASSERT_TRUE(made->body);
+    EXPECT_THAT(made->body->bones, testing::Contains("head"));
+    Groom bare = *made;
+    bare.body.reset();
+    EXPECT_EQ(contentHash(bare), contentHash(*makeSample(kSamples, "bob")));
+}
+
 /// Of every seventh strand.
 std::size_t pointsInsideTheHead(const Groom& groom) {
     const Skin skin(groom.scalp);

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/groom/file/fields.h"
 #include "core/interpolation/follow_hairs.h"
+#include "hairloom/body_bytes.h"
 #include "hairloom/engine.h"
 #include "hairloom/hairloom.hpp"
 #include "tests/exporters/asset_bytes.h"
@@ -21,6 +22,7 @@ namespace {
 namespace format = runtime::asset;
 using runtime::Asset;
 using runtime::AssetError;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 class RuntimeAsset : public AssetTest {};
@@ -380,6 +382,22 @@ TEST_F(RuntimeAsset, FilesOfTheFirstVersionAreStillRead) {
     EXPECT_EQ(format::checksum(std::as_bytes(std::span(strands.positions_ss))), 0xf1169f99u);
     const auto hairs = opened.asset->followHairs(strands);
     ASSERT_TRUE(hairs.hairs) << hairs.error;
+}
+
+/// The same of version 1.1, which brought the skin that hair collides with.
+TEST_F(RuntimeAsset, FilesOfTheFirstVersionWithSkinAreStillRead) {
+    const auto bytes = readFile(sourceDir() / "tests/exporters/files/version_1_1.hairrt").value();
+    const auto opened = Asset::open(bytes);
+    ASSERT_TRUE(opened.asset) << opened.error.words;
+    ASSERT_FALSE(opened.asset->check());
+    EXPECT_EQ(opened.asset->minor(), 1u);
+    EXPECT_EQ(opened.asset->strandCount(), 24u);
+    const auto skin = opened.asset->readBody();
+    ASSERT_TRUE(skin.field) << skin.error;
+    EXPECT_THAT(skin.field->bones, ElementsAre("head"));
+    EXPECT_EQ(opened.asset->bonesOf(*skin.field).size(), 1u);
+    const std::vector<std::uint8_t> packed = runtime::packBody(*skin.field);
+    EXPECT_EQ(format::checksum(std::as_bytes(std::span(packed))), format::checksum(opened.asset->body()));
 }
 
 TEST_F(RuntimeAsset, ChecksumsAreThoseOfZlib) {

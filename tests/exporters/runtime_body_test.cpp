@@ -147,6 +147,17 @@ TEST_F(RuntimeBody, SavedStatesRunOnWithTheSameBits) {
     }
 }
 
+TEST_F(RuntimeBody, ImportSaysThatTheSkinStaysBehind) {
+    opened(hairyBall());
+    const auto read = importStrands(folder / "a.hairrt");
+    ASSERT_TRUE(read);
+    EXPECT_FALSE(read->groom.body) << "it goes with a head";
+    EXPECT_THAT(read->warnings, testing::Contains(testing::Field(&Finding::where, "body")));
+    opened(ballOfHair(false));
+    EXPECT_THAT(importStrands(folder / "a.hairrt")->warnings,
+                testing::Not(testing::Contains(testing::Field(&Finding::where, "body"))));
+}
+
 TEST_F(RuntimeBody, MemoryIsStatedAtAllLevels) {
     const Asset asset = opened(hairyBall());
     Instance hair;

@@ -74,7 +74,8 @@ class RodStrip {
         }
         descend();
         if constexpr (kContacts) {
-            for (int look = 0; look < HAIRLOOM_ROD_CONTACT_LOOKS && lookAgain(look == 0); ++look) descend();
+            const int looks = context_.body ? kBodyLooks : HAIRLOOM_ROD_CONTACT_LOOKS;
+            for (int look = 0; look < looks && lookAgain(look); ++look) descend();
         }
         finish();
     }
@@ -331,7 +332,7 @@ class RodStrip {
     bool anyMayTouch() const;
     template <class Visit>
     void forEachNode(Visit&& visit);
-    bool lookAgain(bool isFirst);
+    bool lookAgain(int look);
     static V4 chosen(RodMask which, V4 yes, V4 no) {
         return {choose(which, yes.x, no.x), choose(which, yes.y, no.y), choose(which, yes.z, no.z),
                 choose(which, yes.w, no.w)};

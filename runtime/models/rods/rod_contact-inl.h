@@ -59,6 +59,12 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
     }
 }
 
+/// A body that comes fast is many times as deep in a strand as what one step can turn: it pushes by so many
+/// metres a step, in so many steps at most, until no node is deeper than so many metres.
+constexpr float kBodyPush = 8e-3f;
+constexpr int kBodyLooks = 10;
+constexpr float kBodyDeep = 1e-3f;
+
 /// The plane that stands for a body in a substep, for a node of each lane, and where it was looked at.
 struct BodyPlane {
     V3 at;  ///< the node, relative to its root
@@ -316,7 +322,7 @@ HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, 
     if (HWY_LIKELY(hn::AllFalse(D(), meets))) return;
     const V farOutside = all(-1e3f);
     const V distance = plane.distance + dot(node.position - plane.at, plane.normal);
-    visit(RodTouch{plane.normal, choose(meets, reach - distance, farOutside),
+    visit(RodTouch{plane.normal, choose(meets, hn::Min(reach - distance, all(kBodyPush)), farOutside),
                    choose(meets, reach - plane.before, farOutside), plane.way},
           meets);
 }

@@ -60,9 +60,10 @@ void RodStrip<kBends, kTwists, kContacts>::forEachNode(Visit&& visit) {
 /// turned far a little inside, the next pushes it out, and what that takes for motion lifts it off after
 /// that.
 template <bool kBends, bool kTwists, bool kContacts>
-bool RodStrip<kBends, kTwists, kContacts>::lookAgain(bool isFirst) {
+bool RodStrip<kBends, kTwists, kContacts>::lookAgain(int look) {
     if (HWY_LIKELY(!anyMayTouch())) return false;
     const V3 root = rootPosition();
+    const bool isFirst = look == 0, isDeepOnly = look >= HAIRLOOM_ROD_CONTACT_LOOKS;
     const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
     // The skin has more curves than spheres have: all looks are for whatever they find.
     const bool restsOnly = !isFirst && !context_.body;
@@ -75,10 +76,11 @@ bool RodStrip<kBends, kTwists, kContacts>::lookAgain(bool isFirst) {
         const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
         auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
         forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
-            inside = either(inside, touch.depth > choose(held, deepest, reach));
+            inside =
+                either(inside, touch.depth > (isDeepOnly ? all(kBodyDeep) : choose(held, deepest, reach)));
             lifted = hn::AndNot(rodHolds(touch, reach), lifted);
         });
-        wrong = either(wrong, both(lanes, either(lifted, inside)));
+        wrong = either(wrong, both(lanes, isDeepOnly ? inside : either(lifted, inside)));
         farthest = hn::Max(farthest, hn::IfThenElseZero(lanes, dot(node.displacement, node.displacement)));
     });
     if (restsOnly) {
