@@ -32,6 +32,7 @@ class Writer {
   public:
     Json json;
     std::vector<std::byte> bin;
+    Cancel cancel = nullptr;
 
     /// Appends a view of raw bytes, aligned to four; its index.
     std::size_t view(const void* data, std::size_t bytes, int target) {
@@ -67,6 +68,7 @@ class Writer {
         return of;
     }
     Status image(const render::Image& picture, const std::string& name) {
+        if (cancelled(cancel)) return stopped();
         const auto file = render::encodePng(picture);
         if (!file) return tl::unexpected(file.error());
         const std::size_t of = view(file->data(), file->size(), 0);
@@ -404,13 +406,14 @@ void addSprings(Writer& w, const Rig& rig, std::span<const Spring> fitted,
 }  // namespace
 
 Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collider> colliders,
-                                     GlbNumbers numbers, const Character& character) {
+                                     GlbNumbers numbers, const Character& character, Cancel cancel) {
     std::vector<const Level*> held;
     for (const Level& level : chain.levels)
         if (level.spec.kind != LevelKind::strands) held.push_back(&level);
     if (held.empty()) return fail("no level that glTF can hold", "one of cards or a shell");
     const Rig& rig = chain.rig;
     Writer w;
+    w.cancel = cancel;
     w.json = Json{{"asset", {{"version", "2.0"}, {"generator", "Hairloom"}}}, {"scene", 0}};
     w.json["nodes"] = Json::array();
     std::vector<LevelArrays> arrays;

@@ -108,8 +108,11 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
         return failIn(
             path, {},
             fmt::format("is {:.3g} m large, where the head that the hair grows on has {:.3g} m", now, old),
-            "expected heads that differ by no more than five times: say its unit (--unit m, dm, cm, mm or "
-            "inch)");
+            head->scene.statesUnit
+                ? "expected heads that differ by no more than five times: the file states its unit, so scale "
+                  "it where it was made"
+                : "expected heads that differ by no more than five times: say its unit (--unit m, dm, cm, mm "
+                  "or inch)");
     }
     done.transfer = std::move(*transfer);
     if (groom.body) {

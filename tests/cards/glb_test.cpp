@@ -394,6 +394,15 @@ TEST(Glb, JointsBeyond255AreNotCutToBytes) {
     EXPECT_EQ(head["accessors"][joints]["componentType"], 5123);
 }
 
+TEST(Glb, StopsWhenItIsCancelled) {
+    const auto chain = smallChain("cards:4");
+    ASSERT_TRUE(chain) << chain.error().message();
+    const std::atomic<bool> cancel = true;
+    const auto file = glbOf(*chain, {}, GlbNumbers::floats, {}, &cancel);
+    ASSERT_FALSE(file);
+    EXPECT_THAT(file.error().message(), testing::HasSubstr("stopped"));
+}
+
 TEST(Glb, RefusesStrandsAlone) {
     const auto chain = smallChain("strands:1@16");
     ASSERT_TRUE(chain) << chain.error().message();
