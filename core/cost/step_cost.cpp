@@ -168,7 +168,8 @@ void BareSolve::enterFrame(std::size_t block, runtime::LaneFrame& lanes) {
 double BareSolve::milliseconds(std::uint32_t frames) {
     const runtime::Model& model = runtime::modelOf(settings_.strandModel);
     const runtime::Passes passes = model.passes(plan_.stages(), false);
-    runtime::SubstepContext context = runtime::substepContext(settings_, plan_, kFrame, {});
+    runtime::SubstepContext context =
+        runtime::substepContext(settings_, plan_, kFrame, runtime::substepsIn(settings_, kFrame), {});
     context.conservative = context.spheresRest = true;
     std::vector<double> times;
     for (std::uint32_t f = 0; f < frames; ++f) {

@@ -253,8 +253,8 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     movingSpheres.clear();
     if (run.plan.on(Effect::collision))
         moveSpheres(frameSpheres, substepsIn(run.settings, input.dt), movingSpheres);
-    const runtime::SubstepContext context =
-        runtime::substepContext(run.settings, run.plan, input.dt, movingSpheres);
+    const runtime::SubstepContext context = runtime::substepContext(
+        run.settings, run.plan, input.dt, runtime::substepsIn(run.settings, input.dt), movingSpheres);
 
     constexpr std::array<std::uint32_t, 4> kNothing{};
     list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));

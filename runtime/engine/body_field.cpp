@@ -430,8 +430,12 @@ PosedBody::Contact PosedBody::at(Float3 point_ws) const {
     return nearest;
 }
 
+BonePose PosedBody::poseAt(Float3 point_ss) const {
+    return mapAt(point_ss).pose;
+}
+
 Float3 PosedBody::place(Float3 point_ss) const {
-    return mapAt(point_ss).pose.apply(point_ss);
+    return poseAt(point_ss).apply(point_ss);
 }
 
 }  // namespace hairloom::runtime

@@ -59,12 +59,21 @@ BodyTable::BodyTable(const BodyField& field) {
     }
     refinements.assign(field.refinements.begin(), field.refinements.end());
     finer.assign(field.finer.begin(), field.finer.end());
+    skins.assign(field.skins.begin(), field.skins.end());
+    const auto four = [&](const std::array<std::uint8_t, 4>& v) {
+        return word(std::uint32_t{v[0]} | std::uint32_t{v[1]} << 8 | std::uint32_t{v[2]} << 16 |
+                    std::uint32_t{v[3]} << 24);
+    };
+    for (const BodyField::Skin& skin : field.palette) {
+        skinBones.push_back(four(skin.bones));
+        skinWeights.push_back(four(skin.weights));
+    }
 }
 
 std::size_t BodyTable::bytesFor(const BodyField& field) {
     const std::size_t blocks = field.values.size() / BodyField::kBlockValues;
     return (field.blocks.size() + std::max<std::size_t>(blocks, 1) * kBlockQuads + field.distances.size() +
-            field.refinements.size() + field.finer.size()) *
+            field.refinements.size() + field.finer.size() + field.skins.size() + 2 * field.palette.size()) *
            sizeof(std::int32_t);
 }
 

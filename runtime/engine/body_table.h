@@ -29,11 +29,15 @@ struct BodyTable {
     std::vector<std::int32_t> pairs;
     std::vector<std::int32_t> refinements;  ///< of each block, BodyField::refinements
     std::vector<std::int32_t> finer;        ///< BodyField::finer
+    std::vector<std::int32_t> skins;        ///< of each corner, BodyField::skins
+    /// Of each entry of the palette, four bytes: its bones and their weights.
+    std::vector<std::int32_t> skinBones, skinWeights;
 
     /// Of the table of a field, which is not made.
     static std::size_t bytesFor(const BodyField& field);
     std::size_t bytes() const {
-        return (cells.size() + quads.size() + pairs.size() + refinements.size() + finer.size()) *
+        return (cells.size() + quads.size() + pairs.size() + refinements.size() + finer.size() +
+                skins.size() + skinBones.size() + skinWeights.size()) *
                sizeof(std::int32_t);
     }
 };

@@ -272,6 +272,19 @@ void Engine::Impl::allocateForBody() {
     bodyLost_ = true;
 }
 
+/// More than the settings ask for where there is a body and hair or roots are so fast that a substep would
+/// take them through it: what one substep has to push out by a segment's length it turns by a right angle.
+std::uint32_t Engine::Impl::substepsOf(const FrameInput& input) const {
+    const std::uint32_t usual = substepsIn(settings_, input.dt);
+    if (!meetsBody()) return usual;
+    constexpr float kFar = 0.025f, kNear = 0.01f;  // metres in a substep: too far, and what is wanted then
+    constexpr std::uint32_t kMostMore = 4;
+    const float way = std::max(rootMotion_, state_.fastest * input.dt);
+    if (!(way > kFar * static_cast<float>(usual)) || !std::isfinite(way)) return usual;
+    const float wanted = std::min(std::ceil(way / kNear), static_cast<float>(kMostMore * usual));
+    return std::clamp(static_cast<std::uint32_t>(wanted), usual, std::max(usual, kMaxSubsteps));
+}
+
 /// Poses the body for the substeps of the frame.
 void Engine::Impl::takeBody(const FrameInput& input) {
     movingBody_.clear();
@@ -295,7 +308,7 @@ void Engine::Impl::takeBody(const FrameInput& input) {
         }
         bodyMoves_ = bodyMoves_ || !(to[b] == from[b]);
     }
-    movingBody_.take(*body_, bodyTable_, from, to, bodyCarriers_, substepsIn(settings_, input.dt));
+    movingBody_.take(*body_, bodyTable_, from, to, bodyCarriers_, substeps_);
     if (bodyLost_ || movingBody_.lostTrack()) std::fill(bodySeen_.begin(), bodySeen_.end(), kNeverSeen);
     bodyLost_ = false;
     if (to.data() != state_.body.data()) state_.body.assign(to.begin(), to.end());
@@ -324,7 +337,7 @@ void Engine::Impl::wakeBlocks() {
 Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     Frame frame{};
     frame.input = &input;
-    frame.context = substepContext(settings_, plan_, input.dt, movingSpheres_);
+    frame.context = substepContext(settings_, plan_, input.dt, substeps_, movingSpheres_);
     if (!movingBody_.empty()) {
         frame.context.body = &movingBody_;
         frame.context.spheresRest = frame.context.spheresRest && !bodyMoves_;
@@ -367,6 +380,7 @@ void Engine::Impl::step(const FrameInput& input) {
     takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
     report_.rejectedSpheres = spheres_.rejected;
     report_.rejectedWinds = takeWind(settings_, input, wind_);
+    substeps_ = substepsOf(input);
     takeBody(input);
     wakeBlocks();
     replan(spheres_.usable, spheres_.motion,
@@ -374,7 +388,7 @@ void Engine::Impl::step(const FrameInput& input) {
            {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
            input.dt);
     if (plan_.on(Effect::collision)) {
-        moveSpheres(spheres_, substepsIn(settings_, input.dt), movingSpheres_);
+        moveSpheres(spheres_, substeps_, movingSpheres_);
         if (model().listsSpheres) scratch_.reserveSpheres(movingSpheres_.size());
     } else {
         movingSpheres_ = {};

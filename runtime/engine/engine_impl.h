@@ -55,6 +55,7 @@ struct Engine::Impl {
     void forBlocks(const std::function<void(std::size_t)>& each);
     void takeRoots(const FrameInput& input);
     void repairRoots(std::size_t block);
+    std::uint32_t substepsOf(const FrameInput& input) const;
     void takeBody(const FrameInput& input);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
@@ -97,6 +98,7 @@ struct Engine::Impl {
     std::vector<MovingSphere> movingSpheres_;
     MovingBody movingBody_;
     bool bodyMoves_ = false;
+    std::uint32_t substeps_ = 1;
     float rootMotion_ = 0.0f;  // metres, the longest way of a root
 };
 

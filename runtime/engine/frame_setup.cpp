@@ -135,8 +135,7 @@ Float3 shiftOfOrigin(const std::array<double, 3>& from_ws, const std::array<doub
 }
 
 SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
-                              std::span<const MovingSphere> spheres) {
-    const std::uint32_t substeps = substepsIn(settings, dt);
+                              std::uint32_t substeps, std::span<const MovingSphere> spheres) {
     const float h = dt / static_cast<float>(substeps);
     SubstepContext context;
     context.count = substeps;

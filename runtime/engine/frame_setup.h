@@ -60,8 +60,8 @@ inline bool isFinite(const std::array<double, 3>& position) {
     return std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]);
 }
 
-/// Of the first substep of a frame of `dt` seconds.
+/// Of the first of `substeps` of a frame of `dt` seconds.
 SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
-                              std::span<const MovingSphere> spheres);
+                              std::uint32_t substeps, std::span<const MovingSphere> spheres);
 
 }  // namespace hairloom::runtime

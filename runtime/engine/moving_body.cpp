@@ -28,8 +28,6 @@ BonePose wayOf(const BonePose& before, const BonePose& after) {
     return {turned(back.x), turned(back.y), turned(back.z), turned(back.origin) + after.origin};
 }
 
-constexpr float kFarFromBody = 1e6f;  // metres
-
 }  // namespace
 
 void MovingBody::take(const BodyField& field, const BodyTable& table, std::span<const BonePose> from,
@@ -124,83 +122,6 @@ float MovingBody::stray(std::size_t carrier, const BonePose& way, std::span<cons
         }
     }
     return most;
-}
-
-/// What hangs on the carrier alone is as far as it is at rest; what hangs on other bones, too, lies in the
-/// boxes of those, and skin between two bones may be closer than it was at rest, but hardly by half.
-BodyLook MovingBody::look(std::uint32_t substep, const BodyVisit& visit) const {
-    const BonePose* const inverses = inverses_.data() + substep * bones_;
-    const float* const leasts = leasts_.data() + substep * bones_;
-    const std::span<const Carrier> all = carriers(substep);
-    const auto besideOf = [&](std::size_t b, Float3 rest) {
-        return isWhole(substep) || field_->boxes.empty() ? 0.0f
-                                                         : leasts[b] * distanceTo(field_->boxes[b], rest);
-    };
-    BodyLook look;
-    // The carrier whose skin may be nearest.
-    float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t c = 0; c < all.size(); ++c) {
-        if (!all[c].usable) continue;
-        const std::size_t b = all[c].bone;
-        const Float3 rest = inverses[b].apply(visit.point_ws);
-        const float beside = besideOf(b, rest);
-        if (beside >= nearest) continue;
-        const float away = std::max(beside, leasts[b] * field_->freeAround(rest));
-        if (away >= nearest) continue;
-        nearest = away;
-        look.carrier = c;
-        if (isWhole(substep)) break;
-    }
-    const PosedBody& now = at_[substep + 1];
-    const Carrier& carrier = all[look.carrier];
-    float gone = length(visit.displacement), apart = gone;
-    if (std::isfinite(nearest)) {
-        const Float3 place = carrier.inverse.apply(visit.point_ws);
-        gone = length(visit.displacement - (visit.point_ws - carrier.before.apply(place)));
-        apart = carrier.apart;
-        look.room = {nearest, isWhole(substep) ? nearest : kFarFromBody};
-        for (std::size_t b = 0; b < bones_ && !isWhole(substep); ++b) {
-            if (b == carrier.bone || !(leasts[b] > 0.0f)) continue;
-            const Float3 rest = inverses[b].apply(visit.point_ws);
-            const float beside = besideOf(b, rest);
-            if (beside >= look.room.other) continue;
-            look.room.other =
-                std::min(look.room.other, std::max(beside, 0.5f * leasts[b] * field_->freeAround(rest)));
-        }
-    } else {
-        const float away = std::min(now.freeAround(visit.point_ws), kFarFromBody);
-        look.room = {away, away};
-    }
-    const float near = visit.radius + gone + static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR);
-    if (look.room.carried > near && look.room.other > near + apart) return look;
-    const PosedBody::Contact contact = now.at(visit.point_ws);
-    if (std::isfinite(contact.distance)) {
-        const float free = surelyFree(contact.distance, field_->cell);
-        look.room = {std::max(look.room.carried, free), std::max(look.room.other, free)};
-    }
-    if (!(contact.distance <= near + apart)) return look;
-    if (contact.bone) {
-        for (std::size_t c = 0; c < all.size(); ++c) {
-            if (!all[c].usable || (all[c].bone != *contact.bone && !isWhole(substep))) continue;
-            if (c != look.carrier && !isWhole(substep)) {
-                const float free = surelyFree(contact.distance, field_->cell);
-                look.room = {free, free};
-                look.carrier = c;
-            }
-            look.isCarried = true;
-            return look;
-        }
-    }
-    look.met = true;
-    BodyTouch& touch = look.touch;
-    touch.normal = contact.normal_ws;
-    touch.distance = contact.distance;
-    touch.way = moves_ ? visit.point_ws - at_[substep].place(contact.point_ss) : Float3{0.0f, 0.0f, 0.0f};
-    // By the plane that is there at the end; skin curves away from it.
-    touch.before = contact.distance - dot(touch.normal, visit.displacement - touch.way);
-    if (touch.before < visit.radius - static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP))
-        sweep(substep, visit, near + apart, touch);
-    return look;
 }
 
 /// Where the plane at the end has it inside at the start: whether it was, and if not, where it came in.

@@ -28,21 +28,6 @@ struct BodyVisit {
     float radius;  ///< metres that it keeps from the body
 };
 
-/// Metres that a body is away from a place at least.
-struct BodyRoom {
-    float carried = 0.0f;  ///< skin that moves with one bone alone
-    float other = 0.0f;    ///< all other
-};
-
-/// What a look at the bones of a body has found.
-struct BodyLook {
-    std::size_t carrier = 0;  ///< number among the carriers; the room is told from its side
-    BodyRoom room;
-    bool met = false;        ///< the body is near, and `touch` is of it
-    bool isCarried = false;  ///< what is near hangs on the carrier alone, and is to be measured in its space
-    BodyTouch touch{{0.0f, 1.0f, 0.0f}, 0.0f, 0.0f, {}};
-};
-
 /// Poses of a body at the ends of a frame's substeps. Its bones go straight on from pose to pose, as roots
 /// do.
 class MovingBody {
@@ -59,8 +44,6 @@ class MovingBody {
     const BodyTable& table() const { return *table_; }
     float cell() const { return field_->cell; }
 
-    /// Which carrier a node is with, how far the body is, and what is met of skin that several bones move.
-    BodyLook look(std::uint32_t substep, const BodyVisit& visit) const;
     /// What came in in the substep meets the plane where it did, however fast it is and however thin what it
     /// came into. `touch` is of the plane at the end; nodes may be `near` metres from the body.
     void sweep(std::uint32_t substep, const BodyVisit& visit, float near, BodyTouch& touch) const;
@@ -83,6 +66,17 @@ class MovingBody {
     }
     /// All bones move alike in the substep.
     bool isWhole(std::uint32_t substep) const { return wholes_[substep] != 0; }
+    bool moves() const { return moves_; }
+    /// At the start of a substep; at its end with one more.
+    const PosedBody& posed(std::uint32_t substep) const { return at_[substep]; }
+    /// Of each bone at the end of a substep, and metres in the world of one that it carries, at least; 0: it
+    /// is flat.
+    std::span<const BonePose> inverses(std::uint32_t substep) const {
+        return std::span(inverses_).subspan(substep * bones_, bones_);
+    }
+    std::span<const float> leasts(std::uint32_t substep) const {
+        return std::span(leasts_).subspan(substep * bones_, bones_);
+    }
     /// What was looked at before is void.
     bool lostTrack() const { return lostTrack_; }
 

@@ -121,7 +121,8 @@ void GpuGuides::take(const FrameInput& input) {
         planFrame(settings_, planInput, wind_, spheres_.usable, spheres_.motion, input.dt);
     std::vector<MovingSphere> moving;
     if (plan.on(Effect::collision)) moveSpheres(spheres_, substepsIn(settings_, input.dt), moving);
-    const SubstepContext context = substepContext(settings_, plan, input.dt, moving);
+    const SubstepContext context =
+        substepContext(settings_, plan, input.dt, substepsIn(settings_, input.dt), moving);
     const bool wakes = !(shift == Float3{});
     Frame frame;
     frame.constants = frameConstants(

@@ -112,6 +112,8 @@ class PosedBody {
     float freeAround(Float3 point_ws) const;
     /// Where a place of the body at rest is in the world.
     Float3 place(Float3 point_ss) const;
+    /// What takes places near one of the body at rest to the world.
+    BonePose poseAt(Float3 point_ss) const;
     std::uint32_t flattened() const { return flattened_; }
     float cell() const { return field_->cell; }
 

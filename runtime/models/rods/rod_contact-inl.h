@@ -8,12 +8,12 @@
 #endif
 
 #include "engine/body_free.h"
-#include "engine/body_sample-inl.h"
 #include "engine/kernels.h"
 #include "engine/lanes-inl.h"
 #include "engine/moving_body.h"
 #include "engine/spheres-inl.h"
 #include "hwy/highway.h"
+#include "models/rods/rod_body-inl.h"
 #include "models/rods/rod_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -83,83 +83,6 @@ HWY_INLINE void forgetPlane(BodyPlane& plane) {
     plane.distance = plane.before = plane.known = plane.room = hn::Zero(D());
 }
 
-/// BonePose for each lane.
-struct LanePose {
-    V3 x, y, z, origin;
-    V3 apply(V3 p) const { return mad3(x, p.x, mad3(y, p.y, mad3(z, p.z, origin))); }
-};
-HWY_INLINE LanePose allPose(const BonePose& pose) {
-    return {all3(pose.x), all3(pose.y), all3(pose.z), all3(pose.origin)};
-}
-HWY_INLINE void putPose(RodMask which, const BonePose& pose, LanePose& to) {
-    to.x = select(which, all3(pose.x), to.x);
-    to.y = select(which, all3(pose.y), to.y);
-    to.z = select(which, all3(pose.z), to.z);
-    to.origin = select(which, all3(pose.origin), to.origin);
-}
-
-/// MovingBody::Carrier of each lane.
-struct LaneCarrier {
-    LanePose inverse, inverseBefore, before;
-    V largest, least, apart, strayed, bone, number;
-    RodMask usable;
-};
-
-/// `number`: of each lane's carrier; below 0 for none, which is as the first.
-HWY_INLINE LaneCarrier carrierOfLanes(std::span<const MovingBody::Carrier> carriers, V number) {
-    const MovingBody::Carrier& first = carriers[0];
-    LaneCarrier of{allPose(first.inverse),
-                   allPose(first.inverseBefore),
-                   allPose(first.before),
-                   all(first.largest),
-                   all(first.least),
-                   all(first.apart),
-                   all(first.strayed),
-                   all(static_cast<float>(first.bone)),
-                   hn::Max(number, hn::Zero(D())),
-                   first.usable ? hn::Not(noLane()) : noLane()};
-    if (HWY_LIKELY(hn::AllFalse(D(), number > hn::Zero(D())))) return of;
-    for (std::size_t c = 1; c < carriers.size(); ++c) {
-        const auto which = number == all(static_cast<float>(c));
-        if (hn::AllFalse(D(), which)) continue;
-        const MovingBody::Carrier& own = carriers[c];
-        putPose(which, own.inverse, of.inverse);
-        putPose(which, own.inverseBefore, of.inverseBefore);
-        putPose(which, own.before, of.before);
-        of.largest = choose(which, all(own.largest), of.largest);
-        of.least = choose(which, all(own.least), of.least);
-        of.apart = choose(which, all(own.apart), of.apart);
-        of.strayed = choose(which, all(own.strayed), of.strayed);
-        of.bone = choose(which, all(static_cast<float>(own.bone)), of.bone);
-        of.usable = own.usable ? either(of.usable, which) : hn::AndNot(which, of.usable);
-    }
-    return of;
-}
-
-/// Numbers of a vector's lanes, one by one.
-struct SplitLanes {
-    alignas(64) float at[3][kWidth];
-
-    explicit SplitLanes(V3 v) {
-        hn::Store(v.x, D(), at[0]);
-        hn::Store(v.y, D(), at[1]);
-        hn::Store(v.z, D(), at[2]);
-    }
-    Float3 operator[](std::size_t lane) const { return {at[0][lane], at[1][lane], at[2][lane]}; }
-    void set(std::size_t lane, Float3 v) {
-        at[0][lane] = v.x;
-        at[1][lane] = v.y;
-        at[2][lane] = v.z;
-    }
-    V3 all() const { return {hn::Load(D(), at[0]), hn::Load(D(), at[1]), hn::Load(D(), at[2])}; }
-};
-struct Lanes1 {
-    alignas(64) float at[kWidth];
-
-    explicit Lanes1(V v) { hn::Store(v, D(), at); }
-    V all() const { return hn::Load(D(), at); }
-};
-
 /// How nodes of a body's skin are seen: bodySeen of a node of each lane.
 struct BodySeen {
     V3 place;  ///< in the space of the carrier
@@ -211,47 +134,26 @@ HWY_NOINLINE RodMask lookAtBody(const MovingBody& body, V3 position_ws, V reach,
     // Skin of others is farther away than `near`.
     auto lone = both(both(searched, ownOnly), either(isOwn(), both(sample.inside, sample.distance > near)));
     auto met = noLane();
-    const std::uint32_t looked = bitsOf(hn::AndNot(lone, searched));
-    if (looked != 0) {
-        const SplitLanes at(position_ws), moved(node.displacement);
-        const Lanes1 keeps(reach);
-        SplitLanes normal(plane.normal), ways(plane.way);
-        Lanes1 distance(plane.distance), before(plane.before), carriedRoom(carried), otherRoom(other),
-            number(carrier.number);
-        std::uint32_t metBits = 0, carriedBits = 0;
-        for (std::size_t lane = 0; lane < kWidth; ++lane) {
-            if ((looked >> lane & 1u) == 0) continue;
-            const BodyLook found = body.look(substep, {at[lane], moved[lane], keeps.at[lane]});
-            carriedRoom.at[lane] = found.room.carried;
-            otherRoom.at[lane] = found.room.other;
-            number.at[lane] = static_cast<float>(found.carrier);
-            if (found.isCarried) carriedBits |= 1u << lane;
-            if (!found.met) continue;
-            metBits |= 1u << lane;
-            normal.set(lane, found.touch.normal);
-            ways.set(lane, found.touch.way);
-            distance.at[lane] = found.touch.distance;
-            before.at[lane] = found.touch.before;
-        }
-        met = maskOf(metBits);
-        plane.normal = normal.all();
-        plane.way = ways.all();
-        plane.distance = distance.all();
-        plane.before = before.all();
-        carried = carriedRoom.all();
-        other = otherRoom.all();
-        const auto changed = maskOf(looked);
-        const V numbers = number.all();
-        const bool turned = !hn::AllFalse(D(), both(changed, numbers != carrier.number));
-        if (turned) {
+    const auto looked = hn::AndNot(lone, searched);
+    if (!hn::AllFalse(D(), looked)) {
+        const LaneLook found = lookOfLanes(body, substep, position_ws, node.displacement, margin, looked);
+        met = found.met;
+        plane.normal = select(met, found.normal, plane.normal);
+        plane.way = select(met, found.way, plane.way);
+        plane.distance = choose(met, found.distance, plane.distance);
+        plane.before = choose(met, found.before, plane.before);
+        carried = choose(looked, found.carried, carried);
+        other = choose(looked, found.other, other);
+        const V numbers = choose(looked, found.number, carrier.number);
+        if (!hn::AllFalse(D(), numbers != carrier.number)) {
             carrier = carrierOfLanes(body.carriers(substep), numbers);
-            place = select(changed, carrier.inverse.apply(position_ws), place);
+            place = select(looked, carrier.inverse.apply(position_ws), place);
             way = position_ws - carrier.before.apply(place);
             against = node.displacement - way;
-            near = choose(changed, margin + hn::Sqrt(dot(against, against)), near);
-            if (carriedBits != 0) sample = sampleBody(body.field(), body.table(), place);
+            near = choose(looked, margin + hn::Sqrt(dot(against, against)), near);
+            if (!hn::AllFalse(D(), found.isCarried)) sample = sampleBody(body.field(), body.table(), place);
         }
-        lone = either(lone, maskOf(carriedBits));
+        lone = either(lone, found.isCarried);
     }
     if (!hn::AllFalse(D(), lone)) {
         const V3 g = sample.gradient;
@@ -272,24 +174,24 @@ HWY_NOINLINE RodMask lookAtBody(const MovingBody& body, V3 position_ws, V reach,
         plane.distance = choose(here, distance, plane.distance);
         plane.before = choose(here, before, plane.before);
         met = either(met, here);
-        const std::uint32_t swept = bitsOf(both(here, before < reach - all(kDeep)));
-        if (HWY_UNLIKELY(swept != 0)) {
-            const SplitLanes at(position_ws), moved(node.displacement), ways(plane.way);
-            const Lanes1 keeps(reach), nears(near + carrier.apart);
-            SplitLanes normals(plane.normal);
-            Lanes1 distances(plane.distance), befores(plane.before);
-            for (std::size_t lane = 0; lane < kWidth; ++lane) {
-                if ((swept >> lane & 1u) == 0) continue;
-                BodyTouch touch{normals[lane], distances.at[lane], befores.at[lane], ways[lane]};
-                body.sweep(substep, {at[lane], moved[lane], keeps.at[lane]}, nears.at[lane], touch);
-                normals.set(lane, touch.normal);
-                distances.at[lane] = touch.distance;
-                befores.at[lane] = touch.before;
-            }
-            plane.normal = normals.all();
-            plane.distance = distances.all();
-            plane.before = befores.all();
+    }
+    const std::uint32_t swept = bitsOf(both(met, plane.before < reach - all(kDeep)));
+    if (HWY_UNLIKELY(swept != 0)) {
+        const SplitLanes at(position_ws), moved(node.displacement), ways(plane.way);
+        const Lanes1 keeps(reach), nears(near + carrier.apart);
+        SplitLanes normals(plane.normal);
+        Lanes1 distances(plane.distance), befores(plane.before);
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            if ((swept >> lane & 1u) == 0) continue;
+            BodyTouch touch{normals[lane], distances.at[lane], befores.at[lane], ways[lane]};
+            body.sweep(substep, {at[lane], moved[lane], keeps.at[lane]}, nears.at[lane], touch);
+            normals.set(lane, touch.normal);
+            distances.at[lane] = touch.distance;
+            befores.at[lane] = touch.before;
         }
+        plane.normal = normals.all();
+        plane.distance = distances.all();
+        plane.before = befores.all();
     }
     // Lanes that were searched are known from where they are now.
     seen.place = select(searched, place, seen.place);
@@ -307,7 +209,7 @@ HWY_NOINLINE RodMask lookAtBody(const MovingBody& body, V3 position_ws, V reach,
 /// Nodes that were far off when they were last looked at, and have not come far since, are not looked at. In
 /// a substep the plane that was found holds for all guesses that are close to where it was found, and for
 /// those that are outside for certain. Where all that is near hangs on one bone, it is looked up at rest, all
-/// lanes at once; what else there is, MovingBody::look() finds.
+/// lanes at once; what else there is, lookOfLanes() finds.
 template <class Visit>
 HWY_INLINE void touchBody(const MovingBody& body, V3 root, const RodNode& node, const BlockView& block,
                           std::size_t i, std::uint32_t substep, BodyPlane& plane, Visit&& visit) {

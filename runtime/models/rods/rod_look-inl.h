@@ -67,7 +67,10 @@ bool RodStrip<kBends, kTwists, kContacts>::lookAgain(int look) {
     const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
     // The skin has more curves than spheres have: all looks are for whatever they find.
     const bool restsOnly = !isFirst && !context_.body;
-    const V deepest = all(restsOnly ? static_cast<float>(HAIRLOOM_ROD_CONTACT_SUNK) : kAnyDepth);
+    // What it holds may be deeper than one step turns.
+    const V deepest = all(context_.body ? kBodyDeep
+                          : restsOnly   ? static_cast<float>(HAIRLOOM_ROD_CONTACT_SUNK)
+                                        : kAnyDepth);
     auto wrong = noLane();
     V farthest = hn::Zero(D());  // squared, of where a node has gone
     forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
