@@ -126,7 +126,7 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
         out,
         "# Measured on a GPU\n\nWritten by `{}` on {}. docs/gpu-simulation.md says what is measured.\n\n"
         "Device: {}, driver {}; it copies {:.0f} GB/s (read and written). Processor: {}, {} threads.\n\n"
-        "Strands of 16 points with the default settings, every effect, ten spheres; ms a frame. The GPU's "
+        "Strands of 16 points with the default settings, every effect, ten spheres; ms per frame. The GPU's "
         "wall "
         "clock passes below one thread at {} strands, below all threads at {}.\n\n"
         "| strands | GPU | GPU, wall | GPU, frames together | CPU, one thread | CPU, all threads | "

@@ -62,7 +62,7 @@ void writeSamples(const SimulationBench& bench, Out out) {
     fmt::format_to(
         out,
         "\n## A step of the samples\n\nNanoseconds per particle and substep, with each sample's own "
-        "settings, on a nodding head; milliseconds are of a whole frame.\n\n| what | ns | ms a frame "
+        "settings, on a nodding head; milliseconds are of a whole frame.\n\n| what | ns | ms per frame "
         "|\n|---|---|---|\n");
     for (const SampleStep& sample : bench.samples) {
         fmt::format_to(out, "| {} | {} | {} |\n", sample.step.name, spread(sample.step),
@@ -74,7 +74,7 @@ void writeSteps(const SimulationBench& bench, Out out) {
     fmt::format_to(out,
                    "\n## A step\n\nNanoseconds per particle and substep, strands of 16 points with the "
                    "default settings; "
-                   "milliseconds are of a whole frame.\n\n| strands | scene | threads | ns | ms a frame "
+                   "milliseconds are of a whole frame.\n\n| strands | scene | threads | ns | ms per frame "
                    "|\n|---|---|---|---|---|\n");
     for (const StepCosts& costs : bench.steps) {
         const double work = static_cast<double>(costs.scene.strands) * costs.scene.points *

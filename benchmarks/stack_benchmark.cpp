@@ -47,7 +47,7 @@ Status drag(Rounds& rounds, Document& document, std::size_t index) {
 void measureHair(Timings& timings, const std::string& name, const Groom& groom) {
     Document document(groom);
     const Status built = build(document);
-    timings.measure("five operators anew, " + name, [&](Rounds& rounds) -> Status {
+    timings.measure("five operators again, " + name, [&](Rounds& rounds) -> Status {
         if (!built) return built;
         while (rounds.next()) {
             StackCache empty;

@@ -66,7 +66,7 @@ std::string commandLineManPage() {
     page +=
         ".SH NAME\nhairloom\\-cli \\- author hairstyles for games, without a window\n"
         ".SH SYNOPSIS\n.B hairloom\\-cli\n.RI [ OPTIONS ]\n.I JOB\n.RI [ \"OPTIONS OF THE JOB\" ]\n"
-        ".SH DESCRIPTION\nEvery job of the editor \\(em heads, scalps, grooming, simulation, pictures, "
+        ".SH DESCRIPTION\nEvery job of the editor \\(em heads, scalps, grooming, simulation, images, "
         "assets "
         "\\(em\nas one command. Lengths are in metres, time in seconds, angles in degrees.\n"
         ".SH OPTIONS\n";

@@ -96,7 +96,15 @@ std::string wanted(const CLI::Option& option) {
         return fmt::format("expected {} to {}", values.range.substr(0, dash), values.range.substr(dash + 3));
     if (values.type.starts_with("INT") || values.type.starts_with("UINT")) return "expected a whole number";
     if (values.type.starts_with("FLOAT") || values.type.starts_with("POSITIVE")) return "expected a number";
-    return "expected a value";
+    const std::string meaning = option.get_description();
+    return "expected a value: " + meaning.substr(0, meaning.find_first_of("\n"));
+}
+
+/// "--a, --b" of "Exactly 1 option from [--a,--b]"; empty where it is no such list.
+std::string listIn(const std::string& words) {
+    const auto begin = words.find('['), end = words.find(']');
+    if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
+    return spaced(words.substr(begin + 1, end - begin - 1));
 }
 
 Error unknownWord(const CLI::App& app, const std::string& word) {
@@ -149,7 +157,7 @@ Error usageError(const CLI::App& app, const CLI::ParseError& error) {
         return at == std::string::npos ? std::string() : words.substr(at + mark.size());
     };
     const auto before = [&](std::string_view mark) { return words.substr(0, words.find(mark)); };
-    const bool isNamed = words.starts_with('-') && words.find(": ") != std::string::npos;
+    const bool isNamed = words.find(": ") != std::string::npos && findOption(app, before(": "));
     // An unknown word goes before what it may have left out: a misspelt option before a required one.
     auto unknown = app.remaining(true);
     std::erase(unknown, "--");
@@ -158,6 +166,16 @@ Error usageError(const CLI::App& app, const CLI::ParseError& error) {
     if (!unknown.empty()) return unknownWord(app, unknown.front());
     if (kind == "RequiredError" && words.starts_with("A subcommand"))
         return {{}, {}, "a job is required", helpOf(nullptr)};
+    if (kind == "RequiredError" && words.starts_with("Exactly 1 option from ")) {
+        const bool none = words.ends_with("] is required");
+        return {{},
+                {},
+                none ? "an option is missing" : "options exclude each other",
+                "expected one of " + listIn(words)};
+    }
+    if (kind == "RequiredError" && words.find(" and ") != std::string::npos &&
+        words.ends_with(" is required"))
+        words.replace(words.size() - 11, 11, "are required");
     if (kind == "ValidationError" && isNamed) return wrongValue(app, before(": "), after(": "));
     if (kind == "ConversionError" && words.starts_with("Could not convert: ")) {
         const std::string name = after("convert: ").substr(0, after("convert: ").find(" = "));

@@ -75,7 +75,7 @@ def bind(groom, folder, mesh_path, authored_path, replace):
     path = folder + "/" + ASSET + "_Binding"
     if unreal.EditorAssetLibrary.does_asset_exist(path):
         if not replace:
-            raise SystemExit(path + " is there already; --replace makes it anew")
+            raise SystemExit(path + " is there already; --replace makes it again")
         unreal.EditorAssetLibrary.delete_asset(path)
     binding = unreal.GroomLibrary.create_new_groom_binding_asset_with_path(
         path, groom, mesh, 100, authored, 0)

@@ -81,7 +81,7 @@ Error tooFar(const FarPoint& far, std::span<const std::uint32_t> offsets, std::s
     const Size size = measure(offsets, positions);
     const LengthUnit* const unit = isPlausible(size, 1.0f) ? nullptr : fittingUnit(size, metresPerUnit);
     error.expected += unit != nullptr ? fmt::format("; the unit {} would fit the strands", unit->name)
-                                      : "; mend the strand, scale the file or move it to the origin";
+                                      : "; fix the strand, scale the file or move it to the origin";
     return error;
 }
 

@@ -89,7 +89,7 @@ class Parser {
         } else if (keyword == "bothEndsImmovable" && trimmed(rest_) == "1") {
             raw_.warnings.push_back(
                 fileNote("both ends of the strands are marked immovable; Hairloom fixes the root alone",
-                         "strand tips", "constrain the tips anew where that was wanted"));
+                         "strand tips", "constrain the tips again where that was wanted"));
         } else if (parseNumber(keyword)) {
             return wrong("a vertex that belongs to no strand",
                          "expected as many lines behind 'strand' as numVerts says");

@@ -77,7 +77,7 @@ class Reader {
         const auto tell = [&](const std::vector<std::string>& what, const char* behind) {
             if (!what.empty()) scene_.warnings.push_back(firstOf(what) + behind);
         };
-        tell(stage_.repeated, ": stands twice, and USD's own library refuses it");
+        tell(stage_.repeated, ": appears twice, and USD's own library refuses it");
         tell(stage_.chosen, ": other variants were left out");
         tell(stage_.notFollowed, ": put what is missing beside the file, or flatten the stage");
     }

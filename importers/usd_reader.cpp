@@ -113,8 +113,8 @@ class Reader {
                                       usdNumber(stage_.metadata, "framesPerSecond", 24));
         if (rate > 0 && std::isfinite(rate)) codesPerSecond_ = rate;
         for (const std::string& repeated : stage_.repeated)
-            strands_.warnings.push_back({Severity::Error, "stands twice, and USD's own library refuses it",
-                                         repeated, "write the file anew with each name once"});
+            strands_.warnings.push_back({Severity::Error, "appears twice, and USD's own library refuses it",
+                                         repeated, "write the file again with each name once"});
         if (!stage_.chosen.empty())
             strands_.warnings.push_back(
                 fileNote(firstOf(stage_.chosen), "variants", "other variants were left out"));

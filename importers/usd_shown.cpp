@@ -79,7 +79,7 @@ class Walk {
         if (prim.hasClips) leaveOut(prim, path, "has value clips, which are not followed");
         if (isOf(prim, shape_)) {
             if (purpose == "proxy")
-                leaveOut(prim, path, "is a proxy of what pictures show");
+                leaveOut(prim, path, "is a proxy of what images show");
             else
                 shown_.prims.push_back({&prim, path, levels, purpose == "guide", true});
         }

@@ -152,7 +152,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job benchJob() {
-    return {"bench", "Measure a part of Hairloom on this machine, with medians of repeated runs",
+    return {"bench", "Measure a part of Hairloom on this machine, as medians of several runs",
             "sim --quick --json", declare};
 }
 

@@ -84,8 +84,8 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job cleanJob() {
-    return {"clean", "List or remove temporary files of interrupted runs, and copies of unsaved work",
-            "--remove out", declare};
+    return {"clean", "List or remove leftovers of interrupted runs and unsaved copies", "--remove out",
+            declare};
 }
 
 }  // namespace hairloom::cli

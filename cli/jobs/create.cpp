@@ -188,8 +188,8 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job createJob() {
-    return {"create", "Select a scalp on a head mesh, place roots and grow strands along its normals",
-            "--mesh head.obj --scalp group:scalp --count 3000 --length 0.25 -o hair.hairloom", declare};
+    return {"create", "Select a scalp on a head, place roots and grow straight strands",
+            "--mesh head.obj --scalp group:scalp --count 3000 --length 0.2 -o hair.hairloom", declare};
 }
 
 }  // namespace hairloom::cli

@@ -279,7 +279,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job importJob() {
-    return {"import", "Import strands from another program. The format is detected from the content",
+    return {"import", "Import strands from another program, in any format that is recognised",
             "hair.tfx --mesh head.obj -o hair.hairloom", declare};
 }
 

@@ -365,7 +365,7 @@ JobRun declare(CLI::App& job) {
 
 Job simulateJob() {
     return {"simulate", "Run the simulation and report how it went",
-            "hair.hairloom --frames 120 --fps 60 --wind 3,0,1 --motion nod --record hair.frames", declare};
+            "hair.hairloom --frames 120 --wind 3,0,1 --motion nod --record hair.frames", declare};
 }
 
 }  // namespace hairloom::cli

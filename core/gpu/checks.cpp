@@ -82,7 +82,7 @@ Status checkDesc(const DeviceInfo& info, const TextureDesc& desc, std::size_t co
             fmt::format("{}x{} pixels, 1 to {} are possible", desc.width, desc.height, info.maxTextureSize));
     }
     if (std::ranges::find(info.sampleCounts, desc.samples) == info.sampleCounts.end()) {
-        return wrong(fmt::format("the device has no {} samples a pixel", desc.samples));
+        return wrong(fmt::format("the device has no {} samples per pixel", desc.samples));
     }
     if (has(desc.usage, Usage::DepthStencil) != (desc.format == Format::D32Float) &&
         (has(desc.usage, Usage::DepthStencil) || has(desc.usage, Usage::RenderTarget))) {
@@ -110,7 +110,7 @@ Status checkDesc(const DeviceInfo& info, const GraphicsPipelineDesc& desc) {
     if (desc.vertex == nullptr) return wrong("no vertex shader");
     if (!isStage(desc.vertex, ShaderStage::Vertex) || !isStage(desc.hull, ShaderStage::Hull) ||
         !isStage(desc.domain, ShaderStage::Domain) || !isStage(desc.pixel, ShaderStage::Pixel)) {
-        return wrong("a shader stands in the place of another stage");
+        return wrong("a shader is given as another stage");
     }
     if ((desc.hull == nullptr) != (desc.domain == nullptr))
         return wrong("hull and domain shaders come together");
@@ -126,7 +126,7 @@ Status checkDesc(const DeviceInfo& info, const GraphicsPipelineDesc& desc) {
     if (desc.blend.size() != desc.colourFormats.size())
         return wrong("one blend state per colour target is needed");
     if (std::ranges::find(info.sampleCounts, desc.samples) == info.sampleCounts.end()) {
-        return wrong("the device has no " + std::to_string(desc.samples) + " samples a pixel");
+        return wrong("the device has no " + std::to_string(desc.samples) + " samples per pixel");
     }
     return {};
 }

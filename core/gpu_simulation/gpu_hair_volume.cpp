@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/gpu_simulation/compiled_kernel.h"
+#include "runtime/engine/strand_model.h"
 #include "runtime/shaders/volume_types.h"
 
 namespace hairloom::gpu_simulation {
@@ -86,7 +87,7 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
     constants.unused1 = constants.unused2 = constants.unused3 = 0;
     list.updateBuffer(box_, 0, std::as_bytes(std::span(kEmptyBox)));
     gpu::PassDesc pass;
-    pass.name = "hair against hair";
+    pass.name = "hair-hair collision";
     list.beginPass(pass);
     const auto overNodes = [&](const gpu::ComputePipelinePtr& pipeline, std::span<const Binding> bindings) {
         list.setPipeline(pipeline);
@@ -101,7 +102,7 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
             constants.points = batch.shape.points;
             constants.together = batch.shape.together ? 1 : 0;
             constants.sleeps = batch.rests != nullptr ? 1 : 0;
-            constants.rods = batch.rodState != nullptr ? 1 : 0;
+            constants.rods = runtime::modelOf(batch.key.model).keepsVelocities ? 1 : 0;
             list.setPipeline(pipeline);
             const std::array<Binding, 3> strands{Binding::read(0, batch.blockCounts),
                                                  Binding::read(1, batch.firstPoints),
@@ -129,10 +130,11 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
     overNodes(resolve_, resolved);
     const std::array<Binding, 2> pushed{Binding::read(3, box_), Binding::read(4, fields_)};
     overPoints(push_, pushed, [&](const StrandBatch& batch) {
+        const gpu::BufferPtr& own = batch.model.state.buffer;
         const std::array<Binding, 3> written{
             Binding::write(0, batch.state),
             Binding::write(1, batch.rests != nullptr ? batch.rests : nothing_[0]),
-            Binding::write(2, batch.rodState != nullptr ? batch.rodState : nothing_[1])};
+            Binding::write(2, own != nullptr ? own : nothing_[1])};
         list.bind(written);
     });
     list.endPass();

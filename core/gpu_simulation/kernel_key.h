@@ -2,6 +2,7 @@
 #pragma once
 // Which permutation of the strand kernel runs a plan.
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -44,19 +45,16 @@ enum class SphereSource : std::uint32_t { none, constants, buffer };
 struct KernelKey {
     BatchShape shape;
     std::uint32_t clampedPoints = 2;
-    std::uint32_t evaluation = 0;  ///< arrays of the integrator: none, start and rate, those of RK4
-    std::uint32_t bend = 0;        ///< none, stiffness, factors
-    bool targets = false;
-    bool tensions = false;  ///< are kept from substep to substep
     SphereSource spheres = SphereSource::none;
     bool wind = false;
     bool sleep = false;
     bool velocities = false;  ///< are written as well as positions
-    bool rods = false;        ///< a thread per strand, whose numbers stay in buffers
     std::string stages;       ///< of a substep, as calls
+    runtime::StrandModel model = runtime::StrandModel::springs;
+    std::array<std::uint32_t, 4> own{};  ///< what else the model's kernel is made for, as it numbers them
 
     /// The file of runtime/shaders that becomes the kernel.
-    const char* source() const { return rods ? "rods.hlsli" : "strands.hlsli"; }
+    const char* source() const;
     /// Lines of #define; equal keys have equal ones.
     std::string defines() const;
 
@@ -67,7 +65,10 @@ struct KernelKey {
 KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings,
                  const BatchShape& shape, std::size_t spheres, bool velocities);
 
-/// Empty, or in words why these settings have no kernels: the linear systems of backward Euler.
+/// "stageAngularSmallAngle();"
+std::string callOf(runtime::StageId stage);
+
+/// Empty, or in words why these settings have no kernels: the linear systems of backward Euler on springs.
 std::string kernelError(const runtime::SimulationSettings& settings);
 
 }  // namespace hairloom::gpu_simulation

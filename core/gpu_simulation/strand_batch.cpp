@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu_simulation/strand_batch.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <map>
@@ -134,6 +135,28 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
         batches.push_back(std::move(batch));
     }
     return batches;
+}
+
+gpu::BufferPtr ModelBuffers::at(std::uint32_t slot) const {
+    const auto found = std::ranges::find(read, slot, &ModelBuffer::slot);
+    return found == read.end() ? nullptr : found->buffer;
+}
+
+Result<bool> haveFloats(gpu::Device& device, gpu::BufferPtr& buffer, const char* name, std::size_t count,
+                        std::uint32_t elementBytes) {
+    if (buffer == nullptr ? count == 0 : buffer->desc().size == count * sizeof(float)) return false;
+    buffer = nullptr;
+    if (count == 0) return false;
+    const std::vector<float> content(count);
+    gpu::BufferDesc desc;
+    desc.name = name;
+    desc.size = count * sizeof(float);
+    desc.usage = gpu::Usage::ShaderRead | gpu::Usage::UnorderedAccess;
+    desc.elementBytes = elementBytes;
+    auto made = device.createBuffer(desc, std::as_bytes(std::span(content)));
+    if (!made) return tl::unexpected(made.error());
+    buffer = std::move(*made);
+    return true;
 }
 
 Status makeRestBuffers(gpu::Device& device, const runtime::RestShape& shape, StrandBatch& batch) {

@@ -33,7 +33,21 @@ struct LayoutOptions {
 /// For such a device.
 LayoutOptions layoutFor(gpu::DeviceType type);
 
-/// Of StrandBatch::state: those of runtime::State, and what is kept of the tension.
+/// A buffer of a model of strands, for its kernel; null while the effect is off.
+struct ModelBuffer {
+    std::uint32_t slot = 0;
+    runtime::Effect effect = runtime::Effect::angular;  ///< that it exists for
+    gpu::BufferPtr buffer;
+};
+struct ModelBuffers {
+    std::vector<ModelBuffer> read;
+    ModelBuffer state;  ///< written: what the model remembers from step to step beside StrandBatch::state
+
+    /// What is read at a slot; null: nothing.
+    gpu::BufferPtr at(std::uint32_t slot) const;
+};
+
+/// Of StrandBatch::state: those of runtime::State, and what a model keeps there (springs: the tension).
 inline constexpr std::size_t kDevicePlanes = runtime::kStatePlanes + 1;
 
 struct StrandBatch {
@@ -44,9 +58,8 @@ struct StrandBatch {
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
     gpu::BufferPtr strandOfSlot;  ///< once the device finds roots itself
     // Null while what needs them is off.
-    gpu::BufferPtr bend, targets, rests, gathered, scratch;
-    // Of rods, as in runtime/shaders/rod_storage.hlsli; null for springs.
-    gpu::BufferPtr rodRest, rodMasses, curvedBlocks, rodState;
+    gpu::BufferPtr rests, gathered, scratch;
+    ModelBuffers model;
     KernelKey key;
     gpu::ComputePipelinePtr kernel;
 
@@ -70,6 +83,15 @@ Result<gpu::BufferPtr> makeBuffer(gpu::Device& device, const char* name, gpu::Us
     desc.usage = usage;
     desc.elementBytes = sizeof(T);
     return device.createBuffer(desc, std::as_bytes(content));
+}
+
+/// Has a buffer of `count` floats that are 0, or none; whether it is new.
+Result<bool> haveFloats(gpu::Device& device, gpu::BufferPtr& buffer, const char* name, std::size_t count,
+                        std::uint32_t elementBytes);
+
+template <class T>
+std::span<const std::byte> bytesOfVector(const std::vector<T>& values) {
+    return std::as_bytes(std::span(values));
 }
 
 }  // namespace hairloom::gpu_simulation

@@ -2,11 +2,9 @@
 #include "core/gpu_simulation/strand_engine.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <limits>
 
-#include "core/gpu_simulation/bend_reduction.h"
 #include "core/gpu_simulation/strand_engine_impl.h"
 #include "runtime/engine/checks.h"
 
@@ -18,20 +16,6 @@ using runtime::Effect;
 using runtime::Float3;
 
 constexpr std::size_t kMaxSubmissionsInFlight = 2;
-/// Floats a point that a kernel of StrandStorage::buffers works in: see storage.hlsli.
-constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
-/// Of angular springs, a point.
-std::size_t bendFloats(const KernelKey& key) {
-    if (key.bend < 2) return key.bend;
-    return key.shape.storage == StrandStorage::lanes ? 4 * (reductionSteps(key.shape.points) + 1) : 4;
-}
-std::size_t scratchPlanes(const KernelKey& key) {
-    if (key.rods) {
-        const bool contacts = key.spheres != SphereSource::none;
-        return HAIRLOOM_ROD_WORK_PLANES + (contacts ? HAIRLOOM_ROD_CONTACT_PLANES : 0);
-    }
-    return kScratchPlanes[key.evaluation];
-}
 constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
 
 }  // namespace
@@ -53,14 +37,12 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
         layout.storage = StrandStorage::threads;
     if (direct3d) layout.members = 1;
-    // A thread takes a rod, and finds those of its neighbours beside it.
-    if (settings.strandModel == runtime::StrandModel::rods && !layout.storage)
-        layout.storage = StrandStorage::threads;
+    if (!layout.storage) layout.storage = gpuModelOf(settings.strandModel).storage;
     impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
     if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
     impl->placed.roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
-    if (auto taken = impl->takeRods(settings); !taken) return tl::unexpected(taken.error());
+    if (auto taken = impl->takeModel(settings); !taken) return tl::unexpected(taken.error());
     if (options.hairHair) {
         auto volume = GpuHairVolume::make(device, *options.hairHair);
         if (!volume) return tl::unexpected(volume.error());
@@ -119,40 +101,34 @@ Status StrandEngine::Impl::makeBuffers() {
     return {};
 }
 
+/// Takes what strands are under these settings. Those of another model go on from where they are.
+Status StrandEngine::Impl::takeModel(const runtime::SimulationSettings& settings) {
+    known.reset();
+    if (model == nullptr || settings.strandModel != run.settings.strandModel) {
+        for (StrandBatch& batch : batches) batch.model = {};
+        model = gpuModelOf(settings.strandModel).make();
+    }
+    return model->takeSettings(device, *shape, settings, batches);
+}
+
 /// The buffers that the plan needs, and no others.
 Status StrandEngine::Impl::allocate() {
     Status status;
-    /// Of `count` floats that are 0, or none.
-    const auto have = [&](gpu::BufferPtr& buffer, const char* name, std::size_t count, std::size_t bytes) {
-        if (!status || (buffer == nullptr ? count == 0 : buffer->desc().size == count * 4)) return false;
-        buffer = nullptr;
-        if (count == 0) return false;
-        const std::vector<float> content(count);
-        gpu::BufferDesc desc;
-        desc.name = name;
-        desc.size = count * 4;
-        desc.usage = kReadWrite;
-        desc.elementBytes = static_cast<std::uint32_t>(bytes);
-        auto made = device.createBuffer(desc, std::as_bytes(std::span(content)));
-        if (!made) {
+    const auto have = [&](gpu::BufferPtr& buffer, const char* name, std::size_t count) {
+        if (!status) return;
+        if (auto made = haveFloats(device, buffer, name, count, 4); !made)
             status = tl::unexpected(made.error());
-            return false;
-        }
-        buffer = std::move(*made);
-        return true;
     };
     bool sleeps = false;
     for (StrandBatch& batch : batches) {
         const KernelKey& key = batch.key;
         const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-        bool fresh = have(batch.bend, "angular springs", plane * bendFloats(key), key.bend == 1 ? 4 : 16);
-        fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
-        if (fresh) bendSubstep = 0.0f;
+        if (auto made = model->allocate(device, batch); !made) return made;
         const bool gathers = key.sleep && (sharesBlocks(key.shape.storage) || key.shape.members > 1);
-        have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0, 4);
-        have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
+        have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0);
+        have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0);
         const bool scratch = key.shape.storage == StrandStorage::buffers && !key.stages.empty();
-        have(batch.scratch, "scratch", scratch ? plane * scratchPlanes(key) : 0, 4);
+        have(batch.scratch, "scratch", scratch ? plane * gpuModelOf(key.model).scratchPlanes(key) : 0);
         sleeps = sleeps || key.sleep;
     }
     if (!sleeps) waking = nullptr;
@@ -205,11 +181,10 @@ Result<bool> StrandEngine::Impl::kernelsFor(const Run& next, bool wait) {
 
 Status StrandEngine::Impl::adopt(const Run& next) {
     if (run.settings != next.settings) {
-        bendSubstep = 0.0f;
         restsVoid = wakeAll = true;
-        if (auto taken = takeRods(next.settings); !taken) return taken;
+        if (auto taken = takeModel(next.settings); !taken) return taken;
     }
-    if (adopted && !run.plan.keepsTensions() && next.plan.keepsTensions()) tensionsVoid = true;
+    if (adopted) model->changePlan(run.plan, next.plan);
     run = next;
     adopted = true;
     return allocate();
@@ -294,12 +269,10 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
         if (buffer != nullptr) bytes += static_cast<std::size_t>(buffer->desc().size);
     };
     for (const StrandBatch& batch : impl_->batches) {
-        if (effect == Effect::angular) {
-            for (const auto& buffer :
-                 {batch.bend, batch.rodRest, batch.rodMasses, batch.curvedBlocks, batch.rodState})
-                add(buffer);
+        for (const ModelBuffer& own : batch.model.read) {
+            if (own.effect == effect) add(own.buffer);
         }
-        if (effect == Effect::torsion) add(batch.targets);
+        if (batch.model.state.effect == effect) add(batch.model.state.buffer);
         if (effect == Effect::sleep) {
             add(batch.rests);
             add(batch.gathered);
@@ -320,7 +293,7 @@ std::size_t StrandEngine::volumeBytes() const {
 std::size_t StrandEngine::frameBytes() const {
     std::size_t bytes = 0;
     for (const StrandBatch& batch : impl_->batches) {
-        for (const auto& changing : {batch.state, batch.roots, batch.rodState}) {
+        for (const auto& changing : {batch.state, batch.roots, batch.model.state.buffer}) {
             if (changing != nullptr) bytes += 2 * static_cast<std::size_t>(changing->desc().size);
         }
         bytes += static_cast<std::size_t>(batch.rootsTo->desc().size);

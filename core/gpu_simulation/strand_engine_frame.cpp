@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/gpu_simulation/bend_reduction.h"
 #include "core/gpu_simulation/compiled_kernel.h"
 #include "core/gpu_simulation/strand_engine_impl.h"
 #include "runtime/engine/checks.h"
@@ -21,11 +20,6 @@ using runtime::Float3;
 using runtime::RootFrame;
 
 constexpr std::size_t kBlocksPerJob = 8;
-
-template <class T>
-std::span<const std::byte> bytesOfVector(const std::vector<T>& values) {
-    return std::as_bytes(std::span(values));
-}
 
 }  // namespace
 
@@ -128,49 +122,8 @@ void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
     upload(waking, "waking spheres", runtime::wakingOf(frameSpheres));
 }
 
-/// The arrays of angular springs for substeps of h seconds.
-void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
-    runtime::Bend bend;
-    bend.factored = run.plan.factored();
-    bend.targets = run.plan.on(Effect::torsion);
-    bend.planes = runtime::Floats(shape->planeFloats * bend.planeCount(), 0.0f);
-    parallelFor(shape->blocks.size(), kBlocksPerJob, [&](std::size_t first, std::size_t end) {
-        for (std::size_t b = first; b < end; ++b) runtime::fillBend(*shape, run.settings, h, b, bend);
-    });
-    const std::size_t planes = bend.planeCount();
-    for (const StrandBatch& batch : batches) {
-        if (batch.key.bend == 1) {
-            std::vector<float> all = runtime::planesOfSlots(*shape, batch.inSlots(), bend.planes, planes);
-            all.resize(std::size_t{batch.shape.points} * batch.slots);
-            list.updateBuffer(batch.bend, 0, bytesOfVector(all));
-        } else if (batch.key.bend == 2 && batch.key.shape.storage == StrandStorage::lanes) {
-            list.updateBuffer(batch.bend, 0,
-                              bytesOfVector(reducedBend(*shape, batch, run.settings.clampedPoints, bend)));
-        } else if (batch.key.bend == 2) {
-            // Planes are stiffness, inverse diagonal, lower1, lower2; the kernel has the stiffness last.
-            constexpr std::array<std::size_t, 4> kFactors{1, 2, 3, 0};
-            list.updateBuffer(
-                batch.bend, 0,
-                bytesOfVector(runtime::quadsOfSlots(*shape, batch.inSlots(), bend.planes, planes, kFactors)));
-        }
-        if (!batch.key.targets) continue;
-        const std::array<std::size_t, 3> targets{planes - 3, planes - 2, planes - 1};
-        list.updateBuffer(
-            batch.targets, 0,
-            bytesOfVector(runtime::quadsOfSlots(*shape, batch.inSlots(), bend.planes, planes, targets)));
-    }
-}
-
-/// What other settings and plans do to the state: kept tensions are void, and nothing sleeps.
+/// What other settings and plans do to the state: nothing sleeps.
 void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
-    if (tensionsVoid) {
-        for (const StrandBatch& batch : batches) {
-            const std::vector<float> none(std::size_t{batch.shape.points} * batch.slots);
-            list.updateBuffer(batch.state, runtime::kStatePlanes * none.size() * sizeof(float),
-                              bytesOfVector(none));
-        }
-        tensionsVoid = false;
-    }
     if (!restsVoid) return;
     for (const StrandBatch& batch : batches) {
         if (batch.rests == nullptr) continue;
@@ -193,9 +146,8 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
 
 void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& batch,
                                   const shaders::SimulationConstants& constants,
-                                  const shaders::RodConstants& ofRods) const {
+                                  const runtime::SubstepContext& context) const {
     list.setPipeline(batch.kernel);
-    const bool rods = batch.key.rods;
     std::vector<Binding> bindings;
     const auto read = [&](std::uint32_t slot, const gpu::BufferPtr& buffer) {
         if (buffer != nullptr) bindings.push_back(Binding::read(slot, buffer));
@@ -205,27 +157,24 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     };
     read(0, batch.rest);
     read(1, batch.segments);
-    read(2, rods ? batch.rodRest : batch.bend);
-    read(3, rods ? batch.rodMasses : batch.targets);
     read(4, batch.blockCounts);
     read(5, batch.firstPoints);
     read(6, batch.rootsTo);
     read(7, spheres);
     read(8, waking);
-    read(9, batch.curvedBlocks);
+    for (const ModelBuffer& own : batch.model.read) read(own.slot, own.buffer);
     write(0, batch.state);
     write(1, batch.roots);
     write(2, batch.rests);
     write(3, reportBuffer);
     write(4, positions);
-    const bool inBuffers = batch.key.shape.storage == StrandStorage::buffers;
-    write(5, batch.rodState);
-    write(6, rods ? velocities : nullptr);
-    write(7, inBuffers ? batch.scratch : velocities);
-    write(8, inBuffers && !rods ? velocities : batch.gathered);
+    write(batch.model.state.slot, batch.model.state.buffer);
+    write(7, batch.scratch);
+    write(8, batch.gathered);
+    write(gpuModelOf(batch.key.model).velocitySlot(batch.key), velocities);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
-    if (rods) list.setConstants(2, gpu::bytesOf(ofRods));
+    model->setConstants(list, context, run.wind.wind, substep, batch);
     if (batch.key.spheres == SphereSource::constants) {
         std::vector<shaders::SphereConstants> all = runtime::sphereConstants(movingSpheres);
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
@@ -266,22 +215,17 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     rootsMoved = moves;
     uploadChanges(list);
     uploadSpheres(list);
-    const bool springs = run.settings.strandModel == runtime::StrandModel::springs;
-    if (springs && run.plan.on(Effect::angular) && bendSubstep != context.h) {
-        uploadBend(list, context.h);
-        bendSubstep = context.h;
-    }
+    model->upload(list, *shape, run.plan, run.settings, context.h, batches);
     gpu::PassDesc pass;
     pass.name = "strands";
     list.beginPass(pass);
-    for (const StrandBatch& batch : batches)
-        dispatch(list, batch, constants(context, input, batch), rodConstants(context, batch));
+    for (const StrandBatch& batch : batches) dispatch(list, batch, constants(context, input, batch), context);
     list.endPass();
     if (volume) volume->record(list, batches, run.settings.clampedPoints, input.dt, context.h);
     spheresBefore = frameSpheres.usable;
     substep = context.h;
-    wakeAll = rodsFresh = false;
-    rodEnergyKnown = true;
+    wakeAll = false;
+    model->closeFrame();
     return {};
 }
 

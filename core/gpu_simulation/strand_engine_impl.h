@@ -5,9 +5,8 @@
 #include <deque>
 
 #include "core/gpu_simulation/strand_engine.h"
+#include "core/gpu_simulation/strand_model.h"
 #include "runtime/engine/gpu_frame.h"
-#include "runtime/models/rods/rod_slots.h"
-#include "runtime/models/springs/springs.h"
 
 namespace hairloom::gpu_simulation {
 
@@ -23,7 +22,7 @@ struct StrandEngine::Impl {
     std::shared_ptr<KernelLibrary> kernels;
     EngineOptions options;
     std::shared_ptr<const runtime::RestShape> shape;
-    runtime::RodRest rodRest;  ///< empty for springs
+    std::unique_ptr<DeviceStrands> model;  ///< of run.settings.strandModel
     std::vector<StrandBatch> batches;
     std::optional<GpuHairVolume> volume;
     gpu::BufferPtr reportBuffer, positions, velocities;
@@ -43,13 +42,8 @@ struct StrandEngine::Impl {
     float substep = 0.0f;                            ///< seconds of the last one; 0 before the first
     std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
     runtime::Float3 originShift;                     ///< by which that of the frame moves what was known
-    float bendSubstep = 0.0f;                        ///< that the springs' buffers are for; 0: none
     bool restsVoid = false;                          ///< other settings: nothing sleeps
-    bool tensionsVoid = false;                       ///< those on the device are of a plan that is over
     bool wakeAll = false;
-    runtime::SimulationSettings rodSettings;  ///< that rodRest was made with
-    bool rodEnergyKnown = true;  ///< what rods had before the frame is energy under these settings
-    bool rodsFresh = false;      ///< the device has places of rods, and nothing else yet
     bool rootsMoved = false;     ///< in the last frame, as the device knows
     bool rootsOfDevice = false;  ///< `placed` is of an earlier frame: the device found them itself since
     gpu::ComputePipelinePtr rootRows;  ///< puts roots of the device in order, once there are some
@@ -66,6 +60,7 @@ struct StrandEngine::Impl {
     // strand_engine.cpp
     std::string velocityError() const;
     Status makeBuffers();
+    Status takeModel(const runtime::SimulationSettings& settings);
     Status allocate();
     Status adopt(const Run& next);
     Status choose(const runtime::FrameInput& input, runtime::Float3 low, runtime::Float3 high);
@@ -80,19 +75,14 @@ struct StrandEngine::Impl {
     void moveOrigin(std::array<double, 3> next_ws);
     void uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) const;
     void uploadSpheres(gpu::CommandList& list);
-    void uploadBend(gpu::CommandList& list, float h);
     void uploadChanges(gpu::CommandList& list);
     shaders::SimulationConstants constants(const runtime::SubstepContext& context,
                                            const runtime::FrameInput& input, const StrandBatch& batch) const;
     void dispatch(gpu::CommandList& list, const StrandBatch& batch,
-                  const shaders::SimulationConstants& constants, const shaders::RodConstants& ofRods) const;
-    // strand_engine_rods.cpp
-    Status takeRods(const runtime::SimulationSettings& settings);
-    Status makeRodBuffers(StrandBatch& batch) const;
-    void allocateRods(runtime::State& state) const;
-    shaders::RodConstants rodConstants(const runtime::SubstepContext& context,
-                                       const StrandBatch& batch) const;
+                  const shaders::SimulationConstants& constants,
+                  const runtime::SubstepContext& context) const;
     // strand_engine_state.cpp
+    runtime::State emptyState() const;
     Result<runtime::State> readState();
     Result<std::vector<std::byte>> readTogether(const std::vector<gpu::BufferPtr>& buffers) const;
     void takeBatch(const StrandBatch& batch, std::span<const std::byte>& bytes, runtime::State& state) const;

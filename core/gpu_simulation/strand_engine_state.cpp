@@ -20,7 +20,7 @@ using runtime::RootFrame;
 /// Of a batch, in the order in which takeBatch() takes them.
 std::vector<gpu::BufferPtr> changingBuffers(const StrandBatch& batch) {
     std::vector<gpu::BufferPtr> buffers;
-    for (const auto& buffer : {batch.state, batch.roots, batch.rodState, batch.rests}) {
+    for (const auto& buffer : {batch.state, batch.roots, batch.model.state.buffer, batch.rests}) {
         if (buffer != nullptr) buffers.push_back(buffer);
     }
     return buffers;
@@ -69,16 +69,10 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
     };
     const std::vector<float> moving = take(batch.state);
     runtime::planesOfBlocks(*shape, batch.inSlots(), moving, state.planes, runtime::kStatePlanes);
-    if (batch.key.tensions) {
-        const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-        runtime::planesOfBlocks(*shape, batch.inSlots(),
-                                std::span(moving).subspan(runtime::kStatePlanes * plane),
-                                state.own[runtime::kOwnTensions], 1);
-    }
     runtime::rowsToBlocks(batch.inSlots(), take(batch.roots), runtime::kRootRows, state.roots.data());
-    if (batch.rodState != nullptr) {
-        runtime::rodStateToBlocks(*shape, batch.inSlots(), take(batch.rodState), state);
-    }
+    const std::vector<float> own =
+        batch.model.state.buffer != nullptr ? take(batch.model.state.buffer) : std::vector<float>();
+    model->readOwn(*shape, batch, moving, own, state);
     if (batch.rests == nullptr) return;
     const std::vector<float> rests = take(batch.rests);
     for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
@@ -96,14 +90,20 @@ Result<runtime::State> StrandEngine::readState() {
     return impl_->readState();
 }
 
-Result<runtime::State> StrandEngine::Impl::readState() {
-    if (known) return *known;
+/// With the arrays that the model and the plan have, all 0.
+runtime::State StrandEngine::Impl::emptyState() const {
     runtime::State state;
     state.planes.assign(shape->planeFloats * runtime::kStatePlanes, 0.0f);
     state.roots.assign(shape->blocks.size() * runtime::kRootRows * kBlockLanes, 0.0f);
     state.rests.resize(shape->blocks.size());
-    allocateRods(state);
-    if (run.plan.keepsTensions()) state.own[runtime::kOwnTensions].assign(shape->planeFloats, 0.0f);
+    state.model = run.settings.strandModel;
+    model->allocateState(*shape, run.plan, state);
+    return state;
+}
+
+Result<runtime::State> StrandEngine::Impl::readState() {
+    if (known) return *known;
+    runtime::State state = emptyState();
     std::vector<gpu::BufferPtr> buffers;
     for (const StrandBatch& batch : batches) {
         const auto own = changingBuffers(batch);
@@ -129,16 +129,12 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     };
     std::vector<float> moving =
         runtime::planesOfSlots(*shape, batch.inSlots(), state.planes, runtime::kStatePlanes);
-    if (state.model == runtime::StrandModel::springs && !state.own[runtime::kOwnTensions].empty()) {
-        const std::vector<float> tensions =
-            runtime::planesOfSlots(*shape, batch.inSlots(), state.own[runtime::kOwnTensions], 1);
-        moving.insert(moving.end(), tensions.begin(), tensions.end());
-    }
+    std::vector<float> own;
+    model->writeOwn(*shape, batch, state, moving, own);
     moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);
     send(batch.state, moving);
     send(batch.roots, runtime::rowsOfSlots(batch.inSlots(), state.roots.data(), runtime::kRootRows));
-    if (batch.rodState != nullptr)
-        send(batch.rodState, runtime::rodStateOfSlots(*shape, batch.inSlots(), state));
+    if (!own.empty()) send(batch.model.state.buffer, own);
     if (batch.rests != nullptr) {
         std::vector<float> rests;
         for (const std::uint32_t block : batch.blocks) {
@@ -152,14 +148,8 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
 
 Status StrandEngine::Impl::writeState(const runtime::State& given) {
     known.reset();
-    // A state of springs, or of chains, becomes one of these rods.
-    std::optional<runtime::State> made;
-    const bool bends = rodRest.parts >= runtime::RodParts::bending;
-    if (!rodRest.planes.empty() &&
-        (given.model != runtime::StrandModel::rods || (bends && given.own[runtime::kOwnStrains].empty())))
-        runtime::completeRods(*shape, rodRest, true, made.emplace(given));
+    const std::optional<runtime::State> made = model->takeState(*shape, given);
     const runtime::State& state = made ? *made : given;
-    rodsFresh = false;
     auto list = device.createCommandList();
     if (!list) return tl::unexpected(list.error());
     for (const StrandBatch& batch : batches) {
@@ -205,11 +195,7 @@ Status StrandEngine::writeState(const runtime::State& state) {
 Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
     assert(roots_ws.size() == strandCount());
     const runtime::RestShape& shape = *impl_->shape;
-    runtime::State state;
-    state.planes.assign(shape.planeFloats * runtime::kStatePlanes, 0.0f);
-    state.roots.assign(shape.blocks.size() * runtime::kRootRows * kBlockLanes, 0.0f);
-    state.rests.resize(shape.blocks.size());
-    impl_->allocateRods(state);
+    runtime::State state = impl_->emptyState();
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::uint32_t strand = shape.blocks[b].strandOfLane[lane];
@@ -221,8 +207,7 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
             for (std::size_t r = 0; r < values.size(); ++r)
                 state.roots[(b * runtime::kRootRows + r) * kBlockLanes + lane] = values[r];
             runtime::placeAtRest(shape, state, b, lane);
-            if (!impl_->rodRest.planes.empty())
-                runtime::placeRodAtRest(shape, impl_->rodRest, state, b, lane);
+            impl_->model->placeAtRest(shape, state, b, lane);
         }
     }
     return impl_->writeState(state);

@@ -69,7 +69,7 @@ FrameCost frameCostOf(std::string_view pass) {
         {"roots", FrameCost::head},
         {"roots of slots", FrameCost::solve},
         {"strands", FrameCost::solve},
-        {"hair against hair", FrameCost::hairHair},
+        {"hair-hair collision", FrameCost::hairHair},
         {"wisps", FrameCost::follow},
         {"follow hairs", FrameCost::follow},
         {"measures", FrameCost::measures},

@@ -58,7 +58,7 @@ Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte
     };
     const auto head = readExrHead(file, content);
     if (!head) return tl::unexpected(head.error());
-    if (head->width < 1 || head->height < 1) return failed("is a picture without pixels");
+    if (head->width < 1 || head->height < 1) return failed("is an image without pixels");
     if (auto status = checkPictureSize(file, head->width, head->height,
                                        (std::uint64_t{head->channels} + 4) * sizeof(float));
         !status)
@@ -126,7 +126,7 @@ Status writeExr(const std::filesystem::path& path, const LinearImage& image,
     split("", "RGBA", image.rgba);
     for (const ExrLayer& layer : layers) {
         if (layer.values.size() != layer.channels.size() * pixels)
-            return failIn(path.string(), {}, "a layer '" + layer.name + "' of another size than the picture");
+            return failIn(path.string(), {}, "a layer '" + layer.name + "' of another size than the image");
         split(layer.name + ".", layer.channels, layer.values);
     }
     std::vector<unsigned char*> pointers;

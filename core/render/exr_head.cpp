@@ -141,7 +141,7 @@ class Head {
                 return wrong(found->at, fmt::format("has another {} than each file has", required.name));
         }
         if (const Attribute* const type = find("type"); type && contentOf(*type) != "scanlineimage")
-            return wrong(type->at, "says that it is no picture in lines of pixels");
+            return wrong(type->at, "says that it is no image in lines of pixels");
         const std::uint64_t compression = find("compression")->at, order = find("lineOrder")->at;
         if (valueAt<std::uint8_t>(bytes_, compression) >= kLines.size())
             return wrong(compression, "is packed in a way that is not read (none, RLE, ZIP and PIZ are)");
@@ -242,7 +242,7 @@ Status checkExrBlocks(const std::string& file, std::span<const std::byte> conten
         at += 8 + packed;
     }
     if (at == content.size()) return {};
-    return wrong(at, "is damaged: it goes on after its lines of pixels");
+    return wrong(at, "is damaged: it continues after its lines of pixels");
 }
 
 }  // namespace hairloom::render

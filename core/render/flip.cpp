@@ -252,10 +252,10 @@ double colourDifference(const Vec3d& a, const Vec3d& b) {
 
 Result<FlipDifference> flipDifference(const Image& reference, const Image& test, double pixelsPerDegree) {
     const std::size_t pixels = std::size_t{reference.width} * reference.height;
-    if (pixels == 0 || reference.rgba.size() != 4 * pixels) return fail("a picture without pixels");
+    if (pixels == 0 || reference.rgba.size() != 4 * pixels) return fail("an image without pixels");
     if (test.width != reference.width || test.height != reference.height ||
         test.rgba.size() != reference.rgba.size()) {
-        return fail(fmt::format("a picture of {}x{} pixels beside one of {}x{}", test.width, test.height,
+        return fail(fmt::format("an image of {}x{} pixels beside one of {}x{}", test.width, test.height,
                                 reference.width, reference.height));
     }
     const ContrastFilter contrast(pixelsPerDegree);

@@ -14,7 +14,7 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     const std::uint64_t pixels = std::uint64_t{o.width} * o.height;
     const std::uint32_t limit = device.maxTextureSize;
     if (pixels == 0 || o.width > limit || o.height > limit || pixels > kMaxPixels) {
-        return fail(fmt::format("a picture of {}x{} pixels", o.width, o.height),
+        return fail(fmt::format("an image of {}x{} pixels", o.width, o.height),
                     fmt::format("1 to {} along a side and at most {} in all", limit, kMaxPixels));
     }
     if (o.frames < 1 || o.frames > 1024) return fail(fmt::format("{} frames", o.frames), "1 to 1024");
@@ -71,7 +71,7 @@ Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::Dev
         std::string counts;
         for (const std::uint32_t n : device.sampleCounts)
             counts += (counts.empty() ? "" : ", ") + std::to_string(n);
-        return fail(fmt::format("{} samples a pixel on {}", options.samples, device.name),
+        return fail(fmt::format("{} samples per pixel on {}", options.samples, device.name),
                     "one of " + counts);
     }
     return options.samples;

@@ -121,7 +121,7 @@ class HostDevice : public gpu::BackendDevice {
         return HostTexture::make(desc, content);
     }
     Result<std::unique_ptr<gpu::SwapChain>> makeSwapChain(const gpu::SwapChainDesc& /*desc*/) override {
-        return fail("the software renderer has no swap chain", "pictures that are read back");
+        return fail("the software renderer has no swap chain", "images that are read back");
     }
     Result<std::unique_ptr<gpu::CommandList>> makeCommandList(std::function<void()> whenClosed) override {
         return std::make_unique<HostCommandList>(state_, std::move(whenClosed));

@@ -11,7 +11,7 @@ namespace {
 
 tl::unexpected<Error> noMemory(const std::string& name, std::uint64_t bytes) {
     return fail("no memory for '" + name + "', " + std::to_string(bytes) + " bytes",
-                "a smaller picture, or less hair");
+                "a smaller image, or less hair");
 }
 
 bool hasBytes(gpu::Format format) {

@@ -159,7 +159,7 @@ Result<QImage> DeviceWork::drawAlone(PictureRequest request) {
     if (auto taken = work.take(std::move(request)); !taken) return tl::unexpected(taken.error());
     QImage picture;
     while (!work.isComplete()) {
-        if (*drop_) return fail("the picture was dropped");
+        if (*drop_) return fail("the image was dropped");
         auto drawn = work.draw();
         if (!drawn) return tl::unexpected(drawn.error());
         picture = std::move(drawn->first);

@@ -96,7 +96,7 @@ Result<QImage> RenderThread::drawAside(PictureRequest request, const std::functi
     while (picture.wait_for(kPatience) != std::future_status::ready) {
         if (!isCancelled() && !hasEnded()) continue;
         withdraw(ticket);
-        return fail("the picture was cancelled");
+        return fail("the image was cancelled");
     }
     return picture.get();
 }

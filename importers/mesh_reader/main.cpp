@@ -109,7 +109,7 @@ Result<Content> readConfined(Request& request, const Read& read) {
     const std::string failed = confinement.namesOf(LayerState::Failed);
     if (!failed.empty() && !request.allowUnconfined) {
         return fail("is not read, since the process that reads it could not be confined: " + failed,
-                    "mend that, or read it all the same with --allow-unconfined");
+                    "fix that, or read it anyway with --allow-unconfined");
     }
     const std::string missing = confinement.namesOf(LayerState::Missing);
     request.lacking = missing + (missing.empty() || failed.empty() ? "" : ", ") + failed;

@@ -25,9 +25,9 @@ Result<render::LinearImage> decodePicture(const std::string& file, std::span<con
     const auto kind = pictureKindOf(bytes);
     if (!kind || std::ranges::find(kinds, *kind) == kinds.end()) {
         const std::string found = bytes.empty() ? "is empty"
-                                  : kind        ? "is a picture in the format " + std::string(name(*kind))
-                                                : "is not in a supported format of pictures";
-        return failIn(file, {}, found, "expected a picture in the format " + namesOf(kinds));
+                                  : kind        ? "is an image in the format " + std::string(name(*kind))
+                                                : "is not in a supported image format";
+        return failIn(file, {}, found, "expected an image in the format " + namesOf(kinds));
     }
     switch (*kind) {
         case PictureKind::Png:

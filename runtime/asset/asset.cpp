@@ -89,7 +89,7 @@ Asset::Result Asset::open(std::span<const std::byte> bytes) {
             16, "has " + number(bytes.size()) + " bytes; its header says " + number(header.fileBytes)));
     if (header.sections > kMaxSections ||
         std::uint64_t{header.sections} * sizeof(Section) > bytes.size() - sizeof(Header))
-        return refuse(damaged(24, "has no room for " + number(header.sections) + " sections"));
+        return refuse(damaged(24, "has no space for " + number(header.sections) + " sections"));
     if (header.tableChecksum != checksum(std::as_bytes(asset.table())))
         return refuse(damaged(sizeof(Header), "the checksum of the table of sections does not match"));
     for (const Section& section : asset.table()) {
@@ -111,7 +111,7 @@ template <class Record>
 bool Asset::isSound(const Section& section, std::string_view kind, std::string& problem) const {
     if (std::string_view(section.kind.data(), section.kind.size()) != kind) return false;
     if (findSection(kind) != &section)
-        problem = "stands twice";
+        problem = "appears twice";
     else if (section.recordBytes != sizeof(Record) ||
              section.bytes != std::uint64_t{section.count} * sizeof(Record))
         problem = "has " + number(section.bytes) + " bytes for " + number(section.count) + " records of " +
@@ -124,7 +124,7 @@ bool Asset::take(const Section& section, std::string_view kind, std::span<const 
                  std::string& problem) {
     if (std::string_view(section.kind.data(), section.kind.size()) != kind) return false;
     if (!records.empty())
-        problem = "stands twice";
+        problem = "appears twice";
     else if (section.recordBytes != sizeof(Record) ||
              section.bytes != std::uint64_t{section.count} * sizeof(Record))
         problem = "has " + number(section.bytes) + " bytes for " + number(section.count) + " records of " +

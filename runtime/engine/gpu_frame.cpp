@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/checks.h"
+#include "engine/strand_model.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -31,8 +32,7 @@ shaders::SimulationConstants frameConstants(const GpuFrame& frame, const Substep
     c.h = context.h;
     c.substep = context;
     c.dt = input.dt;
-    // Rods keep speeds, not ways.
-    const bool keepsWays = s.strandModel != StrandModel::rods;
+    const bool keepsWays = !modelOf(s.strandModel).keepsVelocities;
     c.rescale = frame.before > 0.0f && keepsWays ? context.h / frame.before : 1.0f;
     c.teleportDistance = s.teleportDistance;
     const float slow = s.sleepSpeed * context.h;

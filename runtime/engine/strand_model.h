@@ -135,6 +135,7 @@ struct Model {
     std::size_t laneFloats;  ///< of LaneFrame::own
     bool listsSpheres;       ///< fills LaneFrame::touchable
     bool meetsBody;          ///< SubstepContext::body
+    bool keepsVelocities;    ///< in State::own; else what a point went in the last substep is its velocity
     std::size_t mostPlanes;  ///< floats of each point and lane that it can take, with those of `own`
     std::size_t (*mostSolverFloats)();
     const char* gpuSource;  ///< of runtime/shaders: what becomes its kernel of a GPU

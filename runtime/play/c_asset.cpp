@@ -215,7 +215,7 @@ hl_code hl_asset_layers(const hl_asset* opened, uint32_t* layers, uint32_t* of_g
         if (of_guides && count != asset.strandCount())
             return say(
                 error, HL_WRONG_SIZE, HL_NO_PLACE,
-                "room for " + std::to_string(count) + " guides of " + std::to_string(asset.strandCount()));
+                "space for " + std::to_string(count) + " guides of " + std::to_string(asset.strandCount()));
         if (const auto problem = asset.checkContent()) return say(error, *problem);
         *layers = asset.layerCount();
         for (std::size_t guide = 0; guide < count; ++guide) of_guides[guide] = asset.layerOf(guide);
@@ -307,7 +307,7 @@ hl_code hl_asset_hairs(const hl_asset* opened, hl_hair* hairs, size_t bytes, siz
         if (count != asset.hairCount())
             return say(
                 error, HL_WRONG_SIZE, HL_NO_PLACE,
-                "room for " + std::to_string(count) + " hairs of " + std::to_string(asset.hairCount()));
+                "space for " + std::to_string(count) + " hairs of " + std::to_string(asset.hairCount()));
         if (count > 0) fillHairs(asset, reinterpret_cast<char*>(hairs), bytes);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
@@ -326,7 +326,7 @@ hl_code hl_asset_numbers(const hl_asset* opened, const char* name, double* value
         *written = found.size();
         if (count < found.size())
             return say(error, HL_WRONG_SIZE, HL_NO_PLACE,
-                       "room for " + std::to_string(count) + " values of " + std::to_string(found.size()));
+                       "space for " + std::to_string(count) + " values of " + std::to_string(found.size()));
         std::copy(found.begin(), found.end(), values);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });

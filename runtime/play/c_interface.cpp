@@ -192,7 +192,7 @@ hl_code hl_instance_save(const hl_instance* instance, void* data, size_t bytes, 
         if (!data) return say(error, HL_OK, HL_NO_PLACE, "");
         if (bytes < saved.size())
             return say(error, HL_WRONG_SIZE, HL_NO_PLACE,
-                       "room for " + std::to_string(bytes) + " bytes of " + std::to_string(saved.size()));
+                       "space for " + std::to_string(bytes) + " bytes of " + std::to_string(saved.size()));
         std::memcpy(data, saved.data(), saved.size());
         return say(error, HL_OK, HL_NO_PLACE, "");
     });

@@ -289,7 +289,7 @@ void Instance::readHairsInto(Reading& reading) {
 
 Outcome Instance::readHairNumbers(std::span<std::uint32_t> numbers) const {
     if (numbers.size() != hairsRead())
-        return Refusal{HL_WRONG_SIZE, "room for " + std::to_string(numbers.size()) + " numbers of " +
+        return Refusal{HL_WRONG_SIZE, "space for " + std::to_string(numbers.size()) + " numbers of " +
                                           std::to_string(hairsRead()) + " hairs"};
     const std::vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
     for (std::size_t g = 0; g + 1 < taken.size(); ++g) {

@@ -23,7 +23,7 @@ struct VolumeConstants {
     uint clampedPoints;
     uint sleeps;    ///< not 0: strands that are pushed wake up
     uint together;  ///< not 0: the points of a strand stand side by side
-    uint rods;      ///< not 0: strands are rods, which keep velocities
+    uint rods;      ///< not 0: strands keep velocities, as rods do
     uint unused1, unused2, unused3;
 };
 

@@ -72,7 +72,7 @@ bool play(hairloom::game::Instance& hair, const hl_asset_info& asset, const Opti
         read += millisecondsSince(begin);
     }
     for (const float value : points) sum += static_cast<double>(value);
-    std::printf("state %016llx, mean coordinate %.6f m\nstep %.3f ms, read-out %.3f ms a frame\n",
+    std::printf("state %016llx, mean coordinate %.6f m\nstep %.3f ms, read-out %.3f ms per frame\n",
                 static_cast<unsigned long long>(hair.hash()), sum / static_cast<double>(points.size()),
                 step / options.frames, read / options.frames);
     return std::isfinite(sum);
@@ -136,16 +136,17 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
         state = state * 31 + hair.hash();
     }
     for (const hl_viewed& character : crowd.characters) ++levels[character.level];
-    std::printf("crowd of %d %s: plan %.4f ms, steps %.4f ms a frame, %.3f predicted; %.1f KB a character\n",
-                options.crowd, options.resting ? "at rest" : "nodding", planned / options.frames,
-                measured / std::max(options.frames - timedFrames, 1), predicted / options.frames,
-                static_cast<double>(bytes) / 1e3 / options.crowd);
+    std::printf(
+        "crowd of %d %s: plan %.4f ms, steps %.4f ms per frame, %.3f predicted; %.1f KB a character\n",
+        options.crowd, options.resting ? "at rest" : "nodding", planned / options.frames,
+        measured / std::max(options.frames - timedFrames, 1), predicted / options.frames,
+        static_cast<double>(bytes) / 1e3 / options.crowd);
     std::printf(
         "%llu of %llu guides asleep, %d %d %d %d %d at levels 0 to 4, error %.2f pixels, state %016llx\n",
         asleep, guides, levels[0], levels[1], levels[2], levels[3], levels[4],
         static_cast<double>(crowd.report.error_pixels), state);
     for (const auto& [name, milliseconds] : cost)
-        std::printf("  %-20s %.4f ms a frame\n", name.c_str(), milliseconds / std::max(timedFrames, 1));
+        std::printf("  %-20s %.4f ms per frame\n", name.c_str(), milliseconds / std::max(timedFrames, 1));
     return true;
 }
 

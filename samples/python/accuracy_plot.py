@@ -52,7 +52,7 @@ def main() -> None:
     axes.loglog([row[1] for row in rows], [row[2] for row in rows], "o-")
     for substeps, ms, error in rows:
         axes.annotate(f"{substeps} substeps", (ms, error))
-    axes.set(xlabel="ms a frame", ylabel="error, mm", title=given.groom)
+    axes.set(xlabel="ms per frame", ylabel="error, mm", title=given.groom)
     figure.savefig(given.output + ".png")
 
 

@@ -147,6 +147,22 @@ TEST(IncludeRules, TheEngineKnowsNoModelOfStrands) {
     EXPECT_THAT(broken, IsEmpty());
 }
 
+/// Its seam is core/gpu_simulation/strand_model.h; the file of a model is in models/.
+TEST(IncludeRules, TheEngineOfAGpuKnowsNoModelOfStrands) {
+    std::vector<std::string> broken;
+    std::size_t seen = 0;
+    for (const Include& include : allIncludes()) {
+        if (include.file.rfind("core/gpu_simulation/", 0) != 0) continue;
+        const bool isModel = include.file.rfind("core/gpu_simulation/models/", 0) == 0;
+        seen += isModel ? 0 : 1;
+        const bool namesOne = include.target.rfind("runtime/models/", 0) == 0 ||
+                              include.target.rfind("core/gpu_simulation/models/", 0) == 0;
+        if (!isModel && namesOne) broken.push_back(describe(include));
+    }
+    EXPECT_GT(seen, 50u);
+    EXPECT_THAT(broken, IsEmpty());
+}
+
 TEST(IncludeRules, QtStaysInTheEditor) {
     static const std::regex qt("^(Q[A-Z][A-Za-z]*(/.*)?|Qt[A-Z].*|qt?[a-z]*vulkan.*)$");
     std::vector<std::string> broken;

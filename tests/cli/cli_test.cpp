@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -48,6 +49,12 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
         {"simulate x --frames ten", "error: --frames is 'ten'; expected 1 to 1000000\n"},
         {"simulate --motoin nod", "error: there is no option --motoin; did you mean --motion?\n"},
         {"simulate", "error: groom is required; see hairloom-cli simulate --help\n"},
+        {"devices extra", "error: unexpected argument 'extra'; see hairloom-cli devices --help\n"},
+        {"budget x", "error: an option is missing; expected one of --ms, --within-mm\n"},
+        {"budget x --ms 4 --within-mm 1",
+         "error: options exclude each other; expected one of --ms, --within-mm\n"},
+        {"groom x", "error: groom, --script and -o are required; see hairloom-cli groom --help\n"},
+        {"simulate x --record", "error: --record has no value; expected a value: File for all frames\n"},
     };
     for (const auto& [arguments, message] : wrong) {
         const Outcome outcome = run(arguments);
@@ -63,6 +70,13 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
     EXPECT_THAT(run("simulate hair.hairloom --motion jump").errors, HasSubstr("clip:NAME"));
 }
 
+std::size_t longestLine(const std::string& text) {
+    std::istringstream lines(text);
+    std::size_t longest = 0;
+    for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+    return longest;
+}
+
 TEST_F(Cli, EveryJobHasHelpWithAnExample) {
     const std::string help = run("--help").output;
     std::istringstream lines(help.substr(help.find("Subcommands:")));
@@ -74,8 +88,11 @@ TEST_F(Cli, EveryJobHasHelpWithAnExample) {
         const Outcome jobHelp = run(job + " --help");
         EXPECT_EQ(jobHelp.exitCode, 0) << job;
         EXPECT_THAT(jobHelp.output, HasSubstr("hairloom-cli " + job));
+        EXPECT_LE(longestLine(jobHelp.output), 100u) << job;
     }
     EXPECT_GE(jobs, 16u);
+    EXPECT_LE(longestLine(help), 100u);
+    EXPECT_LE(std::ranges::count(help, '\n'), 50) << "it fits a screen";
 }
 
 TEST_F(Cli, CreateReportsItsResult) {

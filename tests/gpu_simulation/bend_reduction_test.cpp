@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The factors by which lanes solve their springs, used as the kernel uses them, beside a dense solution.
-#include "core/gpu_simulation/bend_reduction.h"
+#include "core/gpu_simulation/models/bend_reduction.h"
 
 #include <gtest/gtest.h>
 

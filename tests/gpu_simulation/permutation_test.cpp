@@ -148,7 +148,11 @@ TEST_F(Permutation, RodsOfAllPointCountsShareAKernel) {
     EXPECT_EQ(key.defines(), keyOf(3, StrandStorage::wisps).defines());
     scene.settings.windSpeed = 3.0f;
     EXPECT_THAT(keyOf(16, StrandStorage::threads).defines(), testing::HasSubstr("HAIR_WIND 1"));
+    // Integrators are those of springs.
+    scene.settings.integrator = runtime::Integrator::implicitEuler;
+    EXPECT_EQ(kernelError(scene.settings), "");
     scene.settings.strandModel = runtime::StrandModel::springs;
+    EXPECT_THAT(kernelError(scene.settings), testing::HasSubstr("implicitEuler"));
     EXPECT_STREQ(keyOf(16, StrandStorage::threads).source(), "strands.hlsli");
 }
 

@@ -45,7 +45,7 @@ TEST_F(ForeignPicture, IsWhatTheLibraryReads) {
     ASSERT_TRUE(back) << back.error().message();
     EXPECT_EQ(back->rgba, linear.rgba);
     EXPECT_THAT(failure("a.exr", {PictureKind::Png}),
-                HasSubstr("OpenEXR; expected a picture in the format PNG"));
+                HasSubstr("OpenEXR; expected an image in the format PNG"));
     EXPECT_THAT(failure("none.png", {PictureKind::Png}), HasSubstr("no such file"));
 }
 

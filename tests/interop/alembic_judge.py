@@ -8,7 +8,7 @@ Abc, AbcGeom = alembic3d.Abc, alembic3d.AbcGeom
 
 
 def properties_of(compound):
-    """Name, scope and values of each property; a name that stands twice is an error."""
+    """Name, scope and values of each property; a name that appears twice is an error."""
     found = {}
     if not compound.valid():
         return found
@@ -16,7 +16,7 @@ def properties_of(compound):
         header = compound.getPropertyHeader(i)
         name = header.getName()
         if name in found:
-            raise ValueError(f"{name} stands twice")
+            raise ValueError(f"{name} appears twice")
         if header.isArray():
             values = list(Abc.IArrayProperty(compound, name).getValue())
         elif header.isScalar():

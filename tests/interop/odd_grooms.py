@@ -187,7 +187,7 @@ def check_prim(prim):
         raise ValueError(f"{prim.GetPath()}: {sum(counts)} points in counts, {len(points)} points")
     own = [attribute.GetName() for attribute in prim.GetAuthoredAttributes()]
     if len(own) != len(set(own)):
-        raise ValueError(f"{prim.GetPath()}: a name stands twice")
+        raise ValueError(f"{prim.GetPath()}: a name appears twice")
     sizes = {"vertex": len(points), "uniform": len(counts), "constant": 1}
     for one in UsdGeom.PrimvarsAPI(prim).GetPrimvars():
         values = one.Get()

@@ -201,6 +201,7 @@ const Model& rodModel() {
         .laneFloats = 0,
         .listsSpheres = true,
         .meetsBody = true,
+        .keepsVelocities = true,
         .mostPlanes = kRodRestPlanes[3] + kRodStatePlanes,
         .mostSolverFloats = [] { return rodKernel().solverFloats; },
         .gpuSource = "rods.hlsli",

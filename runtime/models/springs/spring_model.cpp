@@ -192,6 +192,7 @@ const Model& springModel() {
         .laneFloats = sizeof(SpringLanes) / sizeof(float),
         .listsSpheres = false,
         .meetsBody = false,
+        .keepsVelocities = false,
         // Stiffness, factors, targets and tension.
         .mostPlanes = kRungeKuttaPlanes + 8,
         .mostSolverFloats =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/gpu_simulation/bend_reduction.h"
+#include "core/gpu_simulation/models/bend_reduction.h"
 
 #include <utility>
 

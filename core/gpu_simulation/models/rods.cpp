@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rods on a GPU: a thread per strand, or some that share it, and all that a strand has in buffers.
+#include "runtime/models/rods/rods.h"
+
+#include <fmt/format.h>
+
+#include "core/gpu_simulation/models/models.h"
+#include "runtime/models/rods/rod_slots.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using gpu::Usage;
+using runtime::Effect;
+
+/// Strands of a work group whose threads share them: few, so that few strands find many multiprocessors.
+constexpr std::uint32_t kSharedStrands = 8;
+
+/// A block is a work group and each of its strands a thread's, or some threads share one.
+void fillKey(const runtime::EffectPlan&, const runtime::SimulationSettings&, KernelKey& key) {
+    BatchShape& shape = key.shape;
+    shape.storage = StrandStorage::buffers;
+    shape.strands = shape.members > 1 ? kSharedStrands : runtime::kBlockLanes;
+    shape.perThread = 1;
+    shape.wave = 0;
+}
+
+std::string defines(const KernelKey& key) {
+    const auto flag = [](bool on) { return on ? 1 : 0; };
+    return fmt::format(
+        "#define HAIR_RODS 1\n#define HAIR_MEMBERS {}\n#define HAIR_STRANDS {}\n#define HAIR_TOGETHER {}\n"
+        "#define HAIR_CLAMPED {}\n#define HAIR_SPHERES {}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
+        "#define HAIR_VELOCITIES {}\n#define HAIR_STAGES {}\n",
+        key.shape.members, key.shape.strands, flag(key.shape.together), key.clampedPoints,
+        static_cast<std::uint32_t>(key.spheres), flag(key.wind), flag(key.sleep), flag(key.velocities),
+        key.stages);
+}
+
+std::size_t scratchPlanes(const KernelKey& key) {
+    const bool contacts = key.spheres != SphereSource::none;
+    return HAIRLOOM_ROD_WORK_PLANES + (contacts ? HAIRLOOM_ROD_CONTACT_PLANES : 0);
+}
+
+std::uint32_t velocitySlot(const KernelKey&) {
+    return 6;
+}
+
+class DeviceRods final : public DeviceStrands {
+  public:
+    Status takeSettings(gpu::Device& device, const runtime::RestShape& shape,
+                        const runtime::SimulationSettings& settings,
+                        std::span<StrandBatch> batches) override {
+        if (rest_) energyKnown_ = energyKnown_ && runtime::haveEqualRodEnergy(settings, settings_);
+        settings_ = settings;
+        rest_ = runtime::makeRodRest(shape, settings);
+        for (StrandBatch& batch : batches) {
+            if (auto made = makeBuffers(device, shape, batch); !made) return made;
+        }
+        return {};
+    }
+
+    void setConstants(gpu::CommandList& list, const runtime::SubstepContext& context,
+                      const runtime::Wind& wind, float before, const StrandBatch& batch) const override {
+        const std::uint32_t fresh = fresh_         ? HAIRLOOM_RODS_FRESH
+                                    : energyKnown_ ? 0
+                                                   : HAIRLOOM_RODS_OF_OTHER_ENERGY;
+        const auto constants = runtime::rodConstants(context, wind, before, batch.inSlots(), fresh);
+        list.setConstants(2, gpu::bytesOf(constants));
+    }
+
+    void closeFrame() override {
+        fresh_ = false;
+        energyKnown_ = true;
+    }
+
+    void allocateState(const runtime::RestShape& shape, const runtime::EffectPlan&,
+                       runtime::State& state) const override {
+        runtime::allocateRods(shape, rest_->parts, true, state);
+    }
+
+    void placeAtRest(const runtime::RestShape& shape, runtime::State& state, std::size_t index,
+                     runtime::LaneRange lanes) const override {
+        runtime::placeRodAtRest(shape, *rest_, state, index, lanes);
+    }
+
+    /// A state of another model, or of chains, becomes one of these rods.
+    std::optional<runtime::State> takeState(const runtime::RestShape& shape,
+                                            const runtime::State& given) override {
+        fresh_ = false;
+        const bool bends = rest_->parts >= runtime::RodParts::bending;
+        const bool complete =
+            given.model == runtime::StrandModel::rods && !(bends && given.own[runtime::kOwnStrains].empty());
+        if (complete) return {};
+        std::optional<runtime::State> made = given;
+        runtime::completeRods(shape, *rest_, true, *made);
+        return made;
+    }
+
+    void readOwn(const runtime::RestShape& shape, const StrandBatch& batch, std::span<const float>,
+                 std::span<const float> own, runtime::State& state) const override {
+        runtime::rodStateToBlocks(shape, batch.inSlots(), own, state);
+    }
+
+    void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch, const runtime::State& state,
+                  std::vector<float>&, std::vector<float>& own) const override {
+        own = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
+    }
+
+  private:
+    Status makeBuffers(gpu::Device& device, const runtime::RestShape& shape, StrandBatch& batch) const {
+        const runtime::RodSlots rods = runtime::rodsOfSlots(shape, batch.inSlots(), *rest_);
+        Status status;
+        const auto make = [&]<class T>(const char* name, std::uint32_t slot, const std::vector<T>& content) {
+            if (!status) return;
+            auto made = makeBuffer<T>(device, name, Usage::ShaderRead, content.size(), content);
+            if (!made) {
+                status = tl::unexpected(made.error());
+                return;
+            }
+            batch.model.read.push_back({slot, Effect::angular, std::move(*made)});
+        };
+        batch.model.read.clear();
+        make("rods at rest", 2, rods.rest);
+        make("masses of rods", 3, rods.masses);
+        make("curved blocks", 9, rods.curved);
+        if (!status || batch.model.state.buffer != nullptr) return status;
+        const std::size_t rows =
+            std::size_t{batch.shape.points} * runtime::kRodStatePlanes + runtime::kRodLaneRows;
+        auto made = makeBuffer<float>(device, "rods", Usage::ShaderRead | Usage::UnorderedAccess,
+                                      rows * batch.slots, {});
+        if (!made) return tl::unexpected(made.error());
+        batch.model.state = {5, Effect::angular, std::move(*made)};
+        return {};
+    }
+
+    std::optional<runtime::RodRest> rest_;  ///< once settings were taken
+    runtime::SimulationSettings settings_;  ///< that rest_ was made with
+    bool energyKnown_ = true;               ///< what rods had before the frame is energy under these settings
+    bool fresh_ = true;                     ///< the device has places of rods, and nothing else yet
+};
+
+}  // namespace
+
+const GpuModel& gpuRods() {
+    static const GpuModel kModel{
+        .fillKey = fillKey,
+        .defines = defines,
+        .scratchPlanes = scratchPlanes,
+        .velocitySlot = velocitySlot,
+        .error = [](const runtime::SimulationSettings&) { return std::string(); },
+        // A thread takes a rod, and finds those of its neighbours beside it.
+        .storage = StrandStorage::threads,
+        .make = []() -> std::unique_ptr<DeviceStrands> { return std::make_unique<DeviceRods>(); }};
+    return kModel;
+}
+
+}  // namespace hairloom::gpu_simulation
