@@ -36,12 +36,14 @@ Progress::~Progress() {
     if (shown_) fmt::print(stderr, "\r\x1b[K");
 }
 
-void Progress::done(std::size_t count) {
+void Progress::done(std::size_t count, const std::string& note) {
     if (!shown_) return;
     const int filled = static_cast<int>(std::min(count, total_) * kCells / total_);
-    if (filled == drawn_) return;
+    if (filled == drawn_ && note == note_) return;
     drawn_ = filled;
-    fmt::print(stderr, "\r{} [{:#<{}}{: <{}}] {}/{}", what_, "", filled, "", kCells - filled, count, total_);
+    note_ = note;
+    fmt::print(stderr, "\r{} [{:#<{}}{: <{}}] {}/{}{}{}", what_, "", filled, "", kCells - filled, count,
+               total_, note, note.empty() ? "" : "\x1b[K");
     std::fflush(stderr);
 }
 

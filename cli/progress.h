@@ -14,13 +14,15 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    void done(std::size_t count);
+    /// `note` stands behind the count.
+    void done(std::size_t count, const std::string& note = {});
 
   private:
     std::string what_;
     std::size_t total_;
     bool shown_;
     int drawn_ = -1;  ///< filled cells last drawn
+    std::string note_;
 };
 
 }  // namespace hairloom::cli

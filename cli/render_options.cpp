@@ -77,7 +77,7 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
         }
         return shots;
     }
-    if (options.frames.empty()) return std::vector<Shot>{{options.frame, 0}};
+    if (options.frames.empty()) return std::vector<Shot>{{options.frame, options.turn}};
     if (options.frames.size() > 3 || options.frames.size() < 2) {
         throw WrongUsage("--frames needs FIRST,LAST and an optional STEP", "FIRST,LAST[,STEP]");
     }
@@ -88,7 +88,8 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
                          "FIRST,LAST[,STEP]");
     }
     std::vector<Shot> shots;
-    for (std::uint64_t f = options.frames[0]; f <= options.frames[1]; f += step) shots.push_back({f, 0});
+    for (std::uint64_t f = options.frames[0]; f <= options.frames[1]; f += step)
+        shots.push_back({f, options.turn});
     return shots;
 }
 
@@ -185,10 +186,14 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         job.add_option("--frames", options->frames, "Frames FIRST,LAST[,STEP] to render, one image each")
             ->delimiter(',')
             ->excludes(frame);
+    auto* turn =
+        job.add_option("--turn", options->turn,
+                       "Degrees by which the camera is turned around the hair: one image of a turntable");
     job.add_option("--turntable", options->turntable,
                    "Number of images for one turn of the camera around the hair")
         ->check(CLI::Range(1, 10'000))
-        ->excludes(frames);
+        ->excludes(frames)
+        ->excludes(turn);
     job.add_option("--animation", options->animation,
                    "Animated PNG for all images, or WebP if the name ends in .webp");
     job.add_option("--strip", options->strip, "PNG with all images side by side");

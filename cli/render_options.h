@@ -42,6 +42,7 @@ struct RenderJobOptions {
     std::uint64_t frame = 0;
     std::vector<std::uint64_t> frames;  ///< first, last, step
     std::uint32_t turntable = 0;
+    float turn = 0;  ///< degrees, without a turntable
     std::uint32_t device = 0;
     bool chooseDevice = false;
     std::string backend = "any";

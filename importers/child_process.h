@@ -20,6 +20,7 @@ struct ChildLimits {
     std::uint64_t outputBytes = std::uint64_t{1} << 29u;    ///< 512 MiB; then the child is killed
     /// The first eight bytes say how many follow: room is made for them at once, up to the limit.
     bool startsWithLength = false;
+    bool startsPrograms = false;  ///< it may start others: Windows denies that to a child without it
 };
 
 /// Standard output of `program` run with `arguments`, with `input` on its standard input and its standard

@@ -89,9 +89,10 @@ Result<Handle> fileOf(const std::string& name, std::span<const std::byte> bytes)
 Handle createJob(const ChildLimits& limits) {
     Handle job(CreateJobObjectW(nullptr, nullptr));
     JOBOBJECT_EXTENDED_LIMIT_INFORMATION info{};
-    info.BasicLimitInformation.LimitFlags =
-        JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE | JOB_OBJECT_LIMIT_PROCESS_MEMORY |
-        JOB_OBJECT_LIMIT_ACTIVE_PROCESS | JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
+    info.BasicLimitInformation.LimitFlags = JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE |
+                                            JOB_OBJECT_LIMIT_PROCESS_MEMORY |
+                                            JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
+    if (!limits.startsPrograms) info.BasicLimitInformation.LimitFlags |= JOB_OBJECT_LIMIT_ACTIVE_PROCESS;
     info.BasicLimitInformation.ActiveProcessLimit = 1;
     info.ProcessMemoryLimit = static_cast<SIZE_T>(limits.residentBytes);
     JOBOBJECT_BASIC_UI_RESTRICTIONS windows{};

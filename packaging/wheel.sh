@@ -12,7 +12,8 @@ hasHeaders() { command -v "$1" >/dev/null && "$1" -c 'import os, sysconfig; rais
 pythons=("$@")
 if [ ${#pythons[@]} -eq 0 ]; then
     pythons=(python3)
-    for later in python3.13 python3.14 python3.12; do
+    # pyenv's own commands only name those that are there.
+    for later in python3.13 python3.14 python3.12 "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.1[2-9]*/bin/python3; do
         if hasHeaders "$later"; then pythons+=("$later"); break; fi
     done
     [ ${#pythons[@]} -gt 1 ] || echo "no Python 3.12 or later with headers is here: only the wheel of python3 is built" >&2
@@ -28,6 +29,11 @@ for python in "${pythons[@]}"; do
     # At the depth of build/release, so that ccache knows its sources again.
     PATH=$tools:$PATH "$tools/pip" wheel --quiet --no-build-isolation --no-deps --wheel-dir "$build-raw" \
         -C "build-dir=$PWD/$build" ${CI:+-C cmake.define.CMAKE_UNITY_BUILD=ON} ./python
+    # A wheel for later versions holds a module for later versions: its name alone says nothing.
+    if [ "$tag" != cp311 ] && ! unzip -l "$build-raw"/hairloom-*.whl | grep '/_core\.abi3\.so$' >/dev/null; then
+        echo "error: the wheel for Python 3.12 and later was built without the stable ABI" >&2
+        exit 1
+    fi
     rm -f "$dist"/hairloom-*-"$tag"-*.whl
     [ "$tag" = cp311 ] || rm -f "$dist"/hairloom-*-abi3-*.whl
     # libraries that every Linux has stay out; drivers are loaded by name at run time
@@ -53,5 +59,11 @@ for python in "${pythons[@]}"; do
     for recipe in samples/python/accuracy_plot.py samples/python/strands_to_cards.py; do
         "$tools/mypy" --strict --python-executable "$bare/bin/python" --cache-dir "build/mypy-$tag" --ignore-missing-imports "$recipe"
     done
+    # Beside this machine's libraries a missing one would not be noticed.
+    if [ "$(id -u)" -eq 0 ] && command -v debootstrap >/dev/null; then
+        packaging/verify_wheel.sh "$dist/$(basename "$wheel")" build/wheel-roots
+    else
+        echo "the wheel was not tried in a bare Debian, which needs root and debootstrap" >&2
+    fi
     ls -l "$dist/$(basename "$wheel")"
 done

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/backend.h"
+#include "cli/certificate_report.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
@@ -27,6 +28,7 @@ struct StabilityJobOptions {
     std::uint32_t steps = 2000;
     std::uint64_t stepsAtRest = StabilityOptions{}.stepsAtRest;
     std::optional<std::uint32_t> storms;
+    std::optional<std::uint32_t> firstStorm;
     std::string backend = "cpu";
     std::optional<std::uint32_t> device;
 };
@@ -122,46 +124,29 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
     return report;
 }
 
-void addStrength(Report& report, const StormStrength& strength) {
-    report["largest_step_s"] = strength.step;
-    report["root_speed"] = strength.rootSpeed;
-    report["turn"] = strength.turn;
-    report["wind"] = strength.wind;
-}
-
-Report certificateReport(const Certificate& certificate) {
-    constexpr std::size_t kListed = 8;
-    Report report;
-    addStrength(report, certificate.limits);
-    report["margin"] = kStormMargin;
-    report["storms"] = certificate.storms;
-    report["storms_within"] = certificate.within;
-    report["calm"] = certificate.calm;
-    report["calm_after_15_s"] = certificate.calmLate;
-    report["failed"] = certificate.failed.size();
-    report["failures"] = Report::array();
-    for (std::size_t i = 0; i < std::min(kListed, certificate.failed.size()); ++i) {
-        const FailedStorm& storm = certificate.failed[i];
-        Report row{{"storm", storm.number}, {"what", storm.what}};
-        addStrength(row, storm.strength);
-        report["failures"].push_back(std::move(row));
-    }
-    report["words"] = inWords(certificate);
-    return report;
-}
-
 /// What one hairstyle withstands.
-Result<Report> certificateOf(const StabilityJobOptions& options) {
+Result<Report> certified(const StabilityJobOptions& options) {
     const auto groom = openGroom(options.groom);
     if (!groom) return tl::unexpected(groom.error());
     CertificateOptions storms;
     storms.storms = options.storms.value_or(storms.storms);
+    storms.first = options.firstStorm.value_or(0);
     Progress progress("storms", storms.storms);
     storms.progress = [&](std::size_t done, std::size_t) { progress.done(done); };
-    const auto certificate = certify(*groom, storms);
-    if (!certificate) return tl::unexpected(inFile(certificate.error(), options.groom));
+    const auto tally = runStorms(*groom, storms);
+    if (!tally) return tl::unexpected(inFile(tally.error(), options.groom));
     Report report;
-    report["certificate"] = certificateReport(*certificate);
+    if (options.firstStorm) {
+        report["tally"] = toReport(*tally);
+        report["output"] = options.output;
+        const auto files = writeFiles(options.output, {{"storms.json", report["tally"].dump(2) + "\n"}});
+        if (!files) return tl::unexpected(files.error());
+        report["files"] = *files;
+        return report;
+    }
+    const auto certificate = certificateOf({*tally});
+    if (!certificate) return tl::unexpected(inFile(certificate.error(), options.groom));
+    report["certificate"] = toReport(*certificate);
     report["steps"] = Report::array();
     for (const StableStep& step : stableSteps(*groom)) {
         report["steps"].push_back(Report{{"method", step.method},
@@ -181,7 +166,8 @@ JobRun declare(CLI::App& job) {
     CLI::Option* const groom = job.add_option("groom", options->groom, "Groom to certify with random storms");
     job.add_option(
            "-o,--output", options->output,
-           "Folder for report.html, cases.json, cases.csv, cases.md and the maps, or for certificate.json")
+           "Folder for report.html, cases.json, cases.csv, cases.md and the maps, or for certificate.json "
+           "or storms.json")
         ->required();
     job.add_option("--integrators", options->integrators,
                    "Models to run instead of all: rods, or integrators of springs")
@@ -191,6 +177,11 @@ JobRun declare(CLI::App& job) {
     job.add_option("--storms", options->storms,
                    "Number of random storms of case 26, or on the groom (default: 1,000)")
         ->check(CLI::Range(1, 1'000'000));
+    job.add_option("--first-storm", options->firstStorm,
+                   "With a groom: number of the first storm. Writes storms.json, the part of a certificate "
+                   "that `sweep` joins with the others")
+        ->check(CLI::Range(0, 1'000'000))
+        ->needs(groom);
     job.add_option("--backend", options->backend, "Device that runs the cases. Maps are made only on the CPU")
         ->check(CLI::IsMember({"cpu", "vulkan"}))
         ->excludes(groom);
@@ -205,10 +196,8 @@ JobRun declare(CLI::App& job) {
             options->output,
             options->groom.empty()
                 ? std::vector<std::string>{"report.html", "cases.json", "cases.csv", "cases.md"}
-                : std::vector<std::string>{"certificate.json"},
-            [&] {
-                return options->groom.empty() ? stability(*options, commandLine) : certificateOf(*options);
-            });
+                : std::vector<std::string>{options->firstStorm ? "storms.json" : "certificate.json"},
+            [&] { return options->groom.empty() ? stability(*options, commandLine) : certified(*options); });
     };
 }
 

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -55,6 +56,14 @@ StormStrength drawStrength(Random& random) {
     return strength;
 }
 
+Random randomOf(std::uint32_t storm) {
+    return Random(0x570a4, storm);
+}
+StormStrength strengthOf(std::uint32_t storm) {
+    Random random = randomOf(storm);
+    return drawStrength(random);
+}
+
 /// What gravity and the storm can have left of motion after the rest, m/s.
 double leftOfMotion(const Groom& groom, double rootSpeed, double restSeconds) {
     float longest = 0;
@@ -68,7 +77,7 @@ double leftOfMotion(const Groom& groom, double rootSpeed, double restSeconds) {
 }
 
 Result<StormEnd> runStorm(const Groom& groom, std::uint32_t number, std::uint32_t strands) {
-    Random random(0x570a4, number);
+    Random random = randomOf(number);
     StormEnd end;
     end.strength = drawStrength(random);
     const SceneHair hair = sampleStrands(groom, strands, number);
@@ -145,7 +154,7 @@ StormStrength boxWithout(std::span<const FailedStorm> failed) {
     }
 }
 
-Result<Certificate> certify(const Groom& groom, const CertificateOptions& options) {
+Result<StormTally> runStorms(const Groom& groom, const CertificateOptions& options) {
     assert(options.storms >= 1 && options.strands >= 1);
     if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
     std::vector<std::optional<Result<StormEnd>>> ends(options.storms);
@@ -154,26 +163,55 @@ Result<Certificate> certify(const Groom& groom, const CertificateOptions& option
     parallelFor(ends.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t storm = begin; storm < end && !cancelled; ++storm) {
             if (options.cancelled && options.cancelled()) cancelled = true;
-            ends[storm] = runStorm(groom, static_cast<std::uint32_t>(storm), options.strands);
+            const auto number = options.first + static_cast<std::uint32_t>(storm);
+            ends[storm] = runStorm(groom, number, options.strands);
             if (options.progress) options.progress(++done, ends.size());
         }
     });
     if (cancelled) return fail("certifying was cancelled");
-    Certificate certificate;
-    certificate.storms = options.storms;
+    StormTally tally;
+    tally.first = options.first;
+    tally.storms = options.storms;
     for (std::uint32_t storm = 0; storm < options.storms; ++storm) {
         const Result<StormEnd>& end = *ends[storm];
         if (!end) return tl::unexpected(end.error());
-        if (!end->failure.empty()) certificate.failed.push_back({storm, end->strength, end->failure});
-        certificate.calm += end->calm ? 1 : 0;
-        certificate.calmLate += end->calmLate ? 1 : 0;
+        if (!end->failure.empty())
+            tally.failed.push_back({options.first + storm, end->strength, end->failure});
+        tally.calm += end->calm ? 1 : 0;
+        tally.calmLate += end->calmLate ? 1 : 0;
+    }
+    return tally;
+}
+
+Result<Certificate> certificateOf(std::vector<StormTally> tallies) {
+    if (tallies.empty()) return fail("there are no storms", "expected at least one tally");
+    std::ranges::sort(tallies, {}, &StormTally::first);
+    Certificate certificate;
+    for (StormTally& tally : tallies) {
+        if (tally.first != certificate.storms || tally.storms == 0)
+            return fail(fmt::format("storms {} to {} are {}", std::min(tally.first, certificate.storms),
+                                    std::max(tally.first, certificate.storms),
+                                    tally.first < certificate.storms ? "in two tallies" : "in no tally"),
+                        "expected each storm once, from 0 on");
+        certificate.storms += tally.storms;
+        certificate.calm += tally.calm;
+        certificate.calmLate += tally.calmLate;
+        std::ranges::move(tally.failed, std::back_inserter(certificate.failed));
     }
     const StormStrength box = boxWithout(certificate.failed);
-    for (const auto& end : ends) certificate.within += isWithin((*end)->strength, box) ? 1 : 0;
+    for (std::uint32_t storm = 0; storm < certificate.storms; ++storm)
+        certificate.within += isWithin(strengthOf(storm), box) ? 1 : 0;
     if (certificate.within == 0) return certificate;  // nothing tells that it holds
     for (double StormStrength::*const part : kParts)
         certificate.limits.*part = box.*part / (1 + kStormMargin);
     return certificate;
+}
+
+Result<Certificate> certify(const Groom& groom, CertificateOptions options) {
+    options.first = 0;
+    auto tally = runStorms(groom, options);
+    if (!tally) return tl::unexpected(tally.error());
+    return certificateOf({std::move(*tally)});
 }
 
 std::string inWords(const StormStrength& limits) {

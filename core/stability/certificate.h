@@ -30,9 +30,19 @@ struct FailedStorm {
 
 struct CertificateOptions {
     std::uint32_t storms = 1000;  ///< ≥ 1
+    std::uint32_t first = 0;      ///< number of the first storm: parts of one certificate may run apart
     std::uint32_t strands = 8;    ///< in a storm, ≥ 1, drawn anew for each
     std::function<void(std::size_t done, std::size_t total)> progress;  ///< called on any thread
     std::function<bool()> cancelled;                                    ///< asked on any thread
+};
+
+/// How some of a certificate's storms ended.
+struct StormTally {
+    std::uint32_t first = 0;     ///< number of the first storm
+    std::uint32_t storms = 0;    ///< that ran, of consecutive numbers
+    std::uint32_t calm = 0;      ///< as in Certificate
+    std::uint32_t calmLate = 0;  ///< as in Certificate
+    std::vector<FailedStorm> failed;
 };
 
 struct Certificate {
@@ -53,7 +63,14 @@ inline constexpr double kStormMargin = 0.25;
 /// where a point is no number, a strand had to be put back to rest, a length that is held is off by a
 /// hundredth, or a point moves at the end faster by 0.5 m/s than gravity and damping let it. The same for any
 /// number of threads. Errors: a groom that cannot be simulated, being cancelled.
-Result<Certificate> certify(const Groom& groom, const CertificateOptions& options = {});
+Result<StormTally> runStorms(const Groom& groom, const CertificateOptions& options = {});
+
+/// What the tallies of one groom say together: the same as one tally of all their storms. Errors: none, and
+/// storms that two tallies hold or that none holds, from storm 0 on.
+Result<Certificate> certificateOf(std::vector<StormTally> tallies);
+
+/// Both. Storms count from 0, whatever `first` says.
+Result<Certificate> certify(const Groom& groom, CertificateOptions options = {});
 
 /// The strongest storm such that no failed one is as weak in all that it does: from the strongest of all,
 /// each is cut off where that costs the least. Nothing where one failed in a calm.

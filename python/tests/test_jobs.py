@@ -55,6 +55,7 @@ CALLS: dict[str, tuple[Callable[[], hairloom.Report], str]] = {
     "spheres": (lambda: hairloom.spheres(hair, from_=SAMPLES / "bust/spheres.json", output="s.hairloom"), "added"),
     "stability": (lambda: hairloom.stability(hair, output="stability", storms=1), "certificate"),
     "stack": (lambda: hairloom.stack(hair), "operators"),
+    "sweep": (lambda: hairloom.sweep("sweep.json"), "parts"),
     "transfer": (lambda: hairloom.transfer(hair, to=BUST, output="moved.hairloom"), "strands"),
     "validate": (lambda: hairloom.validate(hair), "findings"),
 }
@@ -78,6 +79,11 @@ class Jobs(InFolder):
         self.create(hair, 40)
         self.create("other.hairloom", 50)
         hairloom.export("other.hairloom", format="hair", output="other.hair")
+        arguments = {"groom": hair, "frames": 2, "wind": "{wind},0,0"}
+        over = [{"name": "wind", "values": [0, 4]}]
+        Path("sweep.json").write_text(
+            json.dumps({"hairloom_sweep": 1, "job": "simulate", "arguments": arguments, "over": over})
+        )
         for name, (call, key) in CALLS.items():
             with self.subTest(job=name):
                 report = call()

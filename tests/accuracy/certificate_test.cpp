@@ -82,6 +82,27 @@ TEST(Certificate, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(words[0], words[1]);
 }
 
+TEST(Certificate, PartsThatRanApartSayWhatOneRunSays) {
+    const Groom groom = explosive();
+    std::vector<StormTally> tallies;
+    for (const std::uint32_t first : {7u, 0u}) {
+        CertificateOptions part = few(first == 0 ? 7 : 5);
+        part.first = first;
+        tallies.push_back(*runStorms(groom, part));
+    }
+    const auto joined = certificateOf(tallies);
+    ASSERT_TRUE(joined) << joined.error().message();
+    const auto whole = certify(groom, few(12));
+    EXPECT_EQ(inWords(*joined), inWords(*whole));
+    ASSERT_EQ(joined->failed.size(), whole->failed.size());
+    for (std::size_t i = 0; i < joined->failed.size(); ++i)
+        EXPECT_EQ(joined->failed[i].number, whole->failed[i].number);
+
+    EXPECT_THAT(certificateOf({tallies[0]}).error().message(), HasSubstr("storms 0 to 7 are in no tally"));
+    tallies.push_back(tallies[0]);
+    EXPECT_THAT(certificateOf(tallies).error().message(), HasSubstr("in two tallies"));
+}
+
 TEST(Certificate, NothingToCertifyAndCancellingAreErrors) {
     EXPECT_FALSE(certify(Groom{}, few(1)));
     CertificateOptions options = few(4);
