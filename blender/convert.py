@@ -146,6 +146,40 @@ def uvs_of(mesh: bpy.types.Mesh, name: str) -> np.ndarray | None:
     return uvs.reshape(-1, 2)
 
 
+def spheres_in(collection: bpy.types.Collection | None) -> list[bpy.types.Object]:
+    if collection is None:
+        return []
+    return [one for one in collection.all_objects if one.type == "EMPTY" and one.empty_display_type == "SPHERE"]
+
+
+def _send_spheres(obj: bpy.types.Object, groom: hairloom.Groom, unit: np.ndarray, metres: float) -> None:
+    into = obj.matrix_world.inverted()
+    rows = []
+    for ball in spheres_in(obj.data.hairloom.colliders):
+        radius = ball.empty_display_size * max(map(abs, ball.matrix_world.to_scale())) * metres
+        centre = np.array([into @ ball.matrix_world.translation], np.float32) * unit
+        if radius > 0:
+            rows.append([*to_y_up(centre)[0], radius])
+    if rows:
+        groom.spheres = np.array(rows, np.float32)
+
+
+def make_spheres(obj: bpy.types.Object, groom: hairloom.Groom) -> None:
+    """The groom's spheres as empties that go with the surface, in a collection that becomes that of the colliders."""
+    if len(groom.spheres) == 0:
+        return
+    collection = bpy.data.collections.new(f"{obj.name} colliders")
+    for parent in obj.users_collection:
+        parent.children.link(collection)
+    for number, (centre, radius) in enumerate(zip(to_z_up(groom.spheres), groom.spheres[:, 3])):
+        ball = bpy.data.objects.new(f"{obj.name} sphere {number + 1}", None)
+        ball.empty_display_type, ball.empty_display_size = "SPHERE", float(radius)
+        ball.location = centre
+        ball.parent = obj.parent
+        collection.objects.link(ball)
+    obj.data.hairloom.colliders = collection
+
+
 def _type_there(name: str, on_points: bool) -> str | None:
     return (POINT_TYPES if on_points else CURVE_TYPES).get(name)
 
@@ -201,10 +235,10 @@ def _names(curves: bpy.types.Curves, key: str, attribute: str, word: str) -> lis
     return names + [f"{word} {i + 1}" for i in range(len(names), used)]
 
 
-def to_groom(context_scene: bpy.types.Scene, obj: bpy.types.Object) -> tuple[hairloom.Groom, list[str]]:
+def to_groom(scene: bpy.types.Scene, obj: bpy.types.Object) -> tuple[hairloom.Groom, list[str]]:
     """The curves at rest, bound to their surface if they have one, and the attributes that could not go along."""
     curves = checked(obj)
-    unit = metres_per_unit(context_scene, obj)
+    unit = metres_per_unit(scene, obj)
     rest = curves.attributes.get("hairloom_rest")  # while the hair is simulated
     points = read(rest) if rest is not None else positions_of(curves)
     if not np.isfinite(points).all():
@@ -216,6 +250,7 @@ def to_groom(context_scene: bpy.types.Scene, obj: bpy.types.Object) -> tuple[hai
         between = obj.matrix_world.inverted() @ surface.matrix_world
         at = transformed(at, between)
         groom.set_scalp(to_y_up(at if np.all(unit == 1) else at * unit), corners, starts, uvs_of(surface.data, curves.surface_uv_map))
+    _send_spheres(obj, groom, unit, scene.unit_settings.scale_length)
     if layers := _names(curves, "hairloom_layers", "layer", "Layer"):
         groom.layers = layers
     groom.groups = _names(curves, "hairloom_groups", "group", "Group")

@@ -4,12 +4,12 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+from mathutils import Matrix
 
 from . import convert, simulate
 from .cache import Writer
@@ -126,6 +126,7 @@ class HAIRLOOM_OT_bring_back(_Operator):
             obj.parent = surface
             obj.data.surface = surface
             obj.data.surface_uv_map = mesh.uv_layers[0].name if mesh.uv_layers else ""
+        convert.make_spheres(obj, groom)
         if context.active_object is not None:
             context.active_object.select_set(False)
         context.view_layer.objects.active = obj
@@ -209,8 +210,14 @@ class HAIRLOOM_OT_cards(_Operator):
     bl_idname = "hairloom.cards"
     bl_label = "Cards"
 
-    count: IntProperty(name="Cards", description="Most cards", default=64, min=1, max=4096)
+    count: IntProperty(name="Cards", description="Most cards in the nearest level", default=64, min=1, max=4096)
     segments: IntProperty(name="Segments", description="Most segments of a card", default=8, min=1, max=24)
+    atlas: EnumProperty(
+        name="Atlas",
+        description="Width of the largest texture, in texels",
+        items=[(str(size), str(size), "") for size in (256, 512, 1024, 2048, 4096)],
+        default="1024",
+    )
 
     def work(self, context: bpy.types.Context) -> None:
         obj = _object(context)
@@ -220,10 +227,34 @@ class HAIRLOOM_OT_cards(_Operator):
         before = set(bpy.data.objects)
         with tempfile.TemporaryDirectory(prefix="hairloom-cards-") as folder:
             file = os.path.join(folder, "cards.glb")
-            hairloom.export(groom, format="gltf", cards=self.count, segments=self.segments, output=file)
-            bpy.ops.import_scene.gltf(filepath=file)
+            hairloom.export(groom, format="gltf", cards=self.count, segments=self.segments, atlas=int(self.atlas), output=file)
+            bpy.ops.import_scene.gltf(filepath=file, disable_bone_shape=True)
         made = [one for one in bpy.data.objects if one not in before]
-        self.report({"INFO"}, f"{len(made)} objects: {', '.join(one.name for one in made[:4])}")
+        self._place(context, obj, made)
+        context.view_layer.objects.active = obj
+        obj.select_set(True)
+        levels = [one.name for one in made if one.type == "MESH"]
+        self.report({"INFO"}, f"Cards of '{obj.name}': {', '.join(levels)}")
+
+    @staticmethod
+    def _place(context: bpy.types.Context, obj: bpy.types.Object, made: list[bpy.types.Object]) -> None:
+        """Under the hair, in a collection, with the nearest level shown."""
+        collection = bpy.data.collections.new(f"{obj.name} cards")
+        context.scene.collection.children.link(collection)
+        back = Matrix.Diagonal((*(1 / convert.metres_per_unit(context.scene, obj)).tolist(), 1))
+        for one in made:
+            for other in list(one.users_collection):
+                other.objects.unlink(one)
+            collection.objects.link(one)
+            one.select_set(False)
+            if one.parent is None:
+                one.parent = obj
+                one.matrix_basis = back @ one.matrix_basis
+        levels = [one for one in made if one.type == "MESH"]
+        nearest = max(levels, key=lambda one: len(one.data.polygons) if one.name.startswith("cards") else 0)
+        for one in levels:
+            one.hide_render = one is not nearest
+            one.hide_set(one is not nearest)
 
 
 CLASSES = (HAIRLOOM_OT_send, HAIRLOOM_OT_bring_back, HAIRLOOM_OT_simulate, HAIRLOOM_OT_stop, HAIRLOOM_OT_bake, HAIRLOOM_OT_cards)

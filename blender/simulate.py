@@ -18,6 +18,7 @@ from .cache import Cache
 from .module import Problem, hairloom
 
 REST = "hairloom_rest"
+SWITCHED = "hairloom_off: "
 # Frames that playback may drop. The hair moves through them. A longer jump starts it anew.
 MOST_DROPPED = 8
 LONGEST_STEP = 0.1  # seconds, of the module
@@ -80,19 +81,12 @@ def _evaluated_vertices(surface: bpy.types.Object, graph: bpy.types.Depsgraph, e
 
 def _spheres(obj: bpy.types.Object, graph: bpy.types.Depsgraph, metres: float) -> np.ndarray:
     rows = []
-    for ball in spheres_in(settings(obj).colliders):
+    for ball in convert.spheres_in(settings(obj).colliders):
         now = ball.evaluated_get(graph).matrix_world
-        x, y, z = now.translation
         radius = ball.empty_display_size * max(map(abs, now.to_scale())) * metres
         if radius > 0:
-            rows.append((x * metres, z * metres, -y * metres, radius))
+            rows.append((*(TO_Y_UP @ np.array(now.translation) * metres), radius))
     return np.array(rows, np.float32).reshape(-1, 4)
-
-
-def spheres_in(collection: bpy.types.Collection | None) -> list[bpy.types.Object]:
-    if collection is None:
-        return []
-    return [one for one in collection.all_objects if one.type == "EMPTY" and one.empty_display_type == "SPHERE"]
 
 
 def _state(obj: bpy.types.Object, live_bodies: Bodies, surface: bpy.types.Object | None, metres: float, graph: bpy.types.Depsgraph) -> State:
@@ -227,6 +221,22 @@ def _deforming(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
     return found
 
 
+def _switch_off(obj: bpy.types.Object) -> None:
+    """Remembers which of them were on, in the blend file."""
+    shown = [one for one in _deforming(obj) if one.show_viewport or one.show_render]
+    for one in shown:
+        obj[f"{SWITCHED}{one.name}"] = [one.show_viewport, one.show_render]
+        one.show_viewport = one.show_render = False
+
+
+def _switch_on(obj: bpy.types.Object) -> None:
+    for key in [one for one in obj.keys() if one.startswith(SWITCHED)]:
+        modifier = obj.modifiers.get(key.removeprefix(SWITCHED))
+        if modifier is not None:
+            modifier.show_viewport, modifier.show_render = map(bool, obj[key])
+        del obj[key]
+
+
 def start(scene: bpy.types.Scene, obj: bpy.types.Object, graph: bpy.types.Depsgraph) -> None:
     """The hair is simulated from here on, beginning at rest on this frame."""
     convert.checked(obj)
@@ -243,8 +253,7 @@ def start(scene: bpy.types.Scene, obj: bpy.types.Object, graph: bpy.types.Depsgr
         if rest is None:
             obj.data.attributes.remove(obj.data.attributes[REST])
         raise
-    for modifier in _deforming(obj):
-        modifier.show_viewport = modifier.show_render = False
+    _switch_off(obj)
     own.mode = "LIVE"
     own.status = ""
 
@@ -256,8 +265,7 @@ def stop(obj: bpy.types.Object) -> None:
     if rest is not None:
         convert.set_positions(obj.data, convert.read(rest))
         obj.data.attributes.remove(obj.data.attributes[REST])
-    for modifier in _deforming(obj):
-        modifier.show_viewport = modifier.show_render = True
+    _switch_on(obj)
     settings(obj).mode = "OFF"
     obj.data.update_tag()
 

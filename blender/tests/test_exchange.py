@@ -155,6 +155,23 @@ class Exchange(InScene):
         self.there_and_back(obj)
         self.same(before, snapshot(obj))
 
+    def test_spheres_go_along_and_come_with_a_project(self) -> None:
+        obj = self.hair(self.head())
+        balls = bpy.data.collections.new("balls")
+        bpy.context.scene.collection.children.link(balls)
+        ball = bpy.data.objects.new("ball", None)
+        ball.empty_display_type, ball.empty_display_size, ball.location = "SPHERE", 0.09, (0.1, 0.2, 1.9)
+        balls.objects.link(ball)
+        obj.data.hairloom.colliders = balls
+        bpy.context.view_layer.update()
+        bpy.ops.hairloom.send(filepath=self.path())
+        np.testing.assert_allclose(hairloom.Groom.open(self.path()).spheres, [[0.1, 0.2, -0.2, 0.09]], atol=1e-6)
+        bpy.context.view_layer.objects.active = None
+        bpy.ops.hairloom.bring_back(filepath=self.path())
+        (made,) = bpy.context.active_object.data.hairloom.colliders.objects
+        self.assertAlmostEqual(made.empty_display_size, 0.09, places=6)
+        np.testing.assert_allclose(made.location, (0.1, 0.2, 0.2), atol=1e-6)
+
     def test_scale_and_units_become_metres(self) -> None:
         obj = self.hair(self.head())
         obj.parent.scale = (0.5, 0.5, 0.5)

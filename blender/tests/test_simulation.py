@@ -234,6 +234,17 @@ class Simulation(InScene):
         bpy.context.scene.frame_set(9)
         np.testing.assert_array_equal(points_of(obj), before)
 
+    def test_deform_curves_on_surface_is_off_while_hair_is_simulated(self) -> None:
+        obj = self.hair(self.head())
+        group = bpy.data.node_groups.new("deform", "GeometryNodeTree")
+        group.nodes.new("GeometryNodeDeformCurvesOnSurface")
+        modifier = obj.modifiers.new("deform", "NODES")
+        modifier.node_group, modifier.show_render = group, False
+        bpy.ops.hairloom.simulate()
+        self.assertFalse(modifier.show_viewport)
+        bpy.ops.hairloom.stop()
+        self.assertEqual((modifier.show_viewport, modifier.show_render), (True, False))
+
     def test_bad_input_is_told_and_changes_nothing(self) -> None:
         self.assertIn("no Curves object", message(bpy.ops.hairloom.simulate))
         obj = self.hair(None)
