@@ -7,7 +7,7 @@ import unittest
 import bpy
 import hairloom
 import numpy as np
-from support import InScene, message, points_of
+from support import TOP, InScene, message, points_of
 
 RANDOM = np.random.default_rng(7)
 # What foreach_get and foreach_set call the values of each type, how many there are, and what they hold.
@@ -45,8 +45,8 @@ def fill(obj) -> None:
     for domain, count in (("POINT", len(obj.data.points)), ("CURVE", len(obj.data.curves))):
         for kind, (prop, width, make) in TYPES.items():
             attribute = obj.data.attributes.new(f"{kind.lower()}_of_{domain.lower()}", kind, domain)
-            data = make(count * width)
-            attribute.data.foreach_set(prop, np.asarray(data, np.float32 if "FLOAT" in kind or "COLOR" in kind or kind == "QUATERNION" else np.int32))
+            scalar = np.int32 if "INT" in kind or kind == "BOOLEAN" else np.float32
+            attribute.data.foreach_set(prop, np.asarray(make(count * width), scalar))
     strands = len(obj.data.curves)
     for name, kind, data in (
         ("group", "INT", np.arange(strands) % 3),
@@ -57,7 +57,8 @@ def fill(obj) -> None:
         ("root_uv", "FLOAT2", RANDOM.random(strands * 2)),
         ("selected", "FLOAT", RANDOM.random(strands)),
     ):
-        obj.data.attributes.new(name, kind, "CURVE").data.foreach_set(TYPES[kind][0], np.asarray(data, np.int32 if kind == "INT" else np.float32 if "FLOAT" in kind else bool))
+        scalar = np.int32 if kind == "INT" else bool if kind == "BOOLEAN" else np.float32
+        obj.data.attributes.new(name, kind, "CURVE").data.foreach_set(TYPES[kind][0], np.asarray(data, scalar))
 
 
 class Exchange(InScene):
@@ -221,6 +222,34 @@ class Exchange(InScene):
         empty.data.add_curves([3, 1])
         self.assertIn("curve of 1 point", message(bpy.ops.hairloom.send, filepath=self.path()))
         self.assertFalse((self.folder / "hair.hairloom").exists())
+
+    def test_another_version_of_the_module_is_told(self) -> None:
+        from importlib import metadata
+        from unittest import mock
+
+        self.hair(self.head())
+        with mock.patch.object(metadata, "version", return_value="0.1.9"):
+            for operator in (bpy.ops.hairloom.send, bpy.ops.hairloom.bring_back, bpy.ops.hairloom.simulate, bpy.ops.hairloom.cards):
+                self.assertIn("has the version 0.1.9: expected 0.", message(operator))
+        with mock.patch.dict("sys.modules", {"hairloom": None}):
+            self.assertIn("cannot be loaded", message(bpy.ops.hairloom.send, filepath=self.path()))
+
+    def test_the_extension_has_the_version_of_the_program(self) -> None:
+        import re
+        import tomllib
+
+        manifest = tomllib.loads((TOP / "blender" / "blender_manifest.toml").read_text())
+        (version,) = re.findall(r"project\(Hairloom VERSION ([0-9.]+)", (TOP / "CMakeLists.txt").read_text())
+        self.assertEqual(manifest["version"], version)
+
+    def test_curves_of_all_types_and_text_attributes(self) -> None:
+        obj = self.hair(self.head())
+        obj.data.set_types(type="POLY")
+        obj.data.attributes.new("note", "STRING", "CURVE").data[2].value = b"cut"
+        before = snapshot(obj)
+        self.there_and_back(obj)
+        self.same(before, snapshot(obj))
+        self.assertEqual(obj.data.attributes["note"].data[2].value, b"cut")
 
     def test_a_layer_below_0_is_told(self) -> None:
         obj = self.hair(self.head())
