@@ -35,20 +35,26 @@ if [ -z "$python" ]; then
             apt-get update -qq && apt-get -o Dpkg::Use-Pty=0 install -y -qq --no-install-recommends python3 python3-dev python3-venv \
                 libx11-6 libxi6 libxxf86vm1 libxfixes3 libxrender1 libxkbcommon0 libsm6 libice6 libgl1 libegl1 libgomp1' >&2
     fi
-    # The root's own loader and libraries run its Python here, where compilers and libraries to build with are.
-    python=$work/python3.13
+    # What venv installs pip from, which this system has another of.
+    sed -i "s#sysconfig.get_config_var('WHEEL_PKG_DIR')#'$root/usr/share/python-wheels'#" "$root/usr/lib/python3.13/ensurepip/__init__.py"
+    # Its own loader and libraries run it here, beside the compilers and libraries that the wheel is built with.
+    mkdir -p "$work/python/bin"
+    ln -sfn "$root/usr/lib" "$work/python/lib"
+    ln -sfn "$root/usr/include" "$work/python/include"
+    python=$work/python/bin/python3.13
     cat > "$python" <<TEXT
 #!/bin/sh
-PYTHONHOME=$root/usr exec $root/usr/lib64/ld-linux-x86-64.so.2 --library-path $root/usr/lib/x86_64-linux-gnu --argv0 "\$0" $root/usr/bin/python3.13 "\$@"
+libraries=$root/usr/lib/x86_64-linux-gnu
+exec \$libraries/ld-linux-x86-64.so.2 --library-path \$libraries --argv0 "\$0" $root/usr/bin/python3.13 "\$@"
 TEXT
     chmod +x "$python"
     hasHeaders "$python" || { echo "error: the Python of Debian 13 in $root does not run here" >&2; exit 1; }
 fi
 
 version=$(sed -n 's/^project(Hairloom VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
-wheel=$(ls "$dist/hairloom-$version"-cp312-abi3-*.whl 2>/dev/null | head -1)
+wheel=$(ls "$dist/hairloom-$version"-cp312-abi3-*.whl 2>/dev/null | head -1 || true)
 newer=
-[ -z "$wheel" ] || newer=$(find python core exporters importers runtime cli CMakeLists.txt -name '*.*' -newer "$wheel" -type f | head -1)
+[ -z "$wheel" ] || newer=$(find python core exporters importers runtime cli CMakeLists.txt -name '*.*' -newer "$wheel" -type f -print -quit)
 if [ -z "$wheel" ] || [ -n "$newer" ]; then
     packaging/wheel.sh "$dist" "$python"
     wheel=$(ls "$dist/hairloom-$version"-cp312-abi3-*.whl | head -1)
