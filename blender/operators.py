@@ -110,7 +110,7 @@ class HAIRLOOM_OT_bring_back(_Operator):
         if obj is None:
             obj = self._new(context, Path(path).stem, groom)
         elif obj.data.hairloom.mode != "OFF":
-            simulate.stop(obj)
+            simulate.stop(obj)  # a cache of other hair says nothing of this one
         convert.from_groom(context.scene, obj, groom)
         obj.data.hairloom.project = path
         self.report({"INFO"}, f"{groom.strand_count} strands are back from {path}")

@@ -196,7 +196,7 @@ def on_frame(scene: bpy.types.Scene, graph: bpy.types.Depsgraph | None = None) -
             else:
                 Cache.of(obj).show(obj, scene.frame_current)
             own.status = ""
-        except (Problem, OSError, ValueError, RuntimeError) as error:
+        except Exception as error:  # noqa: BLE001, or Blender would raise it again in each frame
             # A handler cannot report. The panel shows it, and the hair stays as it is.
             own.status = str(error)
             print(f"Hairloom: {obj.name}: {error}")

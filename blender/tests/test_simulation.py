@@ -281,6 +281,32 @@ class Simulation(InScene):
         self.assertEqual(obj.data.hairloom.mode, "OFF")
         self.assertIn("vertices after its modifiers", obj.data.hairloom.status)
 
+    def test_a_bone_or_collider_that_goes_is_told(self) -> None:
+        obj = self.hair(self.head())
+        balls = bpy.data.collections.new("balls")
+        bpy.context.scene.collection.children.link(balls)
+        ball = self.head("ball", 0.05)
+        balls.objects.link(ball)
+        bpy.context.view_layer.objects.active = obj
+        obj.data.hairloom.colliders = balls
+        bpy.ops.hairloom.simulate()
+        bpy.data.objects.remove(ball)
+        bpy.context.scene.frame_set(2)
+        self.assertEqual(obj.data.hairloom.mode, "OFF")
+        self.assertIn("'ball', which the hair collides with, is gone", obj.data.hairloom.status)
+
+    def test_hair_that_is_brought_back_while_it_is_simulated_is_at_rest(self) -> None:
+        obj = self.hair(self.head())
+        path = str(self.folder / "hair.hairloom")
+        before = points_of(obj)
+        bpy.ops.hairloom.simulate()
+        self.play(1, 6)
+        bpy.ops.hairloom.send(filepath=path)  # sends the hair at rest
+        bpy.ops.hairloom.bring_back()
+        self.assertEqual(obj.data.hairloom.mode, "OFF")
+        np.testing.assert_array_equal(points_of(obj), before)
+        self.assertNotIn("hairloom_rest", obj.data.attributes)
+
     def test_a_cache_of_other_hair_is_told(self) -> None:
         obj = self.hair(self.head())
         np.save(self.folder / "other.npy", np.zeros((3, 7, 3), np.float32))
