@@ -14,7 +14,7 @@ from pathlib import Path as _Path
 _os.environ.setdefault("HAIRLOOM_MESH_READER", str(_Path(__file__).parent / "bin" / "hairloom-mesh-reader"))
 
 from . import jobs as _jobs
-from ._core import Attributes, Engine, Frame, Groom, Simulation
+from ._core import Attributes, Engine, Frame, Groom, LiveSimulation, Simulation
 from ._run import Report
 from ._show import show
 from .errors import ArgumentError, BusyError, Error
@@ -28,6 +28,7 @@ __all__ = [
     "Error",
     "Frame",
     "Groom",
+    "LiveSimulation",
     "Report",
     "Simulation",
     "show",

@@ -39,7 +39,9 @@ InputArray inputArray(const char* name, nb::handle object, nb::dlpack::dtype typ
     if (in.array.ndim() != dimensions || (dimensions == 2 && in.array.shape(1) != components))
         raiseArgument(name, "has the shape " + shapeOf(in.array), expected);
     std::int64_t stride = 1;
-    for (std::size_t i = dimensions; i-- > 0; stride *= static_cast<std::int64_t>(in.array.shape(i))) {
+    // The strides of an array without elements mean nothing, and NumPy's are 0.
+    for (std::size_t i = in.array.size() > 0 ? dimensions : 0; i-- > 0;
+         stride *= static_cast<std::int64_t>(in.array.shape(i))) {
         if (in.array.shape(i) > 1 && in.array.stride(i) != stride)
             raiseArgument(name, "is not contiguous", expected + ", as numpy.ascontiguousarray() makes it");
     }

@@ -354,7 +354,9 @@ void bindGroom(nb::module_& module) {
             return fmt::format("<hairloom.Groom: {} strands, {} points>", groom.groom.strandCount(),
                                groom.groom.pointCount());
         });
+    bindScene(type);
     bindSimulate(type);
+    bindLiveOf(type);
 }
 
 }  // namespace hairloom::python

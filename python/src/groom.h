@@ -6,8 +6,10 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/groom/groom.h"
+#include "core/simulation/simulation.h"
 #include "python/src/busy.h"
 
 namespace hairloom::python {
@@ -28,6 +30,15 @@ void bindSimulation(nb::module_& module);
 /// Groom.simulate().
 void bindSimulate(nb::class_<PyGroom>& groom);
 void bindEngine(nb::module_& module);
+/// hairloom.LiveSimulation, and Groom.live().
+void bindLive(nb::module_& module);
+void bindLiveOf(nb::class_<PyGroom>& groom);
+/// What a groom has from the scene around it: scalp, body, spheres, names of layers and groups.
+void bindScene(nb::class_<PyGroom>& groom);
+
+/// Of rows of centre and radius. Throws hairloom.ArgumentError.
+std::vector<CollisionSphere> spheresOf(const char* name, nb::handle values);
+nb::dict statsOf(const SimulationStats& stats);
 
 /// A frame of a simulation, hairloom.Frame.
 struct PyFrame;

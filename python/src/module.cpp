@@ -8,6 +8,7 @@
 NB_MODULE(_core, module) {
     module.doc() = "Grooms, simulations and engines of Hairloom.";
     hairloom::python::bindSimulation(module);
+    hairloom::python::bindLive(module);
     hairloom::python::bindGroom(module);
     hairloom::python::bindEngine(module);
 }

@@ -102,7 +102,12 @@ PyFrame nextFrame(PySimulation& run) {
 
 nb::dict stats(PySimulation& run) {
     const Use use(run.inUse, kTheSimulation);
-    const SimulationStats stats = withoutGil([&] { return run.simulation->stats(); });
+    return statsOf(withoutGil([&] { return run.simulation->stats(); }));
+}
+
+}  // namespace
+
+nb::dict statsOf(const SimulationStats& stats) {
     nb::dict answer;
     answer["frames"] = stats.frames;
     answer["ms_per_frame"] = stats.millisecondsPerFrame;
@@ -112,8 +117,6 @@ nb::dict stats(PySimulation& run) {
     answer["state_hash"] = fmt::format("{:016x}", stats.stateHash);
     return answer;
 }
-
-}  // namespace
 
 void bindSimulation(nb::module_& module) {
     nb::class_<PyFrame>(module, "Frame", "The hair at one time of a simulation.")
