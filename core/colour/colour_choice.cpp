@@ -20,6 +20,28 @@ std::filesystem::path configFile(const ColourChoice& choice) {
     return hasOpenColorIO() ? fromEnvironment() : "";
 }
 
+Result<ColourConfig> readConfig(const ColourChoice& choice) {
+    auto config = ColourConfig::read(configFile(choice));
+    if (config || !choice.config.empty()) return config;
+    Error error = config.error();
+    error.problem += " ($OCIO names this file)";
+    return tl::unexpected(error);
+}
+
+Result<Colours> chooseView(const ColourConfig& config, const std::string& display, const std::string& view) {
+    const auto& displays = config.displays();
+    Colours colours{config, display.empty() ? displays.front().name : display, view, {}};
+    if (view.empty()) {
+        for (const Display& known : displays) {
+            if (known.name == colours.display) colours.view = known.views.front();
+        }
+    }
+    auto made = config.view(colours.display, colours.view);
+    if (!made) return tl::unexpected(made.error());
+    colours.toDisplay = std::move(*made);
+    return colours;
+}
+
 Result<std::optional<Colours>> chooseColours(const ColourChoice& choice) {
     const std::filesystem::path file = configFile(choice);
     if (file.empty()) {
@@ -27,24 +49,11 @@ Result<std::optional<Colours>> chooseColours(const ColourChoice& choice) {
         return fail("a display or view without a config",
                     "expected a config (--color-config FILE) or $OCIO, which names one");
     }
-    auto config = ColourConfig::read(file);
-    if (!config) {
-        Error error = config.error();
-        if (choice.config.empty()) error.problem += " ($OCIO names this file)";
-        return tl::unexpected(error);
-    }
-    const auto& displays = config->displays();
-    Colours colours{
-        *config, choice.display.empty() ? displays.front().name : choice.display, choice.view, {}};
-    if (colours.view.empty()) {
-        for (const Display& display : displays) {
-            if (display.name == colours.display) colours.view = display.views.front();
-        }
-    }
-    auto made = config->view(colours.display, colours.view);
-    if (!made) return tl::unexpected(made.error());
-    colours.toDisplay = std::move(*made);
-    return colours;
+    const auto config = readConfig(choice);
+    if (!config) return tl::unexpected(config.error());
+    auto colours = chooseView(*config, choice.display, choice.view);
+    if (!colours) return tl::unexpected(colours.error());
+    return std::move(*colours);
 }
 
 }  // namespace hairloom::colour

@@ -30,6 +30,12 @@ struct Colours {
 /// The file that a choice means; empty: the standard colours.
 std::filesystem::path configFile(const ColourChoice& choice);
 
+/// The config that a choice means, which must mean one. Errors: those of ColourConfig::read().
+Result<ColourConfig> readConfig(const ColourChoice& choice);
+
+/// `display` and `view` of it, empty for the defaults. Errors: those of ColourConfig::view().
+Result<Colours> chooseView(const ColourConfig& config, const std::string& display, const std::string& view);
+
 /// Nothing for the standard colours. Errors: those of ColourConfig, a display or view without a config.
 Result<std::optional<Colours>> chooseColours(const ColourChoice& choice);
 

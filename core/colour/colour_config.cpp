@@ -9,6 +9,7 @@
 
 #include "core/base/file.h"
 #include "core/colour/interchange.h"
+#include "core/colour/used_transforms.h"
 
 namespace hairloom::colour {
 namespace {
@@ -102,6 +103,12 @@ Result<ColourConfig> ColourConfig::read(const std::filesystem::path& path) {
                           "expected a role scene_linear or rendering that names a colour space");
         read.working_.name = space->getName();
         library->entry = entryOf(config, read.working_.name);
+        const auto steps = fromRec709(library->entry, read.working_.name);
+        if (auto status = checkUsed(config, steps); !status)
+            return tl::unexpected(inFile(status.error(), file));
+        // Probed the other way, by what may be the inverse of another transform.
+        if (auto status = checkUsed(config, toEntry(library->entry, read.working_.name)); !status)
+            return tl::unexpected(inFile(status.error(), file));
         const auto linear = linearSpaceOf(config, library->entry, read.working_.name);
         if (!linear) return tl::unexpected(inFile(linear.error(), file));
         read.working_.linear = *linear;
@@ -110,8 +117,7 @@ Result<ColourConfig> ColourConfig::read(const std::filesystem::path& path) {
                 "{}: the config has neither the role aces_interchange nor linear Rec. 709 under a "
                 "known name, so '{}' is taken for it",
                 file, read.working_.name);
-        read.working_.fromRec709 =
-            std::make_shared<Processed>(config.getProcessor(fromRec709(library->entry, read.working_.name)));
+        read.working_.fromRec709 = std::make_shared<Processed>(config.getProcessor(steps));
         read.library_ = std::move(library);
     } catch (const std::exception& thrown) {
         return tl::unexpected(told(path, "this config cannot be used", thrown.what()));
@@ -138,6 +144,8 @@ Result<std::shared_ptr<const render::ColourTransform>> ColourConfig::view(const 
         last->setDisplay(display.c_str());
         last->setView(view.c_str());
         steps->appendTransform(last);
+        if (auto status = checkUsed(*library_->config, steps); !status)
+            return tl::unexpected(inFile(status.error(), path_.string()));
         return std::make_shared<Processed>(library_->config->getProcessor(steps));
     } catch (const std::exception& thrown) {
         return tl::unexpected(told(

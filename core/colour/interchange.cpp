@@ -92,11 +92,18 @@ ocio::GroupTransformRcPtr fromRec709(const Entry& entry, const std::string& work
     return group;
 }
 
+ocio::ColorSpaceTransformRcPtr toEntry(const Entry& entry, const std::string& working) {
+    auto step = ocio::ColorSpaceTransform::Create();
+    step->setSrc(working.c_str());
+    step->setDst(entry.space.c_str());
+    return step;
+}
+
 Result<LinearSpace> linearSpaceOf(const ocio::Config& config, const Entry& entry,
                                   const std::string& working) {
     if (entry.isAssumed) return LinearSpace{};
     const auto processor =
-        config.getProcessor(working.c_str(), entry.space.c_str())
+        config.getProcessor(toEntry(entry, working))
             ->getOptimizedCPUProcessor(ocio::BIT_DEPTH_F32, ocio::BIT_DEPTH_F32, ocio::OPTIMIZATION_LOSSLESS);
     // The basis, its double, and black: what takes them to a matrix's columns is one.
     std::array<float, 21> probes{1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0};

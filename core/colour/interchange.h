@@ -29,6 +29,9 @@ Entry entryOf(const OCIO_NAMESPACE::Config& config, const std::string& working);
 /// From linear Rec. 709 to `working`.
 OCIO_NAMESPACE::GroupTransformRcPtr fromRec709(const Entry& entry, const std::string& working);
 
+/// From `working` to the entry.
+OCIO_NAMESPACE::ColorSpaceTransformRcPtr toEntry(const Entry& entry, const std::string& working);
+
 /// What `working` is, by the matrix that leads from it to ACES2065-1. Errors: it is not linear.
 Result<render::LinearSpace> linearSpaceOf(const OCIO_NAMESPACE::Config& config, const Entry& entry,
                                           const std::string& working);

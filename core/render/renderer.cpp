@@ -419,6 +419,10 @@ Status Renderer::recordPast(gpu::CommandList& list, const RenderOptions& options
     return p.state.pipelines.takeStatus();
 }
 
+int Renderer::displayError() const {
+    return parts_->state.display.table.worst;
+}
+
 std::uint32_t Renderer::accumulated() const {
     return parts_->changes.picture || parts_->newLights ? 0 : parts_->accumulated;
 }

@@ -276,6 +276,49 @@ TEST_F(Config, ThatIsWrongSaysWhere) {
     EXPECT_THAT(ColourConfig::read("ocio://default").error().message(), HasSubstr("no built-in configs"));
 }
 
+/// What the library follows until the program ends.
+TEST_F(Config, ThatDefinesASpaceByItselfIsRefused) {
+    const std::string spaces = R"(
+  - !<ColorSpace>
+    name: lin_rec709
+  - !<ColorSpace>
+    name: one
+    to_reference: !<ColorSpaceTransform> {src: two, dst: lin_rec709}
+  - !<ColorSpace>
+    name: two
+    to_reference: !<GroupTransform>
+      children:
+        - !<ColorSpaceTransform> {src: one, dst: lin_rec709}
+  - !<ColorSpace>
+    name: three
+    from_reference: !<ColorSpaceTransform> {src: lin_rec709, dst: three}
+)";
+    EXPECT_THAT(refusal(small("scene_linear: one", spaces)), HasSubstr("defined by itself"));
+    std::string text = small("scene_linear: light", spaces);
+    text.replace(text.find("colorspace: light}"), 18, "colorspace: three}");
+    const auto config = ColourConfig::read(write(text));
+    ASSERT_TRUE(config) << config.error().message();
+    const auto view = config->view("sRGB", "Raw");
+    ASSERT_FALSE(view);
+    EXPECT_THAT(view.error().message(), HasSubstr("'three' is defined by itself"));
+}
+
+#ifndef _WIN32
+TEST_F(Config, ThatReadsADeviceIsRefused) {
+    std::string text = small("scene_linear: light", R"(
+  - !<ColorSpace>
+    name: endless
+    from_reference: !<FileTransform> {src: /dev/zero}
+)");
+    text.replace(text.find("colorspace: light}"), 18, "colorspace: endless}");
+    const auto endless = ColourConfig::read(write(text));
+    ASSERT_TRUE(endless) << endless.error().message();
+    const auto view = endless->view("sRGB", "Raw");
+    ASSERT_FALSE(view);
+    EXPECT_THAT(view.error().message(), HasSubstr("/dev/zero"));
+}
+#endif
+
 TEST(ColourConfig, NamesWhatThereIsWhereADisplayOrViewIsNot) {
     const auto message = [](const ColourChoice& choice) {
         const auto colours = chooseColours(choice);
