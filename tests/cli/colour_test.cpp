@@ -66,8 +66,8 @@ TEST_F(ColourOfImages, SequencesAndLayersFollow) {
     picture("turn", view + "--turntable 3 --strip strip.png --aov albedo,depth");
     picture("plain", "--turntable 3 --strip plain-strip.png --aov albedo,depth");
     EXPECT_NE(file("strip.png"), file("plain-strip.png"));
-    EXPECT_NE(file("turn.0002.png"), file("plain.0002.png"));
-    EXPECT_NE(file("turn.0002.exr"), file("plain.0002.exr"));
+    EXPECT_NE(file("turn_0002.png"), file("plain_0002.png"));
+    EXPECT_NE(file("turn_0002.exr"), file("plain_0002.exr"));
 }
 
 TEST_F(ColourOfImages, TheEnvironmentNamesAConfigAndNoneRefusesIt) {
