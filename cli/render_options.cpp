@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/backend.h"
+#include "cli/colour_options.h"
 #include "cli/error_report.h"
 #include "cli/vectors.h"
 #include "core/render/aov.h"
@@ -155,6 +156,7 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         ->check(CLI::Range(0.0, 100.0));
     job.add_option("--exposure", options->exposure, "Exposure: multiplies light before the tone curve")
         ->check(CLI::Range(1e-3, 1e3));
+    addColourOptions(job, options->colours);
     auto* passes = job.add_option("--passes", options->passes,
                                   "Number of frames to average, each with a sub-pixel offset")
                        ->check(CLI::Range(1, 1024));
@@ -201,7 +203,8 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
                    "Duration of each frame of the animation, in milliseconds")
         ->check(CLI::Range(1, 65'535));
     auto* exr = job.add_option("--exr", options->exr,
-                               "OpenEXR file for linear light, before exposure and tone curve");
+                               "OpenEXR file for linear light, before exposure and tone curve, in the "
+                               "config's scene-linear space, else Rec. 709");
     job.add_option("--aov", options->aovs,
                    "Extra layers in the OpenEXR, for the nearest surface in each pixel: depth, hair id, "
                    "velocity since the last frame, albedo")

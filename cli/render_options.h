@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/colour/colour_choice.h"
 #include "core/live/view_file.h"
 #include "core/render/options.h"
 
@@ -47,6 +48,7 @@ struct RenderJobOptions {
     bool chooseDevice = false;
     std::string backend = "any";
     float exposure = 1;
+    colour::ColourChoice colours;
     std::uint32_t passes = 8;
     bool temporal = false;
     std::string exr;

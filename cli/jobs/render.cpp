@@ -8,6 +8,7 @@
 
 #include "cli/backend.h"
 #include "cli/body_notes.h"
+#include "cli/colour_options.h"
 #include "cli/documents.h"
 #include "cli/error_report.h"
 #include "cli/job.h"
@@ -135,16 +136,24 @@ class Photographer {
     std::vector<render::Light> lights_;
 };
 
-Status writePictures(const RenderJobOptions& options, const render::Picture& picture, std::size_t number) {
+Status writePictures(const RenderJobOptions& options, const std::optional<colour::Colours>& colours,
+                     render::Picture picture, std::size_t number) {
     const bool many = options.sequence();
     const auto name = [&](const std::string& path) {
         return many ? numbered(path, number) : std::filesystem::path(path);
     };
     if (auto written = render::writePng(name(options.output), picture.image); !written) return written;
     if (options.exr.empty()) return {};
+    render::LinearSpace space;
+    if (colours) {
+        const colour::WorkingSpace& working = colours->config.working();
+        space = working.linear;
+        render::convert(picture.linear.rgba, *working.fromRec709);
+        for (render::SurfacePixel& pixel : picture.surface) working.fromRec709->apply(pixel.albedo);
+    }
     const auto layers = render::aovLayers(options.aovs, picture.surface);
     if (!layers) return tl::unexpected(layers.error());
-    return render::writeExr(name(options.exr), picture.linear, *layers);
+    return render::writeExr(name(options.exr), picture.linear, *layers, space);
 }
 
 /// Hair that moves while pictures of it are taken.
@@ -221,6 +230,9 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     view.fibre.scattering = options.scatter == "dual" ? render::Scattering::dual : render::Scattering::single;
     auto how = pictureOptions(options, view);
     if (!how) return tl::unexpected(how.error());
+    const auto colours = colour::chooseColours(options.colours);
+    if (!colours) return tl::unexpected(colours.error());
+    if (*colours) how->toDisplay = (*colours)->toDisplay;
     const auto shots = shotsOf(options);
     if (!shots) return tl::unexpected(shots.error());
     auto groom = openGroom(options.input);
@@ -245,6 +257,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         notes = recordNotes(*groom, first->pose);
     }
     if (!device->note.empty()) notes.push_back(device->note);
+    if (*colours && !(*colours)->config.working().note.empty())
+        notes.push_back((*colours)->config.working().note);
     std::vector<render::Image> images;
     Report report;
     std::optional<Progress> progress;
@@ -252,9 +266,10 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     for (std::size_t i = 0; i < shots->size(); ++i) {
         const auto picture = photographer.take((*shots)[i]);
         if (!picture) return tl::unexpected(picture.error());
-        if (auto written = writePictures(options, *picture, i); !written)
+        if (auto written = writePictures(options, *colours, *picture, i); !written)
             return tl::unexpected(written.error());
         if (i == 0) report = reportOf(*picture, options);
+        if (i == 0 && *colours) report["color"] = colourReport(**colours);
         if (i == 0 && playing->shots) {
             report["engine"] = engineName(playing->engine.kind);
             report["why"] = playing->engine.why;

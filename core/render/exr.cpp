@@ -50,6 +50,16 @@ int channelNamed(const EXRHeader& header, const char* name) {
     return -1;
 }
 
+/// `value` must outlive it.
+EXRAttribute attribute(const char* name, const char* type, std::span<std::byte> value) {
+    EXRAttribute made{};
+    std::strncpy(made.name, name, sizeof(made.name) - 1);
+    std::strncpy(made.type, type, sizeof(made.type) - 1);
+    made.value = reinterpret_cast<unsigned char*>(value.data());
+    made.size = static_cast<int>(value.size());
+    return made;
+}
+
 }  // namespace
 
 Result<LinearImage> decodeExr(const std::string& file, std::span<const std::byte> content) {
@@ -110,8 +120,8 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     return decodeExr(path.string(), *bytes);
 }
 
-Status writeExr(const std::filesystem::path& path, const LinearImage& image,
-                std::span<const ExrLayer> layers) {
+Status writeExr(const std::filesystem::path& path, const LinearImage& image, std::span<const ExrLayer> layers,
+                const LinearSpace& space) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     if (pixels == 0 || image.rgba.size() != 4 * pixels)
         return failIn(path.string(), {}, "an image without pixels");
@@ -143,6 +153,13 @@ Status writeExr(const std::filesystem::path& path, const LinearImage& image,
     header.pixel_types = types.data();
     header.requested_pixel_types = types.data();
     header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
+    std::array<float, 8> chromaticities = space.chromaticities;
+    std::string interopId = space.interopId;
+    std::array<EXRAttribute, 2> attributes{
+        attribute("chromaticities", "chromaticities", std::as_writable_bytes(std::span(chromaticities))),
+        attribute("colorInteropID", "string", std::as_writable_bytes(std::span(interopId)))};
+    header.custom_attributes = attributes.data();
+    header.num_custom_attributes = interopId.empty() ? 1 : 2;
     EXRImage content;
     InitEXRImage(&content);
     content.num_channels = header.num_channels;

@@ -8,6 +8,7 @@
 
 #include "core/base/result.h"
 #include "core/render/image.h"
+#include "core/render/linear_space.h"
 
 namespace hairloom::render {
 
@@ -18,10 +19,11 @@ struct ExrLayer {
     std::vector<float> values;  ///< one a channel, pixel after pixel, rows from the top
 };
 
-/// OpenEXR: the channels R, G, B and A and those of the layers as 32-bit floats, ZIP compressed. Writes the
+/// OpenEXR: the channels R, G, B and A and those of the layers as 32-bit floats, ZIP compressed. The
+/// attributes `chromaticities` and, where there is one, `colorInteropID` say what `space` is. Writes the
 /// whole file or leaves what was there; the same content gives the same bytes.
 Status writeExr(const std::filesystem::path& path, const LinearImage& image,
-                std::span<const ExrLayer> layers = {});
+                std::span<const ExrLayer> layers = {}, const LinearSpace& space = {});
 
 /// OpenEXR of one part in lines of pixels: R, G, B, and A where it is there (else 1), or Y as grey. Half and
 /// single floats, any compression that the library knows. From the bytes of a file, which errors name.

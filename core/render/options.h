@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "core/base/result.h"
 #include "core/gpu/types.h"
+#include "core/render/colour_transform.h"
 
 namespace hairloom::render {
 
@@ -73,7 +75,9 @@ struct RenderOptions {
     /// For pictures in which things move: each frame joins those before it, each pixel where its surface was.
     /// One frame (`frames`), no blurred shadows.
     bool temporal = false;
-    float exposure = 2;                  ///< factor before the tone curve
+    float exposure = 2;  ///< factor before the tone curve
+    /// Instead of the tone curve and sRGB, from linear light in the primaries of Rec. 709; null: not.
+    std::shared_ptr<const ColourTransform> toDisplay;
     bool transparentBackground = false;  ///< alpha is coverage; else 1 everywhere
 
     bool operator==(const RenderOptions&) const = default;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/render/passes.h"
+#include "shaders/shared/display_types.h"
 
 namespace hairloom::render {
 namespace {
@@ -59,6 +60,37 @@ void drawOverlay(gpu::CommandList& list, RendererState& state, gpu::Format forma
         }
         first += static_cast<std::uint32_t>(batch.vertices.size());
     }
+}
+
+void drawByToneCurve(gpu::CommandList& list, RendererState& state, std::uint32_t frames, gpu::Format format) {
+    list.setPipeline(
+        state.pipelines.graphics({.vertex = "fullscreen.vert", .pixel = "tone_map.frag", .colour = format}));
+    shaders::ToneConstants constants{};
+    constants.exposure = state.options.exposure;
+    constants.frameShare = 1 / static_cast<float>(frames);
+    constants.encodesSrgb = encodesItself(format) ? 0.0f : 1.0f;
+    constants.width = static_cast<float>(state.options.width);
+    list.setConstants(0, gpu::bytesOf(constants));
+    bind(list, {Binding::read(0, state.result())});
+    list.draw(3);
+}
+
+void drawByTable(gpu::CommandList& list, RendererState& state, std::uint32_t frames, gpu::Format format) {
+    list.setPipeline(state.pipelines.graphics(
+        {.vertex = "fullscreen.vert", .pixel = "display_table.frag", .colour = format}));
+    const DisplayTable& table = state.display.table;
+    shaders::DisplayConstants constants{};
+    constants.alphaScale = 1 / static_cast<float>(frames);
+    constants.scale = state.options.exposure * constants.alphaScale;
+    constants.decodesSrgb = encodesItself(format) ? 1.0f : 0.0f;
+    constants.width = static_cast<float>(state.options.width);
+    constants.toe = table.toe;
+    constants.stretch = static_cast<float>(table.side - 1) / std::log2(1 + table.toe * table.top);
+    constants.top = table.top;
+    constants.side = table.side;
+    list.setConstants(0, gpu::bytesOf(constants));
+    bind(list, {Binding::read(0, state.result()), Binding::read(1, state.display.codes)});
+    list.draw(3);
 }
 
 void recordFilter(gpu::CommandList& list, RendererState& state, const gpu::TexturePtr& target) {
@@ -130,18 +162,33 @@ void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t f
     const bool filter = state.plan.runs(Pass::filter);
     const gpu::TexturePtr& shown = filter ? state.targets[TargetId::shown] : target;
     list.beginPass({passName(Pass::toneMap), {{shown, gpu::LoadOp::Discard, {}, {}}}, {}});
-    list.setPipeline(state.pipelines.graphics(
-        {.vertex = "fullscreen.vert", .pixel = "tone_map.frag", .colour = shown->desc().format}));
-    shaders::ToneConstants constants{};
-    constants.exposure = state.options.exposure;
-    constants.frameShare = 1 / static_cast<float>(frames);
-    constants.encodesSrgb = encodesItself(shown->desc().format) ? 0.0f : 1.0f;
-    constants.width = static_cast<float>(state.options.width);
-    list.setConstants(0, gpu::bytesOf(constants));
-    bind(list, {Binding::read(0, state.result())});
-    list.draw(3);
+    if (state.options.toDisplay != nullptr) {
+        drawByTable(list, state, frames, shown->desc().format);
+    } else {
+        drawByToneCurve(list, state, frames, shown->desc().format);
+    }
     list.endPass();
     if (filter) recordFilter(list, state, target);
+}
+
+Status prepareDisplay(gpu::Device& device, RendererState& state) {
+    DisplayOnDevice& display = state.display;
+    if (display.of == state.options.toDisplay) return {};
+    if (state.options.toDisplay == nullptr) {
+        display = {};
+        return {};
+    }
+    DisplayTable table = bakeDisplayTable(*state.options.toDisplay);
+    const auto codes = std::as_bytes(std::span(table.codes));
+    gpu::BufferDesc desc;
+    desc.name = "view of the colour config";
+    desc.elementBytes = sizeof(table.codes[0]);
+    desc.size = codes.size();
+    auto buffer = device.createBuffer(desc, codes);
+    if (!buffer) return tl::unexpected(buffer.error());
+    display = {state.options.toDisplay, std::move(table), std::move(*buffer)};
+    display.table.codes.clear();
+    return {};
 }
 
 Status prepareOverlay(gpu::Device& device, gpu::CommandList& list, OverlayOnDevice& overlay) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/render/device_scene.h"
+#include "core/render/display_table.h"
 #include "core/render/options.h"
 #include "core/render/overlay.h"
 #include "core/render/pipelines.h"
@@ -26,6 +27,13 @@ struct OverlayOnDevice {
     bool needsDepth() const;
 };
 
+/// The view of a colour config on the device, where the options have one.
+struct DisplayOnDevice {
+    std::shared_ptr<const ColourTransform> of;  ///< what the table was made of
+    DisplayTable table;                         ///< without its code values
+    gpu::BufferPtr codes;
+};
+
 /// All that the passes of a frame read.
 struct RendererState {
     explicit RendererState(gpu::Device& device)
@@ -39,6 +47,7 @@ struct RendererState {
     Environment environment;           ///< the rest
     Vec3f background = Vec3f::Zero();
     OverlayOnDevice overlay;
+    DisplayOnDevice display;
     RenderOptions options;
     std::uint32_t samples = 1;
     HairDetail detail;
@@ -112,7 +121,9 @@ void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f&
 void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number);
 /// The sum of frames with shadows that are blurred on the screen.
 void recordShadowBlur(gpu::CommandList& list, RendererState& state);
-/// The average of `frames` frames, with exposure and tone curve.
+/// Makes the table of the options' view when it has changed.
+Status prepareDisplay(gpu::Device& device, RendererState& state);
+/// The average of `frames` frames, with exposure and tone curve, or by the options' view.
 void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t frames,
                    const gpu::TexturePtr& target);
 /// Makes room for the marks and uploads them when they have changed.

@@ -359,6 +359,9 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
                     fmt::format("{}x{} and 1, as the options say", options.width, options.height));
     }
     if (auto status = p.prepare(options, target != nullptr); !status) return status;
+    if (target != nullptr) {
+        if (auto status = prepareDisplay(p.device, p.state); !status) return status;
+    }
     if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
     if (!p.holdsMaps) p.changes.add(std::exchange(p.heldBack, Changes::placeholderTexture()));
     p.before = {p.changes, p.accumulated, p.mapped};
@@ -414,6 +417,10 @@ Status Renderer::recordPast(gpu::CommandList& list, const RenderOptions& options
     render::recordPast(list, p.state);
     p.changes.picture = true;
     return p.state.pipelines.takeStatus();
+}
+
+int Renderer::displayError() const {
+    return parts_->state.display.table.worst;
 }
 
 std::uint32_t Renderer::accumulated() const {

@@ -92,6 +92,9 @@ class Renderer {
     void holdAverage(bool on);
     /// Frames in the average, 0 before the first.
     std::uint32_t accumulated() const;
+    /// 255ths by which the view of the last options may be shown wrongly (DisplayTable::worst); 0 without
+    /// one.
+    int displayError() const;
     /// False while tables are baked behind (RenderOptions::bakeBehind): a later frame restarts the average.
     bool isSettled() const;
     /// Sum of accumulated() frames: linear RGB before exposure, and coverage; four floats a pixel, the upper

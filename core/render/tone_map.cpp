@@ -15,11 +15,11 @@ float hable(float x) {
     return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
 }
 
+}  // namespace
+
 std::uint8_t toByte(float value) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
 }
-
-}  // namespace
 
 float encodeSrgb(float linear) {
     const float x = std::clamp(linear, 0.0f, 1.0f);

@@ -5,6 +5,9 @@
 
 namespace hairloom::render {
 
+/// 0…1 (clamped) as 0…255, rounded.
+std::uint8_t toByte(float value);
+
 /// Encodes one linear value 0…1 (clamped) as sRGB 0…1 (IEC 61966-2-1).
 float encodeSrgb(float linear);
 /// And back.

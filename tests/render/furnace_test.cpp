@@ -10,7 +10,8 @@
 namespace hairloom::render {
 namespace {
 
-constexpr std::uint32_t kHairs = 12, kSize = 48;
+constexpr std::uint32_t kHairs = 12;
+constexpr std::uint32_t kSize = 48;
 constexpr int kDirections = 304;  // of whole rounds of lights
 
 /// Straight hairs beside each other, which lean towards the view or away from it by -84° to 84°, seen without
