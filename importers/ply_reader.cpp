@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strands of a PLY: lists of vertices in an element "strand", "line", "polyline" or "curve"; or else edges,
+// Strands of a PLY: lists of vertices in an element "strand", "line", "polyline", "curve"; or else edges,
 // which are chained; or the vertices after one another, cut by a count a strand, by a number of the strand at
 // each vertex, or into equal strands. Other values of vertices come along by their names.
 
@@ -7,8 +7,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
 
 #include "importers/curve_set.h"
 #include "importers/ply_rows.h"
@@ -35,7 +39,7 @@ class Reader {
             if (auto status = rows_.checkCount(element); !status) return status;
             if (auto status = readElement(element); !status) return status;
         }
-        return {};
+        return chooseCounts();
     }
 
     Result<RawStrands> strands() {
@@ -58,6 +62,7 @@ class Reader {
             raw->attributes.push_back(std::move(attribute));
         }
         takeColours(*raw);
+        takeValuesOfStrands(*raw);
         adoptAttributes(*raw);
         return raw;
     }
@@ -75,9 +80,6 @@ class Reader {
         raw.attributes = std::move(attributes_);
         if (offsets_.size() < 2) offsetsFromNumbers(raw);
         if (offsets_.size() >= 2) {
-            if (offsets_.back() != raw.positions.size())
-                return failIn(file_, {}, fmt::format("its strands have {} points together", offsets_.back()),
-                              fmt::format("there are {} vertices", raw.positions.size()));
             raw.offsets = std::move(offsets_);
         } else {
             auto runs = cutIntoStrands(file_, raw.positions, pointsPerStrand_);
@@ -87,37 +89,136 @@ class Reader {
             noteRuns(*runs, raw);
         }
         takeColours(raw);
+        takeValuesOfStrands(raw);
         adoptAttributes(raw);
         return raw;
     }
 
-    /// Vertices that follow each other with the same number of a strand are one.
-    void offsetsFromNumbers(RawStrands& raw) {
-        constexpr std::array<std::string_view, 6> kNames{"strand_id", "strand_index", "strand",
-                                                         "hair_id",   "curve_id",     "line_id"};
-        const auto found = std::ranges::find_if(raw.attributes, [&](const RawAttribute& attribute) {
-            return std::ranges::find(kNames, attribute.name) != kNames.end();
-        });
-        if (found == raw.attributes.end()) return;
-        for (std::size_t i = 1; i < found->numbers.size(); ++i) {
-            if (found->numbers[i] != found->numbers[i - 1]) offsets_.push_back(static_cast<std::uint32_t>(i));
+    /// "strand_id", "StrandIndex", "curves".
+    static bool namesAStrand(std::string_view name) {
+        std::string plain;
+        for (const char c : name) {
+            if (c != '_' && c != '-') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         }
-        offsets_.push_back(static_cast<std::uint32_t>(raw.positions.size()));
-        columns_.erase(columns_.begin() + (found - raw.attributes.begin()));
-        raw.attributes.erase(found);
+        for (const std::string_view end : {"index", "number", "idx", "id", "s"}) {
+            if (!plain.ends_with(end)) continue;
+            plain.resize(plain.size() - end.size());
+            break;
+        }
+        constexpr std::array<std::string_view, 8> kNames{"strand", "hair",  "hairstrand", "curve",
+                                                         "line",   "fiber", "fibre",      "polyline"};
+        return std::ranges::find(kNames, plain) != kNames.end();
     }
 
-    Status addCount(double count) {
-        if (!(count >= 0) || count != std::floor(count) || offsets_.back() + count > 4294967295.0)
-            return rows_.wrong(fmt::format("a strand of {} points", count), "expected a count");
-        offsets_.push_back(offsets_.back() + static_cast<std::uint32_t>(count));
-        return {};
+    /// Vertices with the same number of a strand are one, in their order; strands in that of their first
+    /// ones.
+    void offsetsFromNumbers(RawStrands& raw) {
+        const auto found = std::ranges::find_if(
+            raw.attributes, [](const RawAttribute& attribute) { return namesAStrand(attribute.name); });
+        if (found == raw.attributes.end()) return;
+        const std::vector<float> numbers = std::move(found->numbers);
+        columns_.erase(columns_.begin() + (found - raw.attributes.begin()));
+        raw.attributes.erase(found);
+        std::unordered_map<float, std::uint32_t> strands;
+        std::vector<std::uint32_t> strandOf(numbers.size()), counts;
+        std::size_t runs = 0;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            if (i == 0 || numbers[i] != numbers[i - 1]) ++runs;
+            const auto next = static_cast<std::uint32_t>(strands.size());
+            strandOf[i] = strands.try_emplace(numbers[i], next).first->second;
+            if (strandOf[i] == counts.size()) counts.push_back(0);
+            ++counts[strandOf[i]];
+        }
+        for (const std::uint32_t count : counts) offsets_.push_back(offsets_.back() + count);
+        if (runs != counts.size()) gather(strandOf, raw);
+    }
+
+    /// Brings the points of each strand together.
+    static void gather(const std::vector<std::uint32_t>& strandOf, RawStrands& raw) {
+        std::vector<std::uint32_t> order(strandOf.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::ranges::stable_sort(order, {}, [&](std::uint32_t point) { return strandOf[point]; });
+        const auto apply = [&]<class T>(std::vector<T>& values) {
+            std::vector<T> sorted;
+            sorted.reserve(values.size());
+            for (const std::uint32_t point : order) sorted.push_back(values[point]);
+            values = std::move(sorted);
+        };
+        apply(raw.positions);
+        for (RawAttribute& attribute : raw.attributes) apply(attribute.numbers);
+        raw.warnings.push_back(fileNote(
+            "the points of a strand did not stand together, and were gathered by its number", "points"));
+    }
+
+    /// Of single values of strands those that may be their numbers of points: which, the sum decides.
+    struct Counts {
+        std::size_t property = 0;
+        bool isNamed = false, isPossible = true;
+        std::vector<std::uint32_t> offsets{0};
+
+        void add(double count) {
+            isPossible = isPossible && count >= 0 && count == std::floor(count) &&
+                         offsets.back() + count <= 4294967295.0;
+            if (isPossible) offsets.push_back(offsets.back() + static_cast<std::uint32_t>(count));
+        }
+    };
+
+    void findCounts(const PlyElement& element) {
+        constexpr std::array<std::string_view, 12> kNames{
+            "count",      "num_points",   "n_points", "point_count", "points", "num_vertices",
+            "n_vertices", "vertex_count", "vertices", "length",      "size",   "n"};
+        for (std::size_t i = 0; i < element.properties.size(); ++i) {
+            if (element.properties[i].listSize) continue;
+            counts_.push_back({i, std::ranges::find(kNames, element.properties[i].name) != kNames.end()});
+        }
+        std::ranges::stable_partition(counts_, &Counts::isNamed);
+    }
+
+    void findValuesOfStrands(const PlyElement& element) {
+        for (std::size_t i = 0; i < element.properties.size(); ++i) {
+            const std::string name = nameOf(element.properties[i]);
+            const bool isKnown =
+                std::ranges::any_of(ofStrands_, [&](const auto& known) { return known.second.name == name; });
+            if (element.properties[i].listSize || isKnown) continue;
+            RawAttribute attribute;
+            attribute.name = name;
+            ofStrands_.emplace_back(i, std::move(attribute));
+        }
+    }
+
+    /// What the file says of whole strands.
+    void takeValuesOfStrands(RawStrands& raw) {
+        for (auto& [property, attribute] : ofStrands_) {
+            const bool isOfAll =
+                attribute.numbers.size() + 1 == raw.offsets.size() && raw.sourceIndices.empty();
+            if (isOfAll)
+                raw.attributes.push_back(std::move(attribute));
+            else
+                raw.warnings.push_back(
+                    fileNote(attribute.name + " has other numbers of values than there are strands",
+                             "strands", "it was left out"));
+        }
+    }
+
+    Status chooseCounts() {
+        if (counts_.empty()) return {};
+        const auto fits = std::ranges::find_if(counts_, [&](const Counts& counts) {
+            return counts.isPossible && counts.offsets.back() == lines_.vertices.size();
+        });
+        if (fits != counts_.end()) {
+            offsets_ = std::move(fits->offsets);
+            std::erase_if(ofStrands_, [&](const auto& column) { return column.first == fits->property; });
+            return {};
+        }
+        const auto named = std::ranges::find_if(counts_, &Counts::isNamed);
+        if (named == counts_.end() || !named->isPossible) return {};
+        return failIn(file_, {}, fmt::format("its strands have {} points together", named->offsets.back()),
+                      fmt::format("there are {} vertices", lines_.vertices.size()));
     }
 
     Status readElement(const PlyElement& element) {
-        constexpr std::array<std::string_view, 5> kLists{"strand", "strands", "line", "polyline", "curve"};
         const bool isVertex = element.name == "vertex";
-        const bool isList = std::ranges::find(kLists, element.name) != kLists.end();
+        const bool isStrands = namesAStrand(element.name);
         const bool isEdge = element.name == "edge";
         if (isVertex) {
             if (!lines_.vertices.empty() || !columns_.empty())
@@ -127,23 +228,24 @@ class Reader {
         }
         const auto list = element.find({"vertex_indices", "vertex_index", "indices"});
         const auto from = element.find({"vertex1"}), to = element.find({"vertex2"});
-        const auto length =
-            list ? std::nullopt
-                 : element.find({"count", "num_points", "point_count", "points", "num_vertices",
-                                 "vertex_count", "vertices", "length", "size", "n"});
-        const std::size_t countAt = length.value_or(0);
-        const bool isCount = isList && length && !element.properties[countAt].listSize;
+        const bool isList = isStrands && list && element.properties[*list].listSize;
+        const bool isFirst = isStrands && !std::exchange(hasStrands_, true);
+        if (isStrands && !isList && !isFirst) return rows_.wrong("strands are in two elements");
+        if (isFirst && !isList) findCounts(element);
+        if (isFirst) findValuesOfStrands(element);
         hasFaces_ = hasFaces_ || (element.name == "face" && element.count > 0);
-        if (isList && !isCount && (!list || !element.properties[*list].listSize))
-            return rows_.wrong(fmt::format("'{}' has no vertex indices", element.name),
-                               "expected 'property list TYPE TYPE vertex_indices', or a count of points");
         if (isEdge && (!from || !to)) return rows_.wrong("edges without vertex1 and vertex2");
         PlyRow row;
         for (std::uint64_t index = 0; index < element.count; ++index) {
             if (auto status = rows_.row(element, row); !status) return status;
             if (isVertex) addVertex(row);
-            if (isCount) {
-                if (auto status = addCount(row.values[countAt]); !status) return status;
+            if (isFirst) {
+                for (auto& [property, attribute] : ofStrands_)
+                    attribute.numbers.push_back(static_cast<float>(
+                        (element.properties[property].name == "radius" ? 2 : 1) * row.values[property]));
+            }
+            if (isStrands && !isList) {
+                for (Counts& counts : counts_) counts.add(row.values[counts.property]);
             } else if (isList) {
                 if (auto status = addLine(row.lists[*list]); !status) return status;
             } else if (isEdge) {
@@ -155,6 +257,13 @@ class Reader {
         return {};
     }
 
+    static std::string nameOf(const PlyProperty& property) {
+        for (const char* const width : {"thickness", "diameter", "radius"}) {
+            if (property.name == width) return "width";
+        }
+        return property.name;
+    }
+
     Status findProperties(const PlyElement& element) {
         position_ = {element.find({"x"}), element.find({"y"}), element.find({"z"})};
         if (!position_[0] || !position_[1] || !position_[2])
@@ -164,8 +273,7 @@ class Reader {
             if (property.listSize || std::ranges::find(position_, std::optional(index)) != position_.end())
                 continue;
             RawAttribute attribute;
-            attribute.name =
-                property.name == "thickness" || property.name == "diameter" ? "width" : property.name;
+            attribute.name = nameOf(property);
             attribute.perPoint = true;
             const bool known =
                 std::ranges::find(attributes_, attribute.name, &RawAttribute::name) != attributes_.end();
@@ -173,7 +281,6 @@ class Reader {
             attributes_.push_back(std::move(attribute));
             columns_.push_back(
                 {index, property.name == "radius" ? 2.0 : 1.0, property.type == PlyType::Uint8});
-            if (property.name == "radius") attributes_.back().name = "width";
         }
         return {};
     }
@@ -236,10 +343,13 @@ class Reader {
     const PlyHeader& header_;
     std::uint32_t pointsPerStrand_;
     ObjStrandText lines_;
-    std::vector<std::uint32_t> offsets_{0};  ///< of strands by counts
+    std::vector<Counts> counts_;
+    std::vector<std::uint32_t> offsets_{0};  ///< of strands by counts or numbers
     std::array<std::optional<std::size_t>, 3> position_;
-    std::vector<Column> columns_;           ///< of `attributes_`
-    std::vector<RawAttribute> attributes_;  ///< of vertices
+    std::vector<Column> columns_;                                  ///< of `attributes_`
+    std::vector<RawAttribute> attributes_;                         ///< of vertices
+    std::vector<std::pair<std::size_t, RawAttribute>> ofStrands_;  ///< by their properties
+    bool hasStrands_ = false;
     bool hasEdges_ = false;
     bool hasFaces_ = false;
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -19,13 +20,20 @@ std::string_view textOf(std::span<const std::byte> bytes) {
     return {static_cast<const char*>(characters), bytes.size()};
 }
 
-/// A line "version N", after blanks alone.
+/// A line "version N" behind blanks and comments alone, or another of the head's, with strands behind it.
 bool isTfxText(std::span<const std::byte> bytes) {
-    std::string_view text = textOf(bytes.first(std::min<std::size_t>(bytes.size(), 256)));
+    std::string_view text = textOf(bytes.first(std::min<std::size_t>(bytes.size(), 2048)));
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-    if (takeWord(text) != "version") return false;
-    const auto number = parseNumber(takeWord(text));
-    return number && *number >= 1 && *number < 8;
+    const std::string_view head = text;
+    while (trimmed(text).starts_with('#')) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    const std::string_view word = takeWord(text);
+    if (word == "version") {
+        const auto number = parseNumber(takeWord(text));
+        return number && *number >= 1 && *number < 8;
+    }
+    constexpr std::array<std::string_view, 6> kHead{"numStrands", "numHairStrands", "scale",
+                                                    "rotation",   "translation",    "strand"};
+    return std::ranges::find(kHead, word) != kHead.end() && head.find("numVerts") != std::string_view::npos;
 }
 
 class Parser {

@@ -113,6 +113,7 @@ void merge(UsdPrim& strong, UsdPrim&& weak) {
     strong.references.over(weak.references);
     strong.payloads.over(weak.payloads);
     strong.specializes.over(weak.specializes);
+    strong.inactiveIds.over(weak.inactiveIds);
     strong.selections.merge(weak.selections);
     for (UsdVariantSet& set : weak.variantSets) {
         auto found = std::ranges::find(strong.variantSets, set.name, &UsdVariantSet::name);
@@ -216,6 +217,8 @@ class Composer {
         own.instanceable = spec.instanceable;
         own.displayName = spec.displayName;
         own.customTexts = spec.customTexts;
+        own.inactiveIds = spec.inactiveIds;
+        numbers_ += own.inactiveIds.all().size();
         own.hasClips = spec.hasClips;
         ++prims_;
         for (const UsdAttribute& attribute : spec.attributes) {

@@ -117,6 +117,8 @@ class Walk {
         const std::vector<std::int64_t> indices = wholes(instancer, "protoIndices"),
                                         ids = wholes(instancer, "ids");
         std::vector<std::int64_t> hidden = wholes(instancer, "invisibleIds");
+        const std::vector<std::int64_t> inactive = instancer.inactiveIds.all();
+        hidden.insert(hidden.end(), inactive.begin(), inactive.end());
         std::ranges::sort(hidden);
         const UsdAttribute* const prototypes = instancer.find("prototypes");
         if (indices.empty() || prototypes == nullptr) return leaveOut(instancer, path, "has no instances");

@@ -6,24 +6,27 @@
 namespace hairloom {
 namespace {
 
-void erase(std::vector<UsdArc>& from, const std::vector<UsdArc>& arcs) {
-    std::erase_if(from, [&](const UsdArc& arc) {
-        return std::ranges::any_of(arcs, [&](const UsdArc& other) { return arc.isSame(other); });
+template <class T>
+void erase(std::vector<T>& from, const std::vector<T>& items) {
+    std::erase_if(from, [&](const T& item) {
+        return std::ranges::any_of(items, [&](const T& other) { return isSame(item, other); });
     });
 }
 
 }  // namespace
 
-std::vector<UsdArc> UsdArcs::all() const {
-    std::vector<UsdArc> arcs = items;
-    arcs.insert(arcs.end(), appended.begin(), appended.end());
-    return arcs;
+template <class T>
+std::vector<T> UsdListEdits<T>::all() const {
+    std::vector<T> found = items;
+    found.insert(found.end(), appended.begin(), appended.end());
+    return found;
 }
 
-void UsdArcs::over(const UsdArcs& weaker) {
+template <class T>
+void UsdListEdits<T>::over(const UsdListEdits& weaker) {
     if (isExplicit) return;
-    std::vector<UsdArc> front = weaker.items, back = weaker.appended;
-    for (std::vector<UsdArc>* const list : {&front, &back}) {
+    std::vector<T> front = weaker.items, back = weaker.appended;
+    for (std::vector<T>* const list : {&front, &back}) {
         erase(*list, deleted);
         erase(*list, items);
         erase(*list, appended);
@@ -34,6 +37,9 @@ void UsdArcs::over(const UsdArcs& weaker) {
     isExplicit = weaker.isExplicit;
     if (!isExplicit) deleted.insert(deleted.end(), weaker.deleted.begin(), weaker.deleted.end());
 }
+
+template struct UsdListEdits<UsdArc>;
+template struct UsdListEdits<std::int64_t>;
 
 const UsdAttribute* UsdPrim::find(std::string_view attribute) const {
     const auto found = std::ranges::find(attributes, attribute, &UsdAttribute::name);

@@ -51,21 +51,28 @@ struct UsdArc {
     std::string path;   ///< of the prim; empty: the default one
     UsdTimeOffset time;
     std::string from;  ///< the layer that says so (UsdFiles)
-
-    bool isSame(const UsdArc& other) const { return asset == other.asset && path == other.path; }
 };
 
-/// Arcs of one kind as a layer edits them.
-struct UsdArcs {
+inline bool isSame(const UsdArc& a, const UsdArc& b) {
+    return a.asset == b.asset && a.path == b.path;
+}
+inline bool isSame(std::int64_t a, std::int64_t b) {
+    return a == b;
+}
+
+/// A list as a layer edits it.
+template <class T>
+struct UsdListEdits {
     bool isExplicit = false;  ///< `items` are all there are; otherwise they are put before or behind
-    std::vector<UsdArc> items, appended, deleted;
+    std::vector<T> items, appended, deleted;
 
     bool empty() const { return items.empty() && appended.empty() && deleted.empty() && !isExplicit; }
     /// In order of strength.
-    std::vector<UsdArc> all() const;
+    std::vector<T> all() const;
     /// What a weaker layer says is edited by what this one says.
-    void over(const UsdArcs& weaker);
+    void over(const UsdListEdits& weaker);
 };
+using UsdArcs = UsdListEdits<UsdArc>;
 
 struct UsdVariantSet;
 
@@ -80,6 +87,7 @@ struct UsdPrim {
     std::vector<UsdAttribute> attributes;
     std::vector<UsdPrim> children;
     UsdArcs inherits, references, payloads, specializes;
+    UsdListEdits<std::int64_t> inactiveIds;         ///< instances that an instancer leaves out
     std::map<std::string, std::string> selections;  ///< variant of each set
     std::vector<UsdVariantSet> variantSets;
     bool hasClips = false;  ///< values that lie in other files, time by time

@@ -92,13 +92,29 @@ class Parser {
         return true;
     }
 
+    /// Of a list's edits the one that is meant. `ignored` is of an order, which is not followed.
+    template <class T>
+    static std::vector<T>& editedList(UsdListEdits<T>& edits, ListEdit edit, std::vector<T>& ignored) {
+        if (edit == ListEdit::Explicit) edits.isExplicit = true;
+        return edit == ListEdit::Back      ? edits.appended
+               : edit == ListEdit::Delete  ? edits.deleted
+               : edit == ListEdit::Reorder ? ignored
+                                           : edits.items;
+    }
+
     bool arcs(UsdArcs& into, ListEdit edit) {
         std::vector<UsdArc> ignored;
-        if (edit == ListEdit::Explicit) into.isExplicit = true;
-        return arcs(edit == ListEdit::Back      ? into.appended
-                    : edit == ListEdit::Delete  ? into.deleted
-                    : edit == ListEdit::Reorder ? ignored
-                                                : into.items);
+        return arcs(editedList(into, edit, ignored));
+    }
+
+    /// "[1, 2]", or None.
+    bool wholes(UsdListEdits<std::int64_t>& into, ListEdit edit) {
+        std::vector<std::int64_t> ignored, &list = editedList(into, edit, ignored);
+        UsdValue value;
+        value.numbers.keep(UsdNumbers::Kind::Whole);
+        if (!in_.value(value)) return false;
+        for (std::size_t i = 0; i < value.numbers.size(); ++i) list.push_back(value.numbers.whole(i));
+        return true;
     }
 
     /// { string lod = "high" }
@@ -242,6 +258,8 @@ class Parser {
                 good = arcs(prim_.inherits, edit);
             else if (key == "specializes")
                 good = arcs(prim_.specializes, edit);
+            else if (key == "inactiveIds")
+                good = wholes(prim_.inactiveIds, edit);
             else if (key == "variants")
                 good = selections(prim_.selections);
             else if (key == "customData" && in_.peek() == '{')

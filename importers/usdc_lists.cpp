@@ -102,6 +102,34 @@ Result<std::vector<UsdArc>> UsdcValues::items(std::uint8_t kind) {
     return arcs;
 }
 
+template <class T, class Read>
+Result<UsdListEdits<T>> UsdcValues::editsBy(Read read) {
+    const auto bits = in_.read<std::uint8_t>("an edit of a list");
+    if (!bits) return tl::unexpected(bits.error());
+    enum : std::uint8_t {
+        IsExplicit = 1,
+        Items = 2,
+        Added = 4,
+        Deleted = 8,
+        Ordered = 16,
+        Front = 32,
+        Back = 64
+    };
+    UsdListEdits<T> edits;
+    edits.isExplicit = (*bits & IsExplicit) != 0;
+    // In the order in which they stand.
+    std::vector<T> ordered;
+    for (const auto& [bit, list] : {std::pair(Items, &edits.items), std::pair(Added, &edits.appended),
+                                    std::pair(Front, &edits.items), std::pair(Back, &edits.appended),
+                                    std::pair(Deleted, &edits.deleted), std::pair(Ordered, &ordered)}) {
+        if ((*bits & bit) == 0) continue;
+        auto found = read();
+        if (!found) return tl::unexpected(found.error());
+        list->insert(list->end(), found->begin(), found->end());
+    }
+    return edits;
+}
+
 Result<UsdArcs> UsdcValues::arcsOf(const UsdcValue& value) {
     UsdArcs arcs;
     const std::uint8_t kind = value.type();
@@ -116,29 +144,19 @@ Result<UsdArcs> UsdcValues::arcsOf(const UsdcValue& value) {
         if (!arc->asset.empty() || !arc->path.empty()) arcs.items.push_back(std::move(*arc));
         return arcs;
     }
-    const auto bits = in_.read<std::uint8_t>("an edit of a list");
-    if (!bits) return tl::unexpected(bits.error());
-    enum : std::uint8_t {
-        IsExplicit = 1,
-        Items = 2,
-        Added = 4,
-        Deleted = 8,
-        Ordered = 16,
-        Front = 32,
-        Back = 64
-    };
-    arcs.isExplicit = (*bits & IsExplicit) != 0;
-    // In the order in which they stand.
-    std::vector<UsdArc> ordered;
-    for (const auto& [bit, list] :
-         {std::pair(Items, &arcs.items), std::pair(Added, &arcs.appended), std::pair(Front, &arcs.items),
-          std::pair(Back, &arcs.appended), std::pair(Deleted, &arcs.deleted), std::pair(Ordered, &ordered)}) {
-        if ((*bits & bit) == 0) continue;
-        auto found = items(kind);
-        if (!found) return tl::unexpected(found.error());
-        list->insert(list->end(), found->begin(), found->end());
-    }
-    return arcs;
+    return editsBy<UsdArc>([&] { return items(kind); });
+}
+
+Result<UsdListEdits<std::int64_t>> UsdcValues::wholesOf(const UsdcValue& value) {
+    if (value.isInlined() || value.type() != Int64ListOp) return UsdListEdits<std::int64_t>();
+    if (auto status = in_.seek(value.payload(), "a list of numbers"); !status)
+        return tl::unexpected(status.error());
+    return editsBy<std::int64_t>([&]() -> Result<std::vector<std::int64_t>> {
+        const auto count = in_.read<std::uint64_t>("the length of a list");
+        if (!count) return tl::unexpected(count.error());
+        if (auto status = keep(*count); !status) return tl::unexpected(status.error());
+        return in_.readArray<std::int64_t>(*count, "a list of numbers");
+    });
 }
 
 Result<std::vector<std::string>> UsdcValues::pathsOf(const UsdcValue& value) {

@@ -138,6 +138,11 @@ class Reader {
                 if (!selections) return tl::unexpected(selections.error());
                 prim.selections = std::move(*selections);
             }
+            if (name == "inactiveIds") {
+                auto ids = values_.wholesOf(field.value);
+                if (!ids) return tl::unexpected(ids.error());
+                prim.inactiveIds = std::move(*ids);
+            }
             if (name == "customData") {
                 auto texts = values_.textsIn(field.value);
                 if (!texts) return tl::unexpected(texts.error());

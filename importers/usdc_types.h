@@ -41,6 +41,7 @@ enum Type : std::uint8_t {
     StringListOp = 33,
     PathListOp = 34,
     ReferenceListOp = 35,
+    Int64ListOp = 37,
     TokenVector = 41,
     VariantSelectionMap = 45,
     TimeSamples = 46,

@@ -22,6 +22,8 @@ class UsdcValues {
     Status readSamples(const UsdcValue& value, UsdAttribute& attribute);
     /// References, payloads, or paths of prims that are inherited; nothing of other types.
     Result<UsdArcs> arcsOf(const UsdcValue& value);
+    /// A list of whole numbers; nothing of other types.
+    Result<UsdListEdits<std::int64_t>> wholesOf(const UsdcValue& value);
     /// Of paths that a relationship has.
     Result<std::vector<std::string>> pathsOf(const UsdcValue& value);
     Result<std::map<std::string, std::string>> selectionsOf(const UsdcValue& value);
@@ -53,6 +55,9 @@ class UsdcValues {
     /// The items of one list of an edit, `kind` of them.
     Result<std::vector<UsdArc>> items(std::uint8_t kind);
     Result<UsdArc> item(std::uint8_t kind);
+    /// The lists that an edit has, each by `read`.
+    template <class T, class Read>
+    Result<UsdListEdits<T>> editsBy(Read read);
     Status readOffset(UsdTimeOffset& time);
     /// Texts, and those of dictionaries in it, by keys that begin with `key`.
     Status readDictionary(const std::string& key, std::map<std::string, std::string, std::less<>>& texts,

@@ -14,6 +14,19 @@ Vec3f curlPoint(std::size_t s, std::size_t i, std::size_t count) {
             0.02f * static_cast<float>(s / 7) + 0.01f * std::sin(turn)};
 }
 
+std::vector<Vec3f> runsOf(std::size_t strands, std::size_t size) {
+    std::vector<Vec3f> points;
+    for (std::size_t s = 0; s < strands; ++s) {
+        const float turn = 2.4f * static_cast<float>(s);
+        const Vec3f root(0.1f * std::cos(turn), 0.05f * std::sin(3 * turn), 0.1f * std::sin(turn));
+        for (std::size_t i = 0; i < size; ++i) {
+            const float along = 0.2f * static_cast<float>(i) / static_cast<float>(size - 1);
+            points.emplace_back(root + Vec3f(0.01f * std::sin(40 * along), -along, 0));
+        }
+    }
+    return points;
+}
+
 void writeHairHeader(ByteWriter& writer, const HairFile& file) {
     writer.writeArray(std::span("HAIR", 4));
     writer.write(file);

@@ -32,6 +32,9 @@ inline Result<ImportedStrands> read(std::string_view text, const StrandImportOpt
 /// Point i of strand s: a curl of ten centimetres on a head of twenty.
 Vec3f curlPoint(std::size_t s, std::size_t i, std::size_t count);
 
+/// Runs of `size` points on a head of twenty centimetres, in no order.
+std::vector<Vec3f> runsOf(std::size_t strands, std::size_t size);
+
 struct HairFile {
     std::uint32_t strands = 0;
     std::uint32_t points = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,6 +60,87 @@ TEST(StrandsPly, WhatContradictsItselfIsRefused) {
     EXPECT_THAT(refusal(list, "200 0 1 2\n"), HasSubstr("a list of 200 values"));
     EXPECT_THAT(refusal("element vertex 1\nproperty float x\n", "1\n"), HasSubstr("in two elements"));
     EXPECT_THAT(refusal("", ""), HasSubstr("without strands"));
+}
+
+std::string plyOf(std::span<const Vec3f> points, const std::string& more = {}, const std::string& rows = {}) {
+    std::string text = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float "
+        "z\n{}end_header\n",
+        points.size(), more);
+    for (const Vec3f& p : points) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", p.x(), p.y(), p.z());
+    return text + rows;
+}
+
+TEST(StrandsPlyPoints, AreCutByOptionByDistanceOrByCounts) {
+    const std::vector<Vec3f> points = runsOf(12, 20);
+    const auto guessed = read(plyOf(points));
+    ASSERT_TRUE(guessed) << guessed.error().message();
+    EXPECT_EQ(guessed->groom.strandCount(), 12u);
+    EXPECT_THAT(guessed->warnings.front().what, HasSubstr("20 points each"));
+    StrandImportOptions options;
+    options.pointsPerStrand = 40;
+    const auto asked = read(plyOf(points), options);
+    ASSERT_TRUE(asked);
+    EXPECT_EQ(asked->groom.strandCount(), 6u);
+    options.pointsPerStrand = 7;
+    const auto wrong = read(plyOf(points), options);
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(wrong.error().message(), HasSubstr("240 points, no multiple of 7"));
+    const auto counted = read(plyOf(points, "element strand 3\nproperty int count\n", "100\n100\n40\n"));
+    ASSERT_TRUE(counted) << counted.error().message();
+    EXPECT_EQ(counted->groom.strand(2).size(), 40u);
+    const auto contradicts = read(plyOf(points, "element strand 2\nproperty int count\n", "100\n100\n"));
+    ASSERT_FALSE(contradicts);
+    EXPECT_THAT(contradicts.error().message(), HasSubstr("200 points together; there are 240"));
+}
+
+TEST(StrandsPlyPoints, CountsAreTheNumbersThatAddUpToTheVertices) {
+    const std::vector<Vec3f> points = runsOf(12, 20);
+    const auto counted = read(
+        plyOf(points, "element curve 3\nproperty int first\nproperty int cv_total\nproperty float label\n",
+              "0 100 0.5\n100 100 0.25\n200 40 0.125\n"));
+    ASSERT_TRUE(counted) << counted.error().message();
+    ASSERT_EQ(counted->groom.strandCount(), 3u);
+    EXPECT_EQ(counted->groom.strand(2).size(), 40u);
+    EXPECT_THAT(counted->groom.strandAttributes.view<float>("label"),
+                testing::ElementsAre(0.5f, 0.25f, 0.125f));
+    EXPECT_FALSE(counted->groom.strandAttributes.has("cv_total"));
+    // Strands that say nothing of their points: these are cut as if they stood alone.
+    const auto uncounted = read(
+        plyOf(points, "element strand 12\nproperty float label\n", "0\n1\n2\n3\n4\n5\n6\n7\n8\n9\n10\n11\n"));
+    ASSERT_TRUE(uncounted) << uncounted.error().message();
+    ASSERT_EQ(uncounted->groom.strandCount(), 12u);
+    EXPECT_EQ(uncounted->groom.strandAttributes.view<float>("label")[7], 7);
+    const auto twice = read(plyOf(
+        points, "element strand 1\nproperty int count\nelement hair 1\nproperty int n\n", "240\n240\n"));
+    ASSERT_FALSE(twice);
+    EXPECT_THAT(twice.error().message(), HasSubstr("in two elements"));
+}
+
+TEST(StrandsPlyPoints, PointsOfAStrandAreGatheredByItsNumber) {
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float "
+        "z\nproperty "
+        "float width\nproperty int StrandID\nend_header\n";
+    // One point of each strand after the other.
+    for (int i = 0; i < 4; ++i) text += fmt::format("0 0.{} 0 0.001 7\n1 0.{} 0 0.002 3\n", i, i);
+    const auto imported = read(text);
+    ASSERT_TRUE(imported) << imported.error().message();
+    ASSERT_EQ(imported->groom.strandCount(), 2u);
+    EXPECT_EQ(imported->groom.strand(0)[3], Vec3f(0, 0.3f, 0));
+    EXPECT_EQ(imported->groom.strand(1)[0], Vec3f(1, 0, 0));
+    EXPECT_FLOAT_EQ(imported->groom.pointAttributes.view<float>(attribute::kRadius)[3], 0.0005f);
+    EXPECT_THAT(imported->warnings.front().what, HasSubstr("gathered"));
+}
+
+TEST(StrandsPlyPoints, ACloudAndAMeshAreNoStrands) {
+    const auto cloud = read(plyOf(std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 3, 0}, {9, 1, 0}, {2, 2, 2}}));
+    ASSERT_FALSE(cloud);
+    EXPECT_THAT(cloud.error().message(), HasSubstr("--points-per-strand"));
+    const auto mesh =
+        read(plyOf(runsOf(12, 20), "element face 1\nproperty list uchar int vertex_indices\n", "3 0 1 2\n"));
+    ASSERT_FALSE(mesh);
+    EXPECT_THAT(mesh.error().message(), HasSubstr("it has faces"));
 }
 
 }  // namespace

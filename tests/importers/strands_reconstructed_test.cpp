@@ -130,20 +130,6 @@ TEST(StrandsCounted, AFewPointsThatAreNoNumbersDoNotHideTheFormat) {
     EXPECT_EQ(imported->dropped[0].reason, DropReason::NotFinite);
 }
 
-/// Runs of `size` points on a head of twenty centimetres, in no order.
-std::vector<Vec3f> runsOf(std::size_t strands, std::size_t size) {
-    std::vector<Vec3f> points;
-    for (std::size_t s = 0; s < strands; ++s) {
-        const float turn = 2.4f * static_cast<float>(s);
-        const Vec3f root(0.1f * std::cos(turn), 0.05f * std::sin(3 * turn), 0.1f * std::sin(turn));
-        for (std::size_t i = 0; i < size; ++i) {
-            const float along = 0.2f * static_cast<float>(i) / static_cast<float>(size - 1);
-            points.emplace_back(root + Vec3f(0.01f * std::sin(40 * along), -along, 0));
-        }
-    }
-    return points;
-}
-
 TEST(PointsPerStrand, AreFoundWhereDistancesTellThem) {
     for (const std::size_t size : {6u, 25u, 64u, 100u})
         EXPECT_EQ(guessPointsPerStrand(runsOf(24, size)), size);
@@ -164,48 +150,6 @@ TEST(PointsPerStrand, AreFoundAmongStrandsThatJump) {
         }
         EXPECT_EQ(guessPointsPerStrand(points), size);
     }
-}
-
-std::string plyOf(std::span<const Vec3f> points, const std::string& more = {}, const std::string& rows = {}) {
-    std::string text = fmt::format(
-        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float "
-        "z\n{}end_header\n",
-        points.size(), more);
-    for (const Vec3f& p : points) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", p.x(), p.y(), p.z());
-    return text + rows;
-}
-
-TEST(StrandsPlyPoints, AreCutByOptionByDistanceOrByCounts) {
-    const std::vector<Vec3f> points = runsOf(12, 20);
-    const auto guessed = read(plyOf(points));
-    ASSERT_TRUE(guessed) << guessed.error().message();
-    EXPECT_EQ(guessed->groom.strandCount(), 12u);
-    EXPECT_THAT(guessed->warnings.front().what, HasSubstr("20 points each"));
-    StrandImportOptions options;
-    options.pointsPerStrand = 40;
-    const auto asked = read(plyOf(points), options);
-    ASSERT_TRUE(asked);
-    EXPECT_EQ(asked->groom.strandCount(), 6u);
-    options.pointsPerStrand = 7;
-    const auto wrong = read(plyOf(points), options);
-    ASSERT_FALSE(wrong);
-    EXPECT_THAT(wrong.error().message(), HasSubstr("240 points, no multiple of 7"));
-    const auto counted = read(plyOf(points, "element strand 3\nproperty int count\n", "100\n100\n40\n"));
-    ASSERT_TRUE(counted) << counted.error().message();
-    EXPECT_EQ(counted->groom.strand(2).size(), 40u);
-    const auto contradicts = read(plyOf(points, "element strand 2\nproperty int count\n", "100\n100\n"));
-    ASSERT_FALSE(contradicts);
-    EXPECT_THAT(contradicts.error().message(), HasSubstr("200 points together; there are 240"));
-}
-
-TEST(StrandsPlyPoints, ACloudAndAMeshAreNoStrands) {
-    const auto cloud = read(plyOf(std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 3, 0}, {9, 1, 0}, {2, 2, 2}}));
-    ASSERT_FALSE(cloud);
-    EXPECT_THAT(cloud.error().message(), HasSubstr("--points-per-strand"));
-    const auto mesh =
-        read(plyOf(runsOf(12, 20), "element face 1\nproperty list uchar int vertex_indices\n", "3 0 1 2\n"));
-    ASSERT_FALSE(mesh);
-    EXPECT_THAT(mesh.error().message(), HasSubstr("it has faces"));
 }
 
 Bytes npy(const std::string& type, const std::string& shape, const ByteWriter& data, bool isFortran = false) {
@@ -412,6 +356,16 @@ TEST(StrandsText, TressFx2) {
     const auto moved = read("version 2.0\nscale 2\nrotation 0 0 90\ntranslation 1 0 0\n" + one);
     ASSERT_TRUE(moved);
     EXPECT_LT((moved->groom.strand(0)[1] - Vec3f(0.8f, 0, 0)).norm(), 1e-6f);
+}
+
+TEST(StrandsText, TressFxMayBeginWithAnyOfItsHead) {
+    const std::string strand = "strand 0 numVerts 2\n0 0 0\n0 0.1 0\n";
+    for (const std::string head : {"", "numStrands 1\r\n", "# made by a script\nscale 1\nnumStrands 1\n"}) {
+        const auto imported = read(head + strand);
+        ASSERT_TRUE(imported) << head << ": " << imported.error().message();
+        EXPECT_EQ(imported->format, "TressFX 2 text");
+        EXPECT_EQ(imported->groom.strandCount(), 1u);
+    }
 }
 
 TEST(StrandsText, MitsubaPointsWithEmptyLinesBetweenStrands) {

@@ -203,6 +203,34 @@ TEST_F(UsdStages, ClassesAndPrototypesAreShownOnceAnInstance) {
         << "as wide as the scale makes it";
 }
 
+TEST_F(UsdStages, InstancesThatAreNotActiveStayOutAsLayersSay) {
+    const auto instancer = [](const std::string& metadata, const std::string& ids) {
+        return kHead + std::string("def PointInstancer \"pi\" (\n") + metadata +
+               ")\n{\n    rel prototypes = </pi/p>\n    int[] protoIndices = [0, 0, 0, 0]\n" +
+               "    point3f[] positions = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)]\n" + ids +
+               curves("p", 1) + "}\n";
+    };
+    const auto places = [](const Result<ImportedStrands>& imported) {
+        std::vector<float> found;
+        for (std::uint32_t s = 0; imported && s < imported->groom.strandCount(); ++s)
+            found.push_back(imported->groom.strand(s)[0].x());
+        return found;
+    };
+    EXPECT_THAT(places(readText(instancer("    append inactiveIds = [1, 3]\n", ""))), ElementsAre(0, 2))
+        << "by their places";
+    const std::string ids = "    int64[] ids = [10, 20, 30, 40000000000]\n";
+    EXPECT_THAT(places(readText(instancer("    inactiveIds = [20, 40000000000]\n", ids))), ElementsAre(0, 2));
+    EXPECT_THAT(places(readText(instancer("    inactiveIds = None\n", ids))), ElementsAre(0, 1, 2, 3));
+    // A stronger layer takes one back and adds another.
+    write("weak.usda", instancer("    prepend inactiveIds = [10, 20]\n", ids));
+    write(
+        "strong.usda",
+        "#usda 1.0\n(\n    metersPerUnit = 1\n    subLayers = [@./weak.usda@]\n)\nover \"pi\" (\n    delete "
+        "inactiveIds = [20]\n    append inactiveIds = [30]\n)\n{\n}\n");
+    EXPECT_THAT(places(read("strong.usda")), ElementsAre(1, 3));
+    EXPECT_FALSE(readText(instancer("    append inactiveIds = [1, 3\n", "")));
+}
+
 TEST_F(UsdStages, WidthsOfPrimvarsGoBeforeThoseOfTheAttribute) {
     const auto imported =
         readText(kHead + curves("hair", 1, 0,
@@ -423,6 +451,13 @@ TEST_F(UsdStages, FieldFilesGiveWhatPeopleExpectOfThem) {
         ASSERT_TRUE(imported) << name << ": " << imported.error().message();
         EXPECT_EQ(imported->groom.strandCount(), strands) << name;
     }
+    StrandImportOptions all;
+    all.frames = true;
+    const auto uneven = importStrands(field / "uneven_times.usda", all);
+    ASSERT_TRUE(uneven);
+    EXPECT_FLOAT_EQ(uneven->framesPerSecond, 24) << "codes 10, 12 and 16 at 48 a second";
+    EXPECT_EQ(uneven->frames.size(), 4u);
+    EXPECT_THAT(said(*uneven), HasSubstr("at uneven times"));
     EXPECT_THAT(layers(*importStrands(field / "parts.usda")),
                 ElementsAre("scalp_hair", "eyebrows", "lashes"));
     const auto centimetres = importStrands(field / "no_unit.usda");
