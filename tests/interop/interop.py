@@ -24,7 +24,7 @@ ROWS = [
     ("hair", "yes", "a reader of its own page"),
     ("tfx", "versions 3 and 4", "a reader of its own page"),
     ("ply", "lists of vertices, edges", "a reader of its own page"),
-    ("obj-lines", "lines; curves of degree 1 to 7, rational or not", "a reader of its own page"),
+    ("obj-lines", "lines, curves of degree 1 to 7, rational or not", "a reader of its own page"),
     ("obj-c4d", "ribbons of three orders", "a reader of its own page"),
 ]
 
