@@ -40,18 +40,20 @@ std::string parameter(std::string_view scope, std::string_view pod, std::uint32_
 
 class CurvesWriter {
   public:
-    CurvesWriter(const Groom& groom, PreparedStrands& strands, const StrandFrames* frames, bool unreal)
+    CurvesWriter(const Groom& groom, PreparedStrands& strands, const StrandExportOptions& options,
+                 bool unreal)
         : strands_(strands),
           attributes_(exportedAttributes(groom, strands, alembicNames(unreal))),
           parts_(exportedParts(groom, strands, isLegalInAlembic)),
-          frames_(frames),
+          frames_(options.frames.get()),
+          watch_(options.watch),
           unreal_(unreal) {
         if (unreal) groupNames_ = unrealGroupNames(groom, strands);
         file_.reserve(roomOf(strands, attributes_));
-        if (!frames) return;
-        times_ = {static_cast<std::uint32_t>(frames->points.size()), 1 / frames->framesPerSecond, {}};
-        for (std::size_t i = 0; i < frames->exposures.size(); ++i)
-            times_.cycle.push_back(frames->numberOf(i) / frames->framesPerSecond);
+        if (frames_ == nullptr) return;
+        times_ = {static_cast<std::uint32_t>(frames_->points.size()), 1 / frames_->framesPerSecond, {}};
+        for (std::size_t i = 0; i < frames_->exposures.size(); ++i)
+            times_.cycle.push_back(frames_->numberOf(i) / frames_->framesPerSecond);
     }
 
     std::vector<std::byte> write() {
@@ -136,8 +138,10 @@ class CurvesWriter {
         curves.arrays("P", AlembicType::Float, 3, pointSamples, "geoScope=vtx;interpretation=point");
         if (shapes.size() < 2) return;
         std::vector<std::vector<Vec3f>> velocities;
-        for (std::size_t f = 0; f < shapes.size(); ++f)
+        for (std::size_t f = 0; f < shapes.size(); ++f) {
+            if (watch_.isCancelled()) return;
             velocities.push_back(pointVelocities(shapes, f, *frames_));
+        }
         std::vector<std::span<const std::byte>> velocitySamples;
         for (const auto& velocity : velocities) velocitySamples.push_back(bytesOf(velocity));
         curves.arrays(".velocities", AlembicType::Float, 3, velocitySamples,
@@ -229,6 +233,7 @@ class CurvesWriter {
     std::vector<ExportedPart> parts_;
     std::vector<std::string> groupNames_;  ///< of all strands, or none; Unreal's
     const StrandFrames* frames_;
+    const WorkWatch& watch_;
     bool unreal_;
     AlembicTimes times_;
     OgawaBuilder file_;
@@ -243,7 +248,7 @@ Result<ExportReport> writeAlembic(const Groom& groom, const std::filesystem::pat
     auto strands = prepareStrands(groom, options, options.pointsPerStrand,
                                   unreal ? StrandOrder::groom : StrandOrder::layers);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
-    CurvesWriter writer(groom, *strands, options.frames.get(), unreal);
+    CurvesWriter writer(groom, *strands, options, unreal);
     auto bytes = writer.write();
     std::error_code code;
     const auto type = std::filesystem::status(path, code).type();

@@ -78,7 +78,8 @@ struct SceneAndTextures {
 };
 
 Result<SceneAndTextures> sceneOf(const cards::Chain& chain, CardMeshFormat format,
-                                 const std::filesystem::path& path, const cards::Character& character) {
+                                 const std::filesystem::path& path, const cards::Character& character,
+                                 cards::Cancel cancel) {
     SceneAndTextures made;
     made.scene.format = format;
     made.scene.stem = path.stem().string();
@@ -86,7 +87,7 @@ Result<SceneAndTextures> sceneOf(const cards::Chain& chain, CardMeshFormat forma
         if (level.spec.kind == cards::LevelKind::strands) continue;
         LevelArrays arrays = cards::arraysOf(level, chain.rig);
         cards::hangOnBones(level, chain, character, arrays);
-        auto textures = cards::textureFilesOf(level, arrays, made.scene.stem);
+        auto textures = cards::textureFilesOf(level, arrays, made.scene.stem, cancel);
         if (!textures) return tl::unexpected(textures.error());
         for (auto& [beside, bytes] : textures->files)
             made.textures.emplace_back(path.parent_path() / beside, std::move(bytes));
@@ -127,11 +128,11 @@ Result<std::vector<WrittenMeshFile>> filesOf(const CardMeshScene& scene, const s
 
 Result<std::vector<std::string>> writeCardMeshes(const cards::Chain& chain, CardMeshFormat format,
                                                  const std::filesystem::path& path,
-                                                 const cards::Character& character) {
+                                                 const cards::Character& character, cards::Cancel cancel) {
     const auto isStrands = [](const Level& level) { return level.spec.kind == cards::LevelKind::strands; };
     if (std::ranges::all_of(chain.levels, isStrands))
         return fail("no level that a mesh can hold", "one of cards or a shell");
-    auto made = sceneOf(chain, format, path, character);
+    auto made = sceneOf(chain, format, path, character, cancel);
     if (!made) return tl::unexpected(made.error());
     const auto files = filesOf(made->scene, path);
     if (!files) return tl::unexpected(files.error());

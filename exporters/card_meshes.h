@@ -26,6 +26,7 @@ enum class CardMeshFormat : std::uint8_t {
 /// be written.
 Result<std::vector<std::string>> writeCardMeshes(const cards::Chain& chain, CardMeshFormat format,
                                                  const std::filesystem::path& path,
-                                                 const cards::Character& character = {});
+                                                 const cards::Character& character = {},
+                                                 cards::Cancel cancel = nullptr);
 
 }  // namespace hairloom

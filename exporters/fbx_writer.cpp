@@ -8,7 +8,7 @@ namespace {
 Result<WrittenCards> writeFbx(const CardsToWrite& cards, const std::filesystem::path& path) {
     WrittenCards written{.leftBehind = {springsLeftBehind()}};
     const cards::Character character = cardCharacter({cards.groom, cards.chain.roots_ws}, written.findings);
-    auto companions = writeCardMeshes(cards.chain, CardMeshFormat::fbx, path, character);
+    auto companions = writeCardMeshes(cards.chain, CardMeshFormat::fbx, path, character, cards.cancelled);
     if (!companions) return tl::unexpected(companions.error());
     written.companions = std::move(*companions);
     return written;

@@ -15,7 +15,7 @@ inline constexpr const char* kGlbCarries =
 inline Result<WrittenCards> writeGlb(const CardsToWrite& cards, const std::filesystem::path& path,
                                      cards::GlbNumbers numbers, const cards::Character& character,
                                      std::vector<Finding> findings) {
-    const auto bytes = cards::glbOf(cards.chain, cards.colliders, numbers, character);
+    const auto bytes = cards::glbOf(cards.chain, cards.colliders, numbers, character, cards.cancelled);
     if (!bytes) return tl::unexpected(bytes.error());
     if (auto status = writeFileAtomically(path, *bytes); !status) return tl::unexpected(status.error());
     return WrittenCards{.holdsSprings = true, .findings = std::move(findings)};

@@ -5,7 +5,7 @@ namespace hairloom {
 namespace {
 
 Result<WrittenCards> writeObjCards(const CardsToWrite& cards, const std::filesystem::path& path) {
-    auto companions = writeCardMeshes(cards.chain, CardMeshFormat::obj, path);
+    auto companions = writeCardMeshes(cards.chain, CardMeshFormat::obj, path, {}, cards.cancelled);
     if (!companions) return tl::unexpected(companions.error());
     return WrittenCards{std::move(*companions), {springsLeftBehind(), jointsLeftBehind()}};
 }

@@ -150,7 +150,7 @@ class Preparer {
         if (!options_.frames) return;
         result_.frames.resize(options_.frames->points.size());
         parallelFor(result_.frames.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f) {
+            for (std::size_t f = begin; f < end && !options_.watch.isCancelled(); ++f) {
                 const std::span<const Vec3f> all = options_.frames->points[f];
                 std::vector<Vec3f>& frame = result_.frames[f];
                 frame.reserve(result_.positions.size());
@@ -339,7 +339,9 @@ Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOpt
     }
     if (pointsPerStrand == 1)
         return fail("1 point per strand", "expected 2 or more, or 0 to keep what there is");
+    if (auto status = options.watch.at(0); !status) return tl::unexpected(status.error());
     auto prepared = Preparer(groom, options, pointsPerStrand, order).run();
+    if (auto status = options.watch.at(0.2); !status) return tl::unexpected(status.error());
     if (prepared.sources.empty())
         return fail("the groom has no usable strand", "expected at least one to write");
     judgeLimits(options.limits, prepared);
@@ -380,6 +382,8 @@ Result<double> frameError(const PreparedStrands& prepared, const StrandExportOpt
                       fmt::format("{} were written", prepared.frames.size()));
     double farthest = 0;
     for (std::size_t f = 0; f < prepared.frames.size(); ++f) {
+        const double share = static_cast<double>(f) / static_cast<double>(prepared.frames.size());
+        if (auto status = options.watch.at(0.9 + 0.1 * share); !status) return tl::unexpected(status.error());
         if (readBack.frames[f].size() != prepared.frames[f].size())
             return failIn(path.string(), {},
                           fmt::format("reads back with {} points in sample {}", readBack.frames[f].size(), f),
@@ -399,12 +403,14 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
                                      FileContents contents) {
     const auto bytes = std::visit([](const auto& all) { return std::as_bytes(std::span(all)); }, contents);
     const std::size_t size = bytes.size(), points = prepared.positions.size();
+    if (auto status = options.watch.at(0.5); !status) return tl::unexpected(status.error());
     if (auto status = writeFileAtomically(path, bytes); !status) return tl::unexpected(status.error());
     StrandImportOptions importOptions;
     importOptions.metresPerUnit = options.metresPerUnit;
     importOptions.isUnitAsked = true;
     importOptions.up = options.up;
     importOptions.frames = importOptions.everySample = options.frames != nullptr;
+    if (auto status = options.watch.at(0.6); !status) return tl::unexpected(status.error());
     // What went into a device cannot be had back.
     std::error_code code;
     const bool isFile = std::filesystem::is_regular_file(whereWritten(path), code);
@@ -413,6 +419,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     const auto readBack = isFile ? importStrands(path, importOptions)
                                  : importStrandsFromMemory(path.string(), bytes, importOptions);
     if (!readBack) return tl::unexpected(readBack.error());
+    if (auto status = options.watch.at(0.9); !status) return tl::unexpected(status.error());
     if (readBack->groom.strandCount() != prepared.strandCount()) {
         return failIn(path.string(), {},
                       fmt::format("reads back as {} strands", readBack->groom.strandCount()),

@@ -3,6 +3,7 @@
 // Grooms into files of strands and of cards. What each format carries and loses stands in
 // docs/formats/strands.md.
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/base/work_watch.h"
 #include "core/groom/groom.h"
 #include "exporters/report.h"
 #include "exporters/safe_limits.h"
@@ -62,6 +64,7 @@ struct StrandExportOptions {
     std::shared_ptr<const StrandFrames> frames = nullptr;
     std::optional<SafeLimits> safeLimits{};  ///< for formats that carry them
     bool physics = false;                    ///< of writers that hold them; of strands at rest
+    WorkWatch watch{};                       ///< of preparing, writing, reading back and comparing
 };
 
 /// A program that reads a format, and what it wants of a file.
@@ -77,6 +80,7 @@ struct CardsToWrite {
     const cards::Chain& chain;
     std::span<const cards::Collider> colliders;  ///< spheres of the groom, for springs
     const Groom& groom;                          ///< that they are of
+    const std::atomic<bool>* cancelled = nullptr;
 };
 struct WrittenCards {
     std::vector<std::string> companions = {};  ///< names of files that were written beside it
@@ -87,7 +91,8 @@ struct WrittenCards {
 
 /// Replaces `path` atomically, reads the file back and compares. Strands that no consumer could use (fewer
 /// than two points, not finite, of no length) are left out and reported. Errors: nothing left to write, a
-/// limit of the format that options cannot mend, a file that cannot be written or does not read back.
+/// limit of the format that options cannot mend, a file that cannot be written or does not read back, work
+/// that was stopped.
 using WriteStrands = Result<ExportReport> (*)(const Groom& groom, const std::filesystem::path& path,
                                               const StrandExportOptions& options);
 /// Replaces `path`, and files beside it, all or none. Errors: no level that the format can hold, files that

@@ -151,7 +151,7 @@ Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesyste
         if (level.spec.kind == cards::LevelKind::strands) continue;
         const LevelArrays arrays = cards::arraysOf(level, hair.chain.rig);
         const std::string name = names.give(level.name);
-        auto textures = cards::textureFilesOf(level, arrays, path.stem().string());
+        auto textures = cards::textureFilesOf(level, arrays, path.stem().string(), hair.cancelled);
         if (!textures) return tl::unexpected(textures.error());
         meshes += meshText(name, arrays);
         if (levels.empty())

@@ -43,10 +43,11 @@ void writeAttribute(std::string& out, const ExportedPart& part, const ExportedAt
 
 /// What strands that move have at each frame beside the first, which stands for all who look at no time.
 void writeSamples(std::string& out, const ExportedPart& part, const PreparedStrands& strands,
-                  const StrandFrames& frames) {
+                  const StrandExportOptions& options) {
+    const StrandFrames& frames = *options.frames;
     const auto write = [&](std::string_view name, const auto& valueOf) {
         out += fmt::format("        {}.timeSamples = {{\n", name);
-        for (std::size_t f = 0; f < strands.frames.size(); ++f) {
+        for (std::size_t f = 0; f < strands.frames.size() && !options.watch.isCancelled(); ++f) {
             out += fmt::format("            {}: ", frames.numberOf(f));
             const auto value = valueOf(strands.frames[f]);
             writeNumbers(out, numbersOf(value), 3);
@@ -60,7 +61,7 @@ void writeSamples(std::string& out, const ExportedPart& part, const PreparedStra
     for (const std::vector<Vec3f>& frame : strands.frames) shapes.push_back(part.points(frame));
     if (shapes.size() < 2) return;
     out += "        vector3f[] velocities.timeSamples = {\n";
-    for (std::size_t f = 0; f < shapes.size(); ++f) {
+    for (std::size_t f = 0; f < shapes.size() && !options.watch.isCancelled(); ++f) {
         out += fmt::format("            {}: ", frames.numberOf(f));
         const std::vector<Vec3f> velocities = pointVelocities(shapes, f, frames);
         writeNumbers(out, numbersOf(velocities), 3);
@@ -198,7 +199,7 @@ void writePart(std::string& out, const ExportedPart& part, const PreparedStrands
     out += "\n        point3f[] points = ";
     writeNumbers(out, numbersOf(part.points(strands.positions)), 3);
     out += '\n';
-    if (options.frames) writeSamples(out, part, strands, *options.frames);
+    if (options.frames) writeSamples(out, part, strands, options);
     out += "        float[] widths = ";
     writeNumbers(out, part.widths(strands), 1);
     out += " (\n            interpolation = \"vertex\"\n        )\n";

@@ -84,7 +84,7 @@ void writeNode(UsdcBuilder& file, const UsdNode& node, std::uint32_t depth) {
 class PartWriter {
   public:
     PartWriter(UsdcBuilder& file, const PreparedStrands& strands, const StrandExportOptions& options)
-        : file_(file), strands_(strands) {
+        : file_(file), strands_(strands), watch_(options.watch) {
         if (!options.frames) return;
         frames_ = options.frames.get();
         for (std::size_t f = 0; f < strands.frames.size(); ++f) times_.push_back(frames_->numberOf(f));
@@ -139,6 +139,7 @@ class PartWriter {
         };
         std::vector<UsdcRep> extents, shapes;
         for (const std::vector<Vec3f>& frame : strands_.frames) {
+            if (watch_.isCancelled()) return;
             extents.push_back(box(frame));
             shapes.push_back(points(frame));
         }
@@ -152,8 +153,10 @@ class PartWriter {
         for (const std::vector<Vec3f>& frame : strands_.frames) shapes.push_back(part.points(frame));
         if (shapes.size() < 2) return;
         std::vector<UsdcRep> values;
-        for (std::size_t f = 0; f < shapes.size(); ++f)
+        for (std::size_t f = 0; f < shapes.size(); ++f) {
+            if (watch_.isCancelled()) return;
             values.push_back(file_.floats(numbersOf(pointVelocities(shapes, f, *frames_)), 3));
+        }
         file_.attribute(
             3, "velocities",
             {{"typeName", file_.token("vector3f[]")}, {"timeSamples", file_.samples(times_, values)}});
@@ -172,6 +175,7 @@ class PartWriter {
     const PreparedStrands& strands_;
     std::vector<double> times_;
     const StrandFrames* frames_ = nullptr;
+    const WorkWatch& watch_;
 };
 
 UsdcRep valueOf(UsdcBuilder& file, const UsdShaderInput& input) {

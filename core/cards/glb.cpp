@@ -32,6 +32,7 @@ class Writer {
   public:
     Json json;
     std::vector<std::byte> bin;
+    Cancel cancel = nullptr;
 
     /// Appends a view of raw bytes, aligned to four; its index.
     std::size_t view(const void* data, std::size_t bytes, int target) {
@@ -67,6 +68,7 @@ class Writer {
         return of;
     }
     Status image(const render::Image& picture, const std::string& name) {
+        if (cancelled(cancel)) return stopped();
         const auto file = render::encodePng(picture);
         if (!file) return tl::unexpected(file.error());
         const std::size_t of = view(file->data(), file->size(), 0);
@@ -176,6 +178,7 @@ Json quantised(Writer& w, const LevelArrays& a, const Cube& cube) {
     std::vector<std::array<std::uint16_t, 4>> colours;
     std::vector<std::array<std::uint16_t, 2>> uvs;
     std::vector<std::array<std::uint8_t, 4>> weights;
+    std::vector<std::array<std::uint16_t, 4>> joints = a.joints;
     std::array<std::int16_t, 3> low, high;
     low.fill(std::numeric_limits<std::int16_t>::max()), high.fill(std::numeric_limits<std::int16_t>::min());
     for (std::size_t v = 0; v < a.positions_ws.size(); ++v) {
@@ -192,12 +195,15 @@ Json quantised(Writer& w, const LevelArrays& a, const Cube& cube) {
             tangents.push_back(integers<std::int8_t, 4>(a.tangents_ws[v], 4));
         }
         weights.push_back(weightsOf(a.weights[v]));
+        // A weight that rounds to none names no joint.
+        for (std::size_t i = 0; i < 4; ++i)
+            joints[v][i] = weights[v][i] > 0 ? joints[v][i] : std::uint16_t{0};
     }
     Json attributes{{"POSITION", w.packed(positions, kShort, "VEC3")}};
     w.json["accessors"].back()["min"] = low, w.json["accessors"].back()["max"] = high;
     attributes["NORMAL"] = w.packed(normals, kByte, "VEC3");
     attributes["COLOR_0"] = w.packed(colours, kUnsignedShort, "VEC3");
-    attributes["JOINTS_0"] = smallJoints(w, a.joints);
+    attributes["JOINTS_0"] = smallJoints(w, joints);
     attributes["WEIGHTS_0"] = w.packed(weights, kUnsignedByte, "VEC4");
     if (!a.uvs.empty()) {
         attributes["TEXCOORD_0"] = w.packed(uvs, kUnsignedShort, "VEC2");
@@ -404,13 +410,14 @@ void addSprings(Writer& w, const Rig& rig, std::span<const Spring> fitted,
 }  // namespace
 
 Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collider> colliders,
-                                     GlbNumbers numbers, const Character& character) {
+                                     GlbNumbers numbers, const Character& character, Cancel cancel) {
     std::vector<const Level*> held;
     for (const Level& level : chain.levels)
         if (level.spec.kind != LevelKind::strands) held.push_back(&level);
     if (held.empty()) return fail("no level that glTF can hold", "one of cards or a shell");
     const Rig& rig = chain.rig;
     Writer w;
+    w.cancel = cancel;
     w.json = Json{{"asset", {{"version", "2.0"}, {"generator", "Hairloom"}}}, {"scene", 0}};
     w.json["nodes"] = Json::array();
     std::vector<LevelArrays> arrays;

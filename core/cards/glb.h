@@ -19,9 +19,9 @@ enum class GlbNumbers { floats, quantised };
 /// out. Textures lie in the file as PNG. Bones of the character become nodes by their names, so that an
 /// engine finds the avatar's. Roots move with the bones of their skin, each chain hangs on the bone of most
 /// of its roots, and colliders on theirs. The same chain gives the same bytes. Errors: no level that glTF can
-/// hold, more than 4 GB.
+/// hold, more than 4 GB, work that was stopped.
 Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collider> colliders,
-                                     GlbNumbers numbers = GlbNumbers::floats,
-                                     const Character& character = {});
+                                     GlbNumbers numbers = GlbNumbers::floats, const Character& character = {},
+                                     Cancel cancel = nullptr);
 
 }  // namespace hairloom::cards

@@ -8,7 +8,8 @@
 
 namespace hairloom::cards {
 
-Result<TextureFiles> textureFilesOf(const Level& level, const LevelArrays& arrays, const std::string& stem) {
+Result<TextureFiles> textureFilesOf(const Level& level, const LevelArrays& arrays, const std::string& stem,
+                                    Cancel cancel) {
     TextureFiles textures;
     const auto* made = std::get_if<Cards>(&level.content);
     if (made == nullptr) return textures;
@@ -17,6 +18,7 @@ Result<TextureFiles> textureFilesOf(const Level& level, const LevelArrays& array
     textures.normal = fmt::format("{}_{}_normal.png", stem, level.name);
     for (const auto& [name, image] : {std::pair(textures.colour, colourImage(picture, 1)),
                                       std::pair(textures.normal, normalImage(picture))}) {
+        if (cancelled(cancel)) return stopped();
         auto bytes = render::encodePng(image);
         if (!bytes) return tl::unexpected(bytes.error());
         textures.files.emplace_back(name, std::move(*bytes));

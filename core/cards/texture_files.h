@@ -17,6 +17,7 @@ struct TextureFiles {
     std::string colour, normal;  ///< STEM_LEVEL_colour.png, albedo and coverage; STEM_LEVEL_normal.png
     std::vector<std::pair<std::string, std::vector<std::byte>>> files;  ///< names and contents
 };
-Result<TextureFiles> textureFilesOf(const Level& level, const LevelArrays& arrays, const std::string& stem);
+Result<TextureFiles> textureFilesOf(const Level& level, const LevelArrays& arrays, const std::string& stem,
+                                    Cancel cancel = nullptr);
 
 }  // namespace hairloom::cards

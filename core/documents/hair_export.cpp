@@ -69,6 +69,13 @@ std::vector<Vec3f> pointsOf(const Groom& whole, std::span<const std::uint32_t> s
     return points;
 }
 
+/// Of a part of the work, from one share to another.
+cards::Progress progressOf(const HairToExport& wanted, double from, double to) {
+    return [&wanted, from, to](std::string_view what, double share) {
+        if (wanted.progress) wanted.progress(what, from + share * (to - from));
+    };
+}
+
 /// The shapes of `rest` at the frames, and itself at the first of them.
 struct Moving {
     Groom first;
@@ -77,7 +84,8 @@ struct Moving {
     std::size_t inFile = 0;                  ///< the first of them that is in the file
 };
 Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> strands, const Groom& guides,
-                          const HairToExport& wanted, const FollowBindings* bindings) {
+                          const HairToExport& wanted, const FollowBindings* bindings,
+                          const cards::Progress& progress) {
     Moving moving;
     moving.inFile = wanted.framesBefore;
     std::optional<MovingHairs> hairs;
@@ -90,9 +98,8 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
         bindings ? std::nullopt : makeBodyPush(guides, guides.offsets.view(), guides.positions());
     for (const RecordedFrame& frame : wanted.frames) {
         if (cards::cancelled(wanted.cancel)) return cards::stopped();
-        if (wanted.progress)
-            wanted.progress("frames", static_cast<double>(moving.shapes.size()) /
-                                          static_cast<double>(wanted.frames.size()));
+        progress("frames",
+                 static_cast<double>(moving.shapes.size()) / static_cast<double>(wanted.frames.size()));
         const Groom posed = posedGroom(guides, pointsOf(whole, strands, frame.positions_ws), frame.pose);
         std::vector<Vec3f> shape(posed.positions().begin(), posed.positions().end());
         if (hairs) {
@@ -163,11 +170,11 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
     if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
         return fail("another unit, axis or number of points was requested, which cards do not have",
                     "expected none: glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
-    const auto progress = wanted.progress ? wanted.progress : [](std::string_view, double) {};
-    const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
+    const auto chain =
+        makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progressOf(wanted, 0, 1), wanted.cancel);
     if (!chain) return tl::unexpected(chain.error());
     const std::vector<cards::Collider> colliders = collidersOf(groom);
-    auto written = std::get<WriteCards>(writer.writer)({*chain, colliders, groom}, path);
+    auto written = std::get<WriteCards>(writer.writer)({*chain, colliders, groom, wanted.cancel}, path);
     if (!written) return tl::unexpected(written.error());
     ExportReport report = levelReport(*chain, groom);
     report.format = writer.name;
@@ -181,8 +188,8 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
 }
 
 /// Of the strands as a game plays them.
-Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand,
-                              const HairToExport& wanted) {
+Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand, const HairToExport& wanted,
+                              const cards::Progress& progress) {
     CertificateOptions options;
     options.storms = wanted.storms;
     std::atomic<std::size_t> most = 0;
@@ -191,8 +198,7 @@ Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand
         std::size_t before = most;
         while (before < done && !most.compare_exchange_weak(before, done)) {
         }
-        if (wanted.progress && before < done)
-            wanted.progress("storms", static_cast<double>(done) / static_cast<double>(total));
+        if (before < done) progress("storms", static_cast<double>(done) / static_cast<double>(total));
     };
     options.cancelled = [&] { return wanted.cancel != nullptr && *wanted.cancel; };
     const SceneHair all = sampleStrands(guides, guides.strandCount(), 0);
@@ -255,16 +261,23 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         bindings = std::move(*bound);
     }
     StrandExportOptions exporting = options;
+    const double framesEnd = wanted.frames.empty() ? 0 : 0.4, stormsEnd = wanted.storms > 0 ? 0.9 : framesEnd;
+    exporting.watch.cancelled = wanted.cancel;
+    exporting.watch.progress = [toFile = progressOf(wanted, stormsEnd, 1)](double share) {
+        toFile("file", share);
+    };
     std::vector<Finding> findings;
     const bool marksGuides = isBaked && (writer.marksGuides || wanted.hair == ExportedHair::all);
     if (!wanted.frames.empty()) {
-        auto moving = movingHair(groom, strands, guides, wanted, isBaked ? &bindings : nullptr);
+        auto moving = movingHair(groom, strands, guides, wanted, isBaked ? &bindings : nullptr,
+                                 progressOf(wanted, 0, framesEnd));
         if (!moving) return tl::unexpected(moving.error());
         shown = std::move(moving->first);
         if (marksGuides) putGuidesBeside(guides, bindings, *moving, shown);
         if (moves) {
             const MotionSampling sampling = samplingOf(wanted);
-            SampledMotion sampled = sampleMotion(moving->shapes, sampling);
+            SampledMotion sampled = sampleMotion(moving->shapes, sampling, wanted.cancel);
+            if (cards::cancelled(wanted.cancel)) return cards::stopped();
             shown.pointAttributes.set(attribute::kPosition, sampled.frames.points.front());
             sayHowSampled(sampled, sampling, findings);
             exporting.frames = std::make_shared<const StrandFrames>(std::move(sampled.frames));
@@ -282,7 +295,8 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         shown.placement = guides.placement;
     }
     if (wanted.storms > 0) {
-        const auto limits = safeLimits(guides, isBaked ? 0 : exporting.pointsPerStrand, wanted);
+        const auto limits = safeLimits(guides, isBaked ? 0 : exporting.pointsPerStrand, wanted,
+                                       progressOf(wanted, framesEnd, stormsEnd));
         if (!limits) return tl::unexpected(limits.error());
         exporting.safeLimits = *limits;
     }
@@ -310,6 +324,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
                                     "interpolation", "export hairs to write the rendered hairs"});
     }
     if (!report) return report;
+    if (cards::cancelled(wanted.cancel)) return cards::stopped();
     if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
     return report;
 }

@@ -35,7 +35,7 @@ struct HairToExport {
 
     /// Of formats that hold cards; those stand for the hairs that pictures show.
     LevelBudget levels;
-    cards::Progress progress;        ///< of frames, cards and certificates; may be empty
+    cards::Progress progress;        ///< share of all, with what is being made; may be empty
     cards::Cancel cancel = nullptr;  ///< of the same; may be null
 };
 

@@ -76,7 +76,8 @@ std::size_t framesAround(const MotionSampling& sampling) {
     return static_cast<std::size_t>(std::ceil(reach * sampling.recordRate / sampling.framesPerSecond)) + 1;
 }
 
-SampledMotion sampleMotion(const std::vector<std::vector<Vec3f>>& shapes, const MotionSampling& sampling) {
+SampledMotion sampleMotion(const std::vector<std::vector<Vec3f>>& shapes, const MotionSampling& sampling,
+                           const std::atomic<bool>* cancelled) {
     assert(shapes.size() > sampling.before + sampling.after);
     const double perFrame = sampling.recordRate / sampling.framesPerSecond;
     const double span = static_cast<double>(shapes.size() - 1 - sampling.before - sampling.after);
@@ -108,7 +109,8 @@ SampledMotion sampleMotion(const std::vector<std::vector<Vec3f>>& shapes, const 
             ++made.between;
     }
     parallelFor(samples, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) frames.points[i] = shapeAt(shapes, placeOf(i));
+        for (std::size_t i = begin; i < end && (cancelled == nullptr || !*cancelled); ++i)
+            frames.points[i] = shapeAt(shapes, placeOf(i));
     });
     return made;
 }

@@ -43,6 +43,8 @@ struct SampledMotion {
 std::size_t framesAround(const MotionSampling& sampling);
 
 /// Shapes as the file has them, of at least one in it. Samples at frames of the record have its bits.
-SampledMotion sampleMotion(const std::vector<std::vector<Vec3f>>& shapes, const MotionSampling& sampling);
+/// Once it is cancelled, shapes that are left stay empty.
+SampledMotion sampleMotion(const std::vector<std::vector<Vec3f>>& shapes, const MotionSampling& sampling,
+                           const std::atomic<bool>* cancelled = nullptr);
 
 }  // namespace hairloom

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -91,6 +92,49 @@ TEST_F(HairExportTest, StormsAreCancelledAndNothingIsWritten) {
     wanted.cancel = &stop;
     EXPECT_FALSE(exportHair(smallHead(), wanted, strandWriter("runtime"), folder_ / "a.hairrt", {}));
     EXPECT_FALSE(fs::exists(folder_ / "a.hairrt"));
+}
+
+/// Hair that sinks, for as many frames.
+HairToExport sinking(const Groom& groom, std::uint32_t frames) {
+    HairToExport wanted;
+    for (std::uint32_t f = 0; f < frames; ++f) {
+        RecordedFrame frame;
+        frame.framesPerSecond = 24;
+        for (const Vec3f& point : groom.positions())
+            frame.positions_ws.push_back(point - Vec3f(0, 0.001f * static_cast<float>(f), 0));
+        wanted.frames.push_back(std::move(frame));
+    }
+    return wanted;
+}
+
+TEST_F(HairExportTest, MotionIsCancelledWhereverItIsAndNothingIsWritten) {
+    const Groom groom = smallHead();
+    for (const std::string format : {"usda", "usdc", "abc", "abc-unreal"}) {
+        const fs::path path = folder_ / ("a." + format.substr(0, format.find('-')));
+        HairToExport wanted = sinking(groom, 12);
+        std::vector<double> shares;
+        wanted.progress = [&](std::string_view, double share) { shares.push_back(share); };
+        ASSERT_TRUE(exportHair(groom, wanted, strandWriter(format), path, {})) << format;
+        EXPECT_TRUE(std::ranges::is_sorted(shares)) << format;
+        EXPECT_GT(shares.back(), 0.95) << format;
+        fs::remove(path);
+        const std::set<double> each(shares.begin(), shares.end());
+        EXPECT_GT(each.size(), 20u) << format;
+        for (const double at : each) {
+            std::atomic<bool> stop = false;
+            wanted.cancel = &stop;
+            bool isLate = false;
+            wanted.progress = [&](std::string_view, double share) {
+                isLate = isLate || stop;
+                stop = share >= at;
+            };
+            const auto report = exportHair(groom, wanted, strandWriter(format), path, {});
+            ASSERT_FALSE(report) << format << " at " << at;
+            EXPECT_THAT(report.error().message(), testing::HasSubstr("stopped")) << format << " at " << at;
+            EXPECT_FALSE(isLate) << format << " goes on behind " << at;
+            EXPECT_FALSE(fs::exists(path)) << format << " at " << at;
+        }
+    }
 }
 
 TEST_F(HairExportTest, OperatorsComeBackFromUsdWhereThisVersionKnowsThem) {
