@@ -178,6 +178,7 @@ Json quantised(Writer& w, const LevelArrays& a, const Cube& cube) {
     std::vector<std::array<std::uint16_t, 4>> colours;
     std::vector<std::array<std::uint16_t, 2>> uvs;
     std::vector<std::array<std::uint8_t, 4>> weights;
+    std::vector<std::array<std::uint16_t, 4>> joints = a.joints;
     std::array<std::int16_t, 3> low, high;
     low.fill(std::numeric_limits<std::int16_t>::max()), high.fill(std::numeric_limits<std::int16_t>::min());
     for (std::size_t v = 0; v < a.positions_ws.size(); ++v) {
@@ -194,12 +195,15 @@ Json quantised(Writer& w, const LevelArrays& a, const Cube& cube) {
             tangents.push_back(integers<std::int8_t, 4>(a.tangents_ws[v], 4));
         }
         weights.push_back(weightsOf(a.weights[v]));
+        // A weight that rounds to none names no joint.
+        for (std::size_t i = 0; i < 4; ++i)
+            joints[v][i] = weights[v][i] > 0 ? joints[v][i] : std::uint16_t{0};
     }
     Json attributes{{"POSITION", w.packed(positions, kShort, "VEC3")}};
     w.json["accessors"].back()["min"] = low, w.json["accessors"].back()["max"] = high;
     attributes["NORMAL"] = w.packed(normals, kByte, "VEC3");
     attributes["COLOR_0"] = w.packed(colours, kUnsignedShort, "VEC3");
-    attributes["JOINTS_0"] = smallJoints(w, a.joints);
+    attributes["JOINTS_0"] = smallJoints(w, joints);
     attributes["WEIGHTS_0"] = w.packed(weights, kUnsignedByte, "VEC4");
     if (!a.uvs.empty()) {
         attributes["TEXCOORD_0"] = w.packed(uvs, kUnsignedShort, "VEC2");

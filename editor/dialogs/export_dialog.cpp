@@ -363,11 +363,13 @@ void ExportDialog::exportTo(const QString& path) {
         QString("Exporting %1").arg(QFileInfo(path).fileName()),
         [groom = document_.groom(), wanted, moves, count, preRoll, path, options, &writer,
          isPage = choice.isPage](TaskControl& control) mutable -> Result<ExportReport> {
+            const float simulated = count > 0 ? 0.5f : 0;
             if (count > 0) {
                 auto frames = playFrames(
                     groom, *moves, count, kFramesPerSecond,
                     [&](std::uint32_t done) {
-                        control.setProgress(static_cast<float>(done) / static_cast<float>(preRoll + count));
+                        control.setProgress(simulated * static_cast<float>(done) /
+                                            static_cast<float>(preRoll + count));
                         return !control.isCancelled();
                     },
                     preRoll);
@@ -375,7 +377,7 @@ void ExportDialog::exportTo(const QString& path) {
                 wanted.frames = std::move(*frames);
             }
             wanted.progress = [&](std::string_view, double share) {
-                control.setProgress(static_cast<float>(share));
+                control.setProgress(simulated + (1 - simulated) * static_cast<float>(share));
             };
             wanted.cancel = control.cancelFlag();
             if (isPage) return exportWebPage(groom, wanted, path.toStdString());

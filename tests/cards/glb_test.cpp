@@ -394,6 +394,29 @@ TEST(Glb, JointsBeyond255AreNotCutToBytes) {
     EXPECT_EQ(head["accessors"][joints]["componentType"], 5123);
 }
 
+TEST(Glb, AWeightThatRoundsToNoneNamesNoJoint) {
+    const auto chain = smallChain("cards:8@64");
+    ASSERT_TRUE(chain) << chain.error().message();
+    Character character = jawed(*chain);
+    for (Character::Root& root : character.roots) root = {{1, 2, 0, 0}, Vec4f(0.999f, 0.001f, 0, 0)};
+    const auto file = glbOf(*chain, {}, GlbNumbers::quantised, character);
+    ASSERT_TRUE(file) << file.error().message();
+    const Glb glb = parsed(*file);
+    const json& attributes = glb.head["meshes"][0]["primitives"][0]["attributes"];
+    const auto bytes = [&](const char* name) {
+        const json& accessor = glb.head["accessors"][attributes[name].get<std::size_t>()];
+        const json& view = glb.head["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+        const auto first =
+            glb.bin.begin() + static_cast<std::ptrdiff_t>(view["byteOffset"].get<std::size_t>());
+        const std::vector<std::byte> all(first, first + 4 * accessor["count"].get<std::ptrdiff_t>());
+        return all;
+    };
+    const std::vector<std::byte> joints = bytes("JOINTS_0"), weights = bytes("WEIGHTS_0");
+    ASSERT_EQ(joints.size(), weights.size());
+    for (std::size_t i = 0; i < joints.size(); ++i)
+        ASSERT_TRUE(weights[i] != std::byte{0} || joints[i] == std::byte{0}) << i;
+}
+
 TEST(Glb, StopsWhenItIsCancelled) {
     const auto chain = smallChain("cards:4");
     ASSERT_TRUE(chain) << chain.error().message();

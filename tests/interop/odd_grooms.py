@@ -47,6 +47,7 @@ def primvar(prim, name, kind, interpolation, values):
 
 
 def names(folder, ext):
+    """Attributes whose names have a meaning, or are not legal."""
     made = stage(folder, f"names.{ext}")
     prim = curves(made, "/hair", 2)
     for name in ("bone_weight_Hair_L", "bone_weight_Hair_L_2", "a:b", "a_b", "normals", "colour", "guide", "layer"):
@@ -70,6 +71,7 @@ def alike(folder, ext):
 
 
 def ids(folder, ext):
+    """Ids that repeat, and are -1."""
     made = stage(folder, f"ids.{ext}")
     for k, first in enumerate((0, 0, -1)):
         prim = curves(made, f"/part{k}", 3, x=k)
@@ -78,6 +80,7 @@ def ids(folder, ext):
 
 
 def wide_ids(folder, ext):
+    """Ids of 64 bits."""
     made = stage(folder, f"wide_ids.{ext}")
     for k in range(2):
         prim = curves(made, f"/part{k}", 2, x=k)
@@ -86,6 +89,7 @@ def wide_ids(folder, ext):
 
 
 def colours(folder, ext):
+    """Colours and widths under two names, in centimetres."""
     made = stage(folder, f"colours.{ext}", unit=0.01)
     prim = curves(made, "/hair", 3)
     primvar(prim, "displayColor", Sdf.ValueTypeNames.Color3fArray, "vertex", [Gf.Vec3f(0.3, 0.2, 0.1)] * 12)
@@ -95,6 +99,7 @@ def colours(folder, ext):
 
 
 def layers(folder, ext):
+    """Layers, with names that no format takes as they are."""
     made = stage(folder, f"layers.{ext}")
     for k, name in enumerate(("scalp", "brows", "lashes")):
         curves(made, f"/groom/{name}", k + 1, x=k).GetPrim().SetDisplayName(("", "Brows (left)", "頭")[k])
@@ -102,6 +107,7 @@ def layers(folder, ext):
 
 
 def moving(folder, ext):
+    """Hair that moves, with and without a shutter."""
     made = stage(folder, f"moving.{ext}")
     made.SetTimeCodesPerSecond(48)
     group = UsdGeom.Xform.Define(made, "/turns")
@@ -113,6 +119,7 @@ def moving(folder, ext):
 
 
 def composed(folder, ext):
+    """References, payloads, classes, instances, and what is hidden or not active."""
     inner = stage(folder, f"inner.{ext}")
     UsdGeom.Xform.Define(inner, "/groom")
     curves(inner, "/groom/hair", 3)
@@ -132,15 +139,35 @@ def composed(folder, ext):
 
 
 def variants(folder, ext):
+    """Variants in variants."""
     made = stage(folder, f"variants.{ext}")
     prim = UsdGeom.Xform.Define(made, "/groom").GetPrim()
-    lod = prim.GetVariantSets().AddVariantSet("lod")
-    for name, strands in (("low", 2), ("high", 7)):
-        lod.AddVariant(name)
-        lod.SetVariantSelection(name)
-        with lod.GetVariantEditContext():
-            curves(made, "/groom/hair", strands)
-    lod.SetVariantSelection("low")
+    style, lod = (prim.GetVariantSets().AddVariantSet(name) for name in ("style", "lod"))
+    for k, name in enumerate(("bob", "long")):
+        style.AddVariant(name)
+        style.SetVariantSelection(name)
+        with style.GetVariantEditContext():
+            for level, strands in (("low", 2), ("high", 7)):
+                lod.AddVariant(level)
+                lod.SetVariantSelection(level)
+                with lod.GetVariantEditContext():
+                    curves(made, "/groom/hair", strands + 10 * k)
+            lod.SetVariantSelection("low")
+    made.Save()
+
+
+def copied(folder, ext):
+    """Copies by a PointInstancer, some of which are hidden or not active."""
+    made = stage(folder, f"copied.{ext}")
+    instancer = UsdGeom.PointInstancer.Define(made, "/copies")
+    for k in range(2):
+        curves(made, f"/copies/kinds/k{k}", 2 + k)
+    instancer.CreatePrototypesRel().SetTargets(["/copies/kinds/k0", "/copies/kinds/k1"])
+    instancer.CreateProtoIndicesAttr([0, 1, 0, 1, 0])
+    instancer.CreatePositionsAttr([Gf.Vec3f(0.3 * k, 0, 0) for k in range(5)])
+    instancer.CreateIdsAttr([10, 20, 30, 40, 2**40])
+    instancer.DeactivateId(20)
+    instancer.InvisId(2**40, Usd.TimeCode.Default())
     made.Save()
 
 
@@ -157,7 +184,7 @@ def empty(folder, ext):
     made.Save()
 
 
-STAGES = (names, alike, ids, wide_ids, colours, layers, moving, composed, variants, empty)
+STAGES = (names, alike, ids, wide_ids, colours, layers, moving, composed, copied, variants, empty)
 
 
 def shown(path):
@@ -165,8 +192,31 @@ def shown(path):
     made = Usd.Stage.Open(path)
     if made is None:
         raise ValueError("usd-core does not open it")
-    found = [prim for prim in made.Traverse(Usd.TraverseInstanceProxies()) if prim.GetTypeName() in CURVES]
+    found = [prim for prim in made.Traverse(Usd.TraverseInstanceProxies())
+             if prim.GetTypeName() in CURVES and not instancer_of(prim)]
     return made, [p for p in found if UsdGeom.Imageable(p).ComputeVisibility() != "invisible"]
+
+
+def instancer_of(prim):
+    """The PointInstancer that a prim lies below, whose prototypes are not shown where they stand."""
+    while prim and not prim.IsA(UsdGeom.PointInstancer):
+        prim = prim.GetParent()
+    return prim
+
+
+def copied_strands(made):
+    """Strands of all copies that PointInstancers make."""
+    strands = 0
+    for prim in made.Traverse():
+        if not prim.IsA(UsdGeom.PointInstancer):
+            continue
+        instancer = UsdGeom.PointInstancer(prim)
+        kinds = [strands_of([one for one in Usd.PrimRange(made.GetPrimAtPath(path)) if one.GetTypeName() in CURVES])
+                 for path in instancer.GetPrototypesRel().GetTargets()]
+        indices = instancer.GetProtoIndicesAttr().Get()
+        mask = instancer.ComputeMaskAtTime(Usd.TimeCode.Default()) or [True] * len(indices)
+        strands += sum(kinds[index] for index, seen in zip(indices, mask) if seen)
+    return strands
 
 
 def strands_of(prims):
@@ -309,8 +359,8 @@ def check_blender(cli, folder, project, name, expected, own, points, blender):
 
 def check(cli, folder, name, all_blenders):
     path = os.path.join(folder, name)
-    _, prims = shown(path)
-    expected = strands_of(prims)
+    made, prims = shown(path)
+    expected = strands_of(prims) + copied_strands(made)
     project = os.path.join(folder, name + ".hairloom")
     imported = run(cli, "import", path, "-o", project, "--force")
     if imported["strands"] != expected:
@@ -352,6 +402,7 @@ def check(cli, folder, name, all_blenders):
     if name.startswith("moving"):
         check_motion(cli, folder, project, name)
         check_shutter(cli, folder, project, name)
+    return expected
 
 
 def check_shutter(cli, folder, project, name):
@@ -389,6 +440,7 @@ def check_shutter(cli, folder, project, name):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cli", required=True)
+    parser.add_argument("--table", help="page whose table is written anew")
     parser.add_argument("-o", "--output", required=True)
     asked = parser.parse_args()
     os.makedirs(asked.output, exist_ok=True)
@@ -396,17 +448,28 @@ def main():
     judges = ", ".join(["usd-core", "the Alembic library"] + [f"Blender {version_of(one)}" for one in found])
     if not found:
         print("skipped: Blender's judgement, since its module bpy is not there for this Python")
-    failed = 0
+    failed, lines = 0, []
     for make in STAGES:
         for ext in FORMATS:
             make(asked.output, ext)
             name = f"{make.__name__}.{ext}"
             try:
-                check(asked.cli, asked.output, name, found)
+                strands = check(asked.cli, asked.output, name, found)
+                if ext == FORMATS[-1]:
+                    lines.append(f"| {make.__doc__.strip().rstrip('.')} | {strands} |" + " yes |" * 5)
                 print(f"{name}: as {judges} have it")
             except (ValueError, KeyError) as problem:
                 print(f"FAILED {name}: {problem}")
                 failed += 1
+    if asked.table and found and not failed:
+        with open(asked.table, encoding="utf-8") as page:
+            text = page.read()
+        begin, end = text.index("| stage |"), text.index("<!-- end of the table of odd grooms -->")
+        versions = ", ".join(version_of(one) for one in found)
+        head = (f"| stage | strands | USD, by usd-core | Alembic, by its library | for Unreal, likewise | OBJ, `.hair`, TressFX, PLY, Cinema 4D, "
+                f"by readers of their pages | USD, Alembic and OBJ in Blender {versions} |\n" + "|---" * 7 + "|\n")
+        with open(asked.table, "w", encoding="utf-8") as page:
+            page.write(text[:begin] + head + "\n".join(lines) + "\n" + text[end:])
     return 1 if failed else 0
 
 
