@@ -11,6 +11,13 @@ namespace hairloom::cards {
 namespace {
 
 constexpr std::uint32_t kSquaresPerHead = 32;
+
+/// Rows of a plate that a processor keeps at hand.
+int rowsAtHand(int width) {
+    constexpr int kSamplesAtHand = 1 << 15;
+    return std::max(8, kSamplesAtHand / std::max(width, 1));
+}
+
 const Vec3f kSkin(0.42f, 0.31f, 0.25f);
 const Vec3f kBackground(0.20f, 0.21f, 0.23f);
 
@@ -120,8 +127,7 @@ void Plate::project(const Hair& hair, const StrandLight* light, std::size_t stra
 template <class Draw>
 void Plate::forStrandSamples(const Hair& hair, const StrandLight* light, const Draw& draw) {
     constexpr std::size_t kPointsAtOnce = 1u << 19u;
-    constexpr int kSamplesAtHand = 1 << 15;
-    const int rows = std::max(8, kSamplesAtHand / std::max(width_, 1));
+    const int rows = rowsAtHand(width_);
     auto& [xs, ys, radii, depths, colours, bands] = projected_;
     bands.resize(static_cast<std::size_t>((height_ + rows - 1) / rows));
     const auto place = [&](std::size_t p) { return LinePoint{{xs[p], ys[p]}, Vec2f::Constant(radii[p])}; };
@@ -190,6 +196,41 @@ std::vector<std::uint32_t> nearestFirst(const CardMesh& mesh, const Vec3f& toEye
     return order;
 }
 
+/// A triangle of cards on the plate.
+struct Face {
+    std::uint32_t triangle, card;
+    std::array<const CardVertex*, 3> v;
+    Vec3f a, b, c;                   ///< samples, and metres towards the eye
+    CoverageSampler finer, coarser;  ///< of the levels of the atlas on both sides of its own
+    float share;                     ///< of the coarser one
+    float most;                      ///< that it covers a sample by
+};
+
+/// What lies behind samples that were drawn. Most of a triangle does.
+struct BehindDrawn {
+    const float* depths;
+    int width;
+    Vec3f corners;  ///< depths of the triangle's
+    float nearest;  ///< no sample of the triangle is nearer, however it is rounded
+
+    BehindDrawn(const float* drawn, int columns, const Face& face)
+        : depths(drawn), width(columns), corners(face.a.z(), face.b.z(), face.c.z()) {
+        constexpr float kRounding = 1e-5f;
+        nearest = corners.maxCoeff() + kRounding * corners.cwiseAbs().maxCoeff();
+    }
+    bool operator()(int x, int y) const { return x + kSamplesAtOnce <= width && !(at(x, y) < nearest).any(); }
+    bool operator()(int x, int y, const SampleRow& u, const SampleRow& v, const SampleRow& w) const {
+        if (x + kSamplesAtOnce > width) return false;
+        const SampleRow own = u * corners.x() + v * corners.y() + w * corners.z();
+        return !(own > at(x, y)).any();
+    }
+
+  private:
+    Eigen::Map<const SampleRow> at(int x, int y) const {
+        return Eigen::Map<const SampleRow>(depths + static_cast<std::ptrdiff_t>(y) * width + x);
+    }
+};
+
 template <class T>
 T mixed(const Vec3f& b, const T& x, const T& y, const T& z) {
     return b.x() * x + b.y() * y + b.z() * z;
@@ -206,46 +247,54 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         for (std::size_t k = 0; k < 3; ++k) v[k] = &cards.mesh.vertices[cards.mesh.indices[3 * triangle + k]];
         return v;
     };
+    const int rows = rowsAtHand(width_);
+    std::vector<Face> faces;
+    std::vector<std::vector<std::uint32_t>> bands(static_cast<std::size_t>((height_ + rows - 1) / rows));
     for (const std::uint32_t t : nearestFirst(cards.mesh, view_.toEye_ws)) {
         const auto v = corners(t);
         const Vec3f a = onPlate(v[0]->position_ws), b = onPlate(v[1]->position_ws),
                     c = onPlate(v[2]->position_ws);
         const float area = 0.5f * std::abs((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
+        if (area == 0 || !std::isfinite(area)) continue;
         const float level = levels[t] = levelOf(cards, v, area / (perPx * perPx));
         const auto low = static_cast<std::size_t>(level);
         const std::size_t high = std::min(low + 1, cards.atlas.levels.size() - 1);
         const float share = level - static_cast<float>(low);
-        const Card& card = cards.cards[v[0]->card];
-        const Rect& rect = cards.atlas.rects[card.texture];
+        const Rect& rect = cards.atlas.rects[cards.cards[v[0]->card].texture];
         const CoverageSampler finer(cards.atlas, rect, low), coarser(cards.atlas, rect, high);
         const Vec2f least = v[0]->place.cwiseMin(v[1]->place).cwiseMin(v[2]->place);
         const Vec2f largest = v[0]->place.cwiseMax(v[1]->place).cwiseMax(v[2]->place);
         // Most samples of thin hair fail by this alone.
         const float most = (1 - share) * finer.most(least, largest) + share * coarser.most(least, largest);
-        // Of most samples: what lies nearer was drawn before.
-        const auto isHidden = [&](int x, int y, const SampleRow& ofA, const SampleRow& ofB,
-                                  const SampleRow& ofC) {
-            if (x + kSamplesAtOnce > width_) return false;
-            const SampleRow depths = ofA * a.z() + ofB * b.z() + ofC * c.z();
-            return !(depths > Eigen::Map<const SampleRow>(&depth_[index(x, y)])).any();
-        };
+        const Rows touched = rowsOfTriangle(a.head<2>(), b.head<2>(), c.head<2>(), {0, height_});
+        for (int band = touched.first / rows; band * rows < touched.end; ++band)
+            bands[static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(faces.size()));
+        faces.push_back({t, v[0]->card, v, a, b, c, finer, coarser, share, most});
+    }
+    // A band at a time: every sample meets the triangles in the same order.
+    const auto draw = [&](const Face& face, Rows inBand) {
+        const Vec3f &a = face.a, &b = face.b, &c = face.c;
         forSamplesOfTriangle(
-            a.head<2>(), b.head<2>(), c.head<2>(), width_, height_,
+            a.head<2>(), b.head<2>(), c.head<2>(), width_, inBand,
             [&](int x, int y, const Vec3f& w) {
                 const std::size_t i = index(x, y);
                 const float depth = mixed(w, a.z(), b.z(), c.z());
                 if (depth <= depth_[i]) return;
                 const float dither =
-                    hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), v[0]->card);
-                if (most <= dither) return;
-                const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
-                const float alpha =
-                    (1 - share) * finer.at(place.x(), place.y()) + share * coarser.at(place.x(), place.y());
+                    hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), face.card);
+                if (face.most <= dither) return;
+                const Vec2f place = mixed<Vec2f>(w, face.v[0]->place, face.v[1]->place, face.v[2]->place);
+                const float alpha = (1 - face.share) * face.finer.at(place.x(), place.y()) +
+                                    face.share * face.coarser.at(place.x(), place.y());
                 if (alpha <= dither) return;
                 depth_[i] = depth, isHair_[i] = 1;
-                seen_[i] = {t, w.x(), w.y()};
+                seen_[i] = {face.triangle, w.x(), w.y()};
             },
-            isHidden);
+            BehindDrawn(depth_.data(), width_, face));
+    };
+    for (std::size_t band = 0; band < bands.size(); ++band) {
+        const int top = static_cast<int>(band) * rows;
+        for (const std::uint32_t f : bands[band]) draw(faces[f], {top, std::min(top + rows, height_)});
     }
     const Reflection fibre{hair.specular, hair.shininess};
     for (std::size_t i = 0; i < seen_.size(); ++i) {

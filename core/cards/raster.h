@@ -90,27 +90,35 @@ inline std::pair<int, int> spanOfRow(const Vec2f& a, const Vec2f& b, const Vec2f
 inline constexpr int kSamplesAtOnce = 4;
 using SampleRow = Eigen::Array4f;
 
+/// Of those the ones outside of which the triangle has no sample; none where first ≥ end.
+inline Rows rowsOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, Rows rows) {
+    const float low = std::min({a.y(), b.y(), c.y()}), high = std::max({a.y(), b.y(), c.y()});
+    return {std::max(rows.first, static_cast<int>(std::floor(std::clamp(low, 0.0f, 1e6f)))),
+            std::min(rows.end, static_cast<int>(std::ceil(std::clamp(high, -1.0f, 1e6f))))};
+}
+
 /// Calls f(x, y, barycentrics) for the samples of a triangle of either orientation. Of kSamplesAtOnce that
-/// begin at x, isHidden(x, y, u, v, w) may say that none is wanted; they may go beyond the triangle and the
-/// row.
+/// begin at x, isHidden(x, y) may say that none is wanted, and isHidden(x, y, u, v, w) with their
+/// barycentrics; they may go beyond the triangle and the row. In some rows of a picture it has the samples
+/// that it has there in all of them.
 template <class F, class Hidden>
-void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height, const F& f,
+void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, Rows rows, const F& f,
                           const Hidden& isHidden) {
     const float area = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
     if (area == 0 || !std::isfinite(area)) return;
     const Vec2f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
     const int x0 = std::max(0, static_cast<int>(std::floor(std::max(low.x(), 0.0f))));
-    const int y0 = std::max(0, static_cast<int>(std::floor(std::max(low.y(), 0.0f))));
     const int x1 = std::min(width, static_cast<int>(std::ceil(std::min(high.x(), 1e6f))));
-    const int y1 = std::min(height, static_cast<int>(std::ceil(std::min(high.y(), 1e6f))));
     // A barycentric grows by so much from one sample of a row to the next.
     const Vec3f growth = Vec3f(b.y() - c.y(), c.y() - a.y(), a.y() - b.y()) / area;
-    for (int y = y0; y < y1; ++y) {
+    const Rows touched = rowsOfTriangle(a, b, c, rows);
+    for (int y = touched.first; y < touched.end; ++y) {
         const auto [begin, end] = spanOfRow(a, b, c, area, growth, static_cast<float>(y) + 0.5f, x0, x1);
         const float py = static_cast<float>(y) + 0.5f;
         const float ay = a.y() - py, by = b.y() - py, cy = c.y() - py;
         const SampleRow places(0, 1, 2, 3);
         for (int x = begin; x < end; x += kSamplesAtOnce) {
+            if (isHidden(x, y)) continue;
             const SampleRow px = (static_cast<float>(x) + places) + 0.5f;
             const SampleRow u = ((b.x() - px) * cy - by * (c.x() - px)) / area;
             const SampleRow v = ((c.x() - px) * ay - cy * (a.x() - px)) / area;
@@ -122,11 +130,15 @@ void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int wi
     }
 }
 
+/// Where all samples of a triangle are wanted.
+struct NothingHidden {
+    bool operator()(int, int) const { return false; }
+    bool operator()(int, int, const SampleRow&, const SampleRow&, const SampleRow&) const { return false; }
+};
+
 template <class F>
 void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height, const F& f) {
-    forSamplesOfTriangle(
-        a, b, c, width, height, f,
-        [](int, int, const SampleRow&, const SampleRow&, const SampleRow&) { return false; });
+    forSamplesOfTriangle(a, b, c, width, {0, height}, f, NothingHidden());
 }
 
 }  // namespace hairloom::cards

@@ -52,6 +52,37 @@ TEST(Raster, LinesHaveTheSameSamplesInBandsAsInOnePiece) {
     }
 }
 
+TEST(Raster, TrianglesHaveTheSameSamplesInBandsAsInOnePiece) {
+    // Of either orientation, thin ones and ones that leave the picture, too.
+    std::vector<std::array<float, 5>> whole, pieces;
+    std::size_t samples = 0;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+        whole.clear(), pieces.clear();
+        const auto corner = [&](std::uint32_t k) {
+            return Vec2f(130 * hashUnit(i, k, 1) - 25, 140 * hashUnit(i, k, 2) - 25);
+        };
+        const Vec2f a = corner(0), b = corner(1);
+        const Vec2f c = i % 3 == 0 ? Vec2f(b + 0.01f * (corner(2) - b)) : corner(2);
+        const auto into = [](auto& list) {
+            return [&list](int x, int y, const Vec3f& w) {
+                list.push_back({static_cast<float>(x), static_cast<float>(y), w.x(), w.y(), w.z()});
+            };
+        };
+        forSamplesOfTriangle(a, b, c, 80, 90, into(whole));
+        const Rows touched = rowsOfTriangle(a, b, c, {0, 90});
+        for (const auto& sample : whole) {
+            ASSERT_GE(sample[1], static_cast<float>(touched.first)) << i;
+            ASSERT_LT(sample[1], static_cast<float>(touched.end)) << i;
+        }
+        for (int row = 0; row < 90; row += 7)
+            forSamplesOfTriangle(a, b, c, 80, Rows{row, std::min(row + 7, 90)}, into(pieces),
+                                 NothingHidden());
+        ASSERT_EQ(whole, pieces) << i;
+        samples += whole.size();
+    }
+    EXPECT_GT(samples, 10000u);
+}
+
 TEST(Raster, NeighbouringTrianglesShareNoSampleAndLeaveNoGap) {
     std::vector<int> hits(64 * 64);
     const std::array<Vec2f, 4> corner{Vec2f(4, 4), Vec2f(60, 4), Vec2f(60, 60), Vec2f(4, 60)};
