@@ -90,7 +90,7 @@ std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& o
     std::atomic<std::size_t> changed{0};
     parallelFor(strands.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         std::vector<float> lengths;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end && (options.cancelled == nullptr || !*options.cancelled); ++i) {
             const std::size_t s = strands[i];
             const std::size_t first = groom.offsets[s];
             const std::span<Vec3f> points = std::span(after).subspan(first, groom.offsets[s + 1] - first);

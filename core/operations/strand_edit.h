@@ -3,6 +3,7 @@
 // The loop that every operation runs: over the strands it may touch, in parallel, with a random sequence of
 // its own for each strand.
 
+#include <atomic>
 #include <functional>
 #include <span>
 #include <vector>
@@ -48,6 +49,7 @@ struct EditOptions {
     /// push.
     float clearance = -1.0f;
     bool needsSkin = false;  ///< edits use StrandEdit::skin; it is there also without a clearance
+    const std::atomic<bool>* cancelled = nullptr;  ///< once it is set, strands that are left stay as they are
 };
 
 /// Of the region, those that are neither frozen nor on a locked layer; ascending.

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
-#include "core/operations/collide.h"
+#include "core/operations/strand_edit.h"
 
 namespace hairloom {
 namespace {
@@ -69,14 +69,15 @@ HeadFit fitHeads(const Groom& groom, const SurfaceTree& tree, const ScalpMesh& h
 }
 
 /// Faces of the new head that lie where faces of the old selection do.
-FaceSet carriedSelection(const Groom& groom, const HeadFit& fit, const ScalpMesh& head) {
+FaceSet carriedSelection(const Groom& groom, const HeadFit& fit, const ScalpMesh& head,
+                         const WorkWatch& watch) {
     constexpr float kBeside = 0.02f;  // metres on the old head
     std::vector<bool> selected(groom.scalp->triangleCount(), false);
     for (const std::uint32_t face : groom.scalpSelection) selected[face] = true;
     const SurfaceTree old(*groom.scalp);
     std::vector<std::uint8_t> carried(head.triangleCount(), 0);
     parallelFor(carried.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
+        for (std::size_t t = begin; t < end && !watch.isCancelled(); ++t) {
             const Triangle& corners = head.triangles()[t];
             const Vec3f centre =
                 (head.positions()[corners[0]] + head.positions()[corners[1]] + head.positions()[corners[2]]) /
@@ -165,7 +166,8 @@ Result<Transfer> transferTo(Groom& target, std::shared_ptr<const ScalpMesh> head
     transfer.baked = !groom.operators.empty();
     dropOperators(groom);
     FaceSet selection =
-        transfer.sameMesh ? groom.scalpSelection : carriedSelection(groom, transfer.fit, *head);
+        transfer.sameMesh ? groom.scalpSelection : carriedSelection(groom, transfer.fit, *head, watch);
+    if (auto status = watch.at(0.5); !status) return tl::unexpected(status.error());
     for (const SurfacePoint& root : to) selection.push_back(root.triangle);
     std::ranges::sort(selection);
     selection.erase(std::unique(selection.begin(), selection.end()), selection.end());
@@ -185,7 +187,7 @@ Result<Transfer> transferTo(Groom& target, std::shared_ptr<const ScalpMesh> head
     groom.scalp = std::move(head);
     groom.body.reset();
     if (auto status = watch.at(0.6); !status) return tl::unexpected(status.error());
-    if (auto pushed = collide(groom, {kClearance}); !pushed) return tl::unexpected(pushed.error());
+    editStrands(groom, {}, {.clearance = kClearance, .cancelled = watch.cancelled}, [](StrandEdit&) {});
     if (auto status = watch.at(1); !status) return tl::unexpected(status.error());
     target = std::move(groom);
     return transfer;

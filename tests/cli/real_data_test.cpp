@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/base/file.h"
 #include "tests/cli/command.h"
 
 namespace hairloom::test {
@@ -80,6 +81,61 @@ TEST_F(RealData, SintelHairComesInMovesAndLeaves) {
         EXPECT_LT(exported["max_error_mm"], 1e-3);
     }
     EXPECT_EQ(runJson("render moved.hairloom -o moved.png --size 160x160")["hairs"], 11400);
+}
+
+class FieldHeads : public CommandLineTest {
+  protected:
+    void SetUp() override {
+        CommandLineTest::SetUp();
+        if (file("head.obj").empty()) GTEST_SKIP() << "no heads from the field";
+        runJson("create --mesh '" + file("head.obj") + "' --count 200 --length 0.1 -o g.hairloom");
+    }
+    std::string file(const std::string& name) const { return dataFile("field/" + name); }
+    std::size_t count(const std::string& name, const std::string& text) const {
+        const auto bytes = readFile(folder / name).value();
+        const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        std::size_t found = 0;
+        for (std::size_t at = all.find(text); at != all.npos; at = all.find(text, at + 1)) ++found;
+        return found;
+    }
+};
+
+TEST_F(FieldHeads, OtherUnitsAndAxesArePutRightAndSaid) {
+    const auto laid = run("transfer g.hairloom --to '" + file("head_zup.obj") + "' -o z.hairloom --json");
+    ASSERT_EQ(laid.exitCode, 0) << laid.errors;
+    EXPECT_EQ(laid.json()["head"]["up"], "z");
+    EXPECT_LT(laid.json()["max_root_error_mm"], 1);
+    EXPECT_THAT(laid.errors, testing::HasSubstr("Z axis"));
+    const auto large = run("transfer g.hairloom --to '" + file("head_cm.obj") + "' -o c.hairloom --json");
+    ASSERT_EQ(large.exitCode, 0) << large.errors;
+    EXPECT_NEAR(large.json()["head"]["metres_per_unit"].get<double>(), 0.01, 1e-6);
+    EXPECT_NEAR(large.json()["scale"].get<double>(), 1, 0.01);
+    EXPECT_THAT(large.errors, testing::HasSubstr("cm were taken"));
+    const std::string inches =
+        "import '" + file("inch_zup.hair") + "' --mesh '" + file("head_zup.obj") + "' ";
+    const Outcome far = run(inches + "-o i.hairloom");
+    EXPECT_EQ(far.exitCode, 1);
+    EXPECT_THAT(far.errors, testing::HasSubstr("--unit inch --up z"));
+    const auto near = runJson(inches + "--unit inch --up z -o i.hairloom");
+    EXPECT_EQ(near["strands"], 40);
+    EXPECT_LT(near["root_distance"]["max_mm"], 1);
+}
+
+TEST_F(FieldHeads, AHeadWithoutUvsGivesUnrealNoRootUvs) {
+    runJson("create --mesh '" + file("head_no_uv.obj") + "' --count 50 --length 0.1 -o bare.hairloom");
+    runJson("export bare.hairloom --target unreal -o bare.abc");
+    EXPECT_EQ(count("bare.abc", "groom_root_uv"), 0u);
+    runJson("export g.hairloom --target unreal -o with.abc");
+    EXPECT_GE(count("with.abc", "groom_root_uv"), 1u);
+}
+
+TEST_F(FieldHeads, HairsForUnrealNameTheirGuides) {
+    runJson("guides g.hairloom --count 30 -o guides.hairloom");
+    runJson("export guides.hairloom --what hairs --target unreal -o hairs.abc");
+    for (const char* name : {"groom_guide", "groom_closest_guides", "groom_guide_weights"})
+        EXPECT_GE(count("hairs.abc", name), 1u) << name;
+    EXPECT_EQ(runJson("import hairs.abc -o back.hairloom")["strands"], 230);
+    EXPECT_EQ(runJson("info back.hairloom")["guides"], 30);
 }
 
 }  // namespace
