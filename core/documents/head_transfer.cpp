@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/log.h"
 #include "core/groom/file/json_reader.h"
 #include "core/operations/head_turn.h"
+#include "importers/length_unit.h"
 
 namespace hairloom {
 namespace {
@@ -63,6 +66,50 @@ Result<bool> layingFits(const Groom& groom, const std::string& path, FileTransfe
     return true;
 }
 
+/// Of a head beside another one: a child's or a giant's, or in another unit than it was read in.
+bool isOddScale(float scale) {
+    constexpr float kOdd = 2.5f;
+    return scale > kOdd || scale < 1 / kOdd;
+}
+
+/// Takes the unit in which the new head is plainly more like the old one, where as it was read it is of an
+/// odd size, or far from it in shape. Says so in `done`.
+Result<bool> otherUnitFits(const Groom& groom, const std::string& path, FileTransfer& done,
+                           const ImportedScene& scene, const Transfer& asItIs, const WorkWatch& watch) {
+    constexpr float kPlainly = 0.6f, kFar_m = 10 * kAlikeHeads_m;
+    const HeadTurn before = nearestTurn(groom, scene.mesh);
+    const bool isOdd = isOddScale(asItIs.fit.scale) || isBeyondScale(asItIs.fit);
+    if (!isOdd && before.distance < kFar_m) return false;
+    const auto now = static_cast<double>(scene.metresPerUnit);
+    const double size = static_cast<double>(scene.mesh.bounds().sizes().maxCoeff()) / now;
+    const LengthUnit* best = nullptr;
+    float nearest = isOdd ? std::numeric_limits<float>::infinity() : kPlainly * before.distance;
+    for (const LengthUnit& unit : lengthUnits()) {
+        if (std::abs(unit.metres / now - 1) < 1e-4 || implausibleSize(size, unit.metres)) continue;
+        if (watch.isCancelled()) return tl::unexpected(watch.at(1).error());
+        HeadImportOptions options = done.taken;
+        options.metresPerUnit = static_cast<float>(unit.metres);
+        options.guessUnit = options.guessUp = false;
+        const auto other = importHead(path, options);
+        if (!other) return tl::unexpected(other.error());
+        Groom moved = groom;
+        const auto fitted = putOn(moved, other->scene.mesh, watch.part(0, 1));
+        if (!fitted || isBeyondScale(fitted->fit) || isOddScale(fitted->fit.scale)) continue;
+        const HeadTurn turn = nearestTurn(groom, other->scene.mesh);
+        if (turn.distance >= nearest) continue;
+        nearest = turn.distance;
+        best = &unit;
+    }
+    if (best == nullptr) return false;
+    done.taken.metresPerUnit = static_cast<float>(best->metres);
+    done.words.push_back(fmt::format(
+        "states no unit; {} were taken, in which it is like the head that the hair grows on. --unit says "
+        "another one",
+        best->name));
+    log::warning("{}: {}", path, done.words.back());
+    return true;
+}
+
 }  // namespace
 
 Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const HeadImportOptions& options,
@@ -73,15 +120,27 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
     Groom moved = groom;
     auto transfer = putOn(moved, head->scene.mesh, watch.part(0.05, 0.4));
     if (!transfer) return tl::unexpected(transfer.error());
+    const auto again = [&](const WorkWatch& part) -> Status {
+        head = importHead(path, done.taken);
+        if (!head) return tl::unexpected(head.error());
+        moved = groom;
+        transfer = putOn(moved, head->scene.mesh, part);
+        return transfer ? Status() : tl::unexpected(transfer.error());
+    };
+    if (options.guessUnit && done.taken.metresPerUnit == 0 && !head->scene.statesUnit) {
+        const auto other =
+            otherUnitFits(groom, path, done, head->scene, *transfer, WorkWatch{{}, watch.cancelled});
+        if (!other) return tl::unexpected(other.error());
+        if (*other) {
+            done.taken.guessUnit = false;
+            if (auto status = again(watch.part(0.3, 0.4)); !status) return tl::unexpected(status.error());
+        }
+    }
     if (options.guessUp && !done.taken.zUp && !head->scene.statesUp) {
         auto laid = layingFits(groom, path, done, head->scene.mesh, watch.part(0.4, 0.6));
         if (!laid) return tl::unexpected(laid.error());
         if (*laid) {
-            head = importHead(path, done.taken);
-            if (!head) return tl::unexpected(head.error());
-            moved = groom;
-            transfer = putOn(moved, head->scene.mesh, watch.part(0.6, 0.75));
-            if (!transfer) return tl::unexpected(transfer.error());
+            if (auto status = again(watch.part(0.6, 0.75)); !status) return tl::unexpected(status.error());
         }
     }
     if (options.guessTurn && options.turnDegrees == 0) {
@@ -95,11 +154,7 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
                             "{:.3g} to {:.3g} mm (mean); --turn 0 leaves it as it is",
                             turn.degrees, 1e3f * turn.unturned, 1e3f * turn.distance));
             log::warning("{}: {}", path, done.words.back());
-            head = importHead(path, done.taken);
-            if (!head) return tl::unexpected(head.error());
-            moved = groom;
-            transfer = putOn(moved, head->scene.mesh, watch.part(0.75, 1));
-            if (!transfer) return tl::unexpected(transfer.error());
+            if (auto status = again(watch.part(0.75, 1)); !status) return tl::unexpected(status.error());
         }
     }
     if (isBeyondScale(transfer->fit)) {
@@ -113,6 +168,12 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
                   "it where it was made"
                 : "expected heads that differ by no more than five times: say its unit (--unit m, dm, cm, mm "
                   "or inch)");
+    }
+    if (isOddScale(transfer->fit.scale)) {
+        done.words.push_back(
+            fmt::format("is {:.3g} times as large as the head that the hair grows on, and so the hair is",
+                        transfer->fit.scale));
+        log::warning("{}: {}", path, done.words.back());
     }
     done.transfer = std::move(*transfer);
     if (groom.body) {

@@ -99,6 +99,27 @@ TEST_F(HeadsTest, AHeadThatLooksAwayIsTurnedAndOneOfNoSizeRefused) {
     EXPECT_FALSE(std::filesystem::exists(folder / "wig.hairloom"));
 }
 
+TEST_F(HeadsTest, AUnitThatSizeAloneDoesNotTellIsFoundByTheOldHead) {
+    // 2.6 m: a tall human's size, and a head's in decimetres.
+    for (const bool zUp : {false, true}) {
+        writeHead(folder / "dm.obj", 10, zUp);
+        const Outcome moved = run("transfer h.hairloom --to dm.obj -o b.hairloom --json");
+        ASSERT_EQ(moved.exitCode, 0) << moved.errors;
+        EXPECT_NEAR(moved.json()["head"]["metres_per_unit"].get<double>(), 0.1, 1e-6) << moved.errors;
+        EXPECT_EQ(moved.json()["head"]["up"], zUp ? "z" : "y");
+        EXPECT_NEAR(moved.json()["scale"].get<double>(), 1, 0.02);
+        EXPECT_LT(farthest(moved.json()), 1);
+        EXPECT_THAT(moved.errors, HasSubstr("dm were taken"));
+    }
+    // In no unit of a head's size: taken, with a word.
+    writeHead(folder / "feet.obj", 1 / 0.3048);
+    const Outcome large = run("transfer h.hairloom --to feet.obj -o b.hairloom --json");
+    ASSERT_EQ(large.exitCode, 0) << large.errors;
+    EXPECT_THAT(large.errors, HasSubstr("3.28 times as large"));
+    const Outcome asked = run("transfer h.hairloom --to dm.obj --unit m -o b.hairloom --json");
+    EXPECT_EQ(asked.exitCode, 1) << "ten times as large";
+}
+
 TEST_F(HeadsTest, HairOfAnotherAxisIsToldItsOwn) {
     runJson("export h.hairloom --format obj-lines --up z --unit inch -o strands.obj");
     const Outcome far = run("import strands.obj --mesh head.obj -o a.hairloom");
