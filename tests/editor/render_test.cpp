@@ -135,8 +135,8 @@ TEST_F(RenderTest, CancelLeavesNoFileAndTheDialogGoesOn) {
         QTest::mouseClick(button(dialog, "render"), Qt::LeftButton);
         EXPECT_TRUE(QTest::qWaitFor([&] { return parts().tasks.progress() > 0; }, 120'000));
         EXPECT_FALSE(button(dialog, "render")->isEnabled());
-        QTest::qWait(150);
-        EXPECT_TRUE(note(dialog).contains("of 2000")) << note(dialog).toStdString();
+        EXPECT_TRUE(QTest::qWaitFor([&] { return note(dialog).contains("of 2000"); }, 60'000))
+            << note(dialog).toStdString();
         QTest::keyClick(&dialog, Qt::Key_Escape);
         EXPECT_TRUE(dialog.isVisible()) << "the first press cancels the work";
         EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
