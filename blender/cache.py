@@ -54,7 +54,13 @@ class Writer:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self.frames = np.lib.format.open_memmap(self.part, "w+", np.float32, (frames, points, 3))
+            if hasattr(os, "posix_fallocate"):
+                # A full disk is an error here, and not a signal when a frame is written.
+                with open(self.part, "r+b") as file:
+                    os.posix_fallocate(file.fileno(), 0, os.fstat(file.fileno()).st_size)
         except OSError as error:
+            if path.parent.is_dir():
+                self.part.unlink(missing_ok=True)
             raise Problem(f"{path} cannot be written: {error.strerror}") from None
 
     def add(self, index: int, obj: bpy.types.Object) -> None:

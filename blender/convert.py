@@ -326,8 +326,8 @@ def from_groom(scene: bpy.types.Scene, obj: bpy.types.Object, groom: hairloom.Gr
     points = to_z_up(groom.positions)
     set_positions(curves, points if np.all(unit == 1) else points / unit)
     scale = float(np.cbrt(np.prod(np.abs(unit.astype(np.float64)))))
-    helpers = {name for name in groom.points if name in NOT_BROUGHT or name.startswith("sculpt_")}
-    _bring_attributes(curves, groom.points, "POINT", scale, helpers)
+    internal = {name for name in groom.points if name in NOT_BROUGHT or name.startswith("sculpt_")}
+    _bring_attributes(curves, groom.points, "POINT", scale, internal)
     _bring_attributes(curves, groom.strands, "CURVE", 1, NOT_BROUGHT)
     curves["hairloom_layers"] = groom.layers
     if groom.groups:

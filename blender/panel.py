@@ -74,7 +74,7 @@ class HAIRLOOM_PT_hair(bpy.types.Panel):
         if own.status:
             layout.label(text=own.status, icon="ERROR")
         elif own.mode == "LIVE" and (stats := simulate.stats(obj)):
-            layout.label(text=f"{stats['ms_per_frame']:.1f} ms a frame")
+            layout.label(text=f"{stats['ms_per_frame']:.1f} ms per frame")
         layout.separator()
         layout.operator("hairloom.cards", icon="MESH_GRID")
 

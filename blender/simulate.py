@@ -197,11 +197,10 @@ def on_frame(scene: bpy.types.Scene, graph: bpy.types.Depsgraph | None = None) -
                 Cache.of(obj).show(obj, scene.frame_current)
             own.status = ""
         except Exception as error:  # noqa: BLE001, or Blender would raise it again in each frame
-            # A handler cannot report. The panel shows it, and the hair stays as it is.
+            # A handler cannot report. The panel shows it, and the hair goes back to rest.
             own.status = str(error)
             print(f"Hairloom: {obj.name}: {error}")
-            _running.pop(obj.session_uid, None)
-            own.mode = "OFF"
+            stop(obj)
 
 
 @persistent

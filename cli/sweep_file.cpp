@@ -329,7 +329,7 @@ Result<std::vector<std::size_t>> partNumbers(const std::string& list, std::size_
         if (!number(first)) break;
         std::size_t last = first;
         if (skip('-') && !number(last)) break;
-        if (skip(':') && (!number(step) || step == 0)) break;
+        if (skip(':') && (!number(step) || step == 0 || step > kMaxParts)) break;
         if (last < first) break;
         if (last >= parts)
             return fail(fmt::format("there is no part {}", last),

@@ -237,7 +237,17 @@ SweepOutcome statusOf(const SweepFolder& folder) {
 Result<SweepOutcome> mergeSweep(const SweepFolder& folder) {
     const Parts parts = partsOf(folder);
     SweepOutcome outcome = outcomeOf(folder, parts);
-    std::vector<std::pair<std::string, std::string>> files{{"report.html", pageOf(folder, parts, outcome)}};
+    const auto write = [&](const std::string& name, const std::string& text) {
+        return writeFileAtomically(folder.path() / name, std::as_bytes(std::span(text)), Replacing::Anything);
+    };
+    // What an earlier merge made goes, whatever comes of this one.
+    std::error_code code;
+    for (const char* stale :
+         {"merged.json", "table.csv", "manifest.json", "manifest.xxh3", "certificates.json"})
+        fs::remove(folder.path() / stale, code);
+    if (auto status = write("report.html", pageOf(folder, parts, outcome)); !status)
+        return tl::unexpected(status.error());
+    std::vector<std::pair<std::string, std::string>> files;
     if (parts.open.empty()) {
         files.emplace_back("merged.json", mergedOf(folder, parts).dump(1) + "\n");
         files.emplace_back("table.csv", tableOf(parts));
@@ -250,16 +260,9 @@ Result<SweepOutcome> mergeSweep(const SweepFolder& folder) {
         if (folder.sweep().gather) {
             if (auto status = gather(folder, parts); !status) return tl::unexpected(status.error());
         }
-    } else {
-        std::error_code code;
-        for (const char* stale :
-             {"merged.json", "table.csv", "manifest.json", "manifest.xxh3", "certificates.json"})
-            fs::remove(folder.path() / stale, code);
     }
     for (const auto& [name, text] : files) {
-        const auto bytes = std::as_bytes(std::span(text));
-        if (auto status = writeFileAtomically(folder.path() / name, bytes, Replacing::Anything); !status)
-            return tl::unexpected(status.error());
+        if (auto status = write(name, text); !status) return tl::unexpected(status.error());
     }
     return outcome;
 }

@@ -183,8 +183,9 @@ std::string SweepFolder::inputHash(const SweepPart& part) const {
 
 std::optional<DonePart> SweepFolder::done(const SweepPart& part) const {
     const Report state = contentOf(doneFile(part));
-    if (!state.is_object() || state.value("input", "") != inputHash(part)) return std::nullopt;
+    if (!state.is_object()) return std::nullopt;
     try {
+        if (state.at("input").get<std::string>() != inputHash(part)) return std::nullopt;
         DonePart done;
         done.report = state.at("report");
         done.seconds = state.at("seconds").get<double>();
@@ -208,23 +209,36 @@ std::optional<DonePart> SweepFolder::done(const SweepPart& part) const {
 std::optional<Error> SweepFolder::failure(const SweepPart& part) const {
     const Report state = contentOf(failedFile(part));
     if (!state.is_object()) return std::nullopt;
-    Error error{state.value("file", ""), {}, state.value("what", ""), state.value("expected", "")};
-    if (state.contains("line")) error.place = Line{state.value("line", std::uint64_t{0})};
-    if (state.contains("byte")) error.place = Byte{state.value("byte", std::uint64_t{0})};
-    return error;
+    try {
+        Error error{state.value("file", ""), {}, state.value("what", ""), state.value("expected", "")};
+        if (state.contains("line")) error.place = Line{state.value("line", std::uint64_t{0})};
+        if (state.contains("byte")) error.place = Byte{state.value("byte", std::uint64_t{0})};
+        return error;
+    } catch (const Report::exception&) {
+        return std::nullopt;
+    }
+}
+
+std::optional<Error> SweepFolder::busy(const SweepPart& part) const {
+    const auto state = OutputFile::open(doneFile(part), {}, Replacing::Anything);
+    return state ? std::nullopt : std::optional(state.error());
 }
 
 Result<DonePart> SweepFolder::run(const SweepPart& part) const {
     auto state = OutputFile::open(doneFile(part), {}, Replacing::Anything);
     if (!state) return tl::unexpected(state.error());
+    // Another process may have ended it before this one got it.
+    if (auto ready = done(part)) return std::move(*ready);
     forget(part);
+    // Before the job: what changes meanwhile makes the part due again.
+    const std::string input = inputHash(part);
     auto done = runJob(part);
     if (!done) {
         if (auto status = this->fail(part, done.error()); !status) return tl::unexpected(status.error());
         return done;
     }
-    Report content{{"input", inputHash(part)}, {"values", part.values},      {"seconds", done->seconds},
-                   {"node", done->node},       {"warnings", done->warnings}, {"report", done->report},
+    Report content{{"input", input},          {"values", part.values},      {"seconds", done->seconds},
+                   {"node", done->node},      {"warnings", done->warnings}, {"report", done->report},
                    {"files", Report::array()}};
     for (const PartFile& file : done->files)
         content["files"].push_back(Report{{"name", file.name}, {"bytes", file.bytes}, {"hash", file.hash}});

@@ -51,6 +51,8 @@ class SweepFolder {
     /// Notes why the process that did the part ended.
     Status fail(const SweepPart& part, const Error& error) const;
     void forget(const SweepPart& part) const;  ///< its failure
+    /// Why no other process can do the part now: one does it.
+    std::optional<Error> busy(const SweepPart& part) const;
 
     std::filesystem::path folderOf(const SweepPart& part) const { return folder_ / "parts" / part.name; }
     const std::filesystem::path& path() const { return folder_; }

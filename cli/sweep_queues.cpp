@@ -9,6 +9,7 @@
 
 #include "core/base/file.h"
 #include "importers/child_process.h"
+#include "importers/reader_security.h"
 
 namespace hairloom::cli {
 namespace {
@@ -31,6 +32,10 @@ std::size_t chunkOf(const QueueOptions& options, std::size_t parts) {
 std::string program() {
     return (programFolder() / "hairloom-cli").string();
 }
+/// Parts take the user's word on readers that cannot be confined.
+std::string unconfined() {
+    return areUnconfinedReadersAllowed() ? " --allow-unconfined" : "";
+}
 std::string fileOf(const SweepFolder& folder) {
     return (folder.sweep().folder / fs::path(folder.sweep().file).filename()).string();
 }
@@ -42,7 +47,7 @@ std::string arrayScript(const SweepFolder& folder, const fs::path& logs, std::si
     return fmt::format(
         "#!/bin/bash\n"
         "# Parts of the sweep {name}: `sbatch {script}` runs what is missing.\n"
-        "#SBATCH --job-name=hairloom-{name}\n"
+        "#SBATCH --job-name=\"hairloom-{name}\"\n"
         "#SBATCH --array=0-{last}\n"
         "#SBATCH --output=\"{log}\"\n"
         "#SBATCH --open-mode=append\n"
@@ -50,22 +55,23 @@ std::string arrayScript(const SweepFolder& folder, const fs::path& logs, std::si
         "first=$((SLURM_ARRAY_TASK_ID * {chunk}))\n"
         "last=$((first + {chunk} - 1))\n"
         "[ \"$last\" -lt {parts} ] || last={lastPart}\n"
-        "exec {program} sweep --output={out} --parts=\"$first-$last\" "
+        "exec {program} sweep{unconfined} --output={out} --parts=\"$first-$last\" "
         "--threads=\"${{SLURM_CPUS_PER_TASK:-1}}\" "
         "--progress=lines -- {file}\n",
         fmt::arg("name", folder.sweep().name), fmt::arg("script", (logs / "array.sh").string()),
         fmt::arg("last", tasks - 1), fmt::arg("log", log), fmt::arg("chunk", chunk), fmt::arg("parts", parts),
         fmt::arg("lastPart", parts - 1), fmt::arg("program", quoted(program())),
-        fmt::arg("out", quoted(folder.path().string())), fmt::arg("file", quoted(fileOf(folder))));
+        fmt::arg("unconfined", unconfined()), fmt::arg("out", quoted(folder.path().string())),
+        fmt::arg("file", quoted(fileOf(folder))));
 }
 
 std::string mergeScript(const SweepFolder& folder, const fs::path& logs) {
     return fmt::format(
         "#!/bin/bash\n"
-        "#SBATCH --job-name=hairloom-{}-merge\n"
+        "#SBATCH --job-name=\"hairloom-{}-merge\"\n"
         "#SBATCH --output=\"{}\"\n"
-        "exec {} sweep --output={} --merge -- {}\n",
-        folder.sweep().name, (logs / "merge_%j.log").string(), quoted(program()),
+        "exec {} sweep{} --output={} --merge -- {}\n",
+        folder.sweep().name, (logs / "merge_%j.log").string(), quoted(program()), unconfined(),
         quoted(folder.path().string()), quoted(fileOf(folder)));
 }
 
@@ -91,7 +97,9 @@ Result<std::string> sbatch(const std::vector<std::string>& arguments) {
     text.resize(std::min(status, text.size()));
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
     if (!ok) return fail("Slurm takes no job: " + text, "expected a controller that runs (sinfo)");
-    return text.substr(0, text.find(';'));  // a cluster's name may follow
+    // A site's own words may come before, and a cluster's name may follow.
+    if (const auto line = text.rfind('\n'); line != std::string::npos) text.erase(0, line + 1);
+    return text.substr(0, text.find(';'));
 }
 
 }  // namespace
@@ -118,7 +126,7 @@ Result<Report> submitToSlurm(const SweepFolder& folder, const QueueOptions& opti
     const auto array = sbatch(words);
     if (!array) return tl::unexpected(array.error());
     // Not afterok, which waits for ever where a task failed: merging tells which parts are missing.
-    words.insert(words.begin(), "--dependency=afterany:" + *array);
+    words.insert(words.end() - 1, "--dependency=afterany:" + *array);
     words.back() = (logs / "merge.sh").string();
     const auto merge = sbatch(words);
     if (!merge) return tl::unexpected(merge.error());
@@ -129,10 +137,15 @@ Result<Report> submitToSlurm(const SweepFolder& folder, const QueueOptions& opti
 
 Result<Report> writeOpenJdTemplate(const SweepFolder& folder, const fs::path& directory,
                                    const QueueOptions& options) {
+    if (folder.sweep().name.find("{{") != std::string::npos)
+        return failIn(folder.sweep().file, {},
+                      "has {{ in its name, which Open Job Description reads as a parameter",
+                      "expected another name");
     const std::size_t parts = folder.sweep().parts.size(), chunk = chunkOf(options, parts);
     const auto run = [&](std::vector<std::string> words) {
         Report arguments{"sweep", "--output", "{{Param.Output}}"};
         for (std::string& word : words) arguments.push_back(std::move(word));
+        if (areUnconfinedReadersAllowed()) arguments.push_back("--allow-unconfined");
         arguments.push_back("--");
         arguments.push_back("{{Param.Sweep}}");
         return Report{

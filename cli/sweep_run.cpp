@@ -17,6 +17,7 @@
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
 #include "importers/child_process.h"
+#include "importers/reader_security.h"
 
 namespace hairloom::cli {
 namespace {
@@ -69,12 +70,14 @@ Status runInProcess(const SweepFolder& folder, const SweepPart& part, std::size_
     limits.startsPrograms = true;
     const std::filesystem::path file = std::filesystem::absolute(folder.sweep().file);
     folder.forget(part);
-    const auto ran =
-        runChild("the job", programFolder() / "hairloom-cli",
-                 {"sweep", "--part=" + std::to_string(part.number), "--output=" + folder.path().string(),
-                  "--threads=" + std::to_string(threads), "--quiet", "--", file.string()},
-                 limits);
+    std::vector<std::string> words{"sweep", "--part=" + std::to_string(part.number),
+                                   "--output=" + folder.path().string(),
+                                   "--threads=" + std::to_string(threads)};
+    if (areUnconfinedReadersAllowed()) words.emplace_back("--allow-unconfined");
+    words.insert(words.end(), {"--", file.string()});
+    const auto ran = runChild("the job", programFolder() / "hairloom-cli", words, limits);
     if (ran) return {};
+    if (auto busy = folder.busy(part)) return tl::unexpected(*busy);
     if (folder.failure(part)) return tl::unexpected(*folder.failure(part));
     Error error = ran.error();
     const auto open = error.problem.find('('), close = error.problem.rfind(')');

@@ -92,7 +92,9 @@ Handle createJob(const ChildLimits& limits) {
     info.BasicLimitInformation.LimitFlags = JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE |
                                             JOB_OBJECT_LIMIT_PROCESS_MEMORY |
                                             JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
-    if (!limits.startsPrograms) info.BasicLimitInformation.LimitFlags |= JOB_OBJECT_LIMIT_ACTIVE_PROCESS;
+    // Programs that it starts have jobs of their own.
+    info.BasicLimitInformation.LimitFlags |=
+        limits.startsPrograms ? JOB_OBJECT_LIMIT_SILENT_BREAKAWAY_OK : JOB_OBJECT_LIMIT_ACTIVE_PROCESS;
     info.BasicLimitInformation.ActiveProcessLimit = 1;
     info.ProcessMemoryLimit = static_cast<SIZE_T>(limits.residentBytes);
     JOBOBJECT_BASIC_UI_RESTRICTIONS windows{};

@@ -116,6 +116,9 @@ class Reader {
         const auto found = std::ranges::find_if(
             raw.attributes, [](const RawAttribute& attribute) { return namesAStrand(attribute.name); });
         if (found == raw.attributes.end()) return;
+        // A float holds whole numbers up to 2^24: above, strands would become one.
+        if (std::ranges::any_of(found->numbers, [](float n) { return !(std::abs(n) < 16'777'216.0f); }))
+            return;
         const std::vector<float> numbers = std::move(found->numbers);
         columns_.erase(columns_.begin() + (found - raw.attributes.begin()));
         raw.attributes.erase(found);

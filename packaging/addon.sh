@@ -54,7 +54,7 @@ fi
 version=$(sed -n 's/^project(Hairloom VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 wheel=$(ls "$dist/hairloom-$version"-cp312-abi3-*.whl 2>/dev/null | head -1 || true)
 newer=
-[ -z "$wheel" ] || newer=$(find python core exporters importers runtime cli CMakeLists.txt -name '*.*' -newer "$wheel" -type f -print -quit)
+[ -z "$wheel" ] || newer=$(find python core exporters importers runtime cli shaders samples CMakeLists.txt -name '*.*' -newer "$wheel" -type f -print -quit)
 if [ -z "$wheel" ] || [ -n "$newer" ]; then
     packaging/wheel.sh "$dist" "$python"
     wheel=$(ls "$dist/hairloom-$version"-cp312-abi3-*.whl | head -1)

@@ -121,6 +121,10 @@ Result<LinearSpace> linearSpaceOf(const ocio::Config& config, const Entry& entry
         }
     }
     if (!entry.isAces) matrix = acesFrom({}) * matrix;
+    constexpr double kFlat = 1e-9;
+    if (!(std::abs(matrix.determinant()) > kFlat))
+        return fail(fmt::format("its scene-linear space '{}' loses colours", working),
+                    "expected a space of three primaries");
     // Configs round, and some adapt white by CAT02.
     constexpr double kSame = 5e-3;
     for (const LinearSpace& known : kKnownSpaces) {

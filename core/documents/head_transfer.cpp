@@ -132,7 +132,7 @@ Result<FileTransfer> transferToFile(Groom& groom, const std::string& path, const
             otherUnitFits(groom, path, done, head->scene, *transfer, WorkWatch{{}, watch.cancelled});
         if (!other) return tl::unexpected(other.error());
         if (*other) {
-            done.taken.guessUnit = false;
+            done.taken.guessUnit = done.taken.guessUp = false;
             if (auto status = again(watch.part(0.3, 0.4)); !status) return tl::unexpected(status.error());
         }
     }

@@ -114,7 +114,10 @@ std::unique_ptr<PyLive> makeLive(PyGroom& groom, nb::handle scalp, nb::handle he
     if (live->groom.body) {
         for (const std::string& name : live->groom.body->bones) {
             std::size_t number = live->bones.size();  // of a body that has names of its own
-            std::from_chars(name.data(), name.data() + name.size(), number);
+            std::size_t parsed = 0;
+            const char* const end = name.data() + name.size();
+            const auto read = std::from_chars(name.data(), end, parsed);
+            if (read.ec == std::errc() && read.ptr == end) number = parsed;
             live->bones.push_back(number);
         }
     }

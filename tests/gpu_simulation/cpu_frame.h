@@ -221,7 +221,7 @@ struct CpuFrame {
         planInput.fastest = std::numeric_limits<float>::infinity();
         plan = runtime::planFrame(scene.settings, planInput, wind, spheres.usable, spheres.motion, dt);
         if (plan.on(runtime::Effect::collision)) runtime::moveSpheres(spheres, scene.substeps, moving);
-        context = runtime::substepContext(scene.settings, plan, dt, moving);
+        context = runtime::substepContext(scene.settings, plan, dt, scene.substeps, moving);
     }
 };
 

@@ -34,7 +34,9 @@ class Stripes final : public ColourTransform {
   public:
     void apply(std::span<float> rgba) const override {
         for (std::size_t i = 0; i < rgba.size(); ++i) {
-            if (i % 4 != 3) rgba[i] = std::fmod(37 * rgba[i], 1.0f) < 0.5f ? 0.0f : std::nanf("");
+            if (i % 4 == 3) continue;
+            const float place = std::fmod(37 * rgba[i], 1.0f);
+            rgba[i] = place < 0.5f ? 0.0f : place < 0.9f ? 1.0f : std::nanf("");
         }
     }
 };

@@ -143,7 +143,7 @@ TEST(ExrHead, WhatIsNotAsItMustBeIsTold) {
                   "other lines"},
              Case{{.table = [](std::string& rest) { rest[32] = 0; }}, "other lines"},
              Case{{.table = [](std::string& rest) { rest[36] = 4; }}, "bytes hold"},
-             Case{{.table = [](std::string& rest) { rest += "more"; }}, "goes on after"},
+             Case{{.table = [](std::string& rest) { rest += "more"; }}, "continues after"},
          })
         EXPECT_THAT(failure(exr), testing::AllOf(HasSubstr("a.exr"), HasSubstr(why)));
     std::vector<std::string> many;
