@@ -28,8 +28,9 @@ struct Parts {
 
 Parts partsOf(const SweepFolder& folder) {
     Parts parts;
+    KnownHashes known;
     for (const SweepPart& part : folder.sweep().parts) {
-        if (auto done = folder.done(part))
+        if (auto done = folder.done(part, known))
             parts.done.emplace_back(&part, std::move(*done));
         else
             parts.open.emplace_back(&part, folder.failure(part));

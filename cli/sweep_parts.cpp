@@ -45,19 +45,25 @@ std::string nodeName() {
 }
 
 /// Every file below the folder, in order of name.
-std::vector<fs::path> filesBelow(const fs::path& folder) {
+Result<std::vector<fs::path>> filesBelow(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code code;
     for (fs::recursive_directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
-        if (at->is_regular_file(code) && files.size() < kMaxFiles) files.push_back(at->path());
+        if (at->is_regular_file(code)) files.push_back(at->path());
+        if (files.size() > kMaxFiles)
+            return failIn(folder.string(), {}, fmt::format("holds more than {} files", kMaxFiles),
+                          "expected fewer outputs of one part");
     }
+    if (code) return failIn(folder.string(), {}, "cannot be read: " + code.message());
     std::ranges::sort(files);
     return files;
 }
 
 Result<std::vector<PartFile>> describedFiles(const fs::path& folder) {
+    const auto paths = filesBelow(folder);
+    if (!paths) return tl::unexpected(paths.error());
     std::vector<PartFile> files;
-    for (const fs::path& path : filesBelow(folder)) {
+    for (const fs::path& path : *paths) {
         std::error_code code;
         PartFile file{path.lexically_relative(folder).generic_string(), fs::file_size(path, code),
                       hashOfFile(path)};
@@ -150,8 +156,11 @@ Result<SweepFolder> SweepFolder::open(const Sweep& sweep, fs::path folder) {
     const Report content{{"sweep_of", sweep.name}, {"job", sweep.job}, {"parts", sweep.parts.size()}};
     // Many tasks of an array open it at once.
     if (contentOf(mark) != content) {
-        if (auto status = writeReport(mark, content); !status && contentOf(mark) != content)
+        if (auto status = writeReport(mark, content); !status && contentOf(mark) != content) {
+            for (const char* const made : {"parts", "state", ""})
+                fs::remove(folder / made, code);  // while empty
             return tl::unexpected(status.error());
+        }
     }
     return SweepFolder(sweep, std::move(folder));
 }
@@ -163,7 +172,7 @@ fs::path SweepFolder::failedFile(const SweepPart& part) const {
     return folder_ / "state" / (part.name + ".failed.json");
 }
 
-std::string SweepFolder::inputHash(const SweepPart& part) const {
+std::string SweepFolder::inputHash(const SweepPart& part, KnownHashes& known) const {
     std::string all = "hairloom " HAIRLOOM_VERSION "\n" + sweep_->job;
     for (const std::string& word : part.words) {
         all += '\n' + word;
@@ -174,18 +183,22 @@ std::string SweepFolder::inputHash(const SweepPart& part) const {
             const auto comma = std::min(value.find(',', at), value.size());
             const fs::path path = sweep_->folder / value.substr(at, comma - at);
             std::error_code code;
-            if (comma > at && fs::is_regular_file(path, code)) all += "\n " + hashOfFile(path);
+            if (comma > at && fs::is_regular_file(path, code)) {
+                const auto [hash, isNew] = known.try_emplace(path);
+                if (isNew) hash->second = hashOfFile(path);
+                all += "\n " + hash->second;
+            }
             at = comma + 1;
         }
     }
     return fmt::format("{:016x}", hashBytes(std::as_bytes(std::span(all))));
 }
 
-std::optional<DonePart> SweepFolder::done(const SweepPart& part) const {
+std::optional<DonePart> SweepFolder::done(const SweepPart& part, KnownHashes& known) const {
     const Report state = contentOf(doneFile(part));
     if (!state.is_object()) return std::nullopt;
     try {
-        if (state.at("input").get<std::string>() != inputHash(part)) return std::nullopt;
+        if (state.at("input").get<std::string>() != inputHash(part, known)) return std::nullopt;
         DonePart done;
         done.report = state.at("report");
         done.seconds = state.at("seconds").get<double>();
@@ -228,10 +241,11 @@ Result<DonePart> SweepFolder::run(const SweepPart& part) const {
     auto state = OutputFile::open(doneFile(part), {}, Replacing::Anything);
     if (!state) return tl::unexpected(state.error());
     // Another process may have ended it before this one got it.
-    if (auto ready = done(part)) return std::move(*ready);
+    KnownHashes known;
+    if (auto ready = done(part, known)) return std::move(*ready);
     forget(part);
     // Before the job: what changes meanwhile makes the part due again.
-    const std::string input = inputHash(part);
+    const std::string input = inputHash(part, known);
     auto done = runJob(part);
     if (!done) {
         if (auto status = this->fail(part, done.error()); !status) return tl::unexpected(status.error());

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ struct PartFile {
     std::uint64_t bytes = 0;
     std::string hash;  ///< XXH3, 16 digits
 };
+
+/// Hashes of inputs, kept while many parts that name the same files are looked at.
+using KnownHashes = std::map<std::filesystem::path, std::string>;
 
 /// A part that is done.
 struct DonePart {
@@ -41,7 +45,7 @@ class SweepFolder {
     static Result<SweepFolder> open(const Sweep& sweep, std::filesystem::path folder);
 
     /// The part, if what it was made from and what it has written are as they were.
-    std::optional<DonePart> done(const SweepPart& part) const;
+    std::optional<DonePart> done(const SweepPart& part, KnownHashes& known) const;
     /// Why it failed last, if it did.
     std::optional<Error> failure(const SweepPart& part) const;
 
@@ -65,7 +69,7 @@ class SweepFolder {
     std::filesystem::path failedFile(const SweepPart& part) const;
     Result<DonePart> runJob(const SweepPart& part) const;
     /// Of the program's version, the words and the files that these name.
-    std::string inputHash(const SweepPart& part) const;
+    std::string inputHash(const SweepPart& part, KnownHashes& known) const;
 
     const Sweep* sweep_;
     std::filesystem::path folder_;

@@ -95,9 +95,10 @@ Status runInProcess(const SweepFolder& folder, const SweepPart& part, std::size_
 Result<SweepCounts> runParts(const SweepFolder& folder, const std::vector<std::size_t>& parts,
                              SweepProgress progress) {
     std::vector<const SweepPart*> missing;
+    KnownHashes known;
     for (const std::size_t number : parts) {
         const SweepPart& part = folder.sweep().parts[number];
-        if (!folder.done(part)) missing.push_back(&part);
+        if (!folder.done(part, known)) missing.push_back(&part);
     }
     SweepCounts counts;
     counts.kept = parts.size() - missing.size();

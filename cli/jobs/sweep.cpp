@@ -79,12 +79,8 @@ Result<Report> runOne(const SweepFolder& folder, std::size_t number) {
         throw WrongUsage(fmt::format("there is no part {}", number),
                          fmt::format("expected 0 to {}", folder.sweep().parts.size() - 1));
     const SweepPart& part = folder.sweep().parts[number];
-    auto done = folder.done(part);
-    if (!done) {
-        auto made = folder.run(part);
-        if (!made) return tl::unexpected(made.error());
-        done = std::move(*made);
-    }
+    const auto done = folder.run(part);
+    if (!done) return tl::unexpected(done.error());
     return Report{{"part", number},
                   {"seconds", done->seconds},
                   {"files", done->files.size()},
@@ -106,12 +102,19 @@ Result<Report> runAll(const SweepFolder& folder, SweepProgress progress) {
 }
 
 Result<Report> run(const SweepOptions& options) {
+    // Its parts are processes that share the folder, so that it cannot be kept for one as other jobs' are.
+    if (options.output == "-")
+        throw WrongUsage("- is a pipe, but this job writes several files", "expected the name of a folder");
     const auto sweep = readSweep(options.file, options.part);
     if (!sweep) return tl::unexpected(sweep.error());
     const fs::path out = options.output.empty() ? sweep->folder / sweep->name
                                                 : fs::absolute(options.output).lexically_normal();
     const auto folder = SweepFolder::open(*sweep, out);
-    if (!folder) return tl::unexpected(folder.error());
+    if (!folder) {
+        Error error = folder.error();
+        if (!options.output.empty()) error.file = options.output;
+        return tl::unexpected(std::move(error));
+    }
     if (options.part) return runOne(*folder, *options.part);
     if (!options.parts.empty()) {
         const auto parts = orWrongUsage(partNumbers(options.parts, sweep->parts.size()));

@@ -57,6 +57,7 @@ constexpr Writes kWrites[] = {
     {"stability", "--output", "g.hairloom -o OUT", true},
     {"stack", "--output", "g.hairloom --bake -o OUT"},
     {"stack", "--keep", "g.hairloom --keep OUT"},
+    {"sweep", "--output", "storms.json -o OUT", true},
     {"transfer", "--output", "g.hairloom --to MESH -o OUT"},
 };
 
@@ -73,6 +74,9 @@ class Outputs : public CommandLineTest {
         runJson("create --mesh '" + bustFile() +
                 "' --scalp material:scalp --count 40 --length 0.1 --points 8 --seed 3 -o g.hairloom");
         runJson("export g.hairloom --format hair -o a.hair");
+        std::ofstream(folder / "storms.json")
+            << R"({"hairloom_sweep": 1, "job": "stability", "arguments": {"groom": "g.hairloom", "output": "{out}", "first-storm": "{first}"},)"
+            << R"( "over": [{"name": "first", "from": 0, "to": 1, "step": 1}]})";
         std::ofstream(folder / "s.json")
             << R"({"hairloom_script": 1, "operations": [{"op": "curl", "radius": 0.01, "frequency": 40}]})";
     }
