@@ -136,11 +136,10 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
         state = state * 31 + hair.hash();
     }
     for (const hl_viewed& character : crowd.characters) ++levels[character.level];
-    std::printf(
-        "crowd of %d %s: plan %.4f ms, steps %.4f ms per frame, %.3f predicted; %.1f KB a character\n",
-        options.crowd, options.resting ? "at rest" : "nodding", planned / options.frames,
-        measured / std::max(options.frames - timedFrames, 1), predicted / options.frames,
-        static_cast<double>(bytes) / 1e3 / options.crowd);
+    std::printf("crowd of %d %s: plan %.4f ms, steps %.4f ms per frame, %.3f predicted, %.1f KB each\n",
+                options.crowd, options.resting ? "at rest" : "nodding", planned / options.frames,
+                measured / std::max(options.frames - timedFrames, 1), predicted / options.frames,
+                static_cast<double>(bytes) / 1e3 / options.crowd);
     std::printf(
         "%llu of %llu guides asleep, %d %d %d %d %d at levels 0 to 4, error %.2f pixels, state %016llx\n",
         asleep, guides, levels[0], levels[1], levels[2], levels[3], levels[4],

@@ -131,10 +131,10 @@ TEST_F(FieldHeads, AHeadWithoutUvsGivesUnrealNoRootUvs) {
 
 TEST_F(FieldHeads, HairsForUnrealNameTheirGuides) {
     runJson("guides g.hairloom --count 30 -o guides.hairloom");
-    runJson("export guides.hairloom --what hairs --target unreal -o hairs.abc");
+    const auto exported = runJson("export guides.hairloom --what hairs --target unreal -o hairs.abc");
     for (const char* name : {"groom_guide", "groom_closest_guides", "groom_guide_weights"})
         EXPECT_GE(count("hairs.abc", name), 1u) << name;
-    EXPECT_EQ(runJson("import hairs.abc -o back.hairloom")["strands"], 230);
+    EXPECT_EQ(runJson("import hairs.abc -o back.hairloom")["strands"], exported["strands"]);
     EXPECT_EQ(runJson("info back.hairloom")["guides"], 30);
 }
 

@@ -70,8 +70,8 @@ TEST_F(AccuracyTest, TheCheapestWithinALimitInPixelsMayHaveFewerPoints) {
     const auto before = hash();
     measure();
     find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
-    // Of so few strands a busy machine does not tell 1 substep from 4.
-    ASSERT_TRUE(chosen().contains(", 4 points")) << chosen().toStdString();
+    // Of so few strands a busy machine does not tell 1 substep from 4, or 4 points from 6.
+    ASSERT_TRUE(chosen().contains(", 4 points") || chosen().contains(", 6 points")) << chosen().toStdString();
     adopt().click();
     EXPECT_LT(groom().strand(0).size(), 12u);
     EXPECT_EQ(document().stepCount(), 1);
