@@ -162,9 +162,9 @@ JobRun declare(CLI::App& job) {
     job.add_option("fields", options->assignments,
                    "SECTION.FIELD=VALUE. Sections: simulation, material, interpolation. For a layer: "
                    "layers.NAME.density=VALUE, layers.NAME.material.FIELD=VALUE, layers.NAME.material=null");
-    job.add_option(
-           "--preset", options->preset,
-           "Preset of measured hair for stiffness, cross-section, thickness and colour. --from and fields override it")
+    job.add_option("--preset", options->preset,
+                   "Preset of measured hair for stiffness, cross-section, thickness and colour. --from and "
+                   "fields override it")
         ->check(CLI::IsMember(presetNames()));
     auto* image = job.add_option("--dye-image", options->dyeImage,
                                  "PNG at the root UVs. White strands take the dye of the material");
