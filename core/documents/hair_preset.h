@@ -7,7 +7,8 @@
 
 namespace hairloom {
 
-/// Sets stiffness, cross-section, thickness, colours and melanin. docs/cli.md lists the fields. Returns their number.
+/// Sets stiffness, cross-section, thickness, colours and melanin. docs/cli.md lists the fields. Returns their
+/// number.
 std::size_t applyPreset(const runtime::HairPreset& preset, Groom& groom);
 
 }  // namespace hairloom

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The journeys of docs/architecture.md: each stop is in the sources, and their number is that of the column "now".
+// The journeys of docs/architecture.md: each stop is in the sources, and their number is that of the column
+// "now".
 
 #include <gtest/gtest.h>
 

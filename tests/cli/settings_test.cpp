@@ -154,8 +154,12 @@ TEST_F(CliSettings, PresetsSetWhatAFibreIsMadeOf) {
     }
     EXPECT_EQ(hashes.size(), 3u) << "fibres of other stiffness should move otherwise";
     // Fields come after the preset.
-    runJson("set hair.hairloom --preset caucasian simulation.angularStiffness=0.5 simulation.sectionRatio=1 -o a.hairloom");
-    runJson("set hair.hairloom --preset mongolian simulation.angularStiffness=0.5 simulation.sectionRatio=1 -o b.hairloom");
+    runJson(
+        "set hair.hairloom --preset caucasian simulation.angularStiffness=0.5 simulation.sectionRatio=1 -o "
+        "a.hairloom");
+    runJson(
+        "set hair.hairloom --preset mongolian simulation.angularStiffness=0.5 simulation.sectionRatio=1 -o "
+        "b.hairloom");
     EXPECT_EQ(runJson("simulate a.hairloom --frames 5 --motion nod")["state_hash"],
               runJson("simulate b.hairloom --frames 5 --motion nod")["state_hash"]);
     EXPECT_EQ(run("set hair.hairloom --preset angora -o hair.hairloom").exitCode, 2);

@@ -29,8 +29,8 @@ std::span<const HairPreset> presets();
 const HairPreset* findPreset(std::string_view name);
 
 /// EI/(ρA) in m⁴/s² of an elliptical fibre, `diameter` along the long axis in metres. For bending about the
-/// long axis I = π a b³/4 and A = π a b, hence I/A = b²/4 = d²(1 − e²)/16. This is the weak direction: a fibre
-/// that is free to twist turns its thin side into the bend.
+/// long axis I = π a b³/4 and A = π a b, hence I/A = b²/4 = d²(1 − e²)/16. This is the weak direction: a
+/// fibre that is free to twist turns its thin side into the bend.
 double bendingStiffness(double diameter, double eccentricity);
 
 /// The angularStiffness s that stands for B ≥ 0, in m⁴/s²: B = kHairBendingStiffness · s/(1 − s).
@@ -40,8 +40,8 @@ float angularStiffnessOf(double bendingStiffness);
 double bendingStiffnessOf(double angularStiffness);
 
 /// Sets sectionRatio to b/a, angularStiffness such that the weak direction has bendingStiffness(), and
-/// angularCurve to 1 everywhere: fibres are as thick at the tip. All else stays. Springs have one stiffness for
-/// all directions and take the mean of the two.
+/// angularCurve to 1 everywhere: fibres are as thick at the tip. All else stays. Springs have one stiffness
+/// for all directions and take the mean of the two.
 void applyPreset(const HairPreset& preset, SimulationSettings& settings);
 
 }  // namespace hairloom::runtime
