@@ -246,6 +246,7 @@ Result<SweepOutcome> mergeSweep(const SweepFolder& folder) {
     for (const char* stale :
          {"merged.json", "table.csv", "manifest.json", "manifest.xxh3", "certificates.json"})
         fs::remove(folder.path() / stale, code);
+    fs::remove_all(folder.path() / "files", code);
     if (auto status = write("report.html", pageOf(folder, parts, outcome)); !status)
         return tl::unexpected(status.error());
     std::vector<std::pair<std::string, std::string>> files;
