@@ -174,11 +174,15 @@ Result<Report> withOutputs(const std::vector<Output>& outputs, const std::functi
     return count == 0 ? run() : inBatch(run);
 }
 
+void refusePipeForFolder(const std::string& folder) {
+    if (folder == kStandardOutput)
+        throw WrongUsage("- is a pipe, but this job writes several files", "expected the name of a folder");
+}
+
 Result<Report> withOutputFolder(const std::string& folder, const std::vector<std::string>& files,
                                 const std::function<Result<Report>()>& run) {
     if (folder.empty()) return run();
-    if (folder == kStandardOutput)
-        throw WrongUsage("- is a pipe, but this job writes several files", "expected the name of a folder");
+    refusePipeForFolder(folder);
     MadeFolders made(folder);
     if (made.failed()) return failIn(folder, {}, "the folder cannot be made: " + made.failed().message());
     for (const std::string& name : files) {

@@ -36,6 +36,10 @@ Result<Report> withOutputs(const std::vector<Output>& outputs, const std::functi
 Result<Report> withOutputFolder(const std::string& folder, const std::vector<std::string>& files,
                                 const std::function<Result<Report>()>& run);
 
+/// Throws WrongUsage for "-" in place of a folder: for jobs that keep theirs otherwise than
+/// withOutputFolder().
+void refusePipeForFolder(const std::string& folder);
+
 /// The job writes its file to standard output, so that its report goes to standard error.
 bool writesToStandardOutput();
 

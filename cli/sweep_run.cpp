@@ -78,7 +78,7 @@ Status runInProcess(const SweepFolder& folder, const SweepPart& part, std::size_
     const auto ran = runChild("the job", programFolder() / "hairloom-cli", words, limits);
     if (ran) return {};
     if (auto busy = folder.busy(part)) return tl::unexpected(*busy);
-    if (folder.failure(part)) return tl::unexpected(*folder.failure(part));
+    if (auto failed = folder.failure(part)) return tl::unexpected(std::move(*failed));
     Error error = ran.error();
     const auto open = error.problem.find('('), close = error.problem.rfind(')');
     if (open != std::string::npos && close != std::string::npos && open < close)

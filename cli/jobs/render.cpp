@@ -264,10 +264,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     std::optional<Progress> progress;
     if (shots->size() > 1) progress.emplace("drawing", shots->size());
     for (std::size_t i = 0; i < shots->size(); ++i) {
-        const auto picture = photographer.take((*shots)[i]);
+        auto picture = photographer.take((*shots)[i]);
         if (!picture) return tl::unexpected(picture.error());
-        if (auto written = writePictures(options, *colours, *picture, i); !written)
-            return tl::unexpected(written.error());
         if (i == 0) report = reportOf(*picture, options);
         if (i == 0 && *colours) report["color"] = colourReport(**colours);
         if (i == 0 && playing->shots) {
@@ -275,6 +273,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
             report["why"] = playing->engine.why;
         }
         if (!options.animation.empty() || !options.strip.empty()) images.push_back(picture->image);
+        if (auto written = writePictures(options, *colours, std::move(*picture), i); !written)
+            return tl::unexpected(written.error());
         if (progress) progress->done(i + 1);
     }
     progress.reset();

@@ -9,6 +9,7 @@
 
 #include "cli/error_report.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "cli/sweep_file.h"
 #include "cli/sweep_merge.h"
 #include "cli/sweep_parts.h"
@@ -103,8 +104,7 @@ Result<Report> runAll(const SweepFolder& folder, SweepProgress progress) {
 
 Result<Report> run(const SweepOptions& options) {
     // Its parts are processes that share the folder, so that it cannot be kept for one as other jobs' are.
-    if (options.output == "-")
-        throw WrongUsage("- is a pipe, but this job writes several files", "expected the name of a folder");
+    refusePipeForFolder(options.output);
     const auto sweep = readSweep(options.file, options.part);
     if (!sweep) return tl::unexpected(sweep.error());
     const fs::path out = options.output.empty() ? sweep->folder / sweep->name
