@@ -16,6 +16,7 @@
 #include "core/cost/effect_cost.h"
 #include "tests/accuracy/hair.h"
 #include "tests/accuracy/xml_check.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::test {
 namespace {
@@ -380,8 +381,8 @@ TEST(Report, ErrorPlotsAreForAxesOfNumbers) {
 }
 
 TEST(Report, AllFilesAreWrittenAndThePageStandsAlone) {
-    const fs::path folder = fs::path(testing::TempDir()) / "hairloom-accuracy-report" / "below";
-    fs::remove_all(folder.parent_path());
+    const TemporaryFolder own;
+    const fs::path folder = own / "new" / "below";
     const auto names = writeWorkPrecision(known(), {"<g>", "nod", "hairloom-cli accuracy"}, folder);
     ASSERT_TRUE(names.has_value()) << names.error().message();
     EXPECT_THAT(*names,
@@ -394,7 +395,6 @@ TEST(Report, AllFilesAreWrittenAndThePageStandsAlone) {
     EXPECT_THAT(page, HasSubstr(*readTextFile(folder / "work_precision.svg")));
     EXPECT_THAT(page, testing::Not(HasSubstr("src=")));
     EXPECT_THAT(page, testing::Not(HasSubstr("href=")));
-    fs::remove_all(folder.parent_path());
 }
 
 TEST(EffectCosts, EveryEffectReportsReasonAndCost) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/support/source_dir.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -220,14 +221,14 @@ TEST(Words, AreFoundWhereTheyAreAndNowhereElse) {
     EXPECT_TRUE(has("what stands for it", "stands for"));
     EXPECT_FALSE(has("it understands for-loops", "stands for"));
     EXPECT_TRUE(has(plain("So\n  many"), "so many"));
-    const auto file = fs::path(testing::TempDir()) / "hairloom-words.cpp";
+    const hairloom::TemporaryFolder folder;
+    const auto file = folder / "words.cpp";
     std::ofstream(file)
         << "// \"so many\"\n#include \"anew.h\"\nconst char c = '\"';\nf(\"so \"\n  \"many\", \"a \\\" b\");";
     const auto strings = stringsOf(file);
     ASSERT_EQ(strings.size(), 2u);
     EXPECT_EQ(strings[0].text, "so many");
     EXPECT_TRUE(strings[0].place.ends_with(":4"));
-    fs::remove(file);
 }
 
 TEST(Words, ComeWithFewerThanFiveSemicolonsInAThousand) {

@@ -12,22 +12,13 @@
 
 #include "core/base/file.h"
 #include "core/base/write_rules.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 
 class OutputFileTest : public testing::Test {
   protected:
-    void SetUp() override {
-        folder =
-            std::filesystem::path(testing::TempDir()) /
-            (std::string("hairloom-output-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::remove_all(folder);
-        std::filesystem::create_directories(folder);
-    }
-    void TearDown() override {
-        setWriteRules({});
-        std::filesystem::remove_all(folder);
-    }
+    void TearDown() override { setWriteRules({}); }
     std::size_t filesInFolder() const {
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder),
                                                       std::filesystem::directory_iterator()));
@@ -44,7 +35,8 @@ class OutputFileTest : public testing::Test {
         const auto status = writeFileAtomically(folder / name, text);
         return status ? std::string() : status.error().message();
     }
-    std::filesystem::path folder;
+    const TemporaryFolder own_;
+    const std::filesystem::path& folder = own_.path();
 };
 
 }  // namespace hairloom

@@ -16,18 +16,6 @@ namespace hairloom::test {
 
 namespace fs = std::filesystem;
 
-void CommandLineTest::SetUp() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(testing::TempDir()) /
-             (std::string("hairloom-cli-") + info->test_suite_name() + "-" + info->name());
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-}
-
-void CommandLineTest::TearDown() {
-    fs::remove_all(folder);
-}
-
 Outcome CommandLineTest::run(const std::string& arguments) const {
     const fs::path out = folder / "stdout.txt";
     const fs::path err = folder / "stderr.txt";

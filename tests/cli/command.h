@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/temporary_folder.h"
+
 namespace hairloom::test {
 
 struct Outcome {
@@ -30,15 +32,16 @@ class CommandLineTest : public testing::Test {
                " --length 0.2 --points " + std::to_string(points) + " --seed " + std::to_string(seed) +
                " -o hair.hairloom " + more;
     }
-    void SetUp() override;
-    void TearDown() override;
-
     /// Runs `hairloom-cli ARGUMENTS` through the shell with the test's folder as the working one.
     Outcome run(const std::string& arguments) const;
     /// As run, with --json, and a failure of the test when the job fails.
     nlohmann::json runJson(const std::string& arguments) const;
 
-    std::filesystem::path folder;
+  private:
+    const TemporaryFolder own_;
+
+  protected:
+    const std::filesystem::path& folder = own_.path();
 };
 
 /// A file of the data from elsewhere, or empty when this checkout has none.

@@ -16,6 +16,7 @@
 #include "core/render/tone_map.h"
 #include "core/shading/melanin.h"
 #include "tests/support/source_dir.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::colour {
 namespace {
@@ -31,13 +32,6 @@ std::filesystem::path studio() {
 /// A folder of the test's own with a config of this text.
 class Config : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ =
-            std::filesystem::path(testing::TempDir()) /
-            (std::string("hairloom_colour_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
     std::filesystem::path write(const std::string& text) const {
         std::ofstream(folder_ / "config.ocio") << text;
         return folder_ / "config.ocio";
@@ -47,8 +41,7 @@ class Config : public testing::Test {
         return read ? "" : read.error().message();
     }
 
-  private:
-    std::filesystem::path folder_;
+    const TemporaryFolder folder_;
 };
 
 /// Light of all amounts, black and far above white, hair's browns among it, and alphas.
@@ -272,7 +265,7 @@ TEST_F(Config, ThatIsWrongSaysWhere) {
     name: bent
     to_reference: !<ExponentTransform> {value: [2.2, 2.2, 2.2, 1]})")),
                 HasSubstr("not linear"));
-    EXPECT_THAT(ColourConfig::read(testing::TempDir()).error().message(), HasSubstr(testing::TempDir()));
+    EXPECT_THAT(ColourConfig::read(folder_.path()).error().message(), HasSubstr(folder_.path().string()));
     EXPECT_THAT(ColourConfig::read("ocio://default").error().message(), HasSubstr("no built-in configs"));
 }
 

@@ -7,6 +7,7 @@
 #include "core/gpu/device.h"
 #include "tests/documents/small_head.h"
 #include "tests/groom/groom_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {

@@ -16,6 +16,7 @@
 #include "core/groom/groom_hash.h"
 #include "core/operations/stack.h"
 #include "tests/groom/groom_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {

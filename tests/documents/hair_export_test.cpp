@@ -21,6 +21,7 @@
 #include "hairloom/asset.h"
 #include "importers/authored_settings.h"
 #include "tests/documents/small_head.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::test {
 namespace {
@@ -29,14 +30,7 @@ namespace fs = std::filesystem;
 
 class HairExportTest : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) / "hairloom-hair-export";
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path folder_;
+    const TemporaryFolder folder_;
 };
 
 double valueOf(const runtime::Asset& asset, std::string_view name) {

@@ -13,6 +13,7 @@
 #include "core/groom/point_width.h"
 #include "core/render/png.h"
 #include "tests/support/source_dir.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {
@@ -231,7 +232,8 @@ TEST(HairLook, PaintedDyeIsThatOfThePointsAndAnotherMaskReplacesIt) {
 }
 
 TEST(HairLook, AnImageOverTheRootUvsIsAMask) {
-    const std::filesystem::path path = std::filesystem::temp_directory_path() / "hairloom_dye_mask_test.png";
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "mask.png";
     render::Image image{2, 2, {}};
     for (const int grey : {255, 0, 0, 128}) {
         for (int c = 0; c < 3; ++c) image.rgba.push_back(static_cast<std::uint8_t>(grey));
@@ -245,7 +247,6 @@ TEST(HairLook, AnImageOverTheRootUvsIsAMask) {
     const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
     EXPECT_NEAR(mask[0], 1.0f, 1e-3f);
     EXPECT_NEAR(mask[1], 128.0f / 255, 2e-3f);
-    std::filesystem::remove(path);
 }
 
 }  // namespace

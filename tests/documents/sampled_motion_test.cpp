@@ -16,6 +16,7 @@
 #include "importers/alembic_archive.h"
 #include "importers/usd_stage.h"
 #include "tests/documents/small_head.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::test {
 namespace {
@@ -93,15 +94,6 @@ TEST(SampledMotion, OtherRatesSeeTheSameMotion) {
 
 class HairOut : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ =
-            fs::path(testing::TempDir()) / (std::string("hairloom-hair-out-") +
-                                            testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     static std::vector<RecordedFrame> turning(const Groom& groom, int count) {
         std::vector<RecordedFrame> frames;
         for (int f = 0; f < count; ++f) {
@@ -114,7 +106,7 @@ class HairOut : public testing::Test {
         }
         return frames;
     }
-    fs::path folder_;
+    const TemporaryFolder folder_;
 };
 
 TEST_F(HairOut, ShuttersReachEveryFormatThatMoves) {
@@ -159,7 +151,7 @@ TEST_F(HairOut, ShuttersReachEveryFormatThatMoves) {
         << "all frames are around those of the file";
     wanted.frames = turning(groom, 3);
     EXPECT_FALSE(exportHair(groom, wanted, strandWriter("ply"), folder_ / "b.ply", {})) << "holds one pose";
-    EXPECT_TRUE(fs::is_empty(folder_) || !fs::exists(folder_ / "b.ply"));
+    EXPECT_TRUE(fs::is_empty(folder_.path()) || !fs::exists(folder_ / "b.ply"));
 }
 
 TEST_F(HairOut, GuidesStandBesideTheHairsInUsd) {

@@ -10,6 +10,7 @@
 
 #include "core/base/file.h"
 #include "tests/documents/small_head.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {
@@ -28,22 +29,16 @@ void setVariable(const char* name, const std::string& value) {
 class WebPage : public testing::Test {
   protected:
     WebPage() {
-        fs::remove_all(folder_);
         fs::create_directories(folder_ / "player");
         EXPECT_TRUE(writeFileAtomically(folder_ / "player/index.html", std::string_view("<p>index")));
         EXPECT_TRUE(writeFileAtomically(folder_ / "player/player.js", std::string_view("player")));
         setVariable("HAIRLOOM_WEB", (folder_ / "player").string());
     }
-    ~WebPage() override {
-        setVariable("HAIRLOOM_WEB", "");
-        fs::remove_all(folder_);
-    }
+    ~WebPage() override { setVariable("HAIRLOOM_WEB", ""); }
     WebPage(const WebPage&) = delete;
     WebPage& operator=(const WebPage&) = delete;
 
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        (std::string("hairloom_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    const TemporaryFolder folder_;
 };
 
 std::string decoded(const std::string& text) {

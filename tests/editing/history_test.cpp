@@ -5,6 +5,7 @@
 
 #include "core/editing/strand_delta.h"
 #include "tests/editing/editing_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::editing {
 namespace {

@@ -19,6 +19,7 @@
 #include "core/groom/file/settings_json.h"
 #include "core/operations/stack.h"
 #include "tests/editing/editing_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::editing {
 namespace {
@@ -310,9 +311,6 @@ void anyEdit(Document& document, Random& random, std::uint64_t number) {
 
 class ScriptOfAnyEdits : public testing::TestWithParam<std::uint64_t> {
   protected:
-    void SetUp() override { std::filesystem::create_directories(folder_); }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     std::string savedBytes(const Groom& groom) {
         const auto path = folder_ / "groom.hairloom";
         EXPECT_TRUE(saveProject(groom, path));
@@ -321,8 +319,7 @@ class ScriptOfAnyEdits : public testing::TestWithParam<std::uint64_t> {
     }
 
   private:
-    const std::filesystem::path folder_ =
-        std::filesystem::temp_directory_path() / ("hairloom_script_replay_" + std::to_string(GetParam()));
+    const TemporaryFolder folder_;
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, ScriptOfAnyEdits, testing::Values(1, 2, 3, 4, 5, 6));
 

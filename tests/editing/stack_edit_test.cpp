@@ -12,6 +12,7 @@
 #include "core/groom/file/project_file.h"
 #include "core/operations/stack.h"
 #include "tests/editing/editing_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::editing {
 namespace {

@@ -15,22 +15,15 @@
 #include "core/groom/groom.h"
 #include "exporters/strands.h"
 #include "hairloom/asset.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::test {
 
 /// Has a folder of the running test's own.
 class ExportTest : public testing::Test {
   protected:
-    void SetUp() override {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder = std::filesystem::path(testing::TempDir()) /
-                 (std::string("hairloom-export-") + info->test_suite_name() + "-" + info->name());
-        std::filesystem::remove_all(folder);
-        std::filesystem::create_directories(folder);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder); }
-
-    std::filesystem::path folder;
+    const TemporaryFolder own_;
+    const std::filesystem::path& folder = own_.path();
 };
 
 class AssetTest : public ExportTest {

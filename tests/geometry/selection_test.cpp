@@ -9,6 +9,7 @@
 
 #include "core/base/file.h"
 #include "tests/geometry/test_meshes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {
@@ -98,7 +99,8 @@ TEST(Selection, PiecesAreSortedByArea) {
 
 TEST(Selection, FaceListsNameFacesOfTheFile) {
     const ScalpMesh mesh = test::meshOf(test::gridSoup(4, 1));
-    const std::string path = testing::TempDir() + "hairloom_faces.txt";
+    const TemporaryFolder folder;
+    const std::string path = (folder / "faces.txt").string();
     ASSERT_TRUE(writeFileAtomically(path, std::string_view("3\r\n\n 0 \n3\n")));
     const FaceSet faces = selected(mesh, "faces:" + path);
     EXPECT_EQ(faces.size(), 4u);  // two quads

@@ -16,6 +16,7 @@
 #include "shaders/shaders.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
 #include "tests/support/spring_settings.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::shaders {
 std::span<const Shader> table_test_gpu_simulation();  // NOLINT(readability-identifier-naming)
@@ -207,9 +208,8 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
 }
 
 TEST_F(Permutation, KernelsAreKeptOnDiskAndDamageIsFound) {
-    const std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) / "hairloom-kernels-of-a-test";
-    std::filesystem::remove_all(folder);
+    const TemporaryFolder own;
+    const std::filesystem::path folder = own / "kernels";
     KernelKey key;
     key.shape = {3, true, false, StrandStorage::threads};
     key.stages = "stageRoots(); stageVerlet();";
@@ -227,7 +227,6 @@ TEST_F(Permutation, KernelsAreKeptOnDiskAndDamageIsFound) {
     ASSERT_TRUE(writeFileAtomically(file, bytes));
     EXPECT_EQ(made().compiled, 1u);
     EXPECT_EQ(made().disk, 1u);
-    std::filesystem::remove_all(folder);
 }
 
 TEST_F(Permutation, AKernelThatDoesNotCompileIsAnError) {

@@ -12,6 +12,7 @@
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
 #include "tests/groom/groom_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/groom/groom_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {
@@ -13,12 +14,7 @@ using testing::HasSubstr;
 
 class StackFile : public testing::Test {
   protected:
-    std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "hairloom-stack-file";
-    void SetUp() override {
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
+    const TemporaryFolder folder_;
 };
 
 TEST_F(StackFile, ComesBackWithMasksAndCurvesAndWithoutSculpts) {
@@ -32,7 +28,7 @@ TEST_F(StackFile, ComesBackWithMasksAndCurvesAndWithoutSculpts) {
     mask.ramp = runtime::Ramp::straight(0, 1);
     setMaskOf(curl, mask);
     const std::vector<Operator> stack{part, newOperator(kSculpt), curl};
-    const auto file = stackPresetFile(folder_, "parted curls");
+    const auto file = stackPresetFile(folder_.path(), "parted curls");
     ASSERT_TRUE(file);
     ASSERT_TRUE(saveOperators(*file, stack));
     const auto loaded = loadOperators(*file);
@@ -40,12 +36,12 @@ TEST_F(StackFile, ComesBackWithMasksAndCurvesAndWithoutSculpts) {
     EXPECT_EQ(*loaded, (std::vector<Operator>{part, curl}));
     EXPECT_EQ(curveOf((*loaded)[0]).points.size(), 3u);
     EXPECT_EQ(maskOf((*loaded)[1]).map, MaskMap::mask2);
-    EXPECT_EQ(stackPresets(folder_), std::vector<std::string>{"parted curls"});
+    EXPECT_EQ(stackPresets(folder_.path()), std::vector<std::string>{"parted curls"});
 }
 
 TEST_F(StackFile, NamesWhatIsWrong) {
-    EXPECT_FALSE(stackPresetFile(folder_, "../up"));
-    EXPECT_FALSE(stackPresetFile(folder_, ""));
+    EXPECT_FALSE(stackPresetFile(folder_.path(), "../up"));
+    EXPECT_FALSE(stackPresetFile(folder_.path(), ""));
     const auto none = saveOperators(folder_ / "a.stack.json", std::vector<Operator>{newOperator(kSculpt)});
     ASSERT_FALSE(none);
     EXPECT_THAT(none.error().message(), HasSubstr("a.stack.json: there is no operator to save"));

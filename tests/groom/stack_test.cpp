@@ -17,6 +17,7 @@
 #include "core/operations/sculpt.h"
 #include "core/operations/trim.h"
 #include "tests/groom/groom_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {

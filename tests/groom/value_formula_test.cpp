@@ -14,6 +14,7 @@
 #include "core/operations/script.h"
 #include "core/operations/stack.h"
 #include "tests/groom/groom_samples.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {

@@ -10,6 +10,7 @@
 #include "core/render/exr.h"
 #include "core/render/png.h"
 #include "importers/foreign_reader.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {
@@ -22,13 +23,7 @@ class ForeignPicture : public testing::Test {
         const auto picture = readPicture(folder / file, kinds);
         return picture ? std::string() : picture.error().message();
     }
-    void SetUp() override {
-        folder = std::filesystem::path(testing::TempDir()) /
-                 (std::string("hairloom-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::create_directories(folder);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder); }
-    std::filesystem::path folder;
+    const TemporaryFolder folder;
 };
 
 TEST_F(ForeignPicture, IsWhatTheLibraryReads) {

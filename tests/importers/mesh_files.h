@@ -9,20 +9,12 @@
 
 #include "core/base/file.h"
 #include "importers/scene.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::test {
 
 class MeshFiles : public testing::Test {
   protected:
-    void SetUp() override {
-        folder =
-            std::filesystem::path(testing::TempDir()) /
-            (std::string("hairloom-mesh-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::remove_all(folder);
-        std::filesystem::create_directories(folder);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder); }
-
     std::filesystem::path write(const std::string& name, std::string_view content) const {
         auto path = folder / name;
         EXPECT_TRUE(writeFileAtomically(path, content));
@@ -49,7 +41,8 @@ class MeshFiles : public testing::Test {
         return scene ? std::string() : scene.error().message();
     }
 
-    std::filesystem::path folder;
+    const TemporaryFolder own_;
+    const std::filesystem::path& folder = own_.path();
 };
 
 }  // namespace hairloom::test

@@ -11,6 +11,7 @@
 #include "core/base/file.h"
 #include "importers/strands.h"
 #include "tests/support/source_dir.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom {
 namespace {
@@ -37,14 +38,7 @@ std::string curves(const std::string& name, int strands, double x = 0, const std
 
 class UsdStages : public testing::Test {
   protected:
-    void SetUp() override {
-        folder =
-            fs::path(testing::TempDir()) /
-            (std::string("hairloom-usd-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder);
-        fs::create_directories(folder / "in" / "deep");
-    }
-    void TearDown() override { fs::remove_all(folder); }
+    void SetUp() override { fs::create_directories(folder / "in" / "deep"); }
 
     void write(const fs::path& name, const std::string& text) const {
         std::ofstream(folder / name, std::ios::binary) << text;
@@ -67,7 +61,7 @@ class UsdStages : public testing::Test {
         for (const Layer& layer : imported.groom.layers) names.push_back(layer.name);
         return names;
     }
-    fs::path folder;
+    const TemporaryFolder folder;
 };
 
 TEST_F(UsdStages, WhatIsNotShownStaysOutAndIsTold) {

@@ -10,15 +10,11 @@
 #include "core/shading/marschner.h"
 #include "core/shading/melanin.h"
 #include "tests/render/render_fixture.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::render {
 namespace {
 
-/// Of the test's own: others may run beside it.
-std::filesystem::path ownFile() {
-    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    return std::filesystem::path(testing::TempDir()) / ("hairloom-environment-" + name + ".exr");
-}
 constexpr double kCircle = 2 * 3.14159265358979323846;
 
 LinearImage lit(std::uint32_t width, std::uint32_t height,
@@ -34,7 +30,8 @@ LinearImage lit(std::uint32_t width, std::uint32_t height,
 }
 
 TEST(Exr, ComesBackAsItWent) {
-    const auto file = ownFile();
+    const TemporaryFolder folder;
+    const auto file = folder / "sky.exr";
     Random random(3);
     const LinearImage image = lit(37, 19, [&](auto, auto) {
         return Vec3f(random.uniform(0, 500), random.uniform(), -random.uniform());
@@ -45,11 +42,11 @@ TEST(Exr, ComesBackAsItWent) {
     EXPECT_EQ(read->width, 37u);
     EXPECT_EQ(read->height, 19u);
     EXPECT_EQ(read->rgba, image.rgba);
-    std::filesystem::remove(file);
 }
 
 TEST(Exr, DamagedFilesAreErrors) {
-    const auto file = ownFile();
+    const TemporaryFolder folder;
+    const auto file = folder / "sky.exr";
     ASSERT_TRUE(writeExr(file, lit(16, 8, [](auto x, auto y) {
                              return Vec3f(static_cast<float>(x), static_cast<float>(y), 1);
                          })));
@@ -69,12 +66,12 @@ TEST(Exr, DamagedFilesAreErrors) {
     ASSERT_TRUE(writeFileAtomically(file, std::as_bytes(std::span(std::string_view("no picture"))),
                                     Replacing::Anything));
     EXPECT_FALSE(readExr(file));
-    std::filesystem::remove(file);
     EXPECT_FALSE(readExr(file));
 }
 
 TEST(Environment, AnEvenSkyFromAFileIsOneRadiance) {
-    const auto file = ownFile();
+    const TemporaryFolder folder;
+    const auto file = folder / "sky.exr";
     const Vec3f sky(12.5f, 3, 0.25f);
     ASSERT_TRUE(writeExr(file, lit(128, 64, [&](auto, auto) { return Vec3f(sky); })));
     const auto image = readExr(file);
@@ -86,7 +83,6 @@ TEST(Environment, AnEvenSkyFromAFileIsOneRadiance) {
         const Vec3f d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         EXPECT_TRUE(environment->radiance(d).isApprox(sky, 2e-3f));
     }
-    std::filesystem::remove(file);
 }
 
 /// Skies as Environment::gradient() has them, brighter above.

@@ -11,6 +11,7 @@
 #include "core/render/aov.h"
 #include "core/render/png.h"
 #include "core/render/tone_map.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::render {
 namespace {
@@ -19,7 +20,8 @@ TEST(Png, RoundTripsUnchanged) {
     Image image{33, 7, std::vector<std::uint8_t>(33 * 7 * 4)};
     Random random(2);
     for (auto& value : image.rgba) value = static_cast<std::uint8_t>(random.below(256));
-    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-png-test.png";
+    const TemporaryFolder folder;
+    const auto path = folder / "png-test.png";
     ASSERT_TRUE(writePng(path, image));
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
@@ -30,13 +32,12 @@ TEST(Png, RoundTripsUnchanged) {
     std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(png));
     ASSERT_NE(png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr), 0);
     EXPECT_EQ(pixels, image.rgba);
-    std::filesystem::remove(path);
 }
 
 TEST(Png, InvalidImagesAreErrors) {
-    EXPECT_FALSE(writePng(std::filesystem::path(testing::TempDir()) / "empty.png", {}));
-    EXPECT_FALSE(
-        writePng(std::filesystem::path(testing::TempDir()) / "no" / "folder.png", {1, 1, {1, 2, 3, 4}}));
+    const TemporaryFolder folder;
+    EXPECT_FALSE(writePng(folder / "empty.png", {}));
+    EXPECT_FALSE(writePng(folder / "no" / "folder.png", {1, 1, {1, 2, 3, 4}}));
 }
 
 TEST(Png, AnimationsHoldTheirFrames) {
@@ -45,7 +46,8 @@ TEST(Png, AnimationsHoldTheirFrames) {
     for (Image& frame : frames) {
         for (auto& value : frame.rgba) value = static_cast<std::uint8_t>(random.below(256));
     }
-    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-apng-test.png";
+    const TemporaryFolder folder;
+    const auto path = folder / "apng-test.png";
     ASSERT_TRUE(writeAnimatedPng(path, frames, 40));
     // What knows nothing of animations sees the first frame.
     const auto first = readPng(path);
@@ -81,16 +83,15 @@ TEST(Png, AnimationsHoldTheirFrames) {
     frames[1].width = 10;
     EXPECT_FALSE(writeAnimatedPng(path, frames, 40));
     EXPECT_FALSE(writeAnimatedPng(path, {}, 40));
-    std::filesystem::remove(path);
 }
 
 TEST(Png, DamagedOnesAreErrors) {
-    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-bad.png";
+    const TemporaryFolder folder;
+    const auto path = folder / "bad.png";
     ASSERT_TRUE(writeFileAtomically(path, std::as_bytes(std::span(std::string_view("no picture"))),
                                     Replacing::Anything));
     EXPECT_FALSE(readPng(path));
     EXPECT_FALSE(readPng(path.string() + ".not-there"));
-    std::filesystem::remove(path);
 }
 
 // Read back by the encoder's own library, which the program does not use for reading.
@@ -98,7 +99,8 @@ TEST(Exr, RoundTripsUnchanged) {
     LinearImage image{19, 33, std::vector<float>(19 * 33 * 4)};
     Random random(3);
     for (float& value : image.rgba) value = random.uniform(-2, 300);
-    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-exr-test.exr";
+    const TemporaryFolder folder;
+    const auto path = folder / "exr-test.exr";
     ASSERT_TRUE(writeExr(path, image));
     float* pixels = nullptr;
     int width = 0, height = 0;
@@ -110,7 +112,6 @@ TEST(Exr, RoundTripsUnchanged) {
     std::free(pixels);
     EXPECT_EQ(read, image.rgba);
     EXPECT_FALSE(writeExr(path, {}));
-    std::filesystem::remove(path);
 }
 
 // The same library takes the layers apart by their channels' names.
@@ -124,7 +125,8 @@ TEST(Exr, LayersStandBesideThePicture) {
     }
     const std::vector<std::string> names{"velocity", "depth", "albedo", "id"};
     auto layers = aovLayers(names, surface).value();
-    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-exr-layers.exr";
+    const TemporaryFolder folder;
+    const auto path = folder / "exr-layers.exr";
     ASSERT_TRUE(writeExr(path, image, layers));
     const auto layer = [&](const char* name) {
         float* pixels = nullptr;
@@ -146,7 +148,6 @@ TEST(Exr, LayersStandBesideThePicture) {
     EXPECT_FALSE(writeExr(path, image, layers));
     surface[2].strand = 20'000'000;
     EXPECT_FALSE(aovLayers(names, surface));
-    std::filesystem::remove(path);
 }
 
 TEST(ToneMap, KeepsBlackAndOrder) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/base/file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairloom::render {
 namespace {
@@ -26,7 +27,8 @@ TEST(Webp, AnimationsHoldTheirFrames) {
             frame.rgba[i] = static_cast<std::uint8_t>((i * 7 + static_cast<std::size_t>(k) * 90) % 256);
         frames.push_back(frame);
     }
-    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-test.webp";
+    const TemporaryFolder folder;
+    const auto path = folder / "a.webp";
     const auto written = writeAnimatedWebp(path, frames, 40);
     if (!written && written.error().message().find("without libwebp") != std::string::npos)
         GTEST_SKIP() << written.error().message();
@@ -55,7 +57,6 @@ TEST(Webp, AnimationsHoldTheirFrames) {
     EXPECT_FALSE(writeAnimatedWebp(path, frames, 40));
     EXPECT_FALSE(writeAnimatedWebp(path, {}, 40));
     EXPECT_FALSE(writeAnimatedWebp(path, std::span(frames).first(1), 0));
-    std::filesystem::remove(path);
 }
 
 }  // namespace
