@@ -7,7 +7,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -28,6 +27,7 @@
 #include "core/base/profiler.h"
 #include "core/base/utf8.h"
 #include "core/base/write_rules.h"
+#include "core/groom/file/json_words.h"
 #include "importers/reader_security.h"
 
 namespace {
@@ -36,24 +36,6 @@ using hairloom::cli::Report;
 
 enum ExitCode { kDone = 0, kFailed = 1, kWrongUsage = 2 };
 
-/// Numbers have as many digits as a person reads; `--json` has all.
-Report rounded(const Report& value) {
-    constexpr double kDigits = 4;
-    if (value.is_structured()) {
-        Report all = value;
-        for (auto& part : all) part = rounded(part);
-        return all;
-    }
-    if (!value.is_number_float()) return value;
-    const double number = value.get<double>();
-    if (number == 0 || !std::isfinite(number)) return value;
-    const double digits = std::max(0.0, kDigits - 1 - std::floor(std::log10(std::abs(number))));
-    // Beyond what a power of ten can say it is left alone.
-    if (digits > 300) return value;
-    const double unit = std::pow(10.0, digits);
-    return std::round(number * unit) / unit;
-}
-
 /// Names may quote bytes of damaged files, which need not be valid UTF-8.
 std::string textOf(const Report& value) {
     return hairloom::cleanUtf8(value.is_string()
@@ -61,13 +43,17 @@ std::string textOf(const Report& value) {
                                    : value.dump(-1, ' ', false, Report::error_handler_t::replace));
 }
 
+/// Numbers have as many digits as a person reads; `--json` has all. Rows that say themselves in words stand
+/// so.
 void printForPeople(std::FILE* stream, const Report& exact) {
-    const Report report = rounded(exact);
+    const Report report = hairloom::withFewDigits(exact);
 
     for (const auto& [key, value] : report.items()) {
         if (value.is_array()) {
             fmt::print(stream, "{}:{}\n", key, value.empty() ? " none" : "");
-            for (const auto& row : value) fmt::print(stream, "  {}\n", textOf(row));
+            for (const auto& row : value)
+                fmt::print(stream, "  {}\n",
+                           textOf(row.is_object() && row.contains("words") ? row["words"] : row));
         } else {
             fmt::print(stream, "{}: {}\n", key, textOf(value));
         }

@@ -3,9 +3,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "cli/advice_report.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
+#include "cli/groom_comparison.h"
 #include "cli/job.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
@@ -81,7 +84,7 @@ Result<Report> info(const std::string& path, const std::string& unit) {
     report["version"] = opened->format == "hairloom" ? Report(kProjectVersion) : Report(nullptr);
     report["strand_attributes"] = attributeNames(groom.strandAttributes);
     report["point_attributes"] = attributeNames(groom.pointAttributes);
-    if (opened->format == "Hairloom runtime asset") {
+    if (opened->format == kAssetFormat) {
         const auto asset = assetReport(path);
         if (!asset) return tl::unexpected(asset.error());
         report["asset"] = *asset;
@@ -95,17 +98,30 @@ Result<Report> info(const std::string& path, const std::string& unit) {
 JobRun declare(CLI::App& job) {
     struct Options {
         std::string file, unit;
+        std::vector<std::string> versions;
     };
     const auto options = std::make_shared<Options>();
-    job.add_option("file", options->file, "Project, hair file or mesh")->required();
+    job.add_option("file", options->file, "Project, hair file or mesh");
+    job.add_option(
+           "--diff", options->versions,
+           "Two files instead: lists what changed from the first to the second. Strands are matched by their "
+           "ids, else by order or roots")
+        ->expected(2);
     addUnitOption(job, options->unit);
-    return [options](const std::string&) { return info(options->file, options->unit); };
+    return [options](const std::string&) {
+        if (options->file.empty() == options->versions.empty())
+            throw WrongUsage(options->file.empty() ? "no file is given" : "a file is given beside --diff",
+                             "expected FILE, or --diff A B");
+        if (options->versions.empty()) return info(options->file, options->unit);
+        return compareFiles(options->versions[0], options->versions[1], options->unit);
+    };
 }
 
 }  // namespace
 
 Job infoJob() {
-    return {"info", "Summarise a project, hair file or mesh", "hair.hairloom --json", declare};
+    return {"info", "Summarise a project, hair file or mesh, or compare two", "hair.hairloom --json",
+            declare};
 }
 
 }  // namespace hairloom::cli

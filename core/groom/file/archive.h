@@ -26,6 +26,13 @@ bool startsAsArchive(std::span<const std::byte> bytes);
 /// Gathers arrays and lays them out. The arrays are not copied before finish() and must live until then.
 class ArchiveWriter {
   public:
+    struct Array {
+        std::string name;
+        std::string_view type;
+        std::size_t count;
+        std::span<const std::byte> bytes;
+    };
+
     /// `kind` tells apart the files that use the container ("project"); `version` is that of the kind's
     /// content.
     ArchiveWriter(std::string kind, std::uint32_t version) : kind_(std::move(kind)), version_(version) {}
@@ -38,18 +45,15 @@ class ArchiveWriter {
     }
     void add(std::string name, const AttributeData& data);
 
+    /// As they were added.
+    const std::vector<Array>& arrays() const { return arrays_; }
+
     /// The whole file. `head` is an object without the members "kind", "version" and "arrays", which are
     /// added. Text that is not UTF-8 is stored with replacement characters. Error: a head beyond
     /// kMaxJsonBytes.
     Result<std::vector<std::byte>> finish(const nlohmann::ordered_json& head) const;
 
   private:
-    struct Array {
-        std::string name;
-        std::string_view type;
-        std::size_t count;
-        std::span<const std::byte> bytes;
-    };
     std::string kind_;
     std::uint32_t version_;
     std::vector<Array> arrays_;
