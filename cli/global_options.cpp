@@ -17,6 +17,10 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& options) {
     app.add_flag("--force", options.force,
                  "Allow overwriting an input, another kind of file, a read-only file, a device or a FIFO");
     app.add_flag(
+        "--manifest", options.manifest,
+        "Write a manifest beside the outputs: their bytes and hashes, the files that were read, what the "
+        "groom holds, program and command");
+    app.add_flag(
         "--allow-unconfined", options.allowUnconfined,
         "Read foreign files even if the process that reads them cannot be confined (docs/security.md)");
 }

@@ -14,6 +14,7 @@ struct GlobalOptions {
     bool profile = false;
     bool force = false;
     bool allowUnconfined = false;
+    bool manifest = false;
 };
 
 /// `options` outlives the parsing.

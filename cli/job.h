@@ -35,10 +35,12 @@ class Jobs {
   public:
     explicit Jobs(CLI::App& app);
 
-    /// Runs the job that was asked for; one was, where parsing succeeded.
-    Result<Report> run(const std::string& commandLine) const { return chosen_(commandLine); }
+    /// Runs the job that was asked for; one was, where parsing succeeded. Throws WrongUsage for a manifest of
+    /// a job that was given nothing to write.
+    Result<Report> run(const std::string& commandLine, bool withManifest) const;
 
   private:
+    CLI::App* command_ = nullptr;
     JobRun chosen_;
 };
 

@@ -79,8 +79,8 @@ int failWith(const hairloom::Error& error, bool json) {
     return kFailed;
 }
 
-int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine, bool json) {
-    const auto report = jobs.run(commandLine);
+int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine, bool json, bool manifest) {
+    const auto report = jobs.run(commandLine, manifest);
     if (!report) return failWith(report.error(), json);
     try {
         if (json) {
@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
     try {
         hairloom::cli::refuseEmptyItems(app, {argv + 1, argv + argc});
         hairloom::setThreadCount(options.threads);
-        const int exitCode = runChosenJob(jobs, joined(argc, argv), options.json);
+        const int exitCode = runChosenJob(jobs, joined(argc, argv), options.json, options.manifest);
         if (options.profile) printProfile();
         return exitCode;
     } catch (const hairloom::cli::WrongUsage& error) {

@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "cli/error_report.h"
+#include "cli/manifest.h"
+#include "cli/versions.h"
+#include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/base/output_batch.h"
 #include "core/base/write_rules.h"
@@ -25,6 +28,16 @@ struct Streams {
     bool json = false;          ///< the report goes to standard output as JSON
     bool fileIsOutput = false;  ///< a file goes there
 };
+
+struct Manifest {
+    bool isWanted = false;
+    std::string commandLine;
+};
+
+Manifest& manifest() {
+    static Manifest instance;
+    return instance;
+}
 
 Streams& streams() {
     static Streams instance;
@@ -62,33 +75,44 @@ void takePipe(const std::string& path, std::size_t outputs, ReadBack readBack) {
     allowPipe(path);
 }
 
-/// Makes a folder, and takes what it made away again, where that is still empty, unless it is kept.
+/// Makes folders, and takes what it made away again, where that is still empty, unless it is kept.
 class MadeFolders {
   public:
-    explicit MadeFolders(const fs::path& folder) {
+    explicit MadeFolders(const std::vector<fs::path>& folders) {
         std::error_code code;
-        for (fs::path at = folder; !at.empty() && !fs::exists(at, code); at = at.parent_path()) {
-            made_.push_back(at);
-            if (at == at.parent_path()) break;
+        for (const fs::path& folder : folders) {
+            std::vector<fs::path> missing;
+            for (fs::path at = folder; !at.empty() && !fs::exists(at, code); at = at.parent_path()) {
+                missing.push_back(at);
+                if (at == at.parent_path()) break;
+            }
+            made_.insert(made_.begin(), missing.begin(), missing.end());
+            if (!made_.empty()) removeFoldersWhenEnded(made_);
+            fs::create_directories(folder, code);
+            if (!code || !failed_.empty()) continue;
+            failed_ = folder.string();
+            why_ = code.message();
         }
-        removeFoldersWhenEnded(made_);
-        fs::create_directories(folder, failed_);
     }
     MadeFolders(const MadeFolders&) = delete;
     MadeFolders& operator=(const MadeFolders&) = delete;
     ~MadeFolders() {
+        if (made_.empty()) return;
         removeFoldersWhenEnded({});
         std::error_code code;
-        for (const fs::path& folder : made_) {
-            if (!fs::is_empty(folder, code) || code || !fs::remove(folder, code)) return;
-        }
+        for (const fs::path& folder : made_)
+            if (!isKept_ && fs::is_empty(folder, code) && !code) fs::remove(folder, code);
     }
-    const std::error_code& failed() const { return failed_; }
-    void keep() { made_.clear(); }
+    Status status() const {
+        if (failed_.empty()) return {};
+        return failIn(failed_, {}, "the folder cannot be made: " + why_);
+    }
+    void keep() { isKept_ = true; }
 
   private:
     std::vector<fs::path> made_;  ///< the innermost first
-    std::error_code failed_;
+    bool isKept_ = false;
+    std::string failed_, why_;  ///< a folder that cannot be made
 };
 
 /// All that can be known before the work: by the rules, and by writing a byte that goes again.
@@ -125,22 +149,41 @@ Status trySequence(const Output& output) {
         throw WrongUsage(fmt::format("{} is a pipe, but this job writes {} files", output.path, output.files),
                          "expected the name of a file");
     for (std::size_t i = 0; i < output.files; ++i) {
-        if (auto status = OutputFile::check(numbered(output.path, i), output.kind); !status) return status;
+        if (auto status = OutputFile::check(numbered(output.path, output.first + i), output.kind); !status)
+            return status;
     }
-    const auto file = tried(numbered(output.path, 0), output.kind);
+    const auto file = tried(numbered(output.path, output.first), output.kind);
     return file ? Status() : tl::unexpected(file.error());
 }
 
-/// Where nothing fails all files are in place at once, with `run`'s report.
-Result<Report> inBatch(const std::function<Result<Report>()>& run) {
+/// Lists what waits for its batch.
+Status addManifest(const fs::path& path, Report& report) {
+    const auto content = manifestOf(path, waitingFiles(), manifest().commandLine);
+    if (!content) return tl::unexpected(content.error());
+    const std::string text = content->dump(1, ' ', false, Report::error_handler_t::replace) + "\n";
+    if (auto written = writeFileAtomically(path, std::string_view(text)); !written) return written;
+    report["manifest"] = path.string();
+    return {};
+}
+
+/// Where nothing fails all files are in place at once, with `run`'s report, and the manifest, if there is to
+/// be one.
+Result<Report> inBatch(const fs::path& manifestPath, const std::function<Result<Report>()>& run) {
     OutputBatch batch;
     auto report = run();
     if (!report) return report;
+    if (!manifestPath.empty()) {
+        if (auto status = addManifest(manifestPath, *report); !status) return tl::unexpected(status.error());
+    }
     if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
     return report;
 }
 
 }  // namespace
+
+void writeManifest(const std::string& commandLine) {
+    manifest() = {true, commandLine};
+}
 
 bool writesToStandardOutput() {
     return streams().fileIsOutput;
@@ -154,9 +197,27 @@ Result<Report> withOutputs(const std::vector<Output>& outputs, const std::functi
                            ReadBack readBack) {
     const auto count = static_cast<std::size_t>(
         std::ranges::count_if(outputs, [](const Output& output) { return !output.path.empty(); }));
-    refuseOneNameForTwo(outputs);
+    fs::path manifestPath;
+    std::vector<Output> all = outputs;
+    if (const auto first =
+            std::ranges::find_if(outputs, [](const Output& output) { return !output.path.empty(); });
+        manifest().isWanted && first != outputs.end()) {
+        if (isPipe(first->path))
+            throw WrongUsage(fmt::format("{} is a pipe, which has no manifest", first->path),
+                             "expected the name of a file");
+        manifestPath = first->path + ".manifest.json";
+        all.push_back({manifestPath.string(), content::kJson});
+    }
+    refuseOneNameForTwo(all);
+    // A folder of a new version is not there yet.
+    std::vector<fs::path> folders;
+    for (const Output& output : all)
+        if (isVersioned(output.path) && fs::path(output.path).has_parent_path())
+            folders.push_back(fs::path(output.path).parent_path());
+    MadeFolders made(folders);
+    if (auto status = made.status(); !status) return tl::unexpected(status.error());
     std::vector<OutputFile> kept;
-    for (const Output& output : outputs) {
+    for (const Output& output : all) {
         if (output.path.empty()) continue;
         refuseOwnOutput(output.path);
         if (output.files > 0) {
@@ -171,7 +232,9 @@ Result<Report> withOutputs(const std::vector<Output>& outputs, const std::functi
     }
     // Where nothing was asked for, what is written is the job's own and read by it: files of a benchmark,
     // say.
-    return count == 0 ? run() : inBatch(run);
+    auto report = count == 0 ? run() : inBatch(manifestPath, run);
+    if (report) made.keep();
+    return report;
 }
 
 void refusePipeForFolder(const std::string& folder) {
@@ -183,9 +246,12 @@ Result<Report> withOutputFolder(const std::string& folder, const std::vector<std
                                 const std::function<Result<Report>()>& run) {
     if (folder.empty()) return run();
     refusePipeForFolder(folder);
-    MadeFolders made(folder);
-    if (made.failed()) return failIn(folder, {}, "the folder cannot be made: " + made.failed().message());
-    for (const std::string& name : files) {
+    MadeFolders made({folder});
+    if (auto status = made.status(); !status) return tl::unexpected(status.error());
+    const fs::path manifestPath = manifest().isWanted ? fs::path(folder) / "manifest.json" : fs::path();
+    std::vector<std::string> names = files;
+    if (!manifestPath.empty()) names.emplace_back("manifest.json");
+    for (const std::string& name : names) {
         if (auto status = OutputFile::check(fs::path(folder) / name); !status)
             return tl::unexpected(status.error());
     }
@@ -195,7 +261,7 @@ Result<Report> withOutputFolder(const std::string& folder, const std::vector<std
         error.file = folder;
         return tl::unexpected(std::move(error));
     }
-    auto report = inBatch(run);
+    auto report = inBatch(manifestPath, run);
     if (report) made.keep();
     return report;
 }

@@ -24,6 +24,7 @@ struct Output {
     std::string path;            ///< no file where it is empty
     std::string_view kind = {};  ///< one of hairloom::content, where the job knows it
     std::size_t files = 0;       ///< of a sequence, whose names are numbered; 0 where there is none
+    std::size_t first = 0;       ///< number of the sequence's first file
 };
 
 /// Errors: as OutputFile::open() for any of them, before `run` is called. Throws WrongUsage for a pipe where
@@ -39,6 +40,10 @@ Result<Report> withOutputFolder(const std::string& folder, const std::vector<std
 /// Throws WrongUsage for "-" in place of a folder: for jobs that keep theirs otherwise than
 /// withOutputFolder().
 void refusePipeForFolder(const std::string& folder);
+
+/// Called before a job runs: beside its outputs it writes a manifest (cli/manifest.h), F.manifest.json for a
+/// first output F, or manifest.json in a folder. The text is the program's command line.
+void writeManifest(const std::string& commandLine);
 
 /// The job writes its file to standard output, so that its report goes to standard error.
 bool writesToStandardOutput();

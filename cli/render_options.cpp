@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/render_options.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <tuple>
 #include <utility>
@@ -88,8 +90,16 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
         throw WrongUsage("--frames runs backwards, has step 0 or has more than 10000 frames",
                          "FIRST,LAST[,STEP]");
     }
+    const std::uint64_t around = options.handles * step;
+    if (around > options.frames[0])
+        throw WrongUsage(fmt::format("--handles {} before frame {} begins before the first frame",
+                                     options.handles, options.frames[0]),
+                         fmt::format("expected --frames from {} on", around));
+    const std::uint64_t last = options.frames[0] + (options.frames[1] - options.frames[0]) / step * step;
+    if ((last - options.frames[0] + 2 * around) / step >= kMaxShots)
+        throw WrongUsage("--frames with their --handles are more than 10000", "fewer handles");
     std::vector<Shot> shots;
-    for (std::uint64_t f = options.frames[0]; f <= options.frames[1]; f += step)
+    for (std::uint64_t f = options.frames[0] - around; f <= last + around; f += step)
         shots.push_back({f, options.turn});
     return shots;
 }
@@ -188,6 +198,15 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         job.add_option("--frames", options->frames, "Frames FIRST,LAST[,STEP] to render, one image each")
             ->delimiter(',')
             ->excludes(frame);
+    job.add_option("--handles", options->handles,
+                   "Number of frames to render before and behind --frames as well")
+        ->check(CLI::Range(0, 1000))
+        ->needs(frames);
+    auto* start =
+        job.add_option("--start", options->start,
+                       "Number of the image of FIRST, as 1001 (default: images are numbered from 0)")
+            ->check(CLI::Range(0, 1'000'000))
+            ->needs(frames);
     auto* turn =
         job.add_option("--turn", options->turn,
                        "Degrees by which the camera is turned around the hair: one image of a turntable");
@@ -216,7 +235,10 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     job.add_option("--backend", options->backend, "Graphics API. Direct3D 11 is only on Windows")
         ->check(CLI::IsMember({"any", "vulkan", "d3d11"}));
     job.add_option("-o,--output", options->output, "PNG to write. Several images are numbered")->required();
-    job.final_callback([options, device, frame, frames] {
+    job.final_callback([options, device, frame, frames, start] {
+        if (start->count() > 0 && *options->start < options->handles)
+            throw CLI::ValidationError("--start", fmt::format("{} leaves no numbers for {} handles",
+                                                              *options->start, options->handles));
         options->chooseDevice = device->count() > 0;
         const bool moves = !options->record.empty() || !options->motion.empty();
         for (const CLI::Option* option : {frame, frames}) {

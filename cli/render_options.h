@@ -42,6 +42,8 @@ struct RenderJobOptions {
     std::vector<std::string> hiddenGroups;
     std::uint64_t frame = 0;
     std::vector<std::uint64_t> frames;  ///< first, last, step
+    std::uint64_t handles = 0;
+    std::optional<std::uint64_t> start;  ///< number of the image of the first frame without handles
     std::uint32_t turntable = 0;
     float turn = 0;  ///< degrees, without a turntable
     std::uint32_t device = 0;
@@ -60,6 +62,8 @@ struct RenderJobOptions {
     std::string output;
 
     bool sequence() const { return !frames.empty() || turntable > 0; }
+    /// Of the first image, which may be one of the handles.
+    std::uint64_t firstNumber() const { return start ? *start - handles : 0; }
 };
 
 /// Adds the options of `render` to `job`. They live as long as what is returned.

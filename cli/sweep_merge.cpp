@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cli/certificate_report.h"
+#include "cli/manifest.h"
 #include "cli/sweep_run.h"
 #include "core/base/file.h"
 #include "core/charts/html_report.h"
@@ -161,16 +162,16 @@ std::string tableOf(const Parts& parts) {
 
 /// Every output with its hash, as JSON and as `xxhsum --check` reads it.
 std::pair<Report, std::string> manifestOf(const SweepFolder& folder, const Parts& parts) {
-    Report manifest{{"sweep", folder.sweep().name},
-                    {"program", "hairloom-cli " HAIRLOOM_VERSION},
-                    {"hash", "XXH3, 64 bits"},
-                    {"files", Report::array()}};
+    Report manifest = manifestHead();
+    manifest["sweep"] = folder.sweep().name;
+    manifest["files"] = Report::array();
     std::string lines;
     for (const auto& [part, done] : parts.done) {
         for (const PartFile& file : done.files) {
             const std::string name = "parts/" + part->name + "/" + file.name;
-            manifest["files"].push_back(
-                Report{{"name", name}, {"bytes", file.bytes}, {"hash", file.hash}, {"values", part->values}});
+            Report row = manifestRow(name, file.bytes, file.hash);
+            row["values"] = part->values;
+            manifest["files"].push_back(std::move(row));
             lines += fmt::format("XXH3 ({}) = {}\n", name, file.hash);
         }
     }

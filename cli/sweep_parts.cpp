@@ -14,8 +14,8 @@
 
 #include "cli/error_report.h"
 #include "cli/finite_numbers.h"
+#include "cli/manifest.h"
 #include "core/base/file.h"
-#include "core/base/file_hash.h"
 #include "core/base/hash.h"
 #include "core/base/log.h"
 #include "core/base/stopwatch.h"
@@ -66,7 +66,7 @@ Result<std::vector<PartFile>> describedFiles(const fs::path& folder) {
     for (const fs::path& path : *paths) {
         std::error_code code;
         PartFile file{path.lexically_relative(folder).generic_string(), fs::file_size(path, code),
-                      hashOfFile(path)};
+                      hashText(path)};
         if (code || file.hash.empty()) return failIn(path.string(), {}, "cannot be read back");
         files.push_back(std::move(file));
     }
@@ -140,11 +140,6 @@ Status writeReport(const fs::path& path, const Report& report) {
 
 }  // namespace
 
-std::string hashOfFile(const fs::path& path) {
-    const auto hash = hashFile(path);
-    return hash ? fmt::format("{:016x}", *hash) : std::string();
-}
-
 Result<SweepFolder> SweepFolder::open(const Sweep& sweep, fs::path folder) {
     std::error_code code;
     const fs::path mark = folder / "sweep.json";
@@ -185,7 +180,7 @@ std::string SweepFolder::inputHash(const SweepPart& part, KnownHashes& known) co
             std::error_code code;
             if (comma > at && fs::is_regular_file(path, code)) {
                 const auto [hash, isNew] = known.try_emplace(path);
-                if (isNew) hash->second = hashOfFile(path);
+                if (isNew) hash->second = hashText(path);
                 all += "\n " + hash->second;
             }
             at = comma + 1;
@@ -209,7 +204,7 @@ std::optional<DonePart> SweepFolder::done(const SweepPart& part, KnownHashes& kn
                           row.at("hash").get<std::string>()};
             std::error_code code;
             const fs::path path = folderOf(part) / file.name;
-            if (fs::file_size(path, code) != file.bytes || code || hashOfFile(path) != file.hash)
+            if (fs::file_size(path, code) != file.bytes || code || hashText(path) != file.hash)
                 return std::nullopt;
             done.files.push_back(std::move(file));
         }
@@ -255,7 +250,7 @@ Result<DonePart> SweepFolder::run(const SweepPart& part) const {
                    {"node", done->node},      {"warnings", done->warnings}, {"report", done->report},
                    {"files", Report::array()}};
     for (const PartFile& file : done->files)
-        content["files"].push_back(Report{{"name", file.name}, {"bytes", file.bytes}, {"hash", file.hash}});
+        content["files"].push_back(manifestRow(file.name, file.bytes, file.hash));
     const std::string text = content.dump(1, ' ', false, Report::error_handler_t::replace) + "\n";
     auto status = state->write(std::as_bytes(std::span(text)));
     if (status) status = state->finish();

@@ -75,7 +75,4 @@ class SweepFolder {
     std::filesystem::path folder_;
 };
 
-/// 16 hexadecimal digits; empty where the file cannot be read.
-std::string hashOfFile(const std::filesystem::path& path);
-
 }  // namespace hairloom::cli

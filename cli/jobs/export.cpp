@@ -31,10 +31,11 @@ struct ExportOptions {
     std::string format;
     std::string target;
     std::string what = "guides";
-    std::vector<std::string> layers;  ///< names; empty: all
-    std::string record;               ///< of simulate; empty: at rest
-    std::vector<std::uint64_t> frames;
-    std::optional<double> start;  ///< number of the first frame in the file
+    std::vector<std::string> layers;    ///< names; empty: all
+    std::string record;                 ///< of simulate; empty: at rest
+    std::vector<std::uint64_t> frames;  ///< first and last; with the handles behind addHandles()
+    std::uint64_t handles = 0;
+    std::optional<double> start;  ///< number in the file of the first frame without handles
     double framesPerSecond = 0;   ///< of the file; 0: of the record
     std::string shutter;          ///< "OPEN:CLOSE"; empty: none
     std::uint32_t samples = 3;
@@ -154,6 +155,18 @@ Status addFramesAround(const ExportOptions& options, const Groom& groom, HairToE
     return {};
 }
 
+/// The frames with those of the handles. Throws WrongUsage where they begin before the record.
+void addHandles(ExportOptions& options) {
+    if (options.handles == 0 || options.frames.size() != 2 || options.frames[1] < options.frames[0]) return;
+    if (options.handles > options.frames[0])
+        throw WrongUsage(
+            fmt::format("--handles {} before frame {} begins before the record", options.handles,
+                        options.frames[0]),
+            fmt::format("expected --frames from {} on, as simulate --handles leaves them", options.handles));
+    options.frames[0] -= options.handles;
+    options.frames[1] += options.handles;
+}
+
 Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& groom) {
     HairToExport wanted;
     wanted.hair = options.what == "all"     ? ExportedHair::all
@@ -178,7 +191,14 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
     }
     const auto rate = static_cast<double>(wanted.frames.front().framesPerSecond);
     const double perFrame = options.framesPerSecond > 0 ? options.framesPerSecond / rate : 1;
-    wanted.firstFrame = options.start.value_or(std::round(static_cast<double>(options.frames[0]) * perFrame));
+    const double handles = static_cast<double>(options.handles) * perFrame;
+    if (std::abs(handles - std::round(handles)) > 1e-6)
+        throw WrongUsage(
+            fmt::format("--handles {} end between frames of the file, at {:g} in place of {:g} a second",
+                        options.handles, options.framesPerSecond, rate),
+            fmt::format("expected handles that are whole frames at {:g} a second", options.framesPerSecond));
+    wanted.firstFrame = options.start ? *options.start - std::round(handles)
+                                      : std::round(static_cast<double>(options.frames[0]) * perFrame);
     if (options.shutter.empty() && perFrame == 1) return wanted;
     if (auto status = addFramesAround(options, groom, wanted); !status) return tl::unexpected(status.error());
     return wanted;
@@ -276,6 +296,10 @@ JobRun declare(CLI::App& job) {
             ->delimiter(',')
             ->needs(record);
     record->needs(frames);
+    job.add_option("--handles", options->handles,
+                   "Number of frames of the record to export before and behind --frames as well")
+        ->check(CLI::Range(0, 1000))
+        ->needs(record);
     job.add_option("--start", options->start,
                    "Number of FIRST in the file, as 1001 (default: its number in the record)")
         ->check(CLI::Range(-1e6, 1e6))
@@ -308,6 +332,7 @@ JobRun declare(CLI::App& job) {
         ->required();
     return [options, ofCards](const std::string&) {
         checkLevels(options->levels);
+        addHandles(*options);
         checkCardOptions(*options, ofCards);
         if (options->format == kWebFormat)
             return withOutputFolder(options->output, {"hair.hairrt", "hair.js", "index.html"},

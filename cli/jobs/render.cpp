@@ -273,7 +273,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
             report["why"] = playing->engine.why;
         }
         if (!options.animation.empty() || !options.strip.empty()) images.push_back(picture->image);
-        if (auto written = writePictures(options, *colours, std::move(*picture), i); !written)
+        if (auto written = writePictures(options, *colours, std::move(*picture), options.firstNumber() + i);
+            !written)
             return tl::unexpected(written.error());
         if (progress) progress->done(i + 1);
     }
@@ -299,8 +300,9 @@ JobRun declare(CLI::App& job) {
         const auto shots = shotsOf(*options);
         if (!shots) return Result<Report>(tl::unexpected(shots.error()));
         const std::size_t files = options->sequence() ? shots->size() : 0;
-        return withOutputs({{options->output, content::kPng, files},
-                            {options->exr, {}, files},
+        const std::size_t first = options->firstNumber();
+        return withOutputs({{options->output, content::kPng, files, first},
+                            {options->exr, {}, files, first},
                             {options->animation},
                             {options->strip, content::kPng}},
                            [&] { return renderToFile(*options); });

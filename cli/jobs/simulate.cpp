@@ -32,6 +32,7 @@ struct SimulateOptions {
     std::string input;
     std::uint64_t frames = 60;
     std::uint64_t preRoll = 0;
+    std::uint64_t handles = 0;  ///< frames at each end
     float framesPerSecond = 60;
     std::string engine;
     std::string backend = "cpu";
@@ -225,7 +226,11 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (options.sag) return sagOf(*groom, options);
     const auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
-    HeadPose pose = (*motion)->poseAt(0);
+    const auto poseOf = [&](std::uint64_t frame) {
+        const float number = static_cast<float>(frame) - static_cast<float>(options.handles);
+        return (*motion)->poseAt(number / options.framesPerSecond);
+    };
+    HeadPose pose = poseOf(0);
     SimulationOptions methodOptions = methodOf(options);
     const auto engine = engineOf(options, *groom);
     if (!engine) return tl::unexpected(engine.error());
@@ -245,14 +250,15 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (!options.against.empty()) comparison.emplace(options.against);
 
     std::optional<DrawnDepthMeter> depth = depthMeter(*groom);
-    Progress progress("simulating", options.preRoll + options.frames);
+    const std::uint64_t frames = options.frames + 2 * options.handles;
+    Progress progress("simulating", options.preRoll + frames);
     for (std::uint64_t frame = 1; frame <= options.preRoll; ++frame) {
         simulation->step(1.0f / options.framesPerSecond, pose);
         if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
         progress.done(frame);
     }
-    for (std::uint64_t frame = 1; frame <= options.frames; ++frame) {
-        pose = (*motion)->poseAt(static_cast<float>(frame) / options.framesPerSecond);
+    for (std::uint64_t frame = 1; frame <= frames; ++frame) {
+        pose = poseOf(frame);
         simulation->step(1.0f / options.framesPerSecond, pose);
         if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
         if (depth) {
@@ -278,6 +284,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     report["advice"] = advice;
     report["frames"] = options.frames;
     report["pre_roll"] = options.preRoll;
+    report["handles"] = options.handles;
     report["method"] = options.method;
     report["engine"] = engineName(engine->choice.kind);
     report["why"] = engine->choice.why;
@@ -342,18 +349,26 @@ JobRun declare(CLI::App& job) {
         job.add_flag("--sag", options->sag,
                      "Let the authored shape hang under gravity and contact for two seconds. Reports how far "
                      "each strand sags, as it is and as rods that carry their weight. -o saves the latter");
-    job.add_option("--record", options->record, "File for all frames");
+    auto* record = job.add_option("--record", options->record, "File for all frames");
+    auto* handles =
+        job.add_option("--handles", options->handles,
+                       "Number of frames to simulate and record before and behind --frames as well. "
+                       "Frame 0 of the motion keeps its time: keys before it and the end of clips "
+                       "move the first handles")
+            ->check(CLI::Range(0, 1000))
+            ->needs(record);
     job.add_option("--against", options->against,
                    "Record of the same groom and frames, to measure the distance from");
-    auto* output = job.add_option("-o,--output", options->output, "Project to write, with the last frame");
+    auto* output = job.add_option("-o,--output", options->output, "Project to write, with the last frame")
+                       ->excludes(handles);
     job.add_flag("--take", options->take,
                  "Makes the last frame the authored shape that -o writes, on the head at rest, as rods that "
                  "carry their weight. The operators stay, with a sculpt on top")
         ->needs(output);
     // It has two seconds, the head at rest and a solver of its own.
     for (const char* other :
-         {"--frames", "--pre-roll", "--fps", "--engine", "--backend", "--device", "--motion", "--character",
-          "--method", "--hair-hair", "--record", "--against", "--take"})
+         {"--frames", "--pre-roll", "--handles", "--fps", "--engine", "--backend", "--device", "--motion",
+          "--character", "--method", "--hair-hair", "--record", "--against", "--take"})
         sag->excludes(other);
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},

@@ -23,6 +23,10 @@ class OutputBatch {
     bool isOuter_ = false;
 };
 
+/// The names of files that this thread has written and that wait for their batch, as they were asked for, in
+/// order.
+std::vector<std::filesystem::path> waitingFiles();
+
 /// Where what this thread has written to that name can be read: there, unless it waits for its batch.
 std::filesystem::path whereWritten(const std::filesystem::path& path);
 

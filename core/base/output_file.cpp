@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 #include <system_error>
 
 #include "core/base/content_kind.h"
@@ -37,6 +38,9 @@ Status mayReplace(const fs::path& path, const fs::path& target, std::string_view
     };
     if (!state.exists) return {};
     if (state.folder) return failIn(path.string(), {}, "is a folder", "expected the name of a file");
+    if (isKeptNew(target))
+        return failIn(path.string(), {}, "was made by another job since this version was taken",
+                      "run the job again, which takes the next version");
     if (writeRules().force || replacing == Replacing::Anything) return {};
     if (state.device == kFifo && isPipeAllowed(path)) return {};
     if (!state.device.empty()) return refuse(fmt::format("is {}", state.device));
@@ -234,6 +238,14 @@ fs::path whereWritten(const fs::path& path) {
         return file->temporary && file->target == *target;
     });
     return last == files.rend() ? path : (*last)->temporary->path();
+}
+
+std::vector<fs::path> waitingFiles() {
+    std::vector<fs::path> paths;
+    std::set<fs::path> isKnown;
+    for (const auto& file : waiting().files)
+        if (file->temporary && isKnown.insert(file->path).second) paths.push_back(file->path);
+    return paths;
 }
 
 fs::path numbered(const fs::path& path, std::size_t number) {

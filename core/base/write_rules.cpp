@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/base/write_rules.h"
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <set>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -25,6 +27,7 @@ struct Known {
     /// By names without links. A name alone tells of a file that another has taken the place of.
     std::map<std::filesystem::path, KnownFile> files;
     std::set<std::filesystem::path> pipes;
+    std::vector<std::string> newNames;  ///< what they begin with, without links
 };
 
 Known& known() {
@@ -58,6 +61,7 @@ void setWriteRules(WriteRules rules) {
     known().rules = std::move(rules);
     known().files.clear();
     known().pipes.clear();
+    known().newNames.clear();
 }
 
 const WriteRules& writeRules() {
@@ -93,6 +97,31 @@ bool isChangedByOthers(const std::filesystem::path& path) {
     const FileVersion before = knownVersion(path);
     const FileVersion now = fileVersion(path);
     return before.exists && now.exists && now != before;
+}
+
+std::vector<std::filesystem::path> notedInputs() {
+    const std::lock_guard lock(known().mutex);
+    std::vector<std::filesystem::path> inputs;
+    for (const auto& [path, file] : known().files)
+        if (!file.written) inputs.push_back(path);
+    return inputs;
+}
+
+void keepNew(const std::filesystem::path& beginning) {
+    const std::lock_guard lock(known().mutex);
+    const std::filesystem::path folder = beginning.has_parent_path() ? beginning.parent_path() : ".";
+    known().newNames.push_back((keyOf(folder) / beginning.filename()).string());
+}
+
+bool isKeptNew(const std::filesystem::path& path) {
+    const std::lock_guard lock(known().mutex);
+    if (known().newNames.empty()) return false;
+    const auto key = keyOf(path);
+    const std::string name = key.string();
+    const auto begins = [&](const std::string& beginning) { return name.starts_with(beginning); };
+    if (std::ranges::none_of(known().newNames, begins)) return false;
+    const auto found = known().files.find(key);
+    return found == known().files.end() || !found->second.written;
 }
 
 void allowPipe(const std::filesystem::path& path) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/base/file_version.h"
 #include "core/base/result.h"
@@ -40,6 +41,13 @@ FileVersion knownVersion(const std::filesystem::path& path);
 /// Somebody else has changed or replaced the file since this process read or wrote it. False where the file
 /// is gone.
 bool isChangedByOthers(const std::filesystem::path& path);
+
+/// The files that this process has read and that it has not written since, by names without links, in order.
+std::vector<std::filesystem::path> notedInputs();
+
+/// Names that begin with this one are for this process alone: it replaces nothing that has one, whatever the
+/// rules say, unless it has written that itself. Rules must keep inputs. Until setWriteRules().
+void keepNew(const std::filesystem::path& beginning);
 
 /// Bytes written to this name may go through a FIFO, or, for "-", to standard output.
 void allowPipe(const std::filesystem::path& path);

@@ -18,6 +18,9 @@ enum class InputState : std::uint8_t {
 /// What is known of the file at `path`, a name without links, whose version now is `version`.
 InputState inputState(const std::filesystem::path& path, const FileVersion& version);
 
+/// Whether keepNew() holds for `path`, a name without links, and this process has not written it.
+bool isKeptNew(const std::filesystem::path& path);
+
 /// The process wrote this file: reading it back makes it no input.
 void noteWritten(const std::filesystem::path& path);
 

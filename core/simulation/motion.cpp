@@ -38,6 +38,7 @@ class RestMotion : public HeadMotion {
 /// Radians. The angular speed rises over half a second as a smoothstep, so that the start is no blow; the
 /// integral of 3s² − 2s³ over the ramp is half its length.
 float spinAngle(float time) {
+    if (time <= 0) return 0;
     constexpr float kTurnsPerSecond = 1.0f;
     constexpr float kRamp = 0.5f;
     const float s = std::min(time / kRamp, 1.0f);
@@ -47,6 +48,7 @@ float spinAngle(float time) {
 
 /// Radians, starting at rest: the amplitude rises over the first half period.
 float nodAngle(float time) {
+    if (time <= 0) return 0;
     constexpr float kFrequency = 1.25f;
     const float rise = std::min(time * 2 * kFrequency, 1.0f);
     const float smoothRise = rise * rise * (3 - 2 * rise);

@@ -56,6 +56,7 @@ TEST_F(OutputBatchTest, OfSeveralFilesAllComeOrNone) {
     EXPECT_EQ(writeError("a.txt", "new"), "");
     ASSERT_TRUE(writeFiles(folder, {{"c.txt", "one"}, {"d.txt", "two"}}));
     EXPECT_FALSE(fs::exists(folder / "c.txt")) << "a batch inside is part of the outer one";
+    EXPECT_EQ(waitingFiles(), (std::vector<fs::path>{folder / "a.txt", folder / "c.txt", folder / "d.txt"}));
     ASSERT_TRUE(batch.commit());
     EXPECT_EQ(get("a.txt"), "new");
     EXPECT_EQ(get("d.txt"), "two");

@@ -130,6 +130,39 @@ TEST_F(OutputFileTest, WhatAnotherPutInItsPlaceIsSeenByTheName) {
     EXPECT_THAT(writeError("p.hairloom", "HAIRLOOM ours"), HasSubstr("since it was written"));
 }
 
+TEST_F(OutputFileTest, NamesThatAreKeptNewReplaceNothingButTheirOwn) {
+    setWriteRules({.force = true, .keepInputs = true});
+    keepNew(folder / "hair_v003");
+    EXPECT_EQ(writeError("hair_v003.txt", "one"), "");
+    EXPECT_EQ(writeError("hair_v003.txt", "two"), "") << "its own";
+    put("hair_v003.report.txt", "theirs");
+    EXPECT_THAT(writeError("hair_v003.report.txt", "ours"), HasSubstr("made by another job"));
+    EXPECT_EQ(get("hair_v003.report.txt"), "theirs");
+    put("hair_v002.txt", "older");
+    EXPECT_EQ(writeError("hair_v002.txt", "ours"), "") << "another name";
+    // What comes while the file is being written is kept as well.
+    auto file = OutputFile::open(folder / "hair_v003.late.txt");
+    ASSERT_TRUE(file);
+    put("hair_v003.late.txt", "theirs");
+    ASSERT_TRUE(file->write(std::as_bytes(std::span("ours", 4))));
+    EXPECT_FALSE(file->finish());
+    EXPECT_EQ(get("hair_v003.late.txt"), "theirs");
+    setWriteRules({});
+    EXPECT_EQ(writeError("hair_v003.report.txt", "ours"), "");
+}
+
+TEST_F(OutputFileTest, InputsThatWereNotedAreListedUntilTheyAreWritten) {
+    setWriteRules({.keepInputs = true});
+    put("a.txt", "words");
+    put("p.hairloom", "HAIRLOOM one");
+    ASSERT_TRUE(readFile(folder / "p.hairloom"));
+    ASSERT_TRUE(readFile(folder / "a.txt"));
+    const fs::path real = fs::canonical(folder);
+    EXPECT_EQ(notedInputs(), (std::vector<fs::path>{real / "a.txt", real / "p.hairloom"}));
+    EXPECT_EQ(writeError("p.hairloom", "HAIRLOOM two"), "");
+    EXPECT_EQ(notedInputs(), std::vector<fs::path>{real / "a.txt"});
+}
+
 TEST_F(OutputFileTest, AFreedNumberOfAFileIsNoInput) {
     setWriteRules({.keepInputs = true});
     put("a.txt", "words");
