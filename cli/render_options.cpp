@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -217,7 +218,20 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         ->excludes(turn);
     job.add_option("--animation", options->animation,
                    "Animated PNG for all images, or WebP if the name ends in .webp");
-    job.add_option("--strip", options->strip, "PNG with all images side by side");
+    job.add_option("--burn-in", options->burnIn,
+                   "Text to write into the images, a line each, separated by commas: frame, take, settings, "
+                   "error (with "
+                   "--against), or any other text. OpenEXR files have none")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    job.add_option("--against", options->against,
+                   "Record of the same groom and frames that errors are measured from")
+        ->needs(record);
+    auto* strip = job.add_option("--strip", options->strip, "PNG with all images side by side");
+    job.add_option("--columns", options->columns,
+                   "Images in a row of the strip, for a contact sheet (default: all)")
+        ->check(CLI::Range(1, 10'000))
+        ->needs(strip);
     job.add_option("--milliseconds", options->milliseconds,
                    "Duration of each frame of the animation, in milliseconds")
         ->check(CLI::Range(1, 65'535));
@@ -240,6 +254,8 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
             throw CLI::ValidationError("--start", fmt::format("{} leaves no numbers for {} handles",
                                                               *options->start, options->handles));
         options->chooseDevice = device->count() > 0;
+        if (std::ranges::find(options->burnIn, "error") != options->burnIn.end() && options->against.empty())
+            throw CLI::RequiresError("--burn-in error", "--against");
         const bool moves = !options->record.empty() || !options->motion.empty();
         for (const CLI::Option* option : {frame, frames}) {
             if (option->count() > 0 && !moves)

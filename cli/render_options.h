@@ -56,8 +56,11 @@ struct RenderJobOptions {
     std::string exr;
     std::vector<std::string> aovs;
     std::vector<std::string> imageFolders;
+    std::vector<std::string> burnIn;  ///< frame, take, settings, error or other text, a line each
+    std::string against;              ///< record that errors are measured from
     std::string animation;
     std::string strip;
+    std::uint32_t columns = 0;  ///< of the strip; 0: one row
     std::uint32_t milliseconds = 40;
     std::string output;
 

@@ -8,6 +8,7 @@
 
 #include "cli/backend.h"
 #include "cli/body_notes.h"
+#include "cli/burn_in.h"
 #include "cli/colour_options.h"
 #include "cli/documents.h"
 #include "cli/error_report.h"
@@ -53,17 +54,22 @@ Result<GroomScene> loadScene(const RenderJobOptions& options, const Groom& groom
     return scene;
 }
 
-/// Side by side, all of the first's size.
-render::Image sideBySide(const std::vector<render::Image>& images) {
-    render::Image strip{0, images[0].height, {}};
-    for (const render::Image& image : images) strip.width += image.width;
-    for (std::uint32_t y = 0; y < strip.height; ++y) {
-        for (const render::Image& image : images) {
-            const auto row = image.rgba.begin() + std::ptrdiff_t{4} * y * image.width;
-            strip.rgba.insert(strip.rgba.end(), row, row + std::ptrdiff_t{4} * image.width);
+/// Row by row, all of the first's size. What is left of the last row is transparent.
+render::Image sheetOf(const std::vector<render::Image>& images, std::size_t columns) {
+    const std::uint32_t width = images[0].width, height = images[0].height;
+    const std::size_t rows = (images.size() + columns - 1) / columns;
+    render::Image sheet{
+        static_cast<std::uint32_t>(columns) * width, static_cast<std::uint32_t>(rows) * height, {}};
+    sheet.rgba.resize(std::size_t{4} * sheet.width * sheet.height);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        for (std::size_t y = 0; y < height; ++y) {
+            const auto row = images[i].rgba.begin() + static_cast<std::ptrdiff_t>(4 * y * width);
+            const std::size_t place = ((i / columns * height + y) * columns + i % columns) * width;
+            std::copy_n(row, std::size_t{4} * width,
+                        sheet.rgba.begin() + static_cast<std::ptrdiff_t>(4 * place));
         }
     }
-    return strip;
+    return sheet;
 }
 
 Report reportOf(const render::Picture& picture, const RenderJobOptions& options) {
@@ -259,6 +265,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     if (!device->note.empty()) notes.push_back(device->note);
     if (*colours && !(*colours)->config.working().note.empty())
         notes.push_back((*colours)->config.working().note);
+    BurnIn burnIn(options, *groom);
     std::vector<render::Image> images;
     Report report;
     std::optional<Progress> progress;
@@ -272,6 +279,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
             report["engine"] = engineName(playing->engine.kind);
             report["why"] = playing->engine.why;
         }
+        if (auto status = burnIn.draw((*shots)[i], i, picture->image); !status)
+            return tl::unexpected(status.error());
         if (!options.animation.empty() || !options.strip.empty()) images.push_back(picture->image);
         if (auto written = writePictures(options, *colours, std::move(*picture), options.firstNumber() + i);
             !written)
@@ -280,15 +289,17 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     }
     progress.reset();
     reportNotes(notes, report);
+    burnIn.report(report);
     if (options.sequence()) report["pictures"] = shots->size();
     if (!options.animation.empty()) {
         auto written = writeAnimation(options.animation, images, options.milliseconds);
         if (!written) return tl::unexpected(written.error());
     }
     if (!options.strip.empty()) {
-        if (auto written = render::writePng(options.strip, sideBySide(images)); !written) {
+        const std::size_t columns =
+            options.columns > 0 ? std::min<std::size_t>(options.columns, images.size()) : images.size();
+        if (auto written = render::writePng(options.strip, sheetOf(images, columns)); !written)
             return tl::unexpected(written.error());
-        }
     }
     return report;
 }

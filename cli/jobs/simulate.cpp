@@ -14,6 +14,7 @@
 #include "cli/motions.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "cli/record_comparison.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/editing/document.h"
@@ -59,33 +60,6 @@ SimulationOptions methodOf(const SimulateOptions& options) {
     if (options.hairHair) result.hairHair.emplace();
     return result;
 }
-
-/// How far the hair is from a record of the same groom, frame by frame.
-class RecordComparison {
-  public:
-    explicit RecordComparison(const std::string& path) : path_(path) {}
-
-    Status add(const Groom& groom, std::uint64_t frame, std::span<const Vec3f> positions_ws) {
-        const auto recorded = readFrame(path_, groom, frame);
-        if (!recorded) return tl::unexpected(recorded.error());
-        for (std::size_t p = 0; p < positions_ws.size(); ++p) {
-            const double squared = (positions_ws[p] - recorded->positions_ws[p]).cast<double>().squaredNorm();
-            sum_ += squared;
-            largest_ = std::max(largest_, squared);
-        }
-        count_ += positions_ws.size();
-        return {};
-    }
-    void report(Report& report) const {
-        report["error_mm"] = finiteOrNull(1e3 * std::sqrt(sum_ / static_cast<double>(count_)));
-        report["error_mm_max"] = finiteOrNull(1e3 * std::sqrt(largest_));
-    }
-
-  private:
-    std::string path_;
-    double sum_ = 0, largest_ = 0;
-    std::size_t count_ = 0;
-};
 
 /// The settings of the groom with what the command line says instead.
 Status overrideSettings(Groom& groom, const SimulateOptions& options) {

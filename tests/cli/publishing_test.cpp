@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/base/file_hash.h"
+#include "core/render/png.h"
 #include "tests/cli/command.h"
 
 namespace hairloom::test {
@@ -125,8 +126,8 @@ TEST_F(CliPublishing, FoldersHaveTheirManifestInside) {
 TEST_F(CliPublishing, ManifestsThatCannotBeAreRefusedBeforeTheWork) {
     runJson(createArguments());
     for (const char* wrong :
-         {"info hair.hairloom --manifest", "validate hair.hairloom --manifest",
-          "set --list --manifest", "set hair.hairloom simulation.substeps=5 -o - --manifest"}) {
+         {"info hair.hairloom --manifest", "validate hair.hairloom --manifest", "set --list --manifest",
+          "set hair.hairloom simulation.substeps=5 -o - --manifest"}) {
         const auto outcome = run(wrong);
         EXPECT_EQ(outcome.exitCode, 2) << wrong << outcome.errors;
         EXPECT_THAT(outcome.errors, HasSubstr("manifest")) << wrong;
@@ -199,6 +200,49 @@ TEST_F(CliPublishing, HandlesAreRenderedWithTheirNumbers) {
     for (const char* wrong : {"--frames 1,4 --handles 2", "--frames 1,4 --handles 1 --start 0", "--handles 1",
                               "--turntable 4 --handles 1", "--turntable 4 --start 9"})
         EXPECT_EQ(run(arguments + wrong).exitCode, 2) << wrong;
+}
+
+TEST_F(CliPublishing, ReviewsHaveTextInTheirImagesAndASheet) {
+    runJson(createArguments());
+    runJson("simulate hair.hairloom --frames 3 --motion nod --record hair.frames");
+    runJson("simulate hair.hairloom --frames 3 --motion none --record still.frames");
+    const std::string arguments =
+        "render hair.hairloom --record hair.frames --engine software --size 200x120 --passes 1 --frames 0,2 ";
+    const auto plain = runJson(arguments + "-o plain.png --exr plain.exr");
+    const auto report =
+        runJson(arguments + "-o burnt.png --exr burnt.exr --strip sheet.png --columns 2 --against " +
+                "still.frames --burn-in 'frame,take,settings,error,for review'");
+    ASSERT_EQ(report["errors"].size(), 3u);
+    EXPECT_EQ(report["errors"][2]["frame"], 2);
+    EXPECT_GT(report["errors"][2]["error_mm_max"].get<double>(),
+              report["errors"][2]["error_mm"].get<double>());
+    EXPECT_FALSE(plain.contains("errors"));
+    EXPECT_NE(readText(folder / "plain_0001.png"), readText(folder / "burnt_0001.png"));
+    EXPECT_EQ(readText(folder / "plain_0001.exr"), readText(folder / "burnt_0001.exr"))
+        << "only what is looked at";
+    const auto plainImage = render::readPng(folder / "plain_0001.png");
+    const auto burnt = render::readPng(folder / "burnt_0001.png"),
+               sheet = render::readPng(folder / "sheet.png");
+    ASSERT_TRUE(plainImage && burnt && sheet);
+    EXPECT_EQ(sheet->width, 400u);
+    EXPECT_EQ(sheet->height, 240u);
+    for (std::size_t y = 0; y < 120; ++y) {
+        // Text is in the lower left corner: five lines.
+        const auto at = [&](const render::LinearImage& image, std::size_t x) {
+            return image.rgba[4 * (y * image.width + x)];
+        };
+        EXPECT_EQ(at(*burnt, 199), at(*plainImage, 199));
+        if (y < 120 - 59) {
+            EXPECT_EQ(at(*burnt, 0), at(*plainImage, 0)) << y;
+        }
+        // The second image is at the right of the first row.
+        for (const std::size_t x : {0u, 7u, 100u}) EXPECT_EQ(at(*sheet, 200 + x), at(*burnt, x));
+    }
+    EXPECT_EQ(sheet->rgba[4 * (399 + 400 * 239) + 3], 0) << "the place of a fourth image";
+    for (const char* wrong : {"--burn-in error", "--columns 2", "--burn-in 'frame,,take'"})
+        EXPECT_EQ(run(arguments + "-o x.png " + wrong).exitCode, 2) << wrong;
+    EXPECT_EQ(run(arguments + "-o x.png --burn-in error --against missing.frames").exitCode, 1);
+    EXPECT_FALSE(exists("x_0000.png"));
 }
 
 }  // namespace
