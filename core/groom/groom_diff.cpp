@@ -105,6 +105,44 @@ std::string unitOf(std::string_view where) {
     return {};
 }
 
+/// Indices into `before` become those of the same names in `after`, where all names of both are different.
+void translate(Groom& groom, std::string_view attribute, const std::vector<std::string>& before,
+               const std::vector<std::string>& after) {
+    const auto indices = groom.strandAttributes.view<std::uint32_t>(attribute);
+    const auto placesOf = [](const std::vector<std::string>& names) {
+        std::map<std::string_view, std::uint32_t> places;
+        for (std::uint32_t i = 0; i < names.size(); ++i) places.emplace(names[i], i);
+        return places;
+    };
+    const auto old = placesOf(before), now = placesOf(after);
+    if (before == after || indices.empty() || old.size() != before.size() || now.size() != after.size())
+        return;
+    std::vector<std::uint32_t> becomes(before.size());
+    for (std::uint32_t i = 0; i < before.size(); ++i) {
+        const auto found = now.find(before[i]);
+        const bool isRenamed = found == now.end() && i < after.size() && !old.contains(after[i]);
+        // One that is gone has no index there.
+        becomes[i] = isRenamed ? i : found == now.end() ? ~0u : found->second;
+    }
+    std::vector<std::uint32_t> translated(indices.begin(), indices.end());
+    for (std::uint32_t& index : translated)
+        if (index < becomes.size()) index = becomes[index];
+    groom.strandAttributes.set(attribute, std::move(translated));
+}
+
+/// The groom before, whose strands name layers and groups as those after do.
+Groom inTermsOf(const Groom& before, const Groom& after) {
+    const auto layersOf = [](const Groom& groom) {
+        std::vector<std::string> names;
+        for (const Layer& layer : groom.layers) names.push_back(layer.name);
+        return names;
+    };
+    Groom groom = before;
+    translate(groom, attribute::kLayer, layersOf(before), layersOf(after));
+    translate(groom, attribute::kGroup, before.groupNames, after.groupNames);
+    return groom;
+}
+
 class Comparison {
   public:
     Comparison(const GroomVersion& before, const GroomVersion& after, ComparedParts parts)
@@ -113,7 +151,8 @@ class Comparison {
     GroomComparison run() {
         ArchiveWriter before({}, 0), after({}, 0);
         const auto oldBody = bodyOf(before_.groom), newBody = bodyOf(after_.groom);
-        addProjectArrays(before, before_.groom, oldBody);
+        const Groom translated = inTermsOf(before_.groom, after_.groom);
+        addProjectArrays(before, translated, oldBody);
         addProjectArrays(after, after_.groom, newBody);
         compareStrands();
         compareArrays(before, after, true);
@@ -315,7 +354,7 @@ std::string_view strandMatchName(StrandMatch match) {
     return kNames.at(static_cast<std::size_t>(match));
 }
 
-std::string inWords(const GroomDifference& difference) {
+std::string changeInWords(const GroomDifference& difference) {
     constexpr std::size_t kLongest = 120;
     const auto& [where, what, before, after, count, of, largest, isLength, unit] = difference;
     const auto text = [](const Json& value) { return shortText(withFewDigits(value), kLongest); };
@@ -325,11 +364,15 @@ std::string inWords(const GroomDifference& difference) {
         now = shortText(after, kLongest);
     }
     const std::string behind = unit.empty() ? "" : " " + unit;
-    if (before.is_null() && after.is_null()) return fmt::format("{}: {}", where, what);
-    if (before.is_null()) return fmt::format("{}: {} {}{}", where, what, now, behind);
-    if (after.is_null()) return fmt::format("{}: {} {}{}", where, what, old, behind);
-    if (what == "changed") return fmt::format("{}: {} → {}{}", where, old, now, behind);
-    return fmt::format("{}: {} ({} → {})", where, what, old, now);
+    if (before.is_null() && after.is_null()) return what;
+    if (before.is_null()) return fmt::format("{} {}{}", what, now, behind);
+    if (after.is_null()) return fmt::format("{} {}{}", what, old, behind);
+    if (what == "changed") return fmt::format("{} → {}{}", old, now, behind);
+    return fmt::format("{} ({} → {})", what, old, now);
+}
+
+std::string inWords(const GroomDifference& difference) {
+    return fmt::format("{}: {}", difference.where, changeInWords(difference));
 }
 
 GroomComparison compare(const GroomVersion& before, const GroomVersion& after, ComparedParts parts) {

@@ -26,8 +26,9 @@ struct GroomDifference {
     std::string unit;  ///< of settings; empty for pure numbers
 };
 
-/// "simulation.substeps: 2 → 4", "strands: 12 strands added (300 → 312)". Numbers have four digits, and more
-/// where two would look alike.
+/// "2 → 4", "12 strands added (300 → 312)". Numbers have four digits, and more where two would look alike.
+std::string changeInWords(const GroomDifference& difference);
+/// "simulation.substeps: 2 → 4"
 std::string inWords(const GroomDifference& difference);
 
 /// How strands of two grooms were found to be the same.

@@ -246,13 +246,24 @@ TEST(GroomDiff, NamesLayersSpheresAndOperators) {
     after.groupNames.emplace_back("nape");
     EXPECT_THAT(
         words(before, after),
-        ElementsAre("layers[Fringe \"β\"].density: 0.3 → 0.5",
+        ElementsAre("strands.layer: all 5 strands changed", "layers[Fringe \"β\"].density: 0.3 → 0.5",
                     testing::MatchesRegex("layers\\[Fringe .*\\]\\.material\\.rootRadius: .* → 5e-05 m"),
                     testing::StartsWith("layers[Back]: added {\"name\":\"Back\""),
                     "groups: [\"front\",\"back\"] → [\"front\",\"back\",\"nape\"]",
                     "spheres[neck].radius: 0.06 → 0.065"));
+    // Strands stay on their layers and in their groups, which have other numbers now.
+    auto& layer = after.strandAttributes.edit<std::uint32_t>(attribute::kLayer);
+    for (std::uint32_t& index : layer) ++index;
+    std::ranges::reverse(after.groupNames);
+    for (std::uint32_t& index : after.strandAttributes.edit<std::uint32_t>(attribute::kGroup))
+        index = 2 - index;
+    EXPECT_THAT(words(before, after), testing::Not(testing::Contains(testing::StartsWith("strands"))));
+    layer[3] = 1;
+    EXPECT_THAT(words(before, after), testing::Contains("strands.layer: 1 of 5 strands changed"));
     after = before;
     std::swap(after.layers[0], after.layers[1]);
+    for (std::uint32_t& index : after.strandAttributes.edit<std::uint32_t>(attribute::kLayer))
+        index = 1 - index;
     EXPECT_THAT(
         words(before, after),
         ElementsAre("layers: reordered ([\"Top\",\"Fringe \\\"β\\\"\"] → [\"Fringe \\\"β\\\"\",\"Top\"])"));
