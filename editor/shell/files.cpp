@@ -344,6 +344,23 @@ void DocumentFiles::blendWith(const QString& path) {
         });
 }
 
+void DocumentFiles::compareWith(const QString& path,
+                                std::function<void(const GroomComparison&, ComparedParts)> done) {
+    const QString name = QFileInfo(path).fileName();
+    using Compared = std::pair<GroomComparison, ComparedParts>;
+    tasks_.run<Compared>(
+        QString("Comparing with %1").arg(name),
+        [file = path.toStdString(), own = document_.path().toStdString(),
+         groom = document_.groom()](TaskControl&) -> Result<Compared> {
+            const auto other = openAny(file, {});
+            if (!other) return tl::unexpected(other.error());
+            // Hair of other programs has no settings.
+            const auto parts = looksLikeProject(file) ? ComparedParts::all : ComparedParts::hair;
+            return Compared(compare({other->groom, file}, {groom, own.empty() ? file : own}, parts), parts);
+        },
+        [done = std::move(done)](const Compared& compared) { done(compared.first, compared.second); });
+}
+
 void DocumentFiles::openRecovered(const RecoveryCopy& copy) {
     const QString name = QString::fromStdString(copy.of.name);
     tasks_.run<Opened>(

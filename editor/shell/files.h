@@ -9,6 +9,7 @@
 #include "core/animation/actor.h"
 #include "core/documents/head_import.h"
 #include "core/documents/recovery.h"
+#include "core/groom/groom_diff.h"
 #include "editor/document/messages.h"
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
@@ -76,6 +77,8 @@ class DocumentFiles {
     void transferTo(const QString& path);
     /// The hair of the document halfway to the shape of that of the file.
     void blendWith(const QString& path);
+    /// What changed from the file's hair to that of the document. `done` is called with it.
+    void compareWith(const QString& path, std::function<void(const GroomComparison&, ComparedParts)> done);
     /// What a crash left.
     void openRecovered(const RecoveryCopy& copy);
     /// The document was saved: the copy that it came from has served.

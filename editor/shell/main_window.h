@@ -101,6 +101,7 @@ class MainWindow : public QMainWindow {
     bool runShortcut(int key, Qt::KeyboardModifiers modifiers);
 
     void frameSelection();
+    void compareWith(const QString& path);
     void showSecurity();
     /// The manual, at the section on the panel or the tool that is used.
     void showManual();

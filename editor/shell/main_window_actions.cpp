@@ -11,6 +11,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/take_shape.h"
 #include "core/simulation/rest_positions.h"
+#include "editor/dialogs/comparison_dialog.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/manual_window.h"
 #include "editor/dialogs/preferences_dialog.h"
@@ -53,6 +54,16 @@ void MainWindow::frameSelection() {
         static_cast<float>(viewport.width()) / static_cast<float>(std::max(viewport.height(), 1));
     viewport.camera().frame(box, aspect);
     viewport.redraw();
+}
+
+void MainWindow::compareWith(const QString& path) {
+    files_.compareWith(path, [this, name = QFileInfo(path).fileName()](const GroomComparison& comparison,
+                                                                       ComparedParts parts) {
+        // Beside the window, so that you can go through the list there.
+        auto* dialog = new ComparisonDialog(comparison, parts, name, this);
+        dialog->setAttribute(Qt::WA_DeleteOnClose);
+        dialog->show();
+    });
 }
 
 void MainWindow::addFileActions() {
@@ -119,6 +130,15 @@ void MainWindow::addFileActions() {
         [this] {
             const QString path = QFileDialog::getOpenFileName(this, "Blend with hair", {}, blendFilter());
             if (!path.isEmpty()) files_.blendWith(path);
+        });
+    add({"file.compare",
+         QString("&Compare with…"),
+         "",
+         QString("List what changed since another version of the hair: settings, layers, operators, strands"),
+         {}},
+        [this] {
+            const QString path = QFileDialog::getOpenFileName(this, "Compare with", {}, blendFilter());
+            if (!path.isEmpty()) compareWith(path);
         });
     add({"file.export", QString("&Export hair…"), "export",
          QString("Export the hair for a game, then read it back and compare"), QKeySequence("Ctrl+E")},
