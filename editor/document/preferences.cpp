@@ -17,6 +17,10 @@ Enum readChoice(const char* key, Enum defaultValue, int count) {
     return value >= 0 && value < count ? static_cast<Enum>(value) : defaultValue;
 }
 
+std::string readText(const char* key) {
+    return QSettings().value(key).toString().toStdString();
+}
+
 }  // namespace
 
 Preferences::Preferences(QObject* parent)
@@ -28,7 +32,8 @@ Preferences::Preferences(QObject* parent)
       simulateOn_(readChoice("simulateOn", SimulateOn::Automatic, 3)),
       autosaveMinutes_(std::clamp(QSettings().value("autosaveMinutes", 1).toInt(), 0, 60)),
       undoMegabytes_(std::clamp(QSettings().value("undoMegabytes", 512).toInt(), kLeastUndoMegabytes,
-                                kMostUndoMegabytes)) {}
+                                kMostUndoMegabytes)),
+      colours_{readText("colour/config"), readText("colour/display"), readText("colour/view")} {}
 
 template <class T>
 void Preferences::store(const char* key, T& member, T value) {
@@ -63,6 +68,16 @@ void Preferences::setAutosaveMinutes(int minutes) {
 
 void Preferences::setUndoMegabytes(int megabytes) {
     store("undoMegabytes", undoMegabytes_, std::clamp(megabytes, kLeastUndoMegabytes, kMostUndoMegabytes));
+}
+
+void Preferences::setColours(const colour::ColourChoice& choice) {
+    if (colours_ == choice) return;
+    colours_ = choice;
+    QSettings settings;
+    settings.setValue("colour/config", QString::fromStdString(choice.config));
+    settings.setValue("colour/display", QString::fromStdString(choice.display));
+    settings.setValue("colour/view", QString::fromStdString(choice.view));
+    Q_EMIT changed();
 }
 
 QStringList Preferences::recentFiles() const {

@@ -5,6 +5,8 @@
 #include <QObject>
 #include <QStringList>
 
+#include "core/colour/colour_choice.h"
+
 namespace hairloom::editor {
 
 inline constexpr int kLeastUndoMegabytes = 64, kMostUndoMegabytes = 65536;
@@ -42,6 +44,10 @@ class Preferences : public QObject {
     int undoMegabytes() const { return undoMegabytes_; }
     void setUndoMegabytes(int megabytes);
 
+    /// What images are shown through.
+    const colour::ColourChoice& colours() const { return colours_; }
+    void setColours(const colour::ColourChoice& choice);
+
     /// The most recent first; those that are gone are left out.
     QStringList recentFiles() const;
     void addRecentFile(const QString& path);
@@ -62,6 +68,7 @@ class Preferences : public QObject {
     SimulateOn simulateOn_;
     int autosaveMinutes_;
     int undoMegabytes_;
+    colour::ColourChoice colours_;
 };
 
 }  // namespace hairloom::editor

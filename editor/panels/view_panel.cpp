@@ -14,6 +14,7 @@
 #include "core/render/tone_map.h"
 #include "editor/fields/number_box.h"
 #include "editor/overlays/overlay_mode.h"
+#include "editor/panels/colour_box.h"
 #include "editor/panels/panel.h"
 #include "editor/style/icons.h"
 #include "importers/foreign_reader.h"
@@ -165,18 +166,18 @@ QWidget* makeReference(Viewport& viewport, Messages& messages) {
 }  // namespace
 
 PanelInfo viewPanel() {
-    return {
-        "view",
-        QString("View"),
-        "overlay",
-        Qt::LeftDockWidgetArea,
-        30,
-        true,
-        [](const PanelParts& parts) -> QWidget* {
-            return scrolled(column({heading("Show"), makeParts(parts.actions, parts.viewport),
-                                    heading("Light"), makeLight(parts.viewport), heading("Reference image"),
-                                    makeReference(parts.viewport, parts.messages)}));
-        }};
+    return {"view",
+            QString("View"),
+            "overlay",
+            Qt::LeftDockWidgetArea,
+            30,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(
+                    column({heading("Show"), makeParts(parts.actions, parts.viewport), heading("Light"),
+                            makeLight(parts.viewport), heading("Colour"), makeColours(parts),
+                            heading("Reference image"), makeReference(parts.viewport, parts.messages)}));
+            }};
 }
 
 }  // namespace hairloom::editor

@@ -45,6 +45,8 @@ struct PictureRequest {
     bool showHead = true;
     float lightTurn = 0;  ///< degrees by which the lights are turned about the vertical
     float exposure = 1.6f;
+    /// render::RenderOptions::toDisplay; another pointer is another view.
+    std::shared_ptr<const render::ColourTransform> toDisplay;
     float lightScale = 1;                     ///< factor on the lights
     float environment = 1;                    ///< factor on the light from around
     Vec3f background{0.02f, 0.022f, 0.025f};  ///< linear RGB
@@ -67,6 +69,7 @@ struct PictureReport {
     std::uint64_t hairs = 0;     ///< drawn
     std::uint32_t frames = 0;    ///< in the average
     bool moving = false;
+    int displayError = 0;    ///< Renderer::displayError()
     bool presented = false;  ///< shown by the device; else the picture comes along
 };
 

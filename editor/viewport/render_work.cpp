@@ -129,9 +129,9 @@ bool showsTheSame(const PictureRequest& a, const PictureRequest& b) {
     return a.document == b.document && a.groom == b.groom && a.pose == b.pose &&
            sameCamera(a.camera, b.camera) && a.width == b.width && a.height == b.height &&
            a.showHair == b.showHair && a.showHead == b.showHead && a.lightTurn == b.lightTurn &&
-           a.exposure == b.exposure && a.lightScale == b.lightScale && a.environment == b.environment &&
-           a.background == b.background && a.seeThrough == b.seeThrough && a.quality == b.quality &&
-           a.other == b.other && a.otherQuality == b.otherQuality;
+           a.exposure == b.exposure && a.toDisplay == b.toDisplay && a.lightScale == b.lightScale &&
+           a.environment == b.environment && a.background == b.background && a.seeThrough == b.seeThrough &&
+           a.quality == b.quality && a.other == b.other && a.otherQuality == b.otherQuality;
 }
 
 RenderWork::RenderWork(gpu::Device& device, PlayedHair* played)
@@ -305,6 +305,7 @@ render::RenderOptions RenderWork::options() const {
     options.width = width_;
     options.height = height_;
     options.exposure = last_->exposure;
+    options.toDisplay = last_->toDisplay;
     options.bakeBehind = true;
     options.transparentBackground = last_->seeThrough && !swapChain_;
     if (last_->moving) {
@@ -368,6 +369,7 @@ Result<std::pair<QImage, PictureReport>> RenderWork::draw() {
     report.hairs = renderer_.strands();
     report.frames = renderer_.accumulated();
     report.moving = last_->moving;
+    report.displayError = renderer_.displayError();
     report.presented = swapChain_ != nullptr;
     if (last_->moving) adapt(report.milliseconds);
     return result;

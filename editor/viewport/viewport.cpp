@@ -251,6 +251,11 @@ void Viewport::setExposure(float factor) {
     exposure_ = factor;
     redraw();
 }
+void Viewport::setColours(std::shared_ptr<const render::ColourTransform> toDisplay) {
+    if (toDisplay == toDisplay_) return;
+    toDisplay_ = std::move(toDisplay);
+    redraw();
+}
 void Viewport::setLight(float lights, float environment) {
     lightScale_ = lights;
     environment_ = environment;
@@ -471,6 +476,7 @@ void Viewport::finishRequest(PictureRequest& request) const {
     request.showHead = showHead_;
     request.lightTurn = lightTurn_;
     request.exposure = exposure_;
+    request.toDisplay = toDisplay_;
     request.lightScale = lightScale_;
     request.environment = environment_;
     request.background = toLinear(themeColours(preferences_.theme()).viewport);

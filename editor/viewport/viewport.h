@@ -92,6 +92,9 @@ class Viewport : public QWidget {
     float lightTurn() const { return lightTurn_; }
     void setExposure(float factor);
     float exposure() const { return exposure_; }
+    /// A view of a colour config instead of the tone curve and sRGB; null: none.
+    void setColours(std::shared_ptr<const render::ColourTransform> toDisplay);
+    const std::shared_ptr<const render::ColourTransform>& colours() const { return toDisplay_; }
     /// Factors on the lights and on the light from around; 1 as they come.
     void setLight(float lights, float environment);
     float lightScale() const { return lightScale_; }
@@ -197,6 +200,7 @@ class Viewport : public QWidget {
     float previewDensity_ = 1;
     float lightTurn_ = 0;
     float exposure_ = 1.6f;
+    std::shared_ptr<const render::ColourTransform> toDisplay_;
     float lightScale_ = 1, environment_ = 1;
     bool presentsByItself_ = false;  ///< the device can and shall
     PictureQuality quality_;
