@@ -90,6 +90,8 @@ Result<ColourConfig> ColourConfig::read(const std::filesystem::path& path) {
     ColourConfig read;
     read.path_ = path;
     try {
+        // Files that have changed since they were read are read again.
+        ocio::ClearAllCaches();
         auto library = std::make_shared<Library>();
         library->config = ocio::Config::CreateFromFile(file.c_str());
         const ocio::Config& config = *library->config;

@@ -4,9 +4,15 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/render/display_table.h"
 #include "core/render/tone_map.h"
 
 namespace hairloom::render {
+
+const DisplayTable& ColourTransform::displayTable() const {
+    std::call_once(baked_, [this] { table_ = std::make_shared<DisplayTable>(bakeDisplayTable(*this)); });
+    return *table_;
+}
 
 void convert(std::span<float> rgba, const ColourTransform& transform) {
     constexpr std::size_t kPixelsAtOnce = 4096;

@@ -2,11 +2,15 @@
 #pragma once
 // What stands in place of our own tone curve and sRGB where a studio brings its own colours.
 
+#include <memory>
+#include <mutex>
 #include <span>
 
 #include "core/render/image.h"
 
 namespace hairloom::render {
+
+struct DisplayTable;
 
 /// Colours of one space as those of another. Constant: any number of threads may use one.
 class ColourTransform {
@@ -18,6 +22,13 @@ class ColourTransform {
 
     /// `rgba`: four numbers a pixel, alpha stays. Each pixel gives the same bits whatever its neighbours.
     virtual void apply(std::span<float> rgba) const = 0;
+
+    /// bakeDisplayTable() of it, made once: all pictures of a view share it.
+    const DisplayTable& displayTable() const;
+
+  private:
+    mutable std::once_flag baked_;
+    mutable std::shared_ptr<const DisplayTable> table_;
 };
 
 /// The whole picture, on all cores.

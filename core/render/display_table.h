@@ -25,8 +25,10 @@ struct DisplayTable {
     Vec3f lookUp(const Vec3f& light) const;
 };
 
-/// The smallest of 33, 65 and 129 nodes a side that is within one of 255 code values; else 129. At most 34
-/// MB, and about two seconds of one core.
-DisplayTable bakeDisplayTable(const ColourTransform& toDisplay);
+inline constexpr std::uint32_t kMostDisplayNodes = 129;
+
+/// The smallest of 33, 65 and 129 nodes a side that is within one of 255 code values; else the largest that
+/// is not more than `mostNodes`. At most 34 MB, and about two seconds of one core.
+DisplayTable bakeDisplayTable(const ColourTransform& toDisplay, std::uint32_t mostNodes = kMostDisplayNodes);
 
 }  // namespace hairloom::render

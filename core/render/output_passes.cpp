@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/render/display_table.h"
 #include "core/render/passes.h"
 #include "shaders/shared/display_types.h"
 
@@ -78,7 +79,7 @@ void drawByToneCurve(gpu::CommandList& list, RendererState& state, std::uint32_t
 void drawByTable(gpu::CommandList& list, RendererState& state, std::uint32_t frames, gpu::Format format) {
     list.setPipeline(state.pipelines.graphics(
         {.vertex = "fullscreen.vert", .pixel = "display_table.frag", .colour = format}));
-    const DisplayTable& table = state.display.table;
+    const DisplayTable& table = state.display.of->displayTable();
     shaders::DisplayConstants constants{};
     constants.alphaScale = 1 / static_cast<float>(frames);
     constants.scale = state.options.exposure * constants.alphaScale;
@@ -178,7 +179,7 @@ Status prepareDisplay(gpu::Device& device, RendererState& state) {
         display = {};
         return {};
     }
-    DisplayTable table = bakeDisplayTable(*state.options.toDisplay);
+    const DisplayTable& table = state.options.toDisplay->displayTable();
     const auto codes = std::as_bytes(std::span(table.codes));
     gpu::BufferDesc desc;
     desc.name = "view of the colour config";
@@ -186,8 +187,7 @@ Status prepareDisplay(gpu::Device& device, RendererState& state) {
     desc.size = codes.size();
     auto buffer = device.createBuffer(desc, codes);
     if (!buffer) return tl::unexpected(buffer.error());
-    display = {state.options.toDisplay, std::move(table), std::move(*buffer)};
-    display.table.codes.clear();
+    display = {state.options.toDisplay, std::move(*buffer)};
     return {};
 }
 

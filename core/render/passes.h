@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "core/render/device_scene.h"
-#include "core/render/display_table.h"
 #include "core/render/options.h"
 #include "core/render/overlay.h"
 #include "core/render/pipelines.h"
@@ -29,9 +28,8 @@ struct OverlayOnDevice {
 
 /// The view of a colour config on the device, where the options have one.
 struct DisplayOnDevice {
-    std::shared_ptr<const ColourTransform> of;  ///< what the table was made of
-    DisplayTable table;                         ///< without its code values
-    gpu::BufferPtr codes;
+    std::shared_ptr<const ColourTransform> of;
+    gpu::BufferPtr codes;  ///< of its table
 };
 
 /// All that the passes of a frame read.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/profiler.h"
+#include "core/render/display_table.h"
 #include "core/render/passes.h"
 #include "core/render/shadow_maps.h"
 
@@ -420,7 +421,8 @@ Status Renderer::recordPast(gpu::CommandList& list, const RenderOptions& options
 }
 
 int Renderer::displayError() const {
-    return parts_->state.display.table.worst;
+    const auto& view = parts_->state.display.of;
+    return view ? view->displayTable().worst : 0;
 }
 
 std::uint32_t Renderer::accumulated() const {

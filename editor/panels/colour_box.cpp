@@ -27,6 +27,7 @@ class ColourBox : public QWidget {
         state_ = new QLabel;
         state_->setObjectName("colourState");
         state_->setWordWrap(true);
+        state_->setTextFormat(Qt::PlainText);
         state_->setVisible(false);
         rows->addRow(state_);
         connect(config_, &QComboBox::activated, this, [this] { takeConfig(); });
@@ -64,6 +65,8 @@ class ColourBox : public QWidget {
             chosen = QFileDialog::getOpenFileName(this, "Colour config", {}, "OpenColorIO configs (*.ocio)");
             if (chosen.isEmpty()) return fillConfigs();
         }
+        // The same one again: its files may have changed.
+        if (chosen.toStdString() == shown_.config) return show();
         preferences_.setColours({chosen.toStdString(), {}, {}});
     }
 
@@ -88,6 +91,7 @@ class ColourBox : public QWidget {
         shown_ = preferences_.colours();
         problem_.clear();
         note_.clear();
+        displayError_ = 0;
         display_->clear();
         view_->clear();
         fillConfigs();

@@ -155,6 +155,8 @@ void DeviceWork::forget() {
 }
 
 Result<QImage> DeviceWork::drawAlone(PictureRequest request) {
+    const bool filters = request.quality.filter != render::PostFilter::none;
+    const auto exact = filters ? nullptr : std::exchange(request.toDisplay, nullptr);
     RenderWork work(stillDevice_ ? *stillDevice_ : *device_, stillDevice_ ? nullptr : &played_);
     if (auto taken = work.take(std::move(request)); !taken) return tl::unexpected(taken.error());
     QImage picture;
@@ -164,7 +166,7 @@ Result<QImage> DeviceWork::drawAlone(PictureRequest request) {
         if (!drawn) return tl::unexpected(drawn.error());
         picture = std::move(drawn->first);
     }
-    return picture;
+    return exact ? work.shownBy(*exact) : picture;
 }
 
 }  // namespace hairloom::editor

@@ -68,7 +68,8 @@ class DeviceWork {
     void forget();
     /// The device refuses all, and will.
     bool isLost() const { return !device_->createCommandList(); }
-    /// All frames of a picture of something else, with a renderer of its own. `drop` stops it: the software
+    /// All frames of a picture of something else, with a renderer of its own. A view is exact,
+    /// but for filters, which blend code values. `drop` stops it: the software
     /// renderer at once, another after a frame.
     Result<QImage> drawAlone(PictureRequest request);
 

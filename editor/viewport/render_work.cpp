@@ -388,6 +388,25 @@ Result<QImage> RenderWork::readBack() const {
     return image;
 }
 
+Result<QImage> RenderWork::shownBy(const render::ColourTransform& toDisplay) const {
+    render::LinearImage light{width_, height_, std::vector<float>(std::size_t{4} * width_ * height_)};
+    const auto sum = std::as_writable_bytes(std::span(light.rgba));
+    if (auto read = device_.readBuffer(renderer_.linearSum(), 0, sum); !read)
+        return tl::unexpected(read.error());
+    const float share = 1 / static_cast<float>(renderer_.accumulated());
+    const bool seeThrough = last_->seeThrough;
+    for (std::size_t i = 0; i < light.rgba.size(); i += 4) {
+        // From light times coverage to both apart.
+        const float coverage = seeThrough ? std::clamp(light.rgba[i + 3] * share, 0.0f, 1.0f) : 1;
+        for (std::size_t c = 0; c < 3; ++c) light.rgba[i + c] *= coverage > 0 ? share / coverage : 0;
+        light.rgba[i + 3] = coverage;
+    }
+    const render::Image shown = render::showBy(toDisplay, light, last_->exposure);
+    const auto side = [](std::uint32_t pixels) { return static_cast<int>(pixels); };
+    return QImage(shown.rgba.data(), side(width_), side(height_), QImage::Format_RGBA8888)
+        .convertToFormat(seeThrough ? QImage::Format_ARGB32 : QImage::Format_RGB32);
+}
+
 bool RenderWork::isComplete() const {
     return !last_ || (renderer_.isSettled() && renderer_.accumulated() >= options().frames);
 }

@@ -25,6 +25,8 @@ class RenderWork {
     Status take(PictureRequest request);
     /// One more frame. The image is null where a window shows it.
     Result<std::pair<QImage, PictureReport>> draw();
+    /// The average by a view itself, of which devices have but a table. At least one frame is drawn.
+    Result<QImage> shownBy(const render::ColourTransform& toDisplay) const;
     /// The average of the last request is complete, or nothing was asked for.
     bool isComplete() const;
     /// Frames in the average that was shown last.
