@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "follow/follow_gpu.h"
 
-#include <bit>
+#include "follow/number_bits.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -46,7 +46,7 @@ std::vector<std::array<float, 2>> followSamples(const FollowView& view) {
             sampleEvenly(view.guideRestPositions_ss.subspan(first, count), view.pointsPerHair, samples);
         }
         for (const GuideSample& sample : samples)
-            all.push_back({std::bit_cast<float>(first + sample.segment), sample.share});
+            all.push_back({fromBitsOf<float>(first + sample.segment), sample.share});
     }
     return all;
 }

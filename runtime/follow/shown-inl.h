@@ -8,12 +8,12 @@
 #define HAIRLOOM_RUNTIME_FOLLOW_SHOWN_INL_H
 #endif
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
 #include "engine/lanes-inl.h"
 #include "follow/follow_kernels.h"
+#include "follow/number_bits.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -21,10 +21,10 @@ namespace HWY_NAMESPACE {
 
 /// Of one component; without branches.
 HWY_INLINE std::uint16_t halfOf(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const auto bits = fromBitsOf<std::uint32_t>(value);
     const std::uint32_t sign = (bits >> 16u) & 0x8000u, size = bits & 0x7fffffffu;
     // Adding a half puts the last place of a half's subnormals at that of the sum, and rounds there.
-    const std::uint32_t small = std::bit_cast<std::uint32_t>(std::bit_cast<float>(size) + 0.5f) - 0x3f000000u;
+    const std::uint32_t small = fromBitsOf<std::uint32_t>(fromBitsOf<float>(size) + 0.5f) - 0x3f000000u;
     const std::uint32_t usual = (size + 0xfffu + ((size >> 13u) & 1u) - 0x38000000u) >> 13u;
     std::uint32_t half = size < 0x38800000u ? small : usual;
     half = size >= 0x477ff000u ? 0x7c00u : half;
