@@ -9,13 +9,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace {
-
-struct alignas(16) Piece {
-    std::array<unsigned char, 16> bytes;
-};
 
 /// Texels in a row of the texture that positions go to.
 constexpr std::size_t kRow = 1024;
@@ -23,7 +20,8 @@ constexpr std::size_t kRow = 1024;
 hl_error error;
 hl_asset asset;
 hl_asset_info info;
-std::vector<Piece> file;
+std::vector<unsigned char> file;
+void* assetBytes = nullptr;  // in it
 std::vector<float> hairs, guides;
 std::array<char, 128> name{};
 std::vector<std::uint32_t> offsets;
@@ -53,8 +51,12 @@ extern "C" {
 
 /// Room for an asset of so many bytes.
 EMSCRIPTEN_KEEPALIVE void* hairReserve(std::size_t bytes) {
-    file.resize(bytes / sizeof(Piece) + 1);
-    return file.data();
+    // Emscripten's allocator gives 8 bytes of alignment, whatever the type asks for.
+    constexpr std::size_t kAlignment = 16;
+    std::size_t room = bytes + kAlignment;
+    file.resize(room);
+    assetBytes = file.data();
+    return std::align(kAlignment, bytes, assetBytes, room);
 }
 
 /// What went wrong in the last call that did not return 0.
@@ -64,7 +66,7 @@ EMSCRIPTEN_KEEPALIVE const char* hairWords() {
 
 /// Takes the asset whose bytes were put where hairReserve() said; 0 or an hl_code.
 EMSCRIPTEN_KEEPALIVE int hairOpen(std::size_t bytes) {
-    hl_code code = hl_asset_open(&asset, file.data(), bytes, &error);
+    hl_code code = hl_asset_open(&asset, assetBytes, bytes, &error);
     if (code == HL_OK) code = hl_asset_check(&asset, &error);
     if (code == HL_OK) code = hl_asset_describe(&asset, &info, &error);
     if (code == HL_OK) code = hl_instance_make(&asset, HL_HAIRS, nullptr, &hair, &error);
