@@ -10,7 +10,9 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/body_notes.h"
 #include "cli/card_options.h"
+#include "cli/colour_options.h"
 #include "cli/documents.h"
 #include "cli/error_report.h"
 #include "cli/job.h"
@@ -45,6 +47,7 @@ struct ExportOptions {
     std::uint32_t points = 0;
     bool certify = false;
     LevelBudget levels;
+    colour::ColourChoice colours;  ///< of a web page
     std::string output;
 };
 
@@ -204,6 +207,14 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
     return wanted;
 }
 
+/// Throws WrongUsage where one of the options is given with a format that has no colours of a display.
+void checkColourOptions(const ExportOptions& options) {
+    const colour::ColourChoice none;
+    if (options.format == kWebFormat || options.colours == none) return;
+    throw WrongUsage("--color-config, --display and --view-transform apply to a web page alone",
+                     fmt::format("expected them with --format {}", kWebFormat));
+}
+
 Result<Report> exportAsPage(const ExportOptions& options) {
     if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
         !options.record.empty() || options.what != "guides" || options.physics)
@@ -212,15 +223,23 @@ Result<Report> exportAsPage(const ExportOptions& options) {
             "page",
             "leave them out: the page plays a runtime asset in metres, Y up, which draws follow hairs "
             "itself");
+    const auto colours = colour::chooseColours(options.colours);
+    if (!colours) return tl::unexpected(colours.error());
     const auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     HairToExport wanted;
     wanted.layers = options.layers;
     if (options.certify) wanted.storms = CertificateOptions{}.storms;
-    const auto written = exportWebPage(*groom, wanted, options.output);
+    const auto* const view = *colours ? (*colours)->toDisplay.get() : nullptr;
+    const auto written = exportWebPage(*groom, wanted, options.output, view);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
     tellFindings(written->findings);
-    return toJson(*written);
+    Report report = toJson(*written);
+    if (!*colours) return report;
+    report["color"] = colourReport(**colours);
+    const std::string& note = (*colours)->config.working().note;
+    if (!note.empty()) reportNotes({note}, report);
+    return report;
 }
 
 Result<Report> exportAsset(const ExportOptions& options) {
@@ -327,6 +346,7 @@ JobRun declare(CLI::App& job) {
                  "Find out with a thousand random storms what a game may do to this hair, for the report and "
                  "the runtime asset. Takes about half a minute");
     const auto ofCards = addCardOptions(job, options->levels);
+    addColourOptions(job, options->colours);
     job.add_option("-o,--output", options->output,
                    "File to write, or the folder of a web page. The report goes next to a file")
         ->required();
@@ -334,6 +354,7 @@ JobRun declare(CLI::App& job) {
         checkLevels(options->levels);
         addHandles(*options);
         checkCardOptions(*options, ofCards);
+        checkColourOptions(*options);
         if (options->format == kWebFormat)
             return withOutputFolder(options->output, {"hair.hairrt", "hair.js", "index.html"},
                                     [&] { return exportAsPage(*options); });

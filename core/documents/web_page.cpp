@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/documents/web_page.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <system_error>
 
 #include "core/base/file.h"
 #include "core/base/output_file.h"
+#include "core/render/display_table.h"
 #include "importers/child_process.h"
 
 namespace hairloom {
@@ -64,9 +68,31 @@ std::array<float, 3> numbersOf(const Vec3f& value) {
     return {value.x(), value.y(), value.z()};
 }
 
+/// A view as the page has it: code values as halves, red the fastest.
+struct PageView {
+    nlohmann::json json;
+    int worst = 0;  ///< render::DisplayTable::worst, of the halves
+};
+
+PageView viewOf(const render::ColourTransform& toDisplay) {
+    render::DisplayTable table = toDisplay.displayTable();
+    std::vector<std::uint16_t> halves;
+    halves.reserve(3 * table.codes.size());
+    for (std::array<float, 4>& code : table.codes) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Eigen::half rounded(code[c]);
+            code[c] = static_cast<float>(rounded);
+            halves.push_back(Eigen::numext::bit_cast<std::uint16_t>(rounded));
+        }
+    }
+    return {{{"side", table.side}, {"toe", table.toe}, {"top", table.top}, {"codes", base64Of(halves)}},
+            render::displayTableError(table, toDisplay)};
+}
+
 /// The script that hands page and asset over. Heads turn about the middle of the roots; pictures show the
 /// hair, and what of the head is between it.
-std::string sceneScript(const Groom& groom, const std::string& title, std::span<const std::byte> asset) {
+std::string sceneScript(const Groom& groom, const std::string& title, std::span<const std::byte> asset,
+                        const std::optional<PageView>& view) {
     Box3f roots, hair = groom.bounds();
     for (std::size_t s = 0; s < groom.strandCount(); ++s) roots.extend(groom.strand(s).front());
     const runtime::SimulationSettings& settings = groom.simulation;
@@ -80,6 +106,7 @@ std::string sceneScript(const Groom& groom, const std::string& title, std::span<
                             {"wind", {wind.x * speed, wind.y * speed, wind.z * speed}},
                             {"asset", base64(asset)}};
     if (groom.scalp) scene["head"] = headOf(*groom.scalp);
+    if (view) scene["view"] = view->json;
     // The title comes from a file's name, which may be of any bytes.
     return "globalThis.hairloomScene = " +
            scene.dump(0, ' ', true, nlohmann::json::error_handler_t::replace) + ";\n";
@@ -118,7 +145,8 @@ fs::path findWebPlayer(const fs::path& programFolder) {
     return {};
 }
 
-Result<ExportReport> exportWebPage(const Groom& groom, const HairToExport& wanted, const fs::path& folder) {
+Result<ExportReport> exportWebPage(const Groom& groom, const HairToExport& wanted, const fs::path& folder,
+                                   const render::ColourTransform* toDisplay) {
     auto player = readPlayer();
     if (!player) return tl::unexpected(player.error());
     std::error_code code;
@@ -132,15 +160,21 @@ Result<ExportReport> exportWebPage(const Groom& groom, const HairToExport& wante
     }
     const auto bytes = readFile(asset);
     if (!bytes) return tl::unexpected(bytes.error());
+    const auto view = toDisplay != nullptr ? std::optional(viewOf(*toDisplay)) : std::nullopt;
     const std::string title = fs::absolute(folder, code).lexically_normal().filename().string();
     const std::vector<std::pair<std::string, std::string>> files{
         {kIndex, std::move(player->index)},
         {kPlayer, std::move(player->player)},
-        {"hair.js", sceneScript(groom, title, *bytes)},
+        {"hair.js", sceneScript(groom, title, *bytes, view)},
     };
     auto written = writeFiles(folder, files);
     if (!written) return tl::unexpected(written.error());
     report->format = kWebFormat;
+    if (view && view->worst > 1)
+        report->findings.push_back(
+            {Severity::Warning,
+             fmt::format("the page differs from the colour config's view by up to {} of 255", view->worst),
+             "hair.js", "use a view that bends less sharply, or images of render"});
     for (const auto& [name, text] : files) report->bytes += text.size();
     return report;
 }

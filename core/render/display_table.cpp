@@ -126,15 +126,14 @@ Vec3f DisplayTable::lookUp(const Vec3f& light) const {
     return sum.cwiseMax(0.0f).cwiseMin(1.0f);
 }
 
-DisplayTable bakeDisplayTable(const ColourTransform& toDisplay, std::uint32_t mostNodes) {
+DisplayTable bakeDisplayTable(const ColourTransform& toDisplay) {
     const std::vector<float> light = probes();
     std::vector<float> codes = light;
     convert(codes, toDisplay);
     DisplayTable table;
     table.top = topOf(toDisplay);
     // For each size the toe that suits the view.
-    for (const std::uint32_t side : {33u, 65u, kMostDisplayNodes}) {
-        if (side > mostNodes) break;
+    for (const std::uint32_t side : {33u, 65u, 129u}) {
         float best = std::numeric_limits<float>::infinity();
         for (const float toe : {4.0f, 16.0f, 64.0f, 128.0f, 256.0f, 1024.0f}) {
             DisplayTable tried;
@@ -151,6 +150,13 @@ DisplayTable bakeDisplayTable(const ColourTransform& toDisplay, std::uint32_t mo
         if (table.worst <= 1) break;
     }
     return table;
+}
+
+int displayTableError(const DisplayTable& table, const ColourTransform& toDisplay) {
+    const std::vector<float> light = probes();
+    std::vector<float> codes = light;
+    convert(codes, toDisplay);
+    return errorOf(table, light, codes).second;
 }
 
 }  // namespace hairloom::render

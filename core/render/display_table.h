@@ -25,10 +25,11 @@ struct DisplayTable {
     Vec3f lookUp(const Vec3f& light) const;
 };
 
-inline constexpr std::uint32_t kMostDisplayNodes = 129;
+/// The smallest of 33, 65 and 129 nodes a side that is within one of 255 code values; else 129. At most 34
+/// MB, and about two seconds of one core.
+DisplayTable bakeDisplayTable(const ColourTransform& toDisplay);
 
-/// The smallest of 33, 65 and 129 nodes a side that is within one of 255 code values; else the largest that
-/// is not more than `mostNodes`. At most 34 MB, and about two seconds of one core.
-DisplayTable bakeDisplayTable(const ColourTransform& toDisplay, std::uint32_t mostNodes = kMostDisplayNodes);
+/// 255ths that a table of this view is off by, of kProbes colours.
+int displayTableError(const DisplayTable& table, const ColourTransform& toDisplay);
 
 }  // namespace hairloom::render

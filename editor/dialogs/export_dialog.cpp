@@ -13,6 +13,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/colour/colour_choice.h"
 #include "core/documents/hair_export.h"
 #include "core/documents/web_page.h"
 #include "core/groom/strand_subset.h"
@@ -351,6 +352,12 @@ void ExportDialog::exportTo(const QString& path) {
         return messages_.warn("No layer is visible, so there is nothing to export");
     if (choice.isPage && frames_->value() > 0)
         return messages_.warn("A web page simulates the hair itself: set Frames to “at rest”");
+    std::shared_ptr<const render::ColourTransform> view;
+    if (choice.isPage) {
+        const auto colours = colour::chooseColours(preferences_.colours());
+        if (!colours) return messages_.warn(errorText(colours.error()));
+        if (*colours) view = (*colours)->toDisplay;
+    }
     auto motion = player_.makeMeasuredMotion();
     if (!motion) return messages_.warn(errorText(motion.error()));
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
@@ -362,7 +369,7 @@ void ExportDialog::exportTo(const QString& path) {
     const bool started = tasks_.run<ExportReport>(
         QString("Exporting %1").arg(QFileInfo(path).fileName()),
         [groom = document_.groom(), wanted, moves, count, preRoll, path, options, &writer,
-         isPage = choice.isPage](TaskControl& control) mutable -> Result<ExportReport> {
+         isPage = choice.isPage, view](TaskControl& control) mutable -> Result<ExportReport> {
             const float simulated = count > 0 ? 0.5f : 0;
             if (count > 0) {
                 auto frames = playFrames(
@@ -380,7 +387,7 @@ void ExportDialog::exportTo(const QString& path) {
                 control.setProgress(simulated + (1 - simulated) * static_cast<float>(share));
             };
             wanted.cancel = control.cancelFlag();
-            if (isPage) return exportWebPage(groom, wanted, path.toStdString());
+            if (isPage) return exportWebPage(groom, wanted, path.toStdString(), view.get());
             return exportHair(groom, wanted, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/render/display_table.h"
+#include "core/render/tone_map.h"
 #include "tests/documents/small_head.h"
 #include "tests/support/temporary_folder.h"
 
@@ -86,6 +88,73 @@ TEST_F(WebPage, HasPlayerAssetAndHead) {
     for (const auto& file : fs::directory_iterator(page)) bytes += file.file_size();
     EXPECT_EQ(report->bytes, bytes);
     EXPECT_TRUE(exportWebPage(groom, {}, page)) << "over itself";
+}
+
+/// A shoulder on each channel, then sRGB.
+class Shoulder final : public render::ColourTransform {
+  public:
+    void apply(std::span<float> rgba) const override {
+        for (std::size_t i = 0; i < rgba.size(); ++i) {
+            if (i % 4 != 3) rgba[i] = render::encodeSrgb(rgba[i] / (rgba[i] + 0.4f));
+        }
+    }
+};
+
+/// What no table can follow.
+class Stripes final : public render::ColourTransform {
+  public:
+    void apply(std::span<float> rgba) const override {
+        for (std::size_t i = 0; i < rgba.size(); ++i) {
+            if (i % 4 != 3) rgba[i] = std::fmod(37 * rgba[i], 1.0f) < 0.5f ? 0.0f : 1.0f;
+        }
+    }
+};
+
+TEST_F(WebPage, HasAViewAsTheTableThatItLooksUp) {
+    const Groom groom = smallHead();
+    ASSERT_TRUE(exportWebPage(groom, {}, folder_ / "page"));
+    EXPECT_FALSE(sceneOf(folder_ / "page").contains("view"));
+    const Shoulder shoulder;
+    const auto report = exportWebPage(groom, {}, folder_ / "page", &shoulder);
+    ASSERT_TRUE(report) << report.error().message();
+    const nlohmann::json view = sceneOf(folder_ / "page")["view"];
+    render::DisplayTable table;
+    table.side = view["side"];
+    table.toe = view["toe"];
+    table.top = view["top"];
+    const std::string bytes = decoded(view["codes"]);
+    ASSERT_EQ(bytes.size(), std::size_t{6} * table.side * table.side * table.side);
+    for (std::size_t at = 0; at < bytes.size(); at += 6) {
+        std::array<float, 4> code{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            Eigen::half half;
+            std::memcpy(&half, bytes.data() + at + 2 * c, 2);
+            code[c] = static_cast<float>(half);
+        }
+        table.codes.push_back(code);
+    }
+    int worst = 0;
+    for (float light = 0; light < 40; light = 1.05f * light + 0.001f) {
+        for (const Vec3f& colour : {Vec3f(1, 1, 1), Vec3f(0.7f, 0.45f, 0.2f), Vec3f(0, 0.3f, 1)}) {
+            std::vector<float> exact{light * colour.x(), light * colour.y(), light * colour.z(), 1};
+            shoulder.apply(exact);
+            const Vec3f shown = table.lookUp(light * colour);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const int code = render::toByte(shown[static_cast<int>(c)]);
+                worst = std::max(worst, std::abs(code - int{render::toByte(exact[c])}));
+            }
+        }
+    }
+    EXPECT_LE(worst, 1);
+}
+
+TEST_F(WebPage, SaysWhereATableCannotFollowAView) {
+    const auto gentle = exportWebPage(smallHead(), {}, folder_ / "page", std::make_unique<Shoulder>().get());
+    const auto bent = exportWebPage(smallHead(), {}, folder_ / "page", std::make_unique<Stripes>().get());
+    ASSERT_TRUE(gentle && bent);
+    EXPECT_EQ(bent->findings.size(), gentle->findings.size() + 1);
+    EXPECT_THAT(bent->findings.back().what, testing::HasSubstr("of 255"));
+    EXPECT_EQ(sceneOf(folder_ / "page")["view"]["side"], 129);
 }
 
 TEST_F(WebPage, WithoutPlayerOrHairNamesWhatHelpsAndLeavesNothing) {

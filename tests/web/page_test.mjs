@@ -1,16 +1,60 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Opens an exported page from the disk in headless Chromium: it logs no error and asks for nothing from outside, its hair moves,
 // and after four seconds of a fixed motion its points lie within 0.05 mm of those of
-// the native engine NATIVE_POSITIONS.
-//   node page_test.mjs FOLDER NATIVE_POSITIONS PICTURE.png
+// the native engine NATIVE_POSITIONS. A page of a colour config shows light within one code value of OpenColorIO's own, which
+// VIEW_CODES tells (view_codes.cpp).
+//   node page_test.mjs FOLDER NATIVE_POSITIONS PICTURE.png [VIEW_CODES CONFIG DISPLAY VIEW]
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import {pathToFileURL} from 'node:url';
 import puppeteer from 'puppeteer-core';
 
-const [folder, native, picture] = process.argv.slice(2);
+const [folder, native, picture, viewCodes, ...view] = process.argv.slice(2);
 const kFrames = 240, kWind = [2, 0, 1.5], kLargestMm = 0.05;
+
+/** Light of all amounts and hues, black and far above white: 64 x 64 pixels of red, green and blue. */
+function lights() {
+    let state = 1;
+    const random = () => (state = (state * 48271) % 2147483647) / 2147483647;
+    const all = new Float32Array(3 * 64 * 64);
+    for (let i = 0; i < 64 * 64; ++i) {
+        const amount = i % 64 === 0 ? 0 : 2 ** (-12 + 20 * random()), hue = i % 4 === 0 ? 0 : random();
+        for (let c = 0; c < 3; ++c) all[3 * i + c] = amount * (1 - hue * random());
+    }
+    return all;
+}
+
+/** Those lights as the page's own shader shows them, before its exposure of 1.25: bytes of red, green and blue. */
+const shownByPage = (page, light) => page.evaluate(async (numbers) => {
+    const {stage} = await globalThis.hairloomPage, {strands, headMaterial, renderer} = stage;
+    const Texture = strands.texture.constructor, Geometry = strands.mesh.geometry.constructor;
+    const texture = new Texture(new Float32Array(numbers), 64, 64, strands.texture.format, strands.texture.type);
+    texture.internalFormat = strands.texture.internalFormat;
+    texture.needsUpdate = true;
+    const fragmentShader = headMaterial.fragmentShader.split('void main()')[0] + `
+        uniform highp sampler2D testLight;
+        void main() { colour = vec4(shown(texelFetch(testLight, ivec2(gl_FragCoord.xy), 0).rgb / 1.25), 1.0); }`;
+    const material = new strands.material.constructor({
+        glslVersion: headMaterial.glslVersion, defines: headMaterial.defines, fragmentShader, depthTest: false,
+        uniforms: {...headMaterial.uniforms, testLight: {value: texture}},
+        vertexShader: `out vec3 at, normal_ws;
+            void main() {
+                at = normal_ws = vec3(0.0);
+                gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+            }`,
+    });
+    const geometry = new Geometry();
+    geometry.setIndex(new strands.mesh.geometry.index.constructor(new Uint32Array([0, 1, 2]), 1));
+    const mesh = new strands.mesh.constructor(geometry, material);
+    mesh.frustumCulled = false;
+    const target = new stage.depthTarget.constructor(64, 64), pixels = new Uint8Array(4 * 64 * 64);
+    renderer.setRenderTarget(target);
+    renderer.render(mesh, stage.camera);
+    renderer.readRenderTargetPixels(target, 0, 0, 64, 64, pixels);
+    renderer.setRenderTarget(null);
+    return Array.from(pixels).filter((_, i) => i % 4 !== 3);
+}, Array.from(light));
 
 const browser = await puppeteer.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
@@ -95,6 +139,20 @@ try {
     expect(farthest <= kLargestMm, `after ${kFrames} frames points are at most ${farthest.toPrecision(3)} mm from the native ones, ` +
         `${(sum / points).toPrecision(3)} mm on average`);
     console.log(`     step ${played.step.toFixed(1)} ms, hairs read in ${played.read.toFixed(1)} ms`);
+    if (viewCodes) {
+        const light = lights(), files = ['light', 'codes'].map((name) => path.join(folder, name));
+        fs.writeFileSync(files[0], Buffer.from(light.buffer));
+        execFileSync(viewCodes, [...view, ...files]);
+        const exact = fs.readFileSync(files[1]), shown = await shownByPage(page, light);
+        for (const file of files) fs.rmSync(file);
+        let worst = 0, lit = 0;
+        for (let i = 0; i < exact.length; ++i) {
+            worst = Math.max(worst, Math.abs(exact[i] - shown[i]));
+            lit += shown[i] > 0 && shown[i] < 255;
+        }
+        expect(exact.length === shown.length && lit > 1000 && worst <= 1,
+            `light is shown within ${worst} of 255 code values of OpenColorIO's own`);
+    }
     expect(complaints.length === 0, `nothing is complained of${complaints.map((text) => `\n     ${text}`).join('')}`);
     const outside = asked.filter((url) => !url.startsWith('file:') && !url.startsWith('data:') && !url.startsWith('blob:'));
     expect(outside.length === 0, `nothing is asked for from outside ${outside.join(' ')}`);

@@ -36,8 +36,9 @@ class Page {
             normals: new Int16Array(bytesOf(scene.head.normals).buffer),
             triangles: new Uint32Array(bytesOf(scene.head.triangles).buffer),
         };
+        const view = scene.view && {...scene.view, codes: new Uint16Array(bytesOf(scene.view.codes).buffer)};
         const bounds = {middle: scene.middle, radius: scene.radius, pivot: scene.pivot};
-        this.stage = new Stage(document.querySelector('canvas'), hair, lookOf(hair), head, bounds);
+        this.stage = new Stage(document.querySelector('canvas'), hair, lookOf(hair), head, bounds, view);
         this.playing = true;
         this.rest();
         document.querySelector('#panel h1').textContent = scene.title;

@@ -2,12 +2,13 @@
 // What is seen: head, hair, lights, and the map of depths from the light.
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {displayGlsl, displayParts} from './display.js';
 import {Strands} from './strands.js';
 
 const kMap = 1024;
 
 /** The head's mesh in clay, shadowed by hair as hair is. */
-const headFragment = /* glsl */ `
+const headFragment = displayGlsl + /* glsl */ `
 uniform vec3 lightColour, skyColour, groundColour, rimColour, light, rim;
 uniform highp sampler2D depths;
 uniform mat4 toLight;
@@ -31,7 +32,7 @@ void main() {
     sum += rimColour * 0.25 * skin * pow(1.0 - max(dot(n, eye), 0.0), 3.0) * max(dot(n, rim), 0.0);
     float gloss = pow(max(dot(n, normalize(light + eye)), 0.0), 28.0);
     sum += lightColour * 0.03 * gloss * reach;
-    colour = linearToOutputTexel(vec4(1.0 - exp(-sum * 1.25), 1.0));
+    colour = vec4(shown(sum), 1.0);
 }
 `;
 const headVertex = /* glsl */ `
@@ -44,7 +45,8 @@ void main() {
 `;
 
 export class Stage {
-    constructor(canvas, hair, look, head, bounds) {
+    /** `view`: as displayParts() takes it. */
+    constructor(canvas, hair, look, head, bounds, view) {
         this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, powerPreference: 'high-performance'});
         this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
         this.scene = new THREE.Scene();
@@ -79,21 +81,23 @@ export class Stage {
             toLight: {value: toLight},
             lightDepth: {value: reach * 4},
         };
-        this.strands = new Strands(hair.hairs, hair.pointsPerHair, look, lights);
+        const display = displayParts(view);
+        this.strands = new Strands(hair.hairs, hair.pointsPerHair, look, lights, display);
         this.scene.add(this.strands.mesh);
         this.head = null;
-        if (head) this.#addHead(head, lights);
+        if (head) this.#addHead(head, lights, display);
         new ResizeObserver(() => this.#fit()).observe(canvas);
         this.#fit();
     }
 
-    #addHead(head, lights) {
+    #addHead(head, lights, display) {
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute('position', new THREE.BufferAttribute(head.positions, 3));
         geometry.setAttribute('normal', new THREE.BufferAttribute(head.normals, 3, true));
         geometry.setIndex(new THREE.BufferAttribute(head.triangles, 1));
         this.headMaterial = new THREE.ShaderMaterial({
-            glslVersion: THREE.GLSL3, vertexShader: headVertex, fragmentShader: headFragment, uniforms: lights, side: THREE.DoubleSide});
+            glslVersion: THREE.GLSL3, vertexShader: headVertex, fragmentShader: headFragment, defines: display.defines,
+            uniforms: {...lights, ...display.uniforms}, side: THREE.DoubleSide});
         this.headDepth = new THREE.MeshBasicMaterial({side: THREE.DoubleSide});
         this.head = new THREE.Mesh(geometry, this.headMaterial);
         this.head.matrixAutoUpdate = false;

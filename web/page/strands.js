@@ -4,6 +4,7 @@
 // Light: Kajiya and Kay 1989 with two shifted highlights (Scheuermann 2004); what hair lies between a point
 // and the light takes of it is told by the depth of the first hair the light meets.
 import * as THREE from 'three';
+import {displayGlsl} from './display.js';
 
 const vertexCommon = /* glsl */ `
 uniform highp sampler2D points;
@@ -54,7 +55,7 @@ void main() {
 }
 `;
 
-const fragmentShader = /* glsl */ `
+const fragmentShader = displayGlsl + /* glsl */ `
 uniform vec3 rootColour, tipColour, lightColour, skyColour, groundColour, rimColour, light, rim, middle;
 uniform float variation, absorption;
 uniform highp sampler2D depths;
@@ -101,9 +102,7 @@ void main() {
     float inner = mix(0.45, 1.0, smoothstep(0.0, 0.35, share)) * mix(0.5, 1.0, reach);
     sum += base * mix(groundColour, skyColour, 0.5 + 0.5 * normal.y) * inner;
     float alpha = cover * smoothstep(1.0, 0.82, abs(across) * share) * 1.35;
-    colour = vec4(sum, min(1.0, alpha + 0.18 * (tone - 0.5)));
-    #include <tonemapping_fragment>
-    colour = linearToOutputTexel(vec4(1.0 - exp(-colour.rgb * 1.25), colour.a));
+    colour = vec4(shown(sum), min(1.0, alpha + 0.18 * (tone - 0.5)));
 }
 `;
 
@@ -136,8 +135,8 @@ function ribbons(hairs, points) {
 }
 
 export class Strands {
-    /** `look`: rootColour, tipColour, rootRadius, tipScale, colourVariation of the material. */
-    constructor(hairs, pointsPerHair, look, lights) {
+    /** `look`: rootColour, tipColour, rootRadius, tipScale, colourVariation of the material. `display`: displayParts(). */
+    constructor(hairs, pointsPerHair, look, lights, display) {
         const rows = Math.ceil((hairs * pointsPerHair) / 1024);
         this.texture = new THREE.DataTexture(new Float32Array(3 * 1024 * rows), 1024, rows, THREE.RGBFormat, THREE.FloatType);
         this.texture.internalFormat = 'RGB32F';
@@ -156,8 +155,9 @@ export class Strands {
         const colour = (rgb) => ({value: new THREE.Vector3(...rgb)});
         this.material = new THREE.ShaderMaterial({
             glslVersion: THREE.GLSL3, vertexShader, fragmentShader, side: THREE.DoubleSide, alphaToCoverage: true,
+            defines: display.defines,
             uniforms: {
-                ...shared, ...lights,
+                ...shared, ...lights, ...display.uniforms,
                 pixel: {value: 0.001}, least: {value: 1.1},
                 rootColour: colour(look.rootColour), tipColour: colour(look.tipColour),
                 variation: {value: look.colourVariation}, absorption: {value: 75},
