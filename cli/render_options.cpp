@@ -12,6 +12,7 @@
 #include "cli/colour_options.h"
 #include "cli/error_report.h"
 #include "cli/vectors.h"
+#include "core/live/shown.h"
 #include "core/render/aov.h"
 
 namespace hairloom::cli {
@@ -43,6 +44,20 @@ const std::map<std::string, render::Transparency> kTransparency{
     {"stochastic", render::Transparency::stochastic},
     {"a2c", render::Transparency::alphaToCoverage},
     {"weighted", render::Transparency::weighted}};
+
+std::vector<std::string> shownNames() {
+    std::vector<std::string> names;
+    for (const ShownKind& kind : shownKinds()) names.emplace_back(kind.name);
+    return names;
+}
+
+std::string showHelp() {
+    std::string help =
+        "Write a chart of the shading model in place of an image of the hair, of the groom's material or, "
+        "without a groom, of the default one.";
+    for (const ShownKind& kind : shownKinds()) help += fmt::format(" {}: {}.", kind.name, kind.meaning);
+    return help;
+}
 
 }  // namespace
 
@@ -107,9 +122,9 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
 
 std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     auto options = std::make_shared<RenderJobOptions>();
-    job.add_option("groom", options->input, "Project or hair file")->required();
+    auto* groom = job.add_option("groom", options->input, "Project or hair file. --show does without");
     job.add_option("--size", options->size,
-                   "Image size WxH in pixels (default: that of the view, or 1024x1024)");
+                   "Image size WxH in pixels (default: that of the view, or 1024x1024, of charts 1280x860)");
     job.add_option("--camera", options->camera, "Camera position")
         ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter", "top", "bottom"}));
     auto* view = job.add_option("--view", options->view, "JSON file with camera, lights, head and hair");
@@ -126,6 +141,11 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
                    "Sample material (fire, tentacles, …) or JSON file of material fields to apply");
     job.add_option("--shading", options->shading, "Shading model (default: the project's)")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
+    auto* show = job.add_option("--show", options->show, showHelp())->check(CLI::IsMember(shownNames()));
+    job.add_option("--inclination", options->inclination,
+                   "With --show: inclination of the light against the plane across the fibre, in degrees")
+        ->check(CLI::Range(-85.0, 85.0))
+        ->needs(show);
     job.add_option("--scatter", options->scatter,
                    "Light scattered by other hairs: single ignores it, dual adds it. Not for kajiya")
         ->check(CLI::IsMember({"single", "dual"}));
@@ -199,6 +219,7 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         job.add_option("--frames", options->frames, "Frames FIRST,LAST[,STEP] to render, one image each")
             ->delimiter(',')
             ->excludes(frame);
+    for (CLI::Option* const option : {record, motion, frames}) show->excludes(option);
     job.add_option("--handles", options->handles,
                    "Number of frames to render before and behind --frames as well")
         ->check(CLI::Range(0, 1000))
@@ -211,13 +232,13 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     auto* turn =
         job.add_option("--turn", options->turn,
                        "Degrees by which the camera is turned around the hair: one image of a turntable");
-    job.add_option("--turntable", options->turntable,
-                   "Number of images for one turn of the camera around the hair")
-        ->check(CLI::Range(1, 10'000))
-        ->excludes(frames)
-        ->excludes(turn);
-    job.add_option("--animation", options->animation,
-                   "Animated PNG for all images, or WebP if the name ends in .webp");
+    auto* turntable = job.add_option("--turntable", options->turntable,
+                                     "Number of images for one turn of the camera around the hair")
+                          ->check(CLI::Range(1, 10'000))
+                          ->excludes(frames)
+                          ->excludes(turn);
+    auto* animation = job.add_option("--animation", options->animation,
+                                     "Animated PNG for all images, or WebP if the name ends in .webp");
     job.add_option("--burn-in", options->burnIn,
                    "Text to write into the images, a line each, separated by commas: frame, take, settings, "
                    "error (with "
@@ -238,6 +259,7 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     auto* exr = job.add_option("--exr", options->exr,
                                "OpenEXR file for linear light, before exposure and tone curve, in the "
                                "config's scene-linear space, else Rec. 709");
+    for (CLI::Option* const option : {turn, turntable, animation, strip, exr}) show->excludes(option);
     job.add_option("--aov", options->aovs,
                    "Extra layers in the OpenEXR, for the nearest surface in each pixel: depth, hair id, "
                    "velocity since the last frame, albedo")
@@ -249,7 +271,8 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     job.add_option("--backend", options->backend, "Graphics API. Direct3D 11 is only on Windows")
         ->check(CLI::IsMember({"any", "vulkan", "d3d11"}));
     job.add_option("-o,--output", options->output, "PNG to write. Several images are numbered")->required();
-    job.final_callback([options, device, frame, frames, start] {
+    job.final_callback([options, groom, device, frame, frames, start] {
+        if (options->input.empty() && options->show.empty()) throw CLI::RequiredError(groom->get_name());
         if (start->count() > 0 && *options->start < options->handles)
             throw CLI::ValidationError("--start", fmt::format("{} leaves no numbers for {} handles",
                                                               *options->start, options->handles));

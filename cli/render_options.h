@@ -19,6 +19,8 @@ namespace hairloom::cli {
 struct RenderJobOptions {
     std::string input;
     std::string size;
+    std::string show;        ///< a chart in place of hair; empty: none
+    double inclination = 0;  ///< degrees, of the chart's light
     std::string camera = "three-quarter";
     std::string view;
     std::string material;

@@ -19,6 +19,7 @@
 #include "cli/plan_report.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
+#include "cli/show_job.h"
 #include "core/base/content_kind.h"
 #include "core/base/output_batch.h"
 #include "core/documents/sample.h"
@@ -307,6 +308,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = addRenderOptions(job);
     return [options](const std::string&) {
+        if (!options->show.empty())
+            return withOutputs({{options->output, content::kPng}}, [&] { return showToFile(*options); });
         if (!options->motion.empty()) checkMotion(options->motion);
         const auto shots = shotsOf(*options);
         if (!shots) return Result<Report>(tl::unexpected(shots.error()));

@@ -20,28 +20,6 @@ constexpr double kOtherCharacter = 600;
 /// DejaVu Sans, what many Linux systems take for Helvetica, is about so much wider.
 constexpr double kWiderFaces = 1.12;
 
-/// Bytes of the UTF-8 sequence at the start of `text`; 0 where there is none.
-std::size_t sequenceLength(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned char first = byte(0);
-    const std::size_t length = first < 0x80u                     ? 1u
-                               : first >= 0xC2u && first < 0xE0u ? 2u
-                               : first >= 0xE0u && first < 0xF0u ? 3u
-                               : first >= 0xF0u && first < 0xF5u ? 4u
-                                                                 : 0u;
-    if (length == 0 || length > text.size()) return 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xC0u) != 0x80u) return 0;
-    }
-    // Overlong forms, surrogates, what lies beyond U+10FFFF, and U+FFFE and U+FFFF, which XML does not allow.
-    if (first == 0xE0u && byte(1) < 0xA0u) return 0;
-    if (first == 0xEDu && byte(1) >= 0xA0u) return 0;
-    if (first == 0xF0u && byte(1) < 0x90u) return 0;
-    if (first == 0xF4u && byte(1) >= 0x90u) return 0;
-    if (first == 0xEFu && byte(1) == 0xBFu && byte(2) >= 0xBEu) return 0;
-    return length;
-}
-
 void appendEscaped(char c, std::string& out) {
     switch (c) {
         case '&':
@@ -65,6 +43,27 @@ void appendEscaped(char c, std::string& out) {
 }
 
 }  // namespace
+
+std::size_t sequenceLength(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char first = byte(0);
+    const std::size_t length = first < 0x80u                     ? 1u
+                               : first >= 0xC2u && first < 0xE0u ? 2u
+                               : first >= 0xE0u && first < 0xF0u ? 3u
+                               : first >= 0xF0u && first < 0xF5u ? 4u
+                                                                 : 0u;
+    if (length == 0 || length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0u) != 0x80u) return 0;
+    }
+    // Overlong forms, surrogates, what lies beyond U+10FFFF, and U+FFFE and U+FFFF, which XML does not allow.
+    if (first == 0xE0u && byte(1) < 0xA0u) return 0;
+    if (first == 0xEDu && byte(1) >= 0xA0u) return 0;
+    if (first == 0xF0u && byte(1) < 0x90u) return 0;
+    if (first == 0xF4u && byte(1) >= 0x90u) return 0;
+    if (first == 0xEFu && byte(1) == 0xBFu && byte(2) >= 0xBEu) return 0;
+    return length;
+}
 
 std::string escapeMarkup(std::string_view text) {
     std::string out;

@@ -12,6 +12,9 @@ namespace hairloom {
 /// spaces, bytes that are no UTF-8 become U+FFFD.
 std::string escapeMarkup(std::string_view text);
 
+/// Bytes of the UTF-8 sequence at the start of `text`, which is not empty; 0 where there is none.
+std::size_t sequenceLength(std::string_view text);
+
 /// Pixels that a line takes at `size` pixels in Helvetica, Arial or what a viewer has instead, with some
 /// room for wider faces.
 double textWidth(std::string_view text, double size);

@@ -11,6 +11,7 @@
 #include "core/charts/plot_labels.h"
 #include "core/charts/plot_legend.h"
 #include "core/charts/plot_ticks.h"
+#include "core/charts/raster_canvas.h"
 #include "core/charts/svg_canvas.h"
 
 namespace hairloom {
@@ -136,7 +137,7 @@ Layout layoutOf(const Plot& plot, const Legend& legend) {
     return layout;
 }
 
-void drawGrid(const Layout& layout, SvgCanvas& canvas) {
+void drawGrid(const Layout& layout, Canvas& canvas) {
     const PixelBox& f = layout.frame;
     const Stroke major{"#e2e2e2"}, minor{"#f3f3f3"};
     for (const double value : layout.x.minorTicks) {
@@ -153,7 +154,7 @@ void drawGrid(const Layout& layout, SvgCanvas& canvas) {
     }
 }
 
-void drawXTicks(const Layout& layout, SvgCanvas& canvas) {
+void drawXTicks(const Layout& layout, Canvas& canvas) {
     const double bottom = layout.frame.y + layout.frame.height;
     const Stroke stroke{"#555555"};
     for (const double value : layout.x.minorTicks) {
@@ -172,7 +173,7 @@ void drawXTicks(const Layout& layout, SvgCanvas& canvas) {
     }
 }
 
-void drawYTicks(const Layout& layout, SvgCanvas& canvas) {
+void drawYTicks(const Layout& layout, Canvas& canvas) {
     const double left = layout.frame.x;
     const Stroke stroke{"#555555"};
     for (const double value : layout.y.minorTicks) {
@@ -185,7 +186,7 @@ void drawYTicks(const Layout& layout, SvgCanvas& canvas) {
     }
 }
 
-void drawTitles(const Layout& layout, SvgCanvas& canvas) {
+void drawTitles(const Layout& layout, Canvas& canvas) {
     const PixelBox& f = layout.frame;
     double y = kEdge + 14;
     for (const std::string& line : layout.text.title) {
@@ -210,12 +211,13 @@ void drawTitles(const Layout& layout, SvgCanvas& canvas) {
     }
 }
 
-void drawMap(const FilledMap& map, const Legend& legend, const Layout& layout, SvgCanvas& canvas) {
+void drawMap(const FilledMap& map, const Legend& legend, const Layout& layout, Canvas& canvas) {
     assert(map.xEdges.size() >= 2 && map.yEdges.size() >= 2);
     const std::size_t columns = map.xEdges.size() - 1;
-    assert(map.values.size() == columns * (map.yEdges.size() - 1));
-    assert(map.cellTexts.empty() || map.cellTexts.size() == map.values.size());
-    for (std::size_t i = 0; i < map.values.size(); ++i) {
+    const std::size_t cells = columns * (map.yEdges.size() - 1);
+    assert((map.colours.empty() ? map.values.size() : map.colours.size()) == cells);
+    assert(map.cellTexts.empty() || map.cellTexts.size() == cells);
+    for (std::size_t i = 0; i < cells; ++i) {
         const std::size_t column = i % columns, row = i / columns;
         const double x0 = layout.xOf(map.xEdges[column]), x1 = layout.xOf(map.xEdges[column + 1]);
         const double y0 = layout.yOf(map.yEdges[row + 1]), y1 = layout.yOf(map.yEdges[row]);
@@ -224,8 +226,8 @@ void drawMap(const FilledMap& map, const Legend& legend, const Layout& layout, S
         if (!f.overlaps({x0, y0, x1 - x0, y1 - y0})) continue;
         const double left = std::max(x0, f.x), right = std::min(x1, f.x + f.width);
         const double top = std::max(y0, f.y), bottom = std::min(y1, f.y + f.height);
-        const std::string colour = legend.cellColour(map.values[i]);
-        canvas.box({left, top, right - left, bottom - top}, colour);
+        const std::string colour = legend.cellColour(i);
+        canvas.box({left, top, right - left, bottom - top}, colour, {});
         if (map.cellTexts.empty() || map.cellTexts[i].empty()) continue;
         const double room = right - left - 4;
         if (textWidth(map.cellTexts[i], kTextSize) > room || bottom - top < kTextHeight) continue;
@@ -271,7 +273,7 @@ std::vector<PixelSegment> lineOf(const Series& series, const Layout& layout) {
     return segments;
 }
 
-void drawErrorBars(const DrawnPoint& drawn, const Layout& layout, SvgCanvas& canvas) {
+void drawErrorBars(const DrawnPoint& drawn, const Layout& layout, Canvas& canvas) {
     const PlotPoint& p = *drawn.point;
     const Stroke stroke{drawn.colour, 1.2, "", p.faint ? kFaint : 0.8};
     const auto bar = [&](double x0, double y0, double x1, double y1) {
@@ -290,7 +292,7 @@ void drawErrorBars(const DrawnPoint& drawn, const Layout& layout, SvgCanvas& can
     }
 }
 
-void drawPoint(const DrawnPoint& drawn, const Layout& layout, SvgCanvas& canvas) {
+void drawPoint(const DrawnPoint& drawn, const Layout& layout, Canvas& canvas) {
     drawErrorBars(drawn, layout, canvas);
     if (drawn.upwards) {
         canvas.arrowUp(drawn.x, drawn.y, drawn.colour, drawn.point->tooltip);
@@ -301,7 +303,7 @@ void drawPoint(const DrawnPoint& drawn, const Layout& layout, SvgCanvas& canvas)
 }
 
 void drawLabels(const std::vector<DrawnPoint>& points, const std::vector<PixelSegment>& lines,
-                const Layout& layout, SvgCanvas& canvas) {
+                const Layout& layout, Canvas& canvas) {
     std::vector<LabelRequest> requests;
     std::vector<const std::string*> labels;
     std::vector<PixelBox> obstacles;
@@ -331,7 +333,7 @@ void drawLabels(const std::vector<DrawnPoint>& points, const std::vector<PixelSe
     }
 }
 
-void drawSeries(const Plot& plot, const Legend& legend, const Layout& layout, SvgCanvas& canvas) {
+void drawSeries(const Plot& plot, const Legend& legend, const Layout& layout, Canvas& canvas) {
     const std::vector<DrawnPoint> points = drawnPoints(plot, legend, layout);
     for (const DrawnPoint& point : points) {
         if (point.point->faint) drawPoint(point, layout, canvas);
@@ -349,7 +351,7 @@ void drawSeries(const Plot& plot, const Legend& legend, const Layout& layout, Sv
     drawLabels(points, lines, layout, canvas);
 }
 
-void drawBars(const Plot& plot, const Legend& legend, const Layout& layout, SvgCanvas& canvas) {
+void drawBars(const Plot& plot, const Legend& legend, const Layout& layout, Canvas& canvas) {
     constexpr double kGroup = 0.8;  // of the way to the next x
     const PixelBox& f = layout.frame;
     const double bottom = f.y + f.height;
@@ -367,12 +369,7 @@ void drawBars(const Plot& plot, const Legend& legend, const Layout& layout, SvgC
     }
 }
 
-}  // namespace
-
-std::string svg(const Plot& plot) {
-    const Legend legend(plot);
-    const Layout layout = layoutOf(plot, legend);
-    SvgCanvas canvas(layout.width, layout.height, plot.title);
+void draw(const Plot& plot, const Legend& legend, const Layout& layout, Canvas& canvas) {
     if (!plot.map) drawGrid(layout, canvas);
     if (plot.map) drawMap(*plot.map, legend, layout, canvas);
     plot.bars ? drawBars(plot, legend, layout, canvas) : drawSeries(plot, legend, layout, canvas);
@@ -381,7 +378,42 @@ std::string svg(const Plot& plot) {
     drawYTicks(layout, canvas);
     drawTitles(layout, canvas);
     legend.draw(layout.frame, canvas);
+}
+
+}  // namespace
+
+std::string svg(const Plot& plot) {
+    const Legend legend(plot);
+    const Layout layout = layoutOf(plot, legend);
+    SvgCanvas canvas(layout.width, layout.height, plot.title);
+    draw(plot, legend, layout, canvas);
     return std::move(canvas).finish();
+}
+
+ChartImage image(const Plot& plot, double scale) {
+    const Legend legend(plot);
+    const Layout layout = layoutOf(plot, legend);
+    RasterCanvas canvas(layout.width, layout.height, scale);
+    draw(plot, legend, layout, canvas);
+    return std::move(canvas).finish();
+}
+
+ChartImage image(const std::vector<Plot>& plots, double scale) {
+    std::vector<ChartImage> images;
+    ChartImage all;
+    for (const Plot& plot : plots) {
+        images.push_back(image(plot, scale));
+        all.width = std::max(all.width, images.back().width);
+        all.height += images.back().height;
+    }
+    for (const ChartImage& one : images) {
+        for (std::uint32_t y = 0; y < one.height; ++y) {
+            const auto row = one.rgba.begin() + std::ptrdiff_t{4} * y * one.width;
+            all.rgba.insert(all.rgba.end(), row, row + std::ptrdiff_t{4} * one.width);
+            all.rgba.insert(all.rgba.end(), std::size_t{4} * (all.width - one.width), 255);
+        }
+    }
+    return all;
 }
 
 }  // namespace hairloom

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Charts as SVG: points, lines and bars over linear, logarithmic or named axes, and filled maps with a colour
-// bar.
-// The text is laid out here with the widths of a common sans-serif face, so that nothing is clipped or
-// printed over something else whichever viewer draws it. Equal plots give equal bytes.
+// Charts as SVG or as an image: points, lines and bars over linear, logarithmic or named axes, and filled
+// maps with a colour bar. The text is laid out here with the widths of a common sans-serif face, so that
+// nothing is clipped or printed over something else whichever viewer draws it. Equal plots give equal bytes.
 //
 //     Plot plot;
 //     plot.title = "Error against substeps";
@@ -78,11 +77,18 @@ struct MapCategory {
     std::optional<std::string> colour = {};  ///< absent: next of the palette, skipping neither
 };
 
+/// sRGB.
+struct CellColour {
+    std::uint8_t red = 0, green = 0, blue = 0;
+};
+
 /// A grid of cells. Row 0 is the lowest. Series are drawn over it.
 struct FilledMap {
-    std::vector<double> xEdges;               ///< columns + 1, ascending; see cellEdges
-    std::vector<double> yEdges;               ///< rows + 1, ascending
-    std::vector<double> values;               ///< rows · columns, row after row; not finite: no data (grey)
+    std::vector<double> xEdges;  ///< columns + 1, ascending; see cellEdges
+    std::vector<double> yEdges;  ///< rows + 1, ascending
+    std::vector<double> values;  ///< rows · columns, row after row; not finite: no data (grey)
+    /// Not empty: what cells show in place of `values`, which are empty then. No bar explains them.
+    std::vector<CellColour> colours = {};
     std::vector<std::string> cellTexts = {};  ///< the same size, or empty; printed where a cell has room
     /// Not empty: the values are indices into it, and a legend replaces the colour bar.
     std::vector<MapCategory> categories = {};
@@ -109,6 +115,16 @@ struct Plot {
 
 /// A complete SVG document, which may also stand within an HTML page as it is (it has no ids).
 std::string svg(const Plot& plot);
+
+/// 8 bits a channel, sRGB, opaque; rows from the top, without gaps.
+struct ChartImage {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+/// The same drawing, `scale` pixels for each of the plot's, 0.5 … 8.
+ChartImage image(const Plot& plot, double scale);
+/// Several under one another, each as wide as the widest.
+ChartImage image(const std::vector<Plot>& plots, double scale);
 
 /// Okabe and Ito's palette ("Color Universal Design", 2008), which colour-blind readers can tell apart; in an
 /// order in which the first few are also of different lightness.

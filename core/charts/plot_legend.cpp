@@ -73,7 +73,7 @@ Legend::Legend(const Plot& plot) : plot_(plot) {
     if (map) {
         scale_ = layoutAxis(map->colour, map->values, 200, 45, false);
         for (std::size_t c = 0; c < map->categories.size(); ++c) {
-            addEntry(Entry::Kind::Swatch, map->categories[c].name, cellColour(static_cast<double>(c)));
+            addEntry(Entry::Kind::Swatch, map->categories[c].name, colourOf(static_cast<double>(c)));
         }
         const bool gaps =
             std::ranges::any_of(map->values, [](double value) { return !std::isfinite(value); });
@@ -99,7 +99,14 @@ std::string Legend::seriesColour(std::size_t series) const {
     return plot_.series[series].colour.value_or(paletteColour(series));
 }
 
-std::string Legend::cellColour(double value) const {
+std::string Legend::cellColour(std::size_t cell) const {
+    const FilledMap& map = *plot_.map;
+    if (map.colours.empty()) return colourOf(map.values[cell]);
+    const CellColour& colour = map.colours[cell];
+    return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
+}
+
+std::string Legend::colourOf(double value) const {
     if (!std::isfinite(value)) return kNoData;
     const auto& categories = plot_.map->categories;
     if (categories.empty()) return scale_.drawable(value) ? mapColour(scale_.share(value)) : kNoData;
@@ -109,7 +116,7 @@ std::string Legend::cellColour(double value) const {
 }
 
 bool Legend::hasBar() const {
-    return plot_.map && plot_.map->categories.empty();
+    return plot_.map && plot_.map->categories.empty() && plot_.map->colours.empty();
 }
 
 AxisLayout Legend::barAxis(double length) const {
@@ -146,13 +153,14 @@ double Legend::height() const {
     return height;
 }
 
-void Legend::drawBar(const PixelBox& frame, SvgCanvas& canvas) const {
+void Legend::drawBar(const PixelBox& frame, Canvas& canvas) const {
     const AxisLayout axis = barAxis(frame.height);
     const double x = frame.x + frame.width + kGap;
     for (int step = 0; step < kBarSteps; ++step) {
         const double top = frame.y + frame.height * (1 - (step + 1.0) / kBarSteps);
         // Each lies half a pixel over the one above, so that no seam shows.
-        canvas.box({x, top, kBarWidth, frame.height / kBarSteps + 0.5}, mapColour((step + 0.5) / kBarSteps));
+        canvas.box({x, top, kBarWidth, frame.height / kBarSteps + 0.5}, mapColour((step + 0.5) / kBarSteps),
+                   {});
     }
     canvas.frame({x, frame.y, kBarWidth, frame.height}, {"#555555"});
     for (const AxisTick& tick : axis.ticks) {
@@ -168,12 +176,12 @@ void Legend::drawBar(const PixelBox& frame, SvgCanvas& canvas) const {
                 {.size = kTextSize, .anchor = Anchor::Middle, .turned = -90});
 }
 
-void Legend::drawEntry(const Entry& entry, double x, double y, SvgCanvas& canvas) const {
+void Legend::drawEntry(const Entry& entry, double x, double y, Canvas& canvas) const {
     const double middle = x + kSymbolWidth / 2;
     const double axis = y + 6.5;
     switch (entry.kind) {
         case Entry::Kind::Swatch:
-            canvas.box({x + 4, y, 18, 13}, entry.colour);
+            canvas.box({x + 4, y, 18, 13}, entry.colour, {});
             canvas.frame({x + 4, y, 18, 13}, {"#999999", 0.8});
             break;
         case Entry::Kind::Arrow:
@@ -193,7 +201,7 @@ void Legend::drawEntry(const Entry& entry, double x, double y, SvgCanvas& canvas
     }
 }
 
-void Legend::draw(const PixelBox& frame, SvgCanvas& canvas) const {
+void Legend::draw(const PixelBox& frame, Canvas& canvas) const {
     if (hasBar()) drawBar(frame, canvas);
     const double x = frame.x + frame.width + barWidth() + kGap;
     double y = frame.y + 2;

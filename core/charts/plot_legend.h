@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "core/charts/canvas.h"
 #include "core/charts/plot_ticks.h"
-#include "core/charts/svg_canvas.h"
 
 namespace hairloom {
 
@@ -17,10 +17,10 @@ class Legend {
 
     double width() const;   ///< pixels, with the gap to the chart; 0 where there is nothing to explain
     double height() const;  ///< of the names
-    void draw(const PixelBox& frame, SvgCanvas& canvas) const;
+    void draw(const PixelBox& frame, Canvas& canvas) const;
 
     std::string seriesColour(std::size_t series) const;
-    std::string cellColour(double value) const;
+    std::string cellColour(std::size_t cell) const;
 
   private:
     struct Entry {
@@ -31,12 +31,13 @@ class Legend {
     };
     void addEntry(Entry::Kind kind, const std::string& name, std::string colour,
                   const Series* series = nullptr);
+    std::string colourOf(double value) const;  ///< of a map's cells
     bool hasBar() const;
     AxisLayout barAxis(double length) const;
     double barWidth() const;
     double namesWidth() const;
-    void drawBar(const PixelBox& frame, SvgCanvas& canvas) const;
-    void drawEntry(const Entry& entry, double x, double y, SvgCanvas& canvas) const;
+    void drawBar(const PixelBox& frame, Canvas& canvas) const;
+    void drawEntry(const Entry& entry, double x, double y, Canvas& canvas) const;
 
     const Plot& plot_;
     std::vector<Entry> entries_;

@@ -3,16 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <initializer_list>
-
 #include "core/charts/markup.h"
 
 namespace hairloom {
 namespace {
-
-constexpr double kMarkerRadius = 4;
 
 /// "12.5", "3", "0": hundredths without trailing zeros.
 std::string px(double value) {
@@ -34,47 +28,17 @@ const char* anchorName(Anchor anchor) {
     return anchor == Anchor::Start ? "start" : anchor == Anchor::Middle ? "middle" : "end";
 }
 
-/// The exponent of "10^-3", or nothing. Only what layoutAxis writes counts: titles may hold any other '^'.
-std::string_view exponentOf(std::string_view text) {
-    constexpr std::string_view kTen = "10^", kMinus = "\u2212";
-    if (!text.starts_with(kTen) || text.size() == kTen.size()) return {};
-    const std::string_view exponent = text.substr(kTen.size());
-    std::string_view digits = exponent;
-    if (digits.starts_with(kMinus)) digits.remove_prefix(kMinus.size());
-    const bool whole =
-        !digits.empty() && std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; });
-    return whole ? exponent : std::string_view();
-}
-
-/// "M x y L x y …" through places in marker radii about the middle; every `stroke` points begin anew.
-std::string pathThrough(std::initializer_list<std::array<double, 2>> places, std::size_t stroke, double x,
-                        double y) {
-    std::string path;
-    std::size_t index = 0;
-    for (const auto& [dx, dy] : places) {
-        path += fmt::format("{}{} {}", index++ % stroke == 0 ? 'M' : 'L', px(x + dx * kMarkerRadius),
-                            px(y + dy * kMarkerRadius));
-    }
-    return path;
-}
-
+/// "M x y L x y …" through the corners; those of open markers in pairs.
 std::string markerPath(Marker marker, double x, double y) {
-    switch (marker) {
-        case Marker::Square:
-            return pathThrough({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4, x, y).append("Z");
-        case Marker::TriangleUp:
-            return pathThrough({{0, -1.2}, {1.15, 0.9}, {-1.15, 0.9}}, 3, x, y).append("Z");
-        case Marker::Diamond:
-            return pathThrough({{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}}, 4, x, y).append("Z");
-        case Marker::Cross:
-            return pathThrough({{-1, -1}, {1, 1}, {-1, 1}, {1, -1}}, 2, x, y);
-        case Marker::Plus:
-            return pathThrough({{-1.1, 0}, {1.1, 0}, {0, -1.1}, {0, 1.1}}, 2, x, y);
-        case Marker::None:
-        case Marker::Circle:
-            break;
+    const bool open = marker == Marker::Cross || marker == Marker::Plus;
+    const std::vector<MarkerCorner>& corners = markerCorners(marker);
+    const std::size_t stroke = open ? 2 : corners.size();
+    std::string path;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        path += fmt::format("{}{} {}", i % stroke == 0 ? 'M' : 'L', px(x + corners[i].x * kMarkerRadius),
+                            px(y + corners[i].y * kMarkerRadius));
     }
-    return {};
+    return open ? path : path + 'Z';
 }
 
 /// An element that shows a text when a viewer hovers over it.

@@ -126,39 +126,6 @@ void finishLook(const HairMaterial& authored, shading::StrandLook& look) {
     look.emissionTip = asDouble(authored.emission) * authored.emissionTipColour.cast<double>();
 }
 
-render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view) {
-    const double roughness = roughnessOf(authored, view);
-    shading::MarschnerParameters m;
-    m.azimuthal.ior = view.ior.value_or(asDouble(authored.indexOfRefraction));
-    m.azimuthal.absorption = view.absorption ? *view.absorption
-                             : view.colour   ? shading::absorptionOfColour(*view.colour, roughness)
-                             : view.melanin  ? shading::absorption(*view.melanin)
-                                             : absorptionLook(authored, roughness).root;
-    m.azimuthal.width = shading::azimuthalWidth(roughness);
-    if (m.azimuthal.width >= shading::kMinAzimuthalWidth) m.azimuthal.causticWidth = 0;
-    m.azimuthal.axisRatio = view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
-    shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
-                       shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
-    const LobeControls controls(authored);
-    const render::ShadingModel model = shadingModel(authored, view);
-    if (model == render::ShadingModel::marschner) controls.applyTo(m);
-    if (view.width) m.width = *view.width;
-    if (view.tilt) m.tilt = *view.tilt;
-
-    render::FibreMaterial fibre;
-    fibre.model = model;
-    fibre.scattering = view.scattering;
-    if (model == render::ShadingModel::marschner) fibre.marschner = m;
-    if (model == render::ShadingModel::sadeghi) {
-        fibre.sadeghi = sadeghiLike(shading::Marschner(m));
-        controls.applyTo(fibre.sadeghi);
-        paintLobes(authored, fibre.sadeghi);
-        fibre.sadeghi.bounded = authored.energy == EnergyRule::bounded;
-        fibre.marschner = m;
-    }
-    return fibre;
-}
-
 std::vector<Vec3f> rootsOf(const Groom& groom) {
     std::vector<Vec3f> roots(groom.strandCount());
     for (std::size_t s = 0; s < roots.size(); ++s) roots[s] = groom.strand(s)[0];
@@ -210,7 +177,41 @@ struct Owners {
     }
 };
 
-/// `ownColours`: strands have colours of their own.
+}  // namespace
+
+render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view) {
+    const double roughness = roughnessOf(authored, view);
+    shading::MarschnerParameters m;
+    m.azimuthal.ior = view.ior.value_or(asDouble(authored.indexOfRefraction));
+    m.azimuthal.absorption = view.absorption ? *view.absorption
+                             : view.colour   ? shading::absorptionOfColour(*view.colour, roughness)
+                             : view.melanin  ? shading::absorption(*view.melanin)
+                                             : absorptionLook(authored, roughness).root;
+    m.azimuthal.width = shading::azimuthalWidth(roughness);
+    if (m.azimuthal.width >= shading::kMinAzimuthalWidth) m.azimuthal.causticWidth = 0;
+    m.azimuthal.axisRatio = view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
+    shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
+                       shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
+    const LobeControls controls(authored);
+    const render::ShadingModel model = shadingModel(authored, view);
+    if (model == render::ShadingModel::marschner) controls.applyTo(m);
+    if (view.width) m.width = *view.width;
+    if (view.tilt) m.tilt = *view.tilt;
+
+    render::FibreMaterial fibre;
+    fibre.model = model;
+    fibre.scattering = view.scattering;
+    if (model == render::ShadingModel::marschner) fibre.marschner = m;
+    if (model == render::ShadingModel::sadeghi) {
+        fibre.sadeghi = sadeghiLike(shading::Marschner(m));
+        controls.applyTo(fibre.sadeghi);
+        paintLobes(authored, fibre.sadeghi);
+        fibre.sadeghi.bounded = authored.energy == EnergyRule::bounded;
+        fibre.marschner = m;
+    }
+    return fibre;
+}
+
 render::StrandShading strandShading(const HairMaterial& authored, const ViewFile& view, bool ownColours) {
     render::StrandShading material;
     material.albedo = authored.tipColour;
@@ -250,8 +251,6 @@ render::StrandShading strandShading(const HairMaterial& authored, const ViewFile
     if (model == render::ShadingModel::marschner) material.fibre.marschner.azimuthal.absorption.setZero();
     return material;
 }
-
-}  // namespace
 
 render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view) {
     static_assert(static_cast<int>(ShadingModel::marschner) ==

@@ -29,6 +29,13 @@ std::vector<std::uint32_t> materialsOfStrands(const Groom& groom);
 /// Of follow hairs: that of their own guide.
 std::vector<std::uint32_t> materialsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 
+/// What light in its fibres does, at the root; members of the view come first.
+render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view);
+
+/// What it is drawn by. `ownColours`: strands have colours of their own.
+render::StrandShading strandShading(const HairMaterial& authored, const ViewFile& view,
+                                    bool ownColours = false);
+
 /// The view's, or else the groom's.
 render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view);
 
