@@ -193,6 +193,10 @@ void reportsAsJson(bool json) {
     streams().json = json;
 }
 
+bool isReportJson() {
+    return streams().json;
+}
+
 Result<Report> withOutputs(const std::vector<Output>& outputs, const std::function<Result<Report>()>& run,
                            ReadBack readBack) {
     const auto count = static_cast<std::size_t>(

@@ -50,5 +50,7 @@ bool writesToStandardOutput();
 
 /// Called before a job runs: --json prints to standard output, too.
 void reportsAsJson(bool json);
+/// People read the report otherwise: long lists of numbers stay out.
+bool isReportJson();
 
 }  // namespace hairloom::cli

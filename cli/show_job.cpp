@@ -6,6 +6,7 @@
 #include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/error_report.h"
+#include "cli/outputs.h"
 #include "cli/vectors.h"
 #include "core/documents/sample.h"
 #include "core/documents/sample_material.h"
@@ -66,7 +67,7 @@ Result<Report> showToFile(const RenderJobOptions& options) {
     if (auto written = render::writePng(options.output, image); !written)
         return tl::unexpected(written.error());
     Report report{{"show", options.show}};
-    report.update(shownNumbers(*shown));
+    if (isReportJson()) report.update(shownNumbers(*shown));
     report["output"] = options.output;
     return report;
 }

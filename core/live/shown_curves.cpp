@@ -41,7 +41,7 @@ Axis angleAxis(const char* title, int most) {
     axis.unit = "°";
     axis.low = -most;
     axis.high = most;
-    for (int at = -most; at <= most; at += most / 6) axis.ticks.push_back(degrees(at));
+    for (int at = -most; at <= most; at += most / 2) axis.ticks.push_back(degrees(at));
     return axis;
 }
 

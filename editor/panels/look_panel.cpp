@@ -87,6 +87,7 @@ class LookPanel : public QWidget {
         layout_->addWidget(collapsible("Compare", makeCompareBar(document_, viewport_)));
         layout_->addWidget(form(pick(materialFields(), {kModel})));
         makeGroups();
+        layout_->addWidget(collapsible("Shading charts", makeShadingChart(document_, preferences_), false));
         layout_->addWidget(
             collapsible("Edges and shadows",
                         column({makePictureForm(preferences_, prices_, viewport_),

@@ -288,6 +288,13 @@ TEST_F(ShowJob, TakesTheHairOfAGroomAMaterialAViewAndTheModelAskedFor) {
     EXPECT_NE(readText(folder / "a.png"), usual);
 }
 
+TEST_F(ShowJob, GivesItsNumbersToProgramsAlone) {
+    const Outcome outcome = run("render --show curves -o a.png");
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_LT(outcome.output.size(), 200u) << outcome.output;
+    EXPECT_GT(shown("curves").dump().size(), 10'000u);
+}
+
 TEST_F(ShowJob, SaysWhatCannotBeShown) {
     const auto says = [&](const std::string& arguments, const std::string& what) {
         const Outcome outcome = run("render -o a.png " + arguments);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shading models with their controls, presets and thumbnails, two looks side by side, a reference picture,
 // how finely the viewport draws.
+#include <QApplication>
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QListWidget>
 #include <QPushButton>
 #include <cstdlib>
 
 #include "core/documents/look_presets.h"
+#include "core/editing/settings_commands.h"
+#include "core/live/shown.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/number_box.h"
 #include "editor/fields/price_tag.h"
@@ -52,6 +56,42 @@ TEST_F(LookTest, EachModelShowsItsOwnControls) {
     finishWork();
     EXPECT_EQ(groom().material.shadingModel, ShadingModel::sadeghi) << "it belongs to the file";
     EXPECT_TRUE(offers("indexOfRefraction"));
+}
+
+TEST_F(LookTest, ChartsFollowTheControls) {
+    auto* kinds = find<QComboBox>("shadingChart");
+    QWidget* const chart = find<QWidget>("shadingChartImage");
+    kinds->parentWidget()->show();
+    chart->setFixedSize(340, 480);
+    const auto drawn = [&] {
+        QApplication::processEvents();
+        return chart->grab().toImage();
+    };
+    EXPECT_EQ(kinds->count(), static_cast<int>(shownKinds().size()));
+    const QImage kajiya = drawn();
+    HairMaterial material = groom().material;
+    material.shininess = 300;
+    document().perform(editing::setMaterial(document().editing().model(), material, "Shininess"));
+    EXPECT_NE(drawn(), kajiya) << "the highlight is narrower";
+    document().undo();
+    EXPECT_EQ(drawn(), kajiya);
+    chooseModel(1);
+    const QImage marschner = drawn();
+    EXPECT_NE(marschner, kajiya);
+    find<QDoubleSpinBox>("shadingChartLight")->setValue(40);
+    EXPECT_NE(drawn(), marschner) << "light from the side moves the lobes";
+    find<QDoubleSpinBox>("shadingChartLight")->setValue(0);
+    EXPECT_EQ(drawn(), marschner);
+    // Tables of a model that has none are said to be none.
+    kinds->setCurrentIndex(kinds->findData(QString("tables")));
+    const QImage tables = drawn();
+    EXPECT_NE(tables, marschner);
+    EXPECT_FALSE(chart->isHidden());
+    chooseModel(0);
+    QApplication::processEvents();
+    EXPECT_TRUE(chart->isHidden());
+    chooseModel(1);
+    EXPECT_EQ(drawn(), tables);
 }
 
 TEST_F(LookTest, APresetGivesItsPigmentAndColours) {

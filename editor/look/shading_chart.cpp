@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <QComboBox>
+#include <QEvent>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPainter>
+#include <QTimer>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+
+#include "core/live/shown.h"
+#include "editor/fields/number_spin.h"
+#include "editor/look/parts.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr double kShape = 0.8;       // of a chart's height to its width
+constexpr double kLeastWidth = 320;  // pixels that text and legend need
+
+/// Light for dark and the reverse, with the same hues.
+void turnLightness(ChartImage& image) {
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        std::uint8_t* const p = &image.rgba[i];
+        const int sum = std::max({p[0], p[1], p[2]}) + std::min({p[0], p[1], p[2]});
+        for (int c = 0; c < 3; ++c) p[c] = static_cast<std::uint8_t>(p[c] + 255 - sum);
+    }
+}
+
+/// Charts under one another, as wide as there is room.
+class ChartView : public QWidget {
+  public:
+    explicit ChartView(const Preferences& preferences) : preferences_(preferences) {
+        setObjectName("shadingChartImage");
+        QSizePolicy policy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+        policy.setHeightForWidth(true);
+        setSizePolicy(policy);
+    }
+
+    void setShown(Shown shown) {
+        const bool grows = shown.plots.size() != shown_.plots.size();
+        shown_ = std::move(shown);
+        if (grows) updateGeometry();
+        update();
+    }
+
+    bool hasHeightForWidth() const override { return true; }
+    int heightForWidth(int width) const override {
+        const int count = std::max(static_cast<int>(shown_.plots.size()), 1);
+        return count * static_cast<int>(kShape * width);
+    }
+    QSize sizeHint() const override { return {320, heightForWidth(320)}; }
+
+  protected:
+    void paintEvent(QPaintEvent*) override {
+        if (shown_.plots.empty()) return;
+        QPainter painter(this);
+        const int high = height() / static_cast<int>(shown_.plots.size());
+        for (std::size_t i = 0; i < shown_.plots.size(); ++i) {
+            Plot plot = shown_.plots[i];
+            plot.width = std::max<double>(width(), kLeastWidth);
+            plot.height = plot.width * high / std::max(width(), 1);
+            const double scale = std::clamp(devicePixelRatioF() * width() / plot.width, 0.5, 8.0);
+            ChartImage chart = hairloom::image(plot, scale);
+            if (preferences_.theme() == Theme::Dark && !plot.map) turnLightness(chart);
+            const QImage image(chart.rgba.data(), static_cast<int>(chart.width),
+                               static_cast<int>(chart.height), QImage::Format_RGBA8888);
+            painter.drawImage(QRectF(0, static_cast<double>(i) * high, width(), high), image);
+        }
+    }
+
+  private:
+    const Preferences& preferences_;
+    Shown shown_;
+};
+
+class ShadingChart : public QWidget {
+  public:
+    ShadingChart(QtDocument& document, const Preferences& preferences)
+        : document_(document),
+          kinds_(new QComboBox),
+          light_(new NumberSpin),
+          note_(new QLabel),
+          view_(new ChartView(preferences)) {
+        kinds_->setObjectName("shadingChart");
+        kinds_->setToolTip("Curve or look-up table to draw. Charts follow the controls of this panel");
+        for (const ShownKind& kind : shownKinds()) kinds_->addItem(kind.label, QString(kind.name));
+        light_->setObjectName("shadingChartLight");
+        light_->setRange(-85, 85);
+        light_->setDecimals(0);
+        light_->setSuffix(" °");
+        light_->setToolTip("Inclination of the light against the plane across the hair, for curves");
+        note_->setProperty("role", "dim");
+        note_->setWordWrap(true);
+        soon_.setSingleShot(true);
+        soon_.setInterval(0);
+
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(6);
+        auto* row = new QHBoxLayout;
+        row->setSpacing(6);
+        row->addWidget(kinds_, 1);
+        row->addWidget(light_);
+        layout->addLayout(row);
+        layout->addWidget(note_);
+        layout->addWidget(view_);
+
+        connect(kinds_, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
+        connect(light_, &NumberSpin::valueChanged, this, [this] { redraw(); });
+        connect(&preferences, &Preferences::changed, view_, qOverload<>(&QWidget::update));
+        // A control that moves says so more often than charts can be drawn.
+        connect(&soon_, &QTimer::timeout, this, [this] { redraw(); });
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
+            if (contains(changed, editing::Part::Material) && isVisible()) soon_.start();
+        });
+    }
+
+  protected:
+    void showEvent(QShowEvent* event) override {
+        redraw();
+        QWidget::showEvent(event);
+    }
+
+  private:
+    void redraw() {
+        const ShownKind* const kind = shownKind(kinds_->currentData().toString().toStdString());
+        ShownHair hair;
+        hair.material = document_.groom().material;
+        hair.inclinationDegrees = light_->value();
+        auto shown = hairloom::show(*kind, hair);
+        note_->setVisible(!shown);
+        view_->setVisible(shown.has_value());
+        if (shown) {
+            view_->setShown(std::move(*shown));
+        } else {
+            note_->setText(QString::fromStdString(shown.error().problem));
+        }
+    }
+
+    QtDocument& document_;
+    QComboBox* kinds_;
+    NumberSpin* light_;
+    QLabel* note_;
+    ChartView* view_;
+    QTimer soon_;
+};
+
+}  // namespace
+
+QWidget* makeShadingChart(QtDocument& document, const Preferences& preferences) {
+    return new ShadingChart(document, preferences);
+}
+
+}  // namespace hairloom::editor
