@@ -22,6 +22,7 @@ struct Kind {
     const char* name;
     Shadows shadows;
     render::DeepLayers layers;
+    render::ShadowFilter filter = render::ShadowFilter::three;
 };
 // Ends of layers as parts of the depth that hair takes up. Layers that end where the next begins are none.
 constexpr Kind kKinds[] = {
@@ -32,6 +33,14 @@ constexpr Kind kKinds[] = {
     {"deep opacity, 3 layers (0.08, 0.25, 1)", Shadows::deepOpacity, {0.08f, 0.25f, 1.0f}},
     {"deep opacity, 3 layers (0.15, 0.4, 1)", Shadows::deepOpacity, {0.15f, 0.4f, 1.0f}},
     {"deep opacity, 3 equal layers", Shadows::deepOpacity, {0.3333f, 0.6667f, 1.0f}},
+    {"deep opacity, 3 layers (0.04, 0.14, 1), no filter",
+     Shadows::deepOpacity,
+     {0.04f, 0.14f, 1.0f},
+     render::ShadowFilter::off},
+    {"deep opacity, 3 layers (0.04, 0.14, 1), 5 × 5 texels",
+     Shadows::deepOpacity,
+     {0.04f, 0.14f, 1.0f},
+     render::ShadowFilter::five},
     {"opacity maps, 4 equal layers", Shadows::opacityMaps, {}},
     {"absorption by depth", Shadows::absorption, {}},
 };
@@ -136,7 +145,8 @@ Result<ShadowBench> measureAll(const Options& options) {
     for (const Kind& kind : kKinds) {
         ShadowRow row{kind.name, {}};
         for (const std::uint32_t resolution : bench.resolutions) {
-            const auto error = shadowError(**device, scene, cases, kind.shadows, resolution, kind.layers);
+            const auto error =
+                shadowError(**device, scene, cases, kind.shadows, resolution, kind.layers, kind.filter);
             if (!error) return tl::unexpected(error.error());
             row.errors.push_back(*error);
         }

@@ -34,6 +34,9 @@ const std::map<std::string, render::Shadows> kShadows{{"none", render::Shadows::
                                                       {"dom", render::Shadows::deepOpacity},
                                                       {"absorption", render::Shadows::absorption},
                                                       {"opacity", render::Shadows::opacityMaps}};
+const std::map<std::string, render::ShadowFilter> kShadowFilters{{"off", render::ShadowFilter::off},
+                                                                 {"3x3", render::ShadowFilter::three},
+                                                                 {"5x5", render::ShadowFilter::five}};
 const std::map<std::string, render::Ribbons> kRibbons{{"auto", render::Ribbons::automatic},
                                                       {"strip", render::Ribbons::strip},
                                                       {"tess", render::Ribbons::tessellated},
@@ -75,6 +78,8 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.shadowLights = options.shadowLights;
     picture.shadowResolution =
         options.shadowResolution.value_or(view.shadowResolution.value_or(picture.shadowResolution));
+    picture.shadowFilter = options.shadowFilter.empty() ? view.shadowFilter.value_or(picture.shadowFilter)
+                                                        : kShadowFilters.at(options.shadowFilter);
     picture.subdivisions = options.subdivisions.value_or(view.subdivisions.value_or(picture.subdivisions));
     picture.headAbsorption = options.headAbsorption.value_or(view.headAbsorption.value_or(0));
     picture.shadowBlur = options.shadowBlur.value_or(view.shadowBlur.value_or(0));
@@ -160,6 +165,11 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     job.add_option("--shadow-resolution", options->shadowResolution,
                    "Width and height of each shadow map in pixels (default: the view's, or 1024)")
         ->check(CLI::Range(render::kMinShadowResolution, render::kMaxShadowResolution));
+    job.add_option(
+           "--shadow-filter", options->shadowFilter,
+           "Texels of shadow maps that are averaged at each point of the hair (default: the view's, or "
+           "3x3)")
+        ->check(CLI::IsMember(namesOf(kShadowFilters)));
     job.add_option("--subdivisions", options->subdivisions,
                    "Curve segments per segment of a strand (default: the view's, or 2)")
         ->check(CLI::Range(std::uint32_t{1}, render::kMaxSubdivisions));

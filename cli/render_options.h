@@ -33,6 +33,7 @@ struct RenderJobOptions {
     std::string transparency = "auto";
     float detail = 0;
     std::optional<std::uint32_t> shadowResolution;
+    std::string shadowFilter;  ///< empty: the view's
     std::optional<std::uint32_t> subdivisions;
     std::optional<float> headAbsorption;
     std::optional<float> shadowBlur;

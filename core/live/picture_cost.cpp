@@ -58,8 +58,13 @@ class Candidates {
                           {"absorption", Shadows::absorption},
                           {"opacityMaps", Shadows::opacityMaps},
                           {"deepOpacity", Shadows::deepOpacity}});
-        if (now.picture.shadows != Shadows::none)
+        if (now.picture.shadows != Shadows::none) {
+            using render::ShadowFilter;
             numbers("shadowResolution", {256, 512, 1024, 2048}, &render::RenderOptions::shadowResolution);
+            choices<ShadowFilter>(
+                "shadowFilter", &render::RenderOptions::shadowFilter,
+                {{"off", ShadowFilter::off}, {"3x3", ShadowFilter::three}, {"5x5", ShadowFilter::five}});
+        }
         if (scatters) {
             add("scattering", "single", [](Settings& s) { s.scattering = render::Scattering::single; });
             add("scattering", "dual", [](Settings& s) { s.scattering = render::Scattering::dual; });

@@ -190,6 +190,10 @@ Result<ViewFile> parseViewFile(const std::string& path, std::string_view text,
         view.shadowResolution = static_cast<std::uint32_t>(
             reader.count("shadow_resolution", render::kMinShadowResolution, render::kMaxShadowResolution));
     }
+    if (reader.has("shadow_filter")) {
+        constexpr std::string_view kFilters[] = {"off", "3x3", "5x5"};
+        view.shadowFilter = static_cast<render::ShadowFilter>(reader.choice("shadow_filter", kFilters));
+    }
     if (reader.has("subdivisions"))
         view.subdivisions =
             static_cast<std::uint32_t>(reader.count("subdivisions", 1, render::kMaxSubdivisions));

@@ -17,6 +17,7 @@
 #include "core/render/environment.h"
 #include "core/render/fibre_material.h"
 #include "core/render/light.h"
+#include "core/render/options.h"
 #include "core/shading/melanin.h"
 
 namespace hairloom {
@@ -48,9 +49,10 @@ struct ViewFile {
     std::optional<float> rootRadius;  ///< metres
     std::optional<float> tipScale;
     std::optional<std::uint32_t> shadowResolution;  ///< pixels, as render::RenderOptions
-    std::optional<std::uint32_t> subdivisions;      ///< likewise
-    std::optional<float> headAbsorption;            ///< 1/m, as render::RenderOptions
-    std::optional<float> shadowBlur;                ///< pixels, likewise
+    std::optional<render::ShadowFilter> shadowFilter;
+    std::optional<std::uint32_t> subdivisions;  ///< likewise
+    std::optional<float> headAbsorption;        ///< 1/m, as render::RenderOptions
+    std::optional<float> shadowBlur;            ///< pixels, likewise
     FibreView fibre;
 };
 /// Images that it names are read, too: they lie in its own folder and below it, or in `imageFolders`.

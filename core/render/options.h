@@ -18,6 +18,14 @@ enum class Shadows {
     opacityMaps,  ///< Kim and Neumann 2001: four layers at fixed depths
 };
 
+/// Over how many texels of a shadow map finished comparisons are averaged (percentage-closer filtering:
+/// Reeves et al. 1987), with the weights of a B-spline, which moves smoothly from texel to texel.
+enum class ShadowFilter {
+    off,    ///< the nearest texel alone
+    three,  ///< 3 × 3
+    five,   ///< 5 × 5
+};
+
 /// How ribbons come about. All draw the same curve.
 enum class Ribbons {
     automatic,    ///< compute on a GPU where it can, else strip: chooseWays()
@@ -50,6 +58,7 @@ struct RenderOptions {
     std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
     Shadows shadows = Shadows::deepOpacity;
+    ShadowFilter shadowFilter = ShadowFilter::three;
     /// Most lights with shadow maps, parts of areas and of images among them, 1…16; fewer where the device
     /// has no room for as many maps.
     std::uint32_t shadowLights = 8;

@@ -43,7 +43,8 @@ Changes compare(const RenderOptions& before, const RenderOptions& now) {
         changes.add(Changes::lights());
     }
     if (now.skyStrands != before.skyStrands) changes.add(Changes::head());
-    if ((now.shadowBlur > 0) != (before.shadowBlur > 0) || now.headAbsorption != before.headAbsorption) {
+    if ((now.shadowBlur > 0) != (before.shadowBlur > 0) || now.headAbsorption != before.headAbsorption ||
+        now.shadowFilter != before.shadowFilter) {
         changes.add(Changes::looks());
     }
     changes.picture |= now.frames != before.frames ||

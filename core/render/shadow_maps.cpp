@@ -121,6 +121,10 @@ void recordHeadDepth(gpu::CommandList& list, RendererState& state, const ShadowA
     list.endPass();
 }
 
+float filterTexels(ShadowFilter filter) {
+    return filter == ShadowFilter::off ? 1.0f : filter == ShadowFilter::three ? 3.0f : 5.0f;
+}
+
 shaders::LightConstants viewOf(const LightView& view) {
     shaders::LightConstants c{};
     c.clipFromWorld = toShader(view.clipFromWorld);
@@ -241,6 +245,7 @@ shaders::LightConstants mapConstants(const RendererState& state, const ShadowAtl
     c.stopping = state.scene.clumping.of(texel);
     c.texelSize = texel;
     c.headAbsorption = state.options.headAbsorption;
+    c.filterTexels = 3;
     return c;
 }
 
@@ -250,6 +255,7 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t l
         std::size_t square = 0;
         for (std::size_t i = 0; i < light; ++i) square += castsShadow(state, i) ? 1 : 0;
         c = mapConstants(state, lightAtlas(state), square);
+        c.filterTexels = filterTexels(state.options.shadowFilter);
     }
     const Light& source = state.lights[light];
     const bool point = source.kind == LightKind::point;

@@ -124,9 +124,11 @@ ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64
 }
 
 Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const ShadowCases& cases,
-                           Shadows kind, std::uint32_t resolution, const DeepLayers& layers) {
+                           Shadows kind, std::uint32_t resolution, const DeepLayers& layers,
+                           ShadowFilter filter) {
     RenderOptions options;
     options.shadows = kind;
+    options.shadowFilter = filter;
     options.shadowResolution = resolution;
     options.subdivisions = 1;
     const auto results = probeLight(device, scene, options, cases.cases, layers);

@@ -20,7 +20,8 @@ ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64
 
 /// Root of the mean square error of the transmittance exp(−n/2). Errors: as probeLight().
 Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const ShadowCases& cases,
-                           Shadows kind, std::uint32_t resolution, const DeepLayers& layers = kDeepLayers);
+                           Shadows kind, std::uint32_t resolution, const DeepLayers& layers = kDeepLayers,
+                           ShadowFilter filter = ShadowFilter::three);
 
 /// Shadows of the head on hair, found by rays.
 struct HeadCases {

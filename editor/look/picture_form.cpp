@@ -113,6 +113,10 @@ class PictureForm : public OptionForm {
         addPower("shadowResolution", "Shadow map",
                  "Width and height of each light's shadow map. More pixels give sharper shadows", 256, 5,
                  "%1 px", &PictureQuality::shadowResolution);
+        addEnum("shadowFilter", "Shadow filter",
+                "Texels of the shadow map that are averaged at each point of the hair. More give smoother "
+                "shadows and cost more",
+                {QString("Off"), QString("3 × 3"), QString("5 × 5")}, &PictureQuality::shadowFilter);
         addAmount("headAbsorption", "Through the head",
                   "Makes light on hair behind the head fade with depth, by this much per metre. This is "
                   "softer and less noisy, but light leaks through thin parts. 0 blocks all light",

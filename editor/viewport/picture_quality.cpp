@@ -22,6 +22,7 @@ render::RenderOptions stillOptions(const PictureQuality& quality, const gpu::Dev
     options.shadows = quality.shadows;
     options.headAbsorption = quality.headAbsorption;
     options.shadowBlur = quality.shadowBlur;
+    options.shadowFilter = quality.shadowFilter;
     options.shadowResolution = quality.shadowResolution;
     return options;
 }

@@ -18,6 +18,7 @@ struct PictureQuality {
     render::Ribbons ribbons = render::Ribbons::automatic;
     render::Shadows shadows = render::Shadows::deepOpacity;
     std::uint32_t shadowResolution = 1024;
+    render::ShadowFilter shadowFilter = render::ShadowFilter::three;
     float headAbsorption = 0;                                  ///< 1/m, as render::RenderOptions
     float shadowBlur = 0;                                      ///< pixels, likewise; while nothing moves
     std::uint32_t subdivisions = 2;                            ///< curve segments per segment of a strand

@@ -53,6 +53,18 @@ float throughHead(float behind, float absorption) {
     return behind < 0.0 ? 1.0 : 0.0;
 }
 
+// Weight of texel `i` of a B-spline over 1, 3 or 5 texels, of which the middle of the first is at `f` from 0 to 1 before the
+// place's own.
+float splineWeight(int texels, int i, float f) {
+    const float g = 1.0 - f;
+    if (texels == 1) return 1.0;
+    if (texels == 3) return i == 0 ? 0.5 * g * g : i == 1 ? 0.5 + f * g : 0.5 * f * f;
+    const float a = i > 2 ? f : g;  // it is symmetric
+    if (i == 0 || i == 4) return a * a * a * a / 24.0;
+    if (i == 2) return (11.0 + f * (12.0 + f * (-6.0 + f * (-12.0 + 6.0 * f)))) / 24.0;
+    return (1.0 + a * (4.0 + a * (6.0 + a * (4.0 - 4.0 * a)))) / 24.0;
+}
+
 // Biases: metres towards the light, so that a surface does not shadow itself. `along_ws`: of a fibre there, or 0.
 // `headAbsorption`: see throughHead().
 Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, float hairBias, float headBias,
@@ -71,16 +83,17 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
     const float2 uv = float2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
     if (any(uv < 0.0) || any(uv > 1.0)) return result;
     const int size = int(light.tileSize);
-    // A quadratic B-spline over 3 x 3 texels of finished comparisons, from `base` on: its mean is half a texel further
-    // than base + f, and so are the middles of texels.
-    const float2 place = uv * light.tileSize - 1.0;
+    // A B-spline over 3 x 3 texels of finished comparisons, or as many as are wanted, from `base` on: its mean is half a texel
+    // further than the middle of base + f, and so are the middles of texels.
+    const int texels = int(light.filterTexels);
+    const int reach = texels / 2;
+    const float2 place = uv * light.tileSize - float(reach);
     const int2 base = int2(floor(place));
     const float2 f = place - float2(base);
     const float depth = metresBehindNear(light.depthRange, light.nearPlane, clip.z / clip.w);
     const float2 slope = depthSlope(light, position_ws, along_ws, uv, depth);
     const float ownBias = hairBias + 0.5 * (abs(slope.x) + abs(slope.y));
-    const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
-    const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
+    const float turns = texels == 5 ? 50.0 : 6.0;  // sum of the squares of what follows as `rise`
     float fibres = 0;
     float passed = 0;
     float visible = 0;
@@ -88,12 +101,13 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
     float ends = 0;
     float behind = 0;   // metres of the head behind the point
     float2 rise = 0;    // of the head's depth from texel to texel
-    for (int y = 0; y < 3; ++y) {
-        for (int x = 0; x < 3; ++x) {
+    for (int y = 0; y < texels; ++y) {
+        const float wy = splineWeight(texels, y, f.y);
+        for (int x = 0; x < texels; ++x) {
             const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
             const int3 where = int3(at.x + int(light.tileLeft), at.y, 0);
             const uint texel = uint(at.y) * uint(light.atlasWidth) + uint(where.x);
-            const float w = wx[x] * wy[y];
+            const float w = splineWeight(texels, x, f.x) * wy;
             const float headDepth = metresBehindNear(light.depthRange, light.nearPlane, head ? gHeadDepth.Load(where) : 1.0);
             if (hair) {
                 const float2 beside = float2(base + int2(x, y)) + 0.5 - uv * light.tileSize;
@@ -106,7 +120,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
                 visible += w * throughHead(depth - headDepth - headBias, headAbsorption);
                 ends += w * (headDepth < light.depthRange ? 1.0 : 0.0);
                 behind += w * max(headDepth - depth, 0.0);
-                rise += float2(x - 1, y - 1) * (headDepth / 6.0);
+                rise += float2(x - reach, y - reach) * (headDepth / turns);
             }
         }
     }

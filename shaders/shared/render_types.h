@@ -126,6 +126,8 @@ struct LightConstants {
     float texelSize;       // metres
     float headAbsorption;  // of hair behind the head, 1/m; 0: a test of depth
     float withoutShadows;  // 1: shadows of the light itself are left out
+    float filterTexels;    // a side of what is averaged: 1, 3 or 5
+    float unused0, unused1, unused2;
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.
@@ -171,7 +173,7 @@ struct ShadeConstants {
     float fibreOpacity;
     uint bounded;         // 1: Kajiya-Kay sends out no more light than it gets
     float brightestTint;  // of a strand of light in fibres: more would be whiter than white
-    uint unused0;
+    float axisRatio;      // of Kajiya-Kay's elliptic fibres; 1: round
     uint count;  // of what a kernel works on: points of curves, or strands
     uint lightCount;
     uint rowThreads;    // of the dispatch
@@ -413,15 +415,15 @@ static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, depthRange, 128);
 HAIRLOOM_OFFSET(LightConstants, layers, 144);
-static_assert(sizeof(LightConstants) == 176);
-static_assert(sizeof(SkyConstants) == 176 * HAIRLOOM_SKY_MAPS);
+static_assert(sizeof(LightConstants) == 192);
+static_assert(sizeof(SkyConstants) == 192 * HAIRLOOM_SKY_MAPS);
 HAIRLOOM_OFFSET(SkyPoint, halved, 16);
 HAIRLOOM_OFFSET(ShadeConstants, primaryExponent, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
 HAIRLOOM_OFFSET(ShadeConstants, clumping, 320);
 HAIRLOOM_OFFSET(ShadeConstants, count, 352);
 HAIRLOOM_OFFSET(ShadeConstants, lights, 368);
-static_assert(sizeof(ShadeConstants) == 368 + 176 * HAIRLOOM_MAX_LIGHTS);
+static_assert(sizeof(ShadeConstants) == 368 + 192 * HAIRLOOM_MAX_LIGHTS);
 HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
 static_assert(sizeof(LookConstants) == 144);
 static_assert(sizeof(MeshConstants) == 80);

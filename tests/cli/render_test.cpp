@@ -83,6 +83,21 @@ TEST_F(RenderJob, EachWayOfDrawingGivesItsOwnPicture) {
     picture(view("image.json", R"({"lights": [{"type": "environment", "image": "sky.png", "scale": 2}]})"));
 }
 
+TEST_F(RenderJob, EccentricFibresLookOtherwiseInEachModel) {
+    const auto drawn = [&](const std::string& model, const std::string& eccentricity) {
+        runJson("set hair.hairloom material.eccentricity=" + eccentricity + " -o other.hairloom");
+        runJson("render other.hairloom -o hair.png --size 96x96 --passes 1 --engine software --shading " +
+                model);
+        return readText(folder / "hair.png");
+    };
+    for (const std::string model : {"kajiya", "marschner", "sadeghi"}) {
+        const std::string round = drawn(model, "0");
+        EXPECT_EQ(drawn(model, "0"), round) << model;
+        EXPECT_NE(drawn(model, "0.6"), round) << model;
+        EXPECT_NE(drawn(model, "0.8"), drawn(model, "0.6")) << model;
+    }
+}
+
 TEST_F(RenderJob, AViewSetsShadowMapsAndCurvesAndOptionsOverrideIt) {
     const auto drawn = [&](const std::string& way) {
         picture("--engine software" + way);
@@ -98,6 +113,12 @@ TEST_F(RenderJob, AViewSetsShadowMapsAndCurvesAndOptionsOverrideIt) {
     EXPECT_NE(drawn(smooth), usual);
     EXPECT_EQ(drawn(smooth), drawn(" --subdivisions 8"));
     EXPECT_EQ(drawn(smooth + " --subdivisions 2"), usual);
+    const std::string filtered = view("filtered.json", R"({"shadow_filter": "5x5"})");
+    EXPECT_EQ(drawn(" --shadow-filter 3x3"), usual);
+    EXPECT_NE(drawn(filtered), usual);
+    EXPECT_EQ(drawn(filtered), drawn(" --shadow-filter 5x5"));
+    EXPECT_EQ(drawn(filtered + " --shadow-filter 3x3"), usual);
+    EXPECT_NE(drawn(" --shadow-filter off"), usual);
     for (const char* const wrong : {"--shadow-resolution 63", "--shadow-resolution 4097", "--subdivisions 0"})
         EXPECT_EQ(run(std::string("render hair.hairloom -o x.png ") + wrong).exitCode, 2) << wrong;
 }
@@ -156,6 +177,7 @@ TEST_F(RenderJob, BrokenViewsAreErrorsThatNameThem) {
     refuses(R"({"lights": [{"type": "point", "position": [0, 1, 0]}]})", "intensity");
     refuses(R"({"lights": [{"type": "environment", "sky": [1, 1, 1]}]})", "ground");
     refuses(R"({"shadow_resolution": 63})", "shadow_resolution");
+    refuses(R"({"shadow_filter": "7x7"})", "shadow_filter");
     refuses(R"({"subdivisions": 1.5})", "subdivisions");
     const Outcome missing =
         run("render hair.hairloom -o none.png" +

@@ -2,6 +2,7 @@
 // Light that reaches points inside hair, against fibres counted on the CPU.
 #include "core/render/shadow_truth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -139,6 +140,84 @@ TEST_F(ShadowTest, LightBehindTheHeadFadesWithDepth) {
             EXPECT_NEAR((*found)[i].onSkin.w, expected, 0.02f) << absorption << ", " << behind[i] << " m";
         }
     }
+}
+
+/// Under the straight edge of a shadow the light goes over as a B-spline's integral does: over n texels of a
+/// map that holds a step, the change has the variance of n − 1 boxes of one texel, (n − 1)/12.
+TEST_F(ShadowTest, FiltersSpreadAnEdgeOverTheirTexels) {
+    Sheet sheet;
+    const std::vector<Vec3f> corners{
+        {-0.1f, 0.02f, -0.1f}, {0.05f, 0.02f, -0.1f}, {0.05f, 0.02f, 0.2f}, {-0.1f, 0.02f, 0.2f}};
+    const std::vector<std::uint32_t> indices{0, 2, 1, 0, 3, 2};
+    RenderMesh mesh;
+    mesh.positions_ws = corners;
+    mesh.indices = indices;
+    sheet.scene.meshes = {mesh};
+    struct Edge {
+        double place = 0, variance = 0;  ///< metres, metres²
+        std::size_t levels = 0;          ///< different values
+    };
+    const auto edge = [&](ShadowFilter filter) {
+        RenderOptions options;
+        options.shadows = Shadows::absorption;
+        options.shadowResolution = 128;
+        options.shadowFilter = filter;
+        std::vector<shaders::LightCase> cases;
+        for (int i = 0; i <= 400; ++i)
+            cases.push_back({{0.045f + 0.000025f * static_cast<float>(i), 0.001f, 0.05f, 0}, {0, 1, 0, 0}});
+        const auto found = probeLight(*device, sheet.scene, options, cases);
+        EXPECT_TRUE(found) << (found ? "" : found.error().message());
+        Edge result;
+        if (!found) return result;
+        EXPECT_NEAR(found->front().onSkin.w, 0, 1e-5f);
+        EXPECT_NEAR(found->back().onSkin.w, 1, 1e-5f);
+        std::vector<float> levels;
+        double square = 0;
+        for (std::size_t i = 1; i < cases.size(); ++i) {
+            const double x = 0.5 * static_cast<double>(cases[i].position_ws.x + cases[i - 1].position_ws.x);
+            const double rise = static_cast<double>((*found)[i].onSkin.w - (*found)[i - 1].onSkin.w);
+            EXPECT_GT(rise, -1e-5);
+            result.place += rise * x;
+            square += rise * x * x;
+            levels.push_back((*found)[i].onSkin.w);
+        }
+        result.variance = square - result.place * result.place;
+        std::ranges::sort(levels);
+        result.levels = static_cast<std::size_t>(std::unique(levels.begin(), levels.end()) - levels.begin());
+        return result;
+    };
+    const Edge off = edge(ShadowFilter::off), three = edge(ShadowFilter::three),
+               five = edge(ShadowFilter::five);
+    EXPECT_EQ(off.levels, 2u) << "the nearest texel lets light through or not";
+    EXPECT_GT(three.levels, 20u);
+    EXPECT_NEAR(five.variance / three.variance, 2, 0.1);
+    // The map's texel follows from it, and is the hair's width over the map's.
+    const double texel = std::sqrt(6 * three.variance);
+    EXPECT_GT(texel, 0.098 / 128);
+    EXPECT_LT(texel, 0.13 / 128);
+    EXPECT_NEAR(three.place, five.place, 0.05 * texel);
+    EXPECT_NEAR(three.place, off.place, 0.05 * texel);
+    EXPECT_NEAR(three.place, 0.05, 0.6 * texel);
+}
+
+/// More texels bring light nearer to counted fibres, for texels much finer than the beams that are counted.
+TEST_F(ShadowTest, FiltersBringFineMapsNearerToCountedFibres) {
+    const TestHead head(1500);
+    RenderScene scene = head.scene();
+    scene.meshes.clear();
+    Light light;
+    light.toLight_ws = Vec3f(0.4f, 0.8f, 0.45f);
+    scene.lights = {light};
+    const ShadowCases cases = countFibres(scene, 400, 8);
+    const auto error = [&](ShadowFilter filter) {
+        const auto found = shadowError(*device, scene, cases, Shadows::deepOpacity, 512, kDeepLayers, filter);
+        EXPECT_TRUE(found) << (found ? "" : found.error().message());
+        return found.value_or(1);
+    };
+    const double off = error(ShadowFilter::off), three = error(ShadowFilter::three),
+                 five = error(ShadowFilter::five);
+    EXPECT_LT(three, 0.95 * off);
+    EXPECT_LT(five, three);
 }
 
 TEST_F(ShadowTest, RaysAgreeWithShadowOfTheHead) {
