@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "core/base/parallel.h"
 #include "core/groom/point_dye.h"
@@ -24,6 +25,10 @@ double asDouble(float value) {
 
 double roughnessOf(const HairMaterial& authored, const FibreView& view) {
     return view.azimuthalRoughness.value_or(asDouble(authored.azimuthalRoughness));
+}
+
+double axisRatioOf(const HairMaterial& authored, const FibreView& view) {
+    return view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
 }
 
 Vec3d melaninAbsorption(const HairMaterial& authored, double factor) {
@@ -99,7 +104,7 @@ struct LobeControls {
 };
 
 /// What Sadeghi's lobes have that Marschner's have not.
-void paintLobes(const HairMaterial& authored, shading::SadeghiParameters& s) {
+void paintLobes(const HairMaterial& authored, double ior, double axisRatio, shading::SadeghiParameters& s) {
     s.r.tint = authored.rColour.cast<double>();
     s.tt.tint = authored.ttColour.cast<double>();
     s.trt.tint = authored.trtColour.cast<double>();
@@ -108,6 +113,11 @@ void paintLobes(const HairMaterial& authored, shading::SadeghiParameters& s) {
     s.glintWidth = asDouble(authored.glintWidthDegrees) * shading::kDegree;
     s.glintNear = asDouble(authored.glintNearDegrees) * shading::kDegree;
     s.glintFar = asDouble(authored.glintFarDegrees) * shading::kDegree;
+    if (axisRatio == 1) return;
+    // An elliptic fibre glints where its caustics are, another one as it turns.
+    const shading::CausticAzimuths caustics = shading::causticAzimuths(ior, axisRatio);
+    s.glintNear = std::max(s.glintNear + caustics.least - caustics.round, 0.0);
+    s.glintFar = std::min(s.glintFar + caustics.greatest - caustics.round, std::numbers::pi);
 }
 
 bool isEven(const HairMaterial& authored, const shading::StrandLook& look, bool ownColours) {
@@ -189,7 +199,7 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
                                              : absorptionLook(authored, roughness).root;
     m.azimuthal.width = shading::azimuthalWidth(roughness);
     if (m.azimuthal.width >= shading::kMinAzimuthalWidth) m.azimuthal.causticWidth = 0;
-    m.azimuthal.axisRatio = view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
+    m.azimuthal.axisRatio = axisRatioOf(authored, view);
     shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
                        shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
     const LobeControls controls(authored);
@@ -205,7 +215,7 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
     if (model == render::ShadingModel::sadeghi) {
         fibre.sadeghi = sadeghiLike(shading::Marschner(m));
         controls.applyTo(fibre.sadeghi);
-        paintLobes(authored, fibre.sadeghi);
+        paintLobes(authored, m.azimuthal.ior, m.azimuthal.axisRatio, fibre.sadeghi);
         fibre.sadeghi.bounded = authored.energy == EnergyRule::bounded;
         fibre.marschner = m;
     }
@@ -234,6 +244,7 @@ render::StrandShading strandShading(const HairMaterial& authored, const ViewFile
     material.fibreColour = shading::colourOfAbsorption(material.fibre.marschner.azimuthal.absorption,
                                                        roughnessOf(authored, view.fibre))
                                .cast<float>();
+    material.axisRatio = static_cast<float>(axisRatioOf(authored, view.fibre));
     material.tubes = authored.tubes;
     material.bounded = authored.energy == EnergyRule::bounded;
     const render::ShadingModel model = material.fibre.model;

@@ -99,6 +99,7 @@ shaders::ShadeConstants shadeConstants(const RendererState& state, const StrandS
     c.fibreOpacity = m.opacity;
     c.albedo = toShader(m.albedo, 0);
     c.bounded = m.bounded ? 1 : 0;
+    c.axisRatio = m.axisRatio;
     c.brightestTint =
         m.bounded ? 1 / std::max(m.fibreColour.maxCoeff(), 1e-3f) : std::numeric_limits<float>::max();
     return c;

@@ -44,6 +44,7 @@ struct StrandShading {
     float rootBrightness = 0.72f;  ///< factor on the albedo at the root
     float tipBrightness = 1.10f;   ///< and at the tip
     float variation = 0.18f;       ///< random brightness per strand, ±
+    float axisRatio = 1;    ///< of an elliptic fibre of Kajiya-Kay: strands show different sides of theirs
     bool bounded = true;    ///< no fibre of Kajiya-Kay sends out more light than it gets; false: as published
     float opacity = 0.65f;  ///< 0…1: how much one fibre takes from the light behind it
     float rootOpacity = 1;  ///< 0…1, times how much of a ribbon the hair covers; changes evenly

@@ -115,12 +115,34 @@ Crossings exactCrossings(int p, double etaPrime, double target) {
     return found;
 }
 
+/// φ_c: where dφ/dh = 0 of TRT. η' < 2.
+double causticOf(double etaPrime) {
+    return std::abs(deflection(2, std::sqrt((4 - etaPrime * etaPrime) / 3), etaPrime));
+}
+
+constexpr double kLeastIor = 1.01;  // of an elliptic fibre's narrow side
+
+/// η*_1 and η*_2 of Eq. 47.
+struct EllipticIors {
+    double first, second;
+    EllipticIors(double ior, double axisRatio)
+        : first(2 * (ior - 1) * axisRatio * axisRatio - ior + 2),
+          second(2 * (ior - 1) / (axisRatio * axisRatio) - ior + 2) {}
+};
+
 double smoothstep(double low, double high, double x) {
     const double t = std::clamp((x - low) / std::max(high - low, 1e-6), 0.0, 1.0);
     return t * t * (3 - 2 * t);
 }
 
 }  // namespace
+
+CausticAzimuths causticAzimuths(double ior, double axisRatio) {
+    const auto at = [](double eta) { return eta < 2 ? causticOf(std::max(eta, kLeastIor)) : 0.0; };
+    const EllipticIors eta(ior, axisRatio);
+    const auto [least, greatest] = std::minmax({at(eta.first), at(eta.second)});
+    return {at(ior), least, greatest};
+}
 
 double wrapAngle(double angle) {
     return angle - 2 * kPi * std::round(angle / (2 * kPi));
@@ -145,13 +167,12 @@ AzimuthalProfile::AzimuthalProfile(const AzimuthalParameters& parameters, double
         trt_ = circle_;
         return;
     }
-    const double a2 = parameters_.axisRatio * parameters_.axisRatio;
-    const double eta1 = 2 * (parameters_.ior - 1) * a2 - parameters_.ior + 2;
-    const double eta2 = 2 * (parameters_.ior - 1) / a2 - parameters_.ior + 2;
+    const EllipticIors eta(parameters_.ior, parameters_.axisRatio);
     const double energyOfCircle = energy(Lobe::TRT).sum();
     for (int k = 0; k < kTurns; ++k) {
         const double cos2Phi = std::cos((k + 0.5) * kPi / kTurns);
-        const double ior = std::max(0.5 * (eta1 + eta2 + cos2Phi * (eta1 - eta2)), 1.01);
+        const double ior =
+            std::max(0.5 * (eta.first + eta.second + cos2Phi * (eta.first - eta.second)), kLeastIor);
         trt_.push_back(makeSection(ior));
         double energyHere = 0;
         overOffsets(kEnergyQuadrature, [&](double h, double weight) {
@@ -167,7 +188,7 @@ AzimuthalProfile::Section AzimuthalProfile::makeSection(double ior) const {
     if (parameters_.causticWidth <= 0) return section;
     const double etaPrime = section.optics.indices().perpendicular;
     if (etaPrime < 2) {
-        section.causticPhi = std::abs(deflection(2, std::sqrt((4 - etaPrime * etaPrime) / 3), etaPrime));
+        section.causticPhi = causticOf(etaPrime);
         section.fade = 1;
     } else {
         section.fade = 1 - smoothstep(2, 2 + parameters_.causticFade, etaPrime);

@@ -96,6 +96,14 @@ class AzimuthalProfile {
     std::vector<Section> circle_, trt_;
 };
 
+/// Where light that is reflected once inside piles up, across a fibre of this section (φ_c): that of a round
+/// fibre, and the least and the greatest of an elliptic one as it turns around its axis (Eq. 47). 0 where
+/// there is no caustic.
+struct CausticAzimuths {
+    double round, least, greatest;
+};
+CausticAzimuths causticAzimuths(double ior, double axisRatio);
+
 /// Maps any angle to −π…π.
 double wrapAngle(double angle);
 /// The normal distribution of a circle's angle, from a sum over its turns.

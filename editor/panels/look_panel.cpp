@@ -51,7 +51,7 @@ const std::vector<Group>& groups() {
         {"Highlights", {"specular", "shininess"}, kKajiya, true},
         {"Energy", {"energy"}, kKajiya | kSadeghi, false},
         {"Fibre optics", {"indexOfRefraction", "longitudinalRoughness", "azimuthalRoughness"}, kFibres, true},
-        {"Cross-section", {"eccentricity"}, kMarschner, false},
+        {"Cross-section", {"eccentricity"}, kAll, false},
         {"First highlight (R)", {"rIntensity", "rWidth", "rShiftDegrees"}, kFibres, false},
         {"Transmission (TT)", {"ttIntensity", "ttWidth", "ttShiftDegrees"}, kFibres, false},
         {"Second highlight (TRT)", {"trtIntensity", "trtWidth", "trtShiftDegrees"}, kFibres, false},

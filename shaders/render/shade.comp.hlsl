@@ -22,6 +22,13 @@ float3 tilt(float3 tangent, float3 toView, float amount) {
     return normalize(tangent + normal * (amount * rsqrt(max(dot(normal, normal), 1e-8))));
 }
 
+// How wide a fibre is across the view, of one that is as thick as a round one and turned by `turn` of half a circle.
+float sideOf(float axisRatio, float turn) {
+    if (axisRatio == 1.0) return 1.0;
+    const float c = cos(kPi * turn);
+    return sqrt(axisRatio * c * c + (1.0 - c * c) / axisRatio);
+}
+
 [numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     const uint index = id.x + id.y * gShade.rowThreads;
@@ -41,7 +48,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float jitter = (hashUnit(p.strand * 2u + 1u) - 0.5) * 0.06;
     const float3 tangent1 = tilt(tangent, toView, gShade.primaryTilt + jitter);
     const float3 tangent2 = tilt(tangent, toView, gShade.secondaryTilt + jitter);
-    const float sparkle = 0.6 + 0.8 * hashUnit(p.strand * 2u);
+    const float sparkle = (0.6 + 0.8 * hashUnit(p.strand * 2u)) * sideOf(gShade.axisRatio, hashUnit(p.strand * 2u + 7u));
     // A fibre dims what passes it the more, the darker it is.
     const float3 passed = saturate(1.0 - gShade.fibreOpacity * (1.0 - 0.75 * sqrt(albedo)));
 

@@ -174,7 +174,7 @@ struct ShadeConstants {
     uint bounded;         // 1: Kajiya-Kay sends out no more light than it gets
     float brightestTint;  // of a strand of light in fibres: more would be whiter than white
     float axisRatio;      // of Kajiya-Kay's elliptic fibres; 1: round
-    uint count;  // of what a kernel works on: points of curves, or strands
+    uint count;           // of what a kernel works on: points of curves, or strands
     uint lightCount;
     uint rowThreads;    // of the dispatch
     uint subdivisions;  // curve segments per given segment

@@ -55,6 +55,29 @@ TEST(HairLook, ClumpingIsMeasuredOfTheHairAtRest) {
     EXPECT_EQ(scene->scene().clumping.values, rest.values);
 }
 
+TEST(HairLook, EccentricFibresGlintOverAWiderRange) {
+    Groom groom = plainGroom();
+    const auto sadeghi = [&] {
+        return strandMaterials(groom, viewOf(render::ShadingModel::sadeghi)).material.fibre.sadeghi;
+    };
+    const shading::SadeghiParameters round = sadeghi();
+    EXPECT_NEAR(round.glintNear, 30 * shading::kDegree, 1e-6);
+    EXPECT_NEAR(round.glintFar, 45 * shading::kDegree, 1e-6);
+    double width = round.glintFar - round.glintNear;
+    for (const float eccentricity : {0.3f, 0.6f, 0.8f}) {
+        groom.material.eccentricity = eccentricity;
+        const shading::SadeghiParameters elliptic = sadeghi();
+        EXPECT_LT(elliptic.glintNear, round.glintNear);
+        EXPECT_GT(elliptic.glintFar, round.glintFar);
+        EXPECT_GE(elliptic.glintNear, 0);
+        EXPECT_GT(elliptic.glintFar - elliptic.glintNear, width);
+        width = elliptic.glintFar - elliptic.glintNear;
+        // a/b of b²/a² = 1 − e².
+        EXPECT_NEAR(strandMaterials(groom, kKajiya).material.axisRatio,
+                    1 / std::sqrt(1 - eccentricity * eccentricity), 1e-5f);
+    }
+}
+
 TEST(HairLook, PaintedWidthsAreInAllRadii) {
     Groom groom = plainGroom();
     groom.material.rootRadius = 4e-5f;

@@ -71,6 +71,30 @@ TEST(Azimuthal, EllipticFibresSpreadTheSameEnergy) {
 }
 
 // A path's rays, deflected once more by random amounts, against N: azimuth by azimuth.
+/// Where the turn of light with one inner reflection, 4 γ_t − 2 γ_i, is greatest of all offsets.
+TEST(Azimuthal, CausticsLieWhereLightTurnsBack) {
+    const auto turnsBackAt = [](double ior) {
+        double greatest = 0;
+        for (int i = 0; i <= 200'000; ++i) {
+            const double h = i / 200'000.0;
+            greatest = std::max(greatest, 4 * std::asin(h / ior) - 2 * std::asin(h));
+        }
+        return greatest;
+    };
+    for (const double ior : {1.2, 1.55, 1.9}) {
+        const CausticAzimuths round = causticAzimuths(ior, 1);
+        EXPECT_NEAR(round.round, turnsBackAt(ior), 1e-8);
+        EXPECT_NEAR(round.least, round.round, 1e-9);
+        EXPECT_NEAR(round.greatest, round.round, 1e-9);
+    }
+    EXPECT_EQ(causticAzimuths(2.1, 1).round, 0);
+    // Eq. 47 across and along the long axis.
+    const CausticAzimuths elliptic = causticAzimuths(1.55, 1.2);
+    EXPECT_NEAR(elliptic.least, turnsBackAt(2 * 0.55 * 1.44 - 1.55 + 2), 1e-8);
+    EXPECT_NEAR(elliptic.greatest, turnsBackAt(2 * 0.55 / 1.44 - 1.55 + 2), 1e-8);
+    EXPECT_NEAR(causticAzimuths(1.55, 1 / 1.2).greatest, elliptic.greatest, 1e-12) << "either way round";
+}
+
 TEST(Azimuthal, ProfilesMatchTracedRays) {
     constexpr int kBins = 36;
     constexpr int kRays = 80000;

@@ -48,7 +48,7 @@ constexpr Field<M> kMaterialFields[] = {
     colourField<&M::dyeColour>("dyeColour", "linear RGB of the dye"),
     field<&M::dyeStart>("dyeStart", "", 0, 1, "share of the length where dye begins: 0.6 dips the tips"),
     field<&M::dyeEnd>("dyeEnd", "", 0, 1, "share of the length from which dye has full strength"),
-    field<&M::eccentricity>("eccentricity", "", 0, 0.95, "eccentricity of the fibre's cross-section: 0 is round (Marschner)"),
+    field<&M::eccentricity>("eccentricity", "", 0, 0.95, "eccentricity of the fibre's cross-section: 0 is round. Marschner spreads the second highlight, Sadeghi the glints, and Kajiya-Kay varies the second highlight between strands"),
     field<&M::rIntensity>("rIntensity", "", 0, 10, "strength of the first highlight (R)"),
     field<&M::ttIntensity>("ttIntensity", "", 0, 10, "strength of the transmission (TT)"),
     field<&M::trtIntensity>("trtIntensity", "", 0, 10, "strength of the second highlight (TRT)"),
