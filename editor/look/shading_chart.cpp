@@ -56,6 +56,7 @@ class ChartView : public QWidget {
     void paintEvent(QPaintEvent*) override {
         if (shown_.plots.empty()) return;
         QPainter painter(this);
+        painter.setRenderHint(QPainter::SmoothPixmapTransform);
         const int high = height() / static_cast<int>(shown_.plots.size());
         for (std::size_t i = 0; i < shown_.plots.size(); ++i) {
             Plot plot = shown_.plots[i];
