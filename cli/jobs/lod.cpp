@@ -7,6 +7,7 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "core/base/log.h"
 #include "core/base/stopwatch.h"
 #include "core/levels/level_report.h"
 #include "core/levels/spring_fit.h"
@@ -35,10 +36,16 @@ Result<Report> run(const LodOptions& options, const std::string& commandLine) {
     tellFindings(findings);
     const auto files = writeChain(*chain, commandLine, collidersOf(*groom), character, options.output);
     if (!files) return tl::unexpected(files.error());
-    Report report{{"hairs", chain->strands}, {"directions", chain->views.size()}};
+    Report report{{"hairs", chain->strands},
+                  {"directions", chain->views.size()},
+                  {"measured_directions", 2 * chain->views.size()}};
     report["levels"] = Report::array();
     for (const cards::Level& level : chain->levels) report["levels"].push_back(toJson(level));
     report["largest_light_step"] = std::ranges::max(cards::lightSteps(chain->levels));
+    for (const cards::Level& level : chain->levels) {
+        const std::string fails = failureWords(level);
+        if (!fails.empty()) log::warning("{} fails: {}", level.name, fails);
+    }
     const IdleCardEdits idle = idleCardEdits(*chain, *groom);
     report["lost_card_edits"] = idle.lost;
     report["unmade_card_edits"] = idle.unmade;

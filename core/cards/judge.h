@@ -21,13 +21,16 @@ struct View {
     std::uint32_t columns = 0,
                   rows = 0;  ///< of squares of a 32nd of a head: pictures of all sizes divide them
 };
-/// `count` ≥ 1 around the head, at three heights, each with a margin around all hair.
-std::vector<View> viewsAround(const Hair& hair, std::uint32_t count);
+/// `count` ≥ 1 around the head, at three heights, each with a margin around all hair; or as many that lie
+/// half-way between those, each at another height than that before it.
+enum class Around { own, between };
+std::vector<View> viewsAround(const Hair& hair, std::uint32_t count, Around around = Around::own);
 
 /// What a pixel shows, linear light.
 struct Shot {
     std::uint32_t width = 0, height = 0;
     std::vector<float> coverage;  ///< by hair, 0 … 1
+    std::vector<float> skin;      ///< share that shows the head, 0 … 1
     std::vector<Vec3f> hair;      ///< light of hair, times its coverage
     std::vector<Vec3f> all;       ///< of hair, head and background
 };

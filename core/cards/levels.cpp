@@ -7,54 +7,31 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <mutex>
 #include <numeric>
 #include <optional>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "core/cards/level_shots.h"
 #include "core/cards/raster.h"
 #include "core/cards/rig.h"
 
 namespace hairloom::cards {
 namespace {
 
-constexpr std::uint32_t kFarthestPx = 16;    // of a head, 23 m away: as far as levels are looked at
-constexpr std::uint32_t kSamplesAPixel = 4;  // of cards and shells, along each axis
-
-/// Plates that were drawn on. They are large, and a system takes its time to hand out memory.
-class Plates {
-  public:
-    /// Calls draw(plate) with one that nobody else draws on.
-    template <class Draw>
-    void draw(const View& view, std::uint32_t samplesPerHead, const Draw& drawOn) {
-        std::unique_ptr<Plate> plate;
-        {
-            const std::lock_guard lock(mutex_);
-            if (!idle_.empty()) plate = std::move(idle_.back()), idle_.pop_back();
-        }
-        if (!plate) plate = std::make_unique<Plate>();
-        plate->start(view, samplesPerHead);
-        drawOn(*plate);
-        const std::lock_guard lock(mutex_);
-        idle_.push_back(std::move(plate));
-    }
-
-  private:
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<Plate>> idle_;
-};
+constexpr std::uint32_t kFarthestPx = 16;  // of a head, 23 m away: as far as levels are looked at
 
 /// All that levels are made from and held against.
 struct Work {
     const Hair& hair;
     const HairLight& light;
     const std::vector<View>& views;
-    const std::map<std::uint32_t, std::vector<Shot>>& strands;  ///< by pixels of a head
-    double strandsMs;                                           ///< to draw them in a direction
+    const std::map<std::uint32_t, std::vector<Shot>>& strands;   ///< by pixels of a head
+    double strandsMs;                                            ///< to draw them in a direction
+    const std::map<std::uint32_t, std::vector<Print>>& between;  ///< likewise, from `viewsBetween`
+    const std::vector<View>& viewsBetween;                       ///< where levels are measured, too
     const ChainOptions& options;
-    Plates& plates;
+    const Stage& stage;
     const std::function<void()>& tick;  ///< called now and then while a level is made
     Cancel cancel;
 
@@ -74,41 +51,12 @@ struct Work {
     }
 };
 
-struct Shooting {
-    std::vector<Shot> shots;
-    double drawMs = 0;  ///< mean of a direction
-};
-enum class Shown { all, coverage };
-/// Pictures of a level from some directions; where coverage alone is asked for, those of strands have no
-/// light.
+/// Pictures of a level from some directions.
 Shooting shoot(const Work& work, const Level& level, const std::vector<std::size_t>& which, std::uint32_t px,
                Shown shown = Shown::all) {
-    Shooting result;
-    result.shots.resize(which.size());
-    std::vector<double> seconds(which.size());
-    const auto* const hair = std::get_if<Hair>(&level.content);
-    // The light in thinner hair is that of all hair.
-    const StrandLight light =
-        hair != nullptr && shown == Shown::all ? strandLight(*hair, work.light) : StrandLight{};
-    const std::uint32_t samples = hair != nullptr ? kSamplesPerHead : std::max(32u, px * kSamplesAPixel);
-    parallelFor(which.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end && !cancelled(work.cancel); ++i) {
-            work.plates.draw(work.views[which[i]], samples, [&](Plate& plate) {
-                plate.drawHead(work.hair);
-                const Stopwatch watch;
-                if (hair != nullptr && shown == Shown::all) plate.drawStrands(*hair, light);
-                if (hair != nullptr && shown == Shown::coverage) plate.coverByStrands(*hair);
-                if (const auto* cards = std::get_if<Cards>(&level.content))
-                    plate.drawCards(work.hair, work.light, *cards, px);
-                if (const auto* shell = std::get_if<Shell>(&level.content))
-                    plate.drawShell(work.hair, work.light, *shell);
-                seconds[i] = watch.seconds();
-                result.shots[i] = plate.developed(px);
-            });
-        }
-    });
-    for (const double s : seconds) result.drawMs += 1000 * s / static_cast<double>(seconds.size());
-    return result;
+    std::vector<View> views;
+    for (const std::size_t v : which) views.push_back(work.views[v]);
+    return shoot(work.stage, level.content, views, px, kSamplesPerHead, shown);
 }
 
 std::vector<Shot> chosen(const std::vector<Shot>& shots, const std::vector<std::size_t>& which) {
@@ -324,6 +272,27 @@ Status walk(const Work& work, Level& level) {
     return {};
 }
 
+/// Beside all strands, from all directions, but for how it moves.
+Status measure(const Work& work, Level& level) {
+    work.tick();
+    const double pixelMm = pixelMillimetres(level.measuredPx());
+    const std::uint32_t finer = level.spec.headPx / level.measuredPx();
+    const std::size_t own = work.views.size(), between = work.viewsBetween.size();
+    Shooting aside = shoot(work.stage, level.content, work.viewsBetween, level.spec.headPx, kSamplesBetween);
+    if (cancelled(work.cancel)) return stopped();
+    std::vector<ViewMeasures> views(own + between);
+    parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            const Shot& shot = v < own ? level.shots[v] : aside.shots[v - own];
+            const Print strands = v < own ? coarser(printOf(level.strands[v]), finer)
+                                          : work.between.at(level.measuredPx())[v - own];
+            views[v] = measureView(strands, coarser(printOf(shot), finer), pixelMm);
+        }
+    });
+    level.measures = combined(views);
+    return {};
+}
+
 Status finish(const Work& work, Level& level) {
     level.strands = work.strands.at(level.spec.headPx);
     const bool isAll = level.spec.kind == LevelKind::strands && level.spec.amount >= 1;
@@ -345,37 +314,13 @@ Status finish(const Work& work, Level& level) {
                     fmt::format("use a limit of {:.2f} pixels, which these cards reach, or more cards",
                                 outlines + 0.005));
     }
+    if (work.options.measure) {
+        if (auto status = measure(work, level); !status) return status;
+    }
     if (work.options.walk) {
         if (auto status = walk(work, level); !status) return status;
     }
     return count(work, level);
-}
-
-/// Pictures of all strands by pixels of a head, and the mean time of drawing a direction, ms.
-struct StrandShots {
-    std::map<std::uint32_t, std::vector<Shot>> shots;
-    double drawMs = 0;
-};
-Result<StrandShots> shootStrands(const Hair& hair, const StrandLight& light, const std::vector<View>& views,
-                                 const std::vector<LevelSpec>& specs, Plates& plates, Cancel cancel) {
-    StrandShots result;
-    auto& shots = result.shots;
-    std::vector<double> seconds(views.size());
-    for (const LevelSpec& spec : specs) shots[spec.headPx].resize(views.size());
-    parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end && !cancelled(cancel); ++v) {
-            plates.draw(views[v], kSamplesPerHead, [&](Plate& plate) {
-                plate.drawHead(hair);
-                const Stopwatch watch;
-                plate.drawStrands(hair, light);
-                seconds[v] = watch.seconds();
-                for (auto& [px, all] : shots) all[v] = plate.developed(px);
-            });
-        }
-    });
-    if (cancelled(cancel)) return stopped();
-    for (const double s : seconds) result.drawMs += 1000 * s / static_cast<double>(seconds.size());
-    return result;
 }
 
 }  // namespace
@@ -428,8 +373,16 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
     chain.views = viewsAround(hair, options.directions);
     const StrandLight onStrands = strandLight(hair, *light);
     Plates plates;
-    const auto shots = shootStrands(hair, onStrands, chain.views, specs, plates, cancel);
+    const Stage stage{hair, *light, plates, cancel};
+    std::vector<std::uint32_t> heights;
+    for (const LevelSpec& spec : specs) heights.push_back(spec.headPx);
+    const auto shots = shootStrands(stage, onStrands, chain.views, heights);
     if (!shots) return tl::unexpected(shots.error());
+    std::vector<View> viewsBetween;
+    if (options.measure) viewsBetween = viewsAround(hair, options.directions, Around::between);
+    for (std::uint32_t& px : heights) px = std::min(px, kNearestMeasuredPx);
+    const auto between = printStrands(stage, onStrands, viewsBetween, heights);
+    if (!between) return tl::unexpected(between.error());
     double share = 1 / steps;
     std::string_view making;
     // Nobody knows how many rounds a level takes: each does a tenth of what is left of it.
@@ -437,7 +390,8 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
         const double end = (2 + static_cast<double>(chain.levels.size())) / steps;
         progress(making, share += 0.1 * (end - share));
     };
-    const Work work{hair, *light, chain.views, shots->shots, shots->drawMs, options, plates, tick, cancel};
+    const Work work{hair,         *light,  chain.views, shots->shots, shots->drawMs, *between,
+                    viewsBetween, options, stage,       tick,         cancel};
     for (std::size_t i = 0; i < specs.size(); ++i) {
         Level level;
         level.spec = specs[i];

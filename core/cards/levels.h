@@ -10,7 +10,7 @@
 #include <string_view>
 #include <variant>
 
-#include "core/cards/judge.h"
+#include "core/cards/measures.h"
 #include "core/cards/springs.h"
 
 namespace hairloom::cards {
@@ -40,18 +40,28 @@ struct ChainOptions {
     float targetPx = 0;             ///< pixels that outlines of cards may be off; 0: what the budget gives
     double strandsMoveMs = 0;       ///< what moving all hairs takes, as the caller measured it
     bool walk = false;              ///< Level::lights are measured, too
+    bool measure = false;           ///< Level::measures, from as many directions again between those
     std::vector<HeldCard> held;     ///< cards shaped by hand
 };
 
 /// How far off a level is seen that is for heads so high: in a picture of 1080 lines, 40° from its lower to
 /// its upper edge. Metres.
 double distanceOf(std::uint32_t headPx);
+/// How wide a pixel is there, on the head.
+inline double pixelMillimetres(std::uint32_t headPx) {
+    return 1000 * static_cast<double>(kHeadHeight) / static_cast<double>(headPx);
+}
+
+/// Levels that are nearer are measured in pictures of heads so high: a pixel is a millimetre there.
+inline constexpr std::uint32_t kNearestMeasuredPx = 256;
 
 /// The light of a level's hair, times that of all strands, where a head is so many pixels high.
 struct LightAt {
     std::uint32_t headPx = 0;
     double light = 1;
 };
+
+using LevelContent = std::variant<Hair, Cards, Shell>;
 
 struct Level {
     LevelSpec spec;
@@ -61,13 +71,23 @@ struct Level {
     std::size_t triangles = 0;   ///< of hairs two a segment
     std::size_t bytes = 0;  ///< of vertices, indices and textures with their mip maps, as they lie on a GPU
     Difference difference;
+    std::optional<Measures> measures;  ///< nothing unless asked for
     std::vector<LightAt> lights;  ///< from where it takes over to where the next does; empty unless asked for
     double drawMs = 0;            ///< by the judge, on one core, mean of all directions
     double moveMs = 0;            ///< on all cores
-    std::variant<Hair, Cards, Shell> content;
+    LevelContent content;
     std::vector<Shot> shots;    ///< of each direction, at its distance
     std::vector<Shot> strands;  ///< all strands, likewise
 
+    std::uint32_t measuredPx() const { return std::min(spec.headPx, kNearestMeasuredPx); }
+    bool failsBy(const Measure& measure) const {
+        return measures && measure.fails(*measures, pixelMillimetres(measuredPx()));
+    }
+    /// Names of the measures that it fails; none where it was not measured.
+    std::vector<std::string> fails() const {
+        if (!measures) return {};
+        return failsOf(*measures, pixelMillimetres(measuredPx()));
+    }
     std::size_t cards() const {
         const auto* made = std::get_if<Cards>(&content);
         if (made == nullptr) return 0;

@@ -27,13 +27,14 @@ Vec3f skinLight(const Vec3f& normal_ws) {
 
 }  // namespace
 
-std::vector<View> viewsAround(const Hair& hair, std::uint32_t count) {
+std::vector<View> viewsAround(const Hair& hair, std::uint32_t count, Around around) {
     constexpr float kHeights[3] = {0, 20, -12};  // degrees
     constexpr float kSquare = kHeadHeight / static_cast<float>(kSquaresPerHead);
     std::vector<View> views;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const float turn = radians(360 * static_cast<float>(i) / static_cast<float>(count));
-        const float height = radians(kHeights[i % 3]);
+        const float ahead = around == Around::between ? 0.5f : 0.0f;
+        const float turn = radians(360 * (static_cast<float>(i) + ahead) / static_cast<float>(count));
+        const float height = radians(kHeights[(i + (around == Around::between ? 2 : 0)) % 3]);
         View view;
         view.toEye_ws =
             Vec3f(std::sin(turn) * std::cos(height), std::sin(height), std::cos(turn) * std::cos(height));
@@ -345,20 +346,25 @@ Shot Plate::developed(std::uint32_t headPx) const {
     shot.height = static_cast<std::uint32_t>(height_) / finer;
     const float share = 1 / static_cast<float>(finer * finer);
     const std::size_t pixels = std::size_t{shot.width} * shot.height;
-    shot.coverage.reserve(pixels), shot.hair.reserve(pixels), shot.all.reserve(pixels);
+    shot.coverage.reserve(pixels), shot.skin.reserve(pixels);
+    shot.hair.reserve(pixels), shot.all.reserve(pixels);
     for (std::uint32_t y = 0; y < shot.height; ++y) {
         for (std::uint32_t x = 0; x < shot.width; ++x) {
-            float coverage = 0;
+            float coverage = 0, skin = 0;
             Vec3f hair = Vec3f::Zero(), all = Vec3f::Zero();
             for (std::uint32_t j = 0; j < finer; ++j) {
                 const std::size_t first = index(static_cast<int>(x * finer), static_cast<int>(y * finer + j));
                 for (std::size_t at = first; at < first + finer; ++at) {
                     all += colour_[at];
-                    if (isHair_[at] == 0) continue;
+                    if (isHair_[at] == 0) {
+                        if (std::isfinite(depth_[at])) skin += 1;
+                        continue;
+                    }
                     coverage += 1, hair += colour_[at];
                 }
             }
             shot.coverage.push_back(share * coverage);
+            shot.skin.push_back(share * skin);
             shot.hair.push_back(share * hair);
             shot.all.push_back(share * all);
         }

@@ -229,6 +229,26 @@ std::vector<std::vector<Vec3f>> swing(const Rig& rig, std::size_t chain, const S
     return frames;
 }
 
+std::vector<Eigen::Affine3f> jointMotions(const Rig& rig, const Eigen::Isometry3f& head_ws,
+                                          std::span<const std::vector<Vec3f>> joints_ws) {
+    std::vector<Eigen::Affine3f> motions{Eigen::Affine3f(head_ws)};
+    for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
+        Quatf turned(head_ws.linear());
+        const std::vector<Vec3f>& at = joints_ws[chain];
+        for (std::uint32_t j = 0; j < rig.perChain; ++j) {
+            const Vec3f& rest = rig.joints[1 + chain * rig.perChain + j].position_ws;
+            if (j + 1 < rig.perChain) {
+                const Vec3f bone = rig.joints[2 + chain * rig.perChain + j].position_ws - rest;
+                const Vec3f way = at[j + 1] - at[j];
+                if (bone.norm() > 0 && way.norm() > 0)
+                    turned = shortestArc(turned * bone.normalized(), way.normalized()) * turned;
+            }
+            motions.push_back(Eigen::Translation3f(at[j]) * turned * Eigen::Translation3f(-rest));
+        }
+    }
+    return motions;
+}
+
 SpringError springError(const Rig& rig, std::span<const Spring> springs, const ChainMotion& wanted,
                         std::span<const Collider> colliders) {
     SpringError error;

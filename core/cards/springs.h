@@ -53,6 +53,11 @@ std::vector<std::vector<Vec3f>> swing(const Rig& rig, std::size_t chain, const S
                                       std::span<const Eigen::Isometry3f> heads_ws,
                                       std::span<const Collider> colliders);
 
+/// Motions of the rig's joints since rest, for skin(). `joints_ws` by chains, as swing() has them of a frame:
+/// each bone turns the shortest way, as VRMC_springBone turns it, and the last joint with the bone before it.
+std::vector<Eigen::Affine3f> jointMotions(const Rig& rig, const Eigen::Isometry3f& head_ws,
+                                          std::span<const std::vector<Vec3f>> joints_ws);
+
 /// How far joints are from where they are wanted, all chains and frames; the first of a chain is left out.
 /// Each chain is kept out of collidersOfChain().
 struct SpringError {

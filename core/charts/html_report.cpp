@@ -19,6 +19,7 @@ thead th { border-bottom: 1px solid #999; }
 tbody tr { border-bottom: 1px solid #eee; }
 td.number, th.number { text-align: right; }
 tr.strong td { font-weight: bold; }
+tr.red td { color: #c00000; }
 code { display: block; background: #f5f5f5; padding: .5rem .8rem; overflow-x: auto; font-size: 13px; }
 svg { max-width: 100%; height: auto; margin: .5rem 0 1rem; display: block; }
 div.wide { overflow-x: auto; }
@@ -67,7 +68,8 @@ void HtmlReport::facts(const std::vector<std::pair<std::string, std::string>>& r
     body_ += "</tbody></table>\n";
 }
 
-void HtmlReport::table(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& strong) {
+void HtmlReport::table(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& strong,
+                       Strong how) {
     if (rows.empty()) return;
     std::vector<const char*> classes;
     for (std::size_t c = 0; c < rows[0].size(); ++c) {
@@ -77,7 +79,10 @@ void HtmlReport::table(const std::vector<std::vector<std::string>>& rows, const 
     for (std::size_t r = 0; r < rows.size(); ++r) {
         const bool head = r == 0;
         const bool stands = !head && r - 1 < strong.size() && strong[r - 1];
-        body_ += head ? "<thead><tr>" : stands ? "<tr class=\"strong\">" : "<tr>";
+        body_ += head                 ? "<thead><tr>"
+                 : !stands            ? "<tr>"
+                 : how == Strong::red ? "<tr class=\"red\">"
+                                      : "<tr class=\"strong\">";
         for (std::size_t c = 0; c < rows[r].size(); ++c) {
             body_ +=
                 fmt::format("<{0}{1}>{2}</{0}>", head ? "th" : "td", classes[c], escapeMarkup(rows[r][c]));

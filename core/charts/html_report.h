@@ -21,9 +21,11 @@ class HtmlReport {
     void list(const std::vector<std::string>& items);
     /// A name and what it is, row by row.
     void facts(const std::vector<std::pair<std::string, std::string>>& rows);
+    enum class Strong { bold, red };
     /// The first row is the head. Cells that are numbers stand to the right. `strong` tells for each row of
-    /// the body whether it stands out; it may be empty.
-    void table(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& strong = {});
+    /// the body whether it stands out, and `how`; it may be empty.
+    void table(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& strong = {},
+               Strong how = Strong::bold);
     /// A drawing by svg().
     void drawing(std::string_view svg);
 

@@ -7,6 +7,7 @@
 
 #include "core/levels/card_hair.h"
 #include "core/levels/held_cards.h"
+#include "core/levels/level_motion.h"
 #include "core/levels/spring_fit.h"
 #include "exporters/card_character.h"
 
@@ -67,12 +68,13 @@ Result<cards::Chain> makeLevels(const Groom& groom, const LevelBudget& budget, L
     options.held = heldCards(groom.cardEdits, roots).cards;
     if (made == LevelsMade::all) {
         options.strandsMoveMs = followMilliseconds(groom);
-        options.walk = true;
+        options.walk = options.measure = true;
     }
     auto chain = cards::makeChain(*hair, *specs, options, progress, cancel);
     if (!chain) return chain;
     // Where strands cannot be simulated, springs stay as they are set, and a finding says so.
-    (void)fitSpringsOf(groom, *chain, cancel);
+    // Nor is there a motion to measure then.
+    if (fitSpringsOf(groom, *chain, cancel)) (void)measureMotion(groom, *chain, cancel);
     if (cards::cancelled(cancel)) return cards::stopped();
     return chain;
 }

@@ -43,6 +43,38 @@ std::vector<std::vector<std::string>> rowsOf(const Chain& chain) {
     return rows;
 }
 
+/// What each level has of the measures, and in words which of them fail.
+std::vector<std::vector<std::string>> measuresOf(const Chain& chain) {
+    std::vector<std::vector<std::string>> rows{{"level"}};
+    for (const cards::Measure& measure : cards::allMeasures()) {
+        rows[0].push_back(measure.unit.empty() ? std::string(measure.label)
+                                               : fmt::format("{}, {}", measure.label, measure.unit));
+    }
+    rows[0].emplace_back("fails");
+    for (const Level& level : chain.levels) {
+        if (!level.measures) continue;
+        std::vector<std::string> row{level.name};
+        std::string fails;
+        for (const cards::Measure& measure : cards::allMeasures()) {
+            const std::optional<double>& value = *level.measures.*measure.value;
+            row.push_back(value ? fmt::format("{:.2f}", measure.scale * *value) : "");
+            if (!level.failsBy(measure)) continue;
+            fails += (fails.empty() ? "" : ", ") + std::string(measure.label);
+        }
+        row.push_back(std::move(fails));
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+/// Which rows of the body of measuresOf() fail.
+std::vector<bool> failing(const Chain& chain) {
+    std::vector<bool> fails;
+    for (const Level& level : chain.levels)
+        if (level.measures) fails.push_back(!level.fails().empty());
+    return fails;
+}
+
 /// Error against cost: the same diagram as that of accuracy.
 Plot plotOf(const Chain& chain) {
     Plot plot;
@@ -58,9 +90,14 @@ Plot plotOf(const Chain& chain) {
     return plot;
 }
 
+/// The measures behind all else.
 std::string csv(const Chain& chain) {
     std::string text;
-    for (const auto& row : rowsOf(chain)) {
+    auto rows = rowsOf(chain);
+    if (const auto measures = measuresOf(chain); measures.size() == rows.size())
+        for (std::size_t r = 0; r < rows.size(); ++r)
+            rows[r].insert(rows[r].end(), measures[r].begin() + 1, measures[r].end());
+    for (const auto& row : rows) {
         std::string line;
         for (const std::string& cell : row)
             line +=
@@ -76,6 +113,21 @@ void put(render::Image& page, const render::Image& picture, std::uint32_t left, 
         std::copy(row, row + std::ptrdiff_t{4} * picture.width,
                   page.rgba.begin() + std::ptrdiff_t{4} * ((std::ptrdiff_t{top} + y) * page.width + left));
     }
+}
+
+/// A table; columns but the first and one of words stand to the right.
+std::string markdown(const std::vector<std::vector<std::string>>& rows) {
+    std::string text;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        text += "|";
+        for (const std::string& cell : rows[r]) text += " " + cell + " |";
+        text += "\n";
+        if (r > 0) continue;
+        text += "|";
+        for (const std::string& head : rows[r]) text += head == "level" || head == "fails" ? "---|" : "---:|";
+        text += "\n";
+    }
+    return text;
 }
 
 std::string springWords(const cards::SpringFit& fit) {
@@ -94,13 +146,17 @@ std::string html(const Chain& chain, const std::string& commandLine) {
                                  chain.views.size(), chain.makeSeconds));
     report.command(commandLine);
     report.table(rowsOf(chain));
+    if (const auto rows = measuresOf(chain); rows.size() > 1) {
+        report.heading("What a mean does not see");
+        report.table(rows, failing(chain), HtmlReport::Strong::red);
+    }
     report.drawing(svg(plotOf(chain)));
     if (chain.springFit) report.paragraph(springWords(*chain.springFit));
     report.paragraph(
         "Coverage and light are relative to those of all strands. The step is the largest change of light "
         "when a level replaces the one before it, and on the way to the next. The outline error is the area "
         "between the outlines divided by their length. FLIP is the mean over all pixels and directions. Draw "
-        "time is that of the reference renderer on one core.");
+        "time is that of the reference renderer on one core. Levels in red fail a measure.");
     return report.html();
 }
 
@@ -119,19 +175,32 @@ std::string cardScript(const Level& level, const cards::Cards& made, std::span<c
 
 }  // namespace
 
+std::string failureWords(const Level& level) {
+    if (!level.measures) return {};
+    return cards::failureWords(*level.measures, cards::pixelMillimetres(level.measuredPx()));
+}
+
 nlohmann::ordered_json toJson(const Level& level) {
     const cards::Difference& off = level.difference;
     nlohmann::ordered_json lights = nlohmann::ordered_json::array();
     for (const cards::LightAt& at : level.lights)
         lights.push_back({{"distance_m", cards::distanceOf(at.headPx)}, {"light", at.light}});
-    return {{"name", level.name},           {"kind", cards::nameOf(level.spec.kind)},
-            {"hairs", level.hairs},         {"cards", level.cards()},
-            {"triangles", level.triangles}, {"bytes", level.bytes},
-            {"head_px", level.spec.headPx}, {"distance_m", cards::distanceOf(level.spec.headPx)},
-            {"coverage", off.coverage},     {"flip", off.flip},
-            {"flip_worst", off.worstFlip},  {"light", off.light},
-            {"lights", std::move(lights)},  {"silhouette_px", off.silhouettePx},
-            {"ms_draw", level.drawMs},      {"ms_move", level.moveMs}};
+    nlohmann::ordered_json json{
+        {"name", level.name},           {"kind", cards::nameOf(level.spec.kind)},
+        {"hairs", level.hairs},         {"cards", level.cards()},
+        {"triangles", level.triangles}, {"bytes", level.bytes},
+        {"head_px", level.spec.headPx}, {"distance_m", cards::distanceOf(level.spec.headPx)},
+        {"coverage", off.coverage},     {"flip", off.flip},
+        {"flip_worst", off.worstFlip},  {"light", off.light},
+        {"lights", std::move(lights)},  {"silhouette_px", off.silhouettePx},
+        {"ms_draw", level.drawMs},      {"ms_move", level.moveMs}};
+    if (!level.measures) return json;
+    for (const cards::Measure& measure : cards::allMeasures()) {
+        const std::optional<double>& value = *level.measures.*measure.value;
+        json[std::string(measure.name)] = value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+    }
+    json["fails"] = level.fails();
+    return json;
 }
 
 nlohmann::ordered_json toJson(const cards::SpringFit& fit) {
@@ -145,18 +214,13 @@ nlohmann::ordered_json toJson(const cards::SpringFit& fit) {
 }
 
 std::string levelTable(const Chain& chain) {
-    std::string text;
-    const auto rows = rowsOf(chain);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-        text += "|";
-        for (const std::string& cell : rows[r]) text += " " + cell + " |";
-        text += "\n";
-        if (r > 0) continue;
-        text += "|";
-        for (std::size_t c = 0; c < rows[r].size(); ++c) text += c == 0 ? "---|" : "---:|";
-        text += "\n";
-    }
-    return text;
+    std::string text = markdown(rowsOf(chain));
+    auto measures = measuresOf(chain);
+    if (measures.size() == 1) return text;
+    const std::vector<bool> fails = failing(chain);
+    for (std::size_t r = 0; r < fails.size(); ++r)
+        if (fails[r]) measures[r + 1].front() = fmt::format("**{}**", measures[r + 1].front());
+    return text + "\n" + markdown(measures);
 }
 
 render::Image sideBySide(const Level& level) {

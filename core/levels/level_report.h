@@ -13,13 +13,17 @@
 namespace hairloom {
 
 /// A row of the table: name, kind, hairs, cards, triangles, bytes, distance_m, coverage, flip, light,
-/// silhouette_px, ms_draw, ms_move, and more.
+/// silhouette_px, ms_draw, ms_move, and more; of one that was measured largest_patch_cm2, hairline_mm, rim,
+/// scaliness, motion_px, holes (null where there is nothing to measure) and fails.
 nlohmann::ordered_json toJson(const cards::Level& level);
+
+/// "bare patch 3.65 cm² (at most 0.1)": the measures that a level fails; empty where it fails none.
+std::string failureWords(const cards::Level& level);
 
 /// motion, seconds, error_mm, largest_mm, and the same two of springs that are not fitted.
 nlohmann::ordered_json toJson(const cards::SpringFit& fit);
 
-/// The table as text of Markdown.
+/// The table and that of measures as text of Markdown; names of levels that fail are bold.
 std::string levelTable(const cards::Chain& chain);
 
 /// Strands above, the level below, from some directions.

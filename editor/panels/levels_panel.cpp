@@ -11,12 +11,14 @@
 #include <memory>
 
 #include "core/base/output_file.h"
+#include "core/levels/level_report.h"
 #include "editor/document/words.h"
+#include "editor/style/theme.h"
 
 namespace hairloom::editor {
 namespace {
 
-enum Column { kName, kCards, kTriangles, kBytes, kFrom, kCoverage, kLight, kFlip, kStep, kColumns };
+enum Column { kName, kCards, kTriangles, kBytes, kFrom, kCoverage, kLight, kFlip, kStep, kFails, kColumns };
 
 /// All that a level is made from.
 constexpr editing::Part kShown = editing::kHairParts | editing::kScalpParts | editing::Part::Spheres |
@@ -40,10 +42,21 @@ QPixmap onChequers(const QImage& texture, int width) {
     return pixmap;
 }
 
+/// "rim, holes"
+QString failedMeasures(const cards::Level& level) {
+    QStringList labels;
+    for (const cards::Measure& measure : cards::allMeasures())
+        if (level.failsBy(measure))
+            labels.append(
+                QString::fromUtf8(measure.label.data(), static_cast<qsizetype>(measure.label.size())));
+    return labels.join(", ");
+}
+
 }  // namespace
 
 LevelsPanel::LevelsPanel(const PanelParts& parts)
     : document_(parts.document),
+      preferences_(parts.preferences),
       tasks_(parts.tasks),
       messages_(parts.messages),
       viewport_(parts.viewport),
@@ -60,12 +73,13 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     layout->addWidget(makeBudget());
     table_->setObjectName("levelsTable");
     table_->setRootIsDecorated(false);
-    table_->setHeaderLabels({"Level", "Cards", "Tri.", "MB", "m", "Cov.", "Light", "FLIP", "Step"});
+    table_->setHeaderLabels({"Level", "Cards", "Tri.", "MB", "m", "Cov.", "Light", "FLIP", "Step", "Fails"});
     table_->setToolTip(
         "Cards, triangles and memory of each level, and the distance at which it starts. Compared with "
         "all strands at that distance: coverage and light as a share, and FLIP, the visible difference, "
         "where 0 is none. Step: the largest change in light, in %, when the level replaces the one before "
-        "it or on the way to the next. Click a level to see it");
+        "it or on the way to the next. Fails: the measures that a level in red fails, from 24 directions and "
+        "while the head nods. Point at it for their values. Click a level to see it");
     table_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->header()->setMinimumSectionSize(24);
     table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
@@ -77,6 +91,7 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     connect(table_, &QTreeWidget::currentItemChanged, this, &LevelsPanel::showChosen);
     connect(plot_, &AccuracyPlot::clicked, this,
             [this](std::size_t point) { table_->setCurrentItem(table_->topLevelItem(plotted_[point])); });
+    connect(&preferences_, &Preferences::changed, this, &LevelsPanel::colourTable);
     connect(&document_, &QtDocument::changed, this, &LevelsPanel::noteChange);
     connect(&document_, &QtDocument::replaced, this, [this] {
         card_->setLevel(nullptr, nullptr);
@@ -290,13 +305,27 @@ void LevelsPanel::fillTable() {
         item->setText(kLight, QString::number(off.light, 'f', 3));
         item->setText(kFlip, QString::number(off.flip, 'f', 3));
         item->setText(kStep, QString::number(100 * made.lightStep, 'f', 1));
-        for (int c = kCards; c < kColumns; ++c) item->setTextAlignment(c, Qt::AlignRight | Qt::AlignVCenter);
+        for (int c = kCards; c < kFails; ++c) item->setTextAlignment(c, Qt::AlignRight | Qt::AlignVCenter);
+        if (const QString fails = failedMeasures(level); !fails.isEmpty()) {
+            item->setText(kFails, fails);
+            item->setToolTip(kFails, QString::fromStdString(failureWords(level)));
+        }
         if (firstCards < 0 && level.cards() > 0) firstCards = table_->topLevelItemCount() - 1;
     }
+    colourTable();
     const int rows = table_->topLevelItemCount();
     table_->setFixedHeight(table_->header()->sizeHint().height() + rows * table_->sizeHintForRow(0) + 22);
     table_->setCurrentItem(
         table_->topLevelItem(before >= 0 && before < rows ? before : std::max(0, firstCards)));
+}
+
+void LevelsPanel::colourTable() {
+    const QColor red = themeColours(preferences_.theme()).bad;
+    for (int row = 0; row < table_->topLevelItemCount(); ++row) {
+        QTreeWidgetItem* const item = table_->topLevelItem(row);
+        if (item->text(kFails).isEmpty()) continue;
+        for (int c = kName; c < kColumns; ++c) item->setForeground(c, red);
+    }
 }
 
 void LevelsPanel::showPlot() {

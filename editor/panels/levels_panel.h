@@ -41,6 +41,7 @@ class LevelsPanel : public QWidget {
     QString sentence() const;
     MadeLevel* chosen();
     void fillTable();
+    void colourTable();
     void showPlot();
     void showChosen();
     void showTexture();
@@ -48,6 +49,7 @@ class LevelsPanel : public QWidget {
     void refresh();
 
     QtDocument& document_;
+    Preferences& preferences_;
     Tasks& tasks_;
     Messages& messages_;
     Viewport& viewport_;

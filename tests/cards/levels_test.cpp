@@ -128,6 +128,45 @@ TEST(Levels, OfABallComeNearTheStrands) {
     EXPECT_LE(chain->levels[4].triangles, 440u);
 }
 
+TEST(Levels, AreMeasuredFromTwiceAsManyDirections) {
+    Hair hair = ballHair(3000);
+    // A head below all of it.
+    constexpr std::uint32_t kAround = 32;
+    for (std::uint32_t row = 0; row <= kAround / 2; ++row)
+        for (std::uint32_t i = 0; i < kAround; ++i) {
+            const float up = kPi * static_cast<float>(row) / (kAround / 2),
+                        turn = 2 * kPi * static_cast<float>(i) / kAround;
+            hair.headPositions_ws.push_back(
+                0.099f * Vec3f(std::sin(up) * std::cos(turn), std::cos(up), std::sin(up) * std::sin(turn)));
+            if (row == 0) continue;
+            const std::uint32_t last = (row - 1) * kAround, next = row * kAround, j = (i + 1) % kAround;
+            for (const std::uint32_t k : {last + i, next + j, next + i, last + i, last + j, next + j})
+                hair.headIndices.push_back(k);
+        }
+    const auto specs = parseLevels("strands:1@128,strands:0.5@128,cards:3@128");
+    ChainOptions options;
+    options.directions = 3;
+    options.mostSide = 256;
+    const auto plain = makeChain(hair, *specs, options, noProgress, nullptr);
+    ASSERT_TRUE(plain) << plain.error().message();
+    for (const Level& level : plain->levels) EXPECT_FALSE(level.measures);
+    options.measure = true;
+    const auto chain = makeChain(hair, *specs, options, noProgress, nullptr);
+    ASSERT_TRUE(chain) << chain.error().message();
+    for (const Level& level : chain->levels) {
+        ASSERT_TRUE(level.measures) << level.name;
+        EXPECT_TRUE(level.measures->largestPatchCm2 && level.measures->hairlineMm && level.measures->rim)
+            << level.name;
+    }
+    EXPECT_EQ(chain->levels[0].measures->hairlineMm, 0);
+    EXPECT_EQ(chain->levels[0].measures->scaliness, 1);
+    EXPECT_THAT(chain->levels[0].fails(), testing::IsEmpty());
+    EXPECT_LT(*chain->levels[1].measures->hairlineMm, *chain->levels[2].measures->hairlineMm);
+    EXPECT_THAT(chain->levels[2].fails(), testing::Contains("largest_patch_cm2")) << "three cards";
+    EXPECT_EQ(chain->levels[2].difference.flip, plain->levels[2].difference.flip)
+        << "measuring changes nothing";
+}
+
 TEST(Levels, StepsOfLightAreThoseOnTheWay) {
     std::vector<Level> levels(3);
     levels[0].lights = {{512, 1.0}, {256, 1.0}};

@@ -130,6 +130,35 @@ TEST(Springs, TouchNothingAtRest) {
     EXPECT_EQ((*found)[1].hitRadius, Spring().hitRadius);
 }
 
+TEST(Springs, TurnJointsAsTheirBonesTurn) {
+    const Rig rig = hangingRig();
+    const auto heads = shaken(40);
+    std::vector<std::vector<Vec3f>> still, swung;
+    for (std::size_t c = 0; c < 2; ++c) {
+        swung.push_back(swing(rig, c, {}, heads, {}).back());
+        still.emplace_back();
+        for (std::uint32_t j = 0; j < 5; ++j)
+            still.back().push_back(heads[7] * rig.joints[1 + c * rig.perChain + j].position_ws);
+    }
+    // Chains that go with the head are moved as it is.
+    const Vec3f point(0.1f, 1.62f, 0.03f);
+    for (const Eigen::Affine3f& motion : jointMotions(rig, heads[7], still))
+        EXPECT_LT((motion * point - heads[7] * point).norm(), 1e-5f);
+    // Others take each joint to where it is, and the next along its bone.
+    const auto motions = jointMotions(rig, heads.back(), swung);
+    ASSERT_EQ(motions.size(), rig.joints.size());
+    for (std::size_t c = 0; c < 2; ++c)
+        for (std::uint32_t j = 0; j < 5; ++j) {
+            const std::size_t of = 1 + c * rig.perChain + j;
+            EXPECT_LT((motions[of] * rig.joints[of].position_ws - swung[c][j]).norm(), 1e-5f);
+            EXPECT_LT((motions[of].linear() * motions[of].linear().transpose() - Eigen::Matrix3f::Identity())
+                          .norm(),
+                      1e-4f);
+            if (j + 1 == 5) continue;
+            EXPECT_LT((motions[of] * rig.joints[of + 1].position_ws - swung[c][j + 1]).norm(), 1e-4f);
+        }
+}
+
 TEST(Springs, StopWhenTheyAreCancelled) {
     const std::atomic<bool> cancel = true;
     const Rig rig = hangingRig();

@@ -33,8 +33,16 @@ TEST_F(LodJob, MakesAndMeasuresAChainThatIsTheSameForAnyThreads) {
     const auto report = runJson(arguments + "one --threads 1");
     ASSERT_EQ(report["levels"].size(), 3u);
     for (const auto& level : report["levels"]) {
-        for (const char* key : {"name", "kind", "hairs", "cards", "triangles", "bytes", "distance_m",
-                                "coverage", "flip", "light", "silhouette_px", "ms_draw", "ms_move"})
+        for (const char* key : {"name",          "kind",
+                                "hairs",         "cards",
+                                "triangles",     "bytes",
+                                "distance_m",    "coverage",
+                                "flip",          "light",
+                                "silhouette_px", "ms_draw",
+                                "ms_move",       "largest_patch_cm2",
+                                "hairline_mm",   "rim",
+                                "scaliness",     "motion_px",
+                                "holes",         "fails"})
             EXPECT_TRUE(level.contains(key)) << key;
         EXPECT_GT(level["triangles"], 0);
         EXPECT_NEAR(level["coverage"].get<double>(), 1, 0.05) << "thin hair as well";

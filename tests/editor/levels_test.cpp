@@ -12,6 +12,7 @@
 #include "core/editing/selection_commands.h"
 #include "core/operations/script.h"
 #include "editor/panels/levels_panel.h"
+#include "editor/style/theme.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -100,6 +101,18 @@ TEST_F(LevelsTest, AChainIsMadeLookedAtMadeAnewAndExported) {
     EXPECT_EQ(cell(2, 0), "cards-24");
     EXPECT_EQ(cell(2, 4), "5.80") << "from where the budget says";
     EXPECT_GT(cell(2, 7).toDouble(), 0);
+    // Levels that fail a measure are red and say which.
+    const QColor red = themeColours(parts().preferences.theme()).bad;
+    EXPECT_EQ(cell(0, 9), "") << "strands beside themselves";
+    int failed = 0;
+    for (int row = 0; row < table().topLevelItemCount(); ++row) {
+        const QTreeWidgetItem& item = *table().topLevelItem(row);
+        const bool fails = !item.text(9).isEmpty();
+        failed += fails ? 1 : 0;
+        EXPECT_EQ(item.foreground(0).color() == red, fails) << row;
+        EXPECT_EQ(item.toolTip(9).contains(item.text(9).section(',', 0, 0)), true) << row;
+    }
+    EXPECT_GT(failed, 0) << "24 cards of 300 strands";
     // The nearest cards are shown first; their textures and the sides they are seen from can be leafed
     // through.
     EXPECT_EQ(table().indexOfTopLevelItem(table().currentItem()), 2);
