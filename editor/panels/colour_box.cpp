@@ -6,6 +6,7 @@
 #include <QFileInfo>
 #include <QFormLayout>
 #include <QLabel>
+#include <QStyle>
 
 namespace hairloom::editor {
 namespace {
@@ -140,6 +141,8 @@ class ColourBox : public QWidget {
                             .arg(displayError_);
             }
         }
+        state_->setProperty("role", problem_.isEmpty() ? "dim" : "problem");
+        state_->style()->polish(state_);
         state_->setText(text);
         state_->setVisible(!text.isEmpty());
     }

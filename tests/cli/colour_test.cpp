@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <fstream>
 
 #include "core/colour/colour_choice.h"
 #include "core/render/exr.h"
@@ -14,6 +15,7 @@ namespace hairloom::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::string studio() {
     return (sourceDir() / "tests/colour/studio/config.ocio").string();
@@ -101,6 +103,28 @@ TEST_F(ColourOfImages, WhatIsNotThereIsNamedWithWhatIs) {
     }
     EXPECT_THAT(run("render hair.hairloom -o no.png --view-transform Film").errors,
                 HasSubstr("without a config"));
+}
+
+TEST_F(ColourOfImages, APageHasTheViewAndOtherFormatsHaveNone) {
+    // The player itself is of ./dev web.
+    std::filesystem::create_directory(folder / "player");
+    for (const char* name : {"index.html", "player.js"}) std::ofstream(folder / "player" / name) << name;
+    setenv("HAIRLOOM_WEB", (folder / "player").c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
+    const std::string page = "export hair.hairloom --format web -o ",
+                      config = " --color-config '" + studio() + "'";
+    const auto plain = runJson(page + "plain"), film = runJson(page + "film" + config);
+    const auto lost = run(page + "lost --view-transform Lost" + config);
+    unsetenv("HAIRLOOM_WEB");  // NOLINT(concurrency-mt-unsafe)
+    EXPECT_FALSE(plain.contains("color"));
+    EXPECT_EQ(film["color"]["view"], "Film");
+    EXPECT_THAT(file("plain/hair.js"), Not(HasSubstr("\"view\"")));
+    EXPECT_THAT(file("film/hair.js"), HasSubstr("\"view\""));
+    EXPECT_EQ(lost.exitCode, 1);
+    EXPECT_THAT(lost.errors, HasSubstr("lost.cube"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "lost"));
+    const auto strands = run("export hair.hairloom --format tfx -o hair.tfx" + config);
+    EXPECT_EQ(strands.exitCode, 2);
+    EXPECT_THAT(strands.errors, HasSubstr("--format web"));
 }
 
 }  // namespace
