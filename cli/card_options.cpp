@@ -36,6 +36,10 @@ std::vector<const CLI::Option*> addCardOptions(CLI::App& job, LevelBudget& budge
         "Levels as KIND[:AMOUNT][@PX],… with strands (share of the hairs), cards (count) and "
         "shell (triangles). PX is the head height in pixels at which a level starts. The default "
         "is all strands, 2 in 5, cards, a half and a quarter of them, and a shell"));
+    added.push_back(job.add_option("--spring-hz", budget.chain.springHz,
+                                   "Updates per second of the engine that springs are fitted for. They "
+                                   "swing differently at any other rate")
+                        ->check(CLI::Range(10, 1000)));
     return added;
 }
 

@@ -10,7 +10,7 @@
 
 namespace hairloom::cli {
 
-/// --cards, --textures, --segments, --from-px, --atlas, --target-px, --levels; these in order.
+/// --cards, --textures, --segments, --from-px, --atlas, --target-px, --levels, --spring-hz; these in order.
 std::vector<const CLI::Option*> addCardOptions(CLI::App& job, LevelBudget& budget);
 /// Throws WrongUsage where --levels names none.
 void checkLevels(const LevelBudget& budget);

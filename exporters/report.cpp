@@ -38,6 +38,12 @@ nlohmann::json toJson(const ExportReport& report) {
                                   {"flip", level.flip},
                                   {"light", level.light}});
     }
+    if (report.springHz > 0) {
+        json["springs"] = {{"hz", report.springHz}, {"rates", nlohmann::json::array()}};
+        for (const WrittenSpringRate& rate : report.springRates)
+            json["springs"]["rates"].push_back(
+                {{"hz", rate.hz}, {"error_mm", rate.errorMm}, {"largest_mm", rate.largestMm}});
+    }
     if (report.safeLimits) {
         for (const auto& field : fieldsOf(*report.safeLimits))
             json["certificate"][std::string(field.name)] = field.get(*report.safeLimits, 0);

@@ -37,6 +37,12 @@ struct WrittenLevel {
     double light = 1;         ///< times that of the strands
 };
 
+/// How far springs keep joints from the strands in an engine of that many updates a second, millimetres.
+struct WrittenSpringRate {
+    float hz = 0;
+    double errorMm = 0, largestMm = 0;
+};
+
 struct ExportReport {
     std::string format;       ///< name of the format, as importStrands tells it
     std::size_t strands = 0;  ///< in the file
@@ -50,7 +56,9 @@ struct ExportReport {
     std::vector<ComparedAttribute> attributes;
     std::vector<LeftBehind> leftBehind;
     std::vector<Finding> findings;
-    std::vector<WrittenLevel> levels;      ///< of files of cards, the nearest first
+    std::vector<WrittenLevel> levels;  ///< of files of cards, the nearest first
+    float springHz = 0;                ///< that their springs are fitted for; 0: there are none
+    std::vector<WrittenSpringRate> springRates;
     std::optional<SafeLimits> safeLimits;  ///< where the hairstyle was certified
     std::vector<std::string> companions;   ///< names of files that were written beside it
 };
@@ -59,7 +67,7 @@ struct ExportReport {
 /// max_error_mm (null where nothing was measured), attributes (name, max_error), left_behind (what, fix),
 /// findings (severity, what, where, fix); certificate (the fields of SafeLimits, where it was made);
 /// companions (names, where there are some); of cards levels (name, cards, triangles, bytes, distance_m,
-/// coverage, flip, light).
+/// coverage, flip, light) and springs (hz, rates: hz, error_mm, largest_mm; where the file has fitted ones).
 nlohmann::json toJson(const ExportReport& report);
 
 }  // namespace hairloom

@@ -471,6 +471,8 @@ Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collide
         w.json["nodes"][nearest]["extras"]["MSFT_screencoverage"] = std::move(shares);
     }
     if (!character.humanoid.empty()) addAvatar(w, character);
+    // Springs swing as they were fitted at this rate alone.
+    if (chain.springFit) w.json["extras"]["spring_hz"] = chain.springFit->hz;
     if (rig.chains() > 0) addSprings(w, rig, chain.springs, colliders, character);
     return w.file();
 }

@@ -42,7 +42,7 @@ struct Stage {
 };
 
 /// Samples along the height of a head where strands are measured and not compared pixel by pixel.
-inline constexpr std::uint32_t kSamplesBetween = 1024;
+inline constexpr std::uint32_t kSamplesBetween = 768;
 
 struct Shooting {
     std::vector<Shot> shots;

@@ -73,14 +73,16 @@ Result<Shares> measured(const Work& work, const Level& level, Shown shown = Show
     return sharesOf(chosen(work.strands.at(level.spec.headPx), which), shooting.shots);
 }
 
-/// A level's light at a height of the head, times that of all strands, from all directions.
-Result<double> lightAt(const Work& work, const Level& level, std::uint32_t px) {
+/// A level's light at a height of the head, times that of all strands, from some directions.
+Result<double> lightAt(const Work& work, const Level& level, std::uint32_t px,
+                       const std::vector<std::size_t>& which) {
     work.tick();
-    const Shooting shooting = shoot(work, level, work.allViews(), px);
+    const Shooting shooting = shoot(work, level, which, px);
     if (cancelled(work.cancel)) return stopped();
     const auto area = [](std::uint32_t pixels) { return static_cast<double>(pixels) * pixels; };
     // Pictures of strands are means of one plate: their light is that of any height.
-    const double wanted = hairLuminance(work.strands.at(level.spec.headPx)) / area(level.spec.headPx);
+    const double wanted =
+        hairLuminance(chosen(work.strands.at(level.spec.headPx), which)) / area(level.spec.headPx);
     return wanted > 0 ? hairLuminance(shooting.shots) / area(px) / wanted : 1;
 }
 
@@ -137,7 +139,9 @@ Status calibrate(const Work& work, Level& level) {
     }
     // What was baked last has a light of its own. The middle of those where it takes over and where the next
     // one does, so that neither step is large.
-    const auto near = lightAt(work, level, level.spec.headPx), far = lightAt(work, level, level.untilPx);
+    const auto which = work.viewsFor(level.spec);
+    const auto near = lightAt(work, level, level.spec.headPx, which),
+               far = lightAt(work, level, level.untilPx, which);
     if (!near || !far) return tl::unexpected((near ? far : near).error());
     const double light = std::sqrt(std::max(*near * *far, 0.0625));
     made.brightness = std::clamp(made.brightness / static_cast<float>(light), 0.25f, 4.0f);
@@ -265,7 +269,8 @@ Status walk(const Work& work, Level& level) {
         if (px > level.spec.headPx || px < level.untilPx) continue;
         // Hairs are drawn on one plate for all heights.
         const bool isKnown = px == level.spec.headPx || level.spec.kind == LevelKind::strands;
-        const Result<double> light = isKnown ? level.difference.light : lightAt(work, level, px);
+        const Result<double> light =
+            isKnown ? level.difference.light : lightAt(work, level, px, work.allViews());
         if (!light) return tl::unexpected(light.error());
         level.lights.push_back({px, *light});
     }
@@ -277,16 +282,19 @@ Status measure(const Work& work, Level& level) {
     work.tick();
     const double pixelMm = pixelMillimetres(level.measuredPx());
     const std::uint32_t finer = level.spec.headPx / level.measuredPx();
+    // Textures have mip maps by pixels, hairs have none.
+    const std::uint32_t px = level.spec.kind == LevelKind::strands ? level.measuredPx() : level.spec.headPx;
     const std::size_t own = work.views.size(), between = work.viewsBetween.size();
-    Shooting aside = shoot(work.stage, level.content, work.viewsBetween, level.spec.headPx, kSamplesBetween);
+    Shooting aside = shoot(work.stage, level.content, work.viewsBetween, px, kSamplesBetween);
     if (cancelled(work.cancel)) return stopped();
     std::vector<ViewMeasures> views(own + between);
     parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            const Shot& shot = v < own ? level.shots[v] : aside.shots[v - own];
+            const Print shown = v < own ? coarser(printOf(level.shots[v]), finer)
+                                        : coarser(printOf(aside.shots[v - own]), px / level.measuredPx());
             const Print strands = v < own ? coarser(printOf(level.strands[v]), finer)
                                           : work.between.at(level.measuredPx())[v - own];
-            views[v] = measureView(strands, coarser(printOf(shot), finer), pixelMm);
+            views[v] = measureView(strands, shown, pixelMm);
         }
     });
     level.measures = combined(views);

@@ -38,6 +38,7 @@ struct ChainOptions {
     std::uint32_t mostSide = 2048;  ///< texels along an atlas
     std::uint32_t directions = 12;  ///< that levels are judged from
     float targetPx = 0;             ///< pixels that outlines of cards may be off; 0: what the budget gives
+    float springHz = kSpringHz;     ///< updates a second of the engine that springs are fitted for
     double strandsMoveMs = 0;       ///< what moving all hairs takes, as the caller measured it
     bool walk = false;              ///< Level::lights are measured, too
     bool measure = false;           ///< Level::measures, from as many directions again between those

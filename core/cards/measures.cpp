@@ -13,8 +13,8 @@
 namespace hairloom::cards {
 namespace {
 
-/// Where strands cover skin and a level does not.
-constexpr float kCovers = 0.2f, kBare = 0.5f;  // shares of skin
+/// Where one of strands and level covers skin and the other does not.
+constexpr float kCovers = 0.2f, kBare = 0.6f;  // shares of skin
 constexpr float kHalf = 0.5f;
 constexpr double kLine = 0.2;     // of skin that hair covers at the hairline: sparse hair is most alike there
 constexpr double kSmoothMm = 4;   // of the hairline: single hairs make none
@@ -295,7 +295,7 @@ void addHoles(const Print& strands, const Print& level, double pixelMm, ViewMeas
 
 /// The limits of docs/levels.md stand here and nowhere else.
 constexpr std::array<Measure, 6> kMeasures{{
-    {"largest_patch_cm2", "bare patch", "cm²", &Measures::largestPatchCm2, 0, 0.1, 1,
+    {"largest_patch_cm2", "patch", "cm²", &Measures::largestPatchCm2, 0, 0.1, 1,
      [](double pixelMm) { return 4 * pixelMm * pixelMm / 100; }},
     {"hairline_mm", "hairline", "mm", &Measures::hairlineMm, 0, 1.5, 1,
      [](double pixelMm) { return pixelMm; }},
@@ -339,12 +339,15 @@ Print coarser(const Print& print, std::uint32_t by) {
 ViewMeasures measureView(const Print& strands, const Print& level, double pixelMm) {
     const Size size = sizeOf(strands);
     ViewMeasures view;
-    Mask bare(size.pixels());
+    Mask bare(size.pixels()), flap(size.pixels());
     for (std::size_t i = 0; i < bare.size(); ++i) {
         view.hasSkin = view.hasSkin || strands.skin[i] > 0 || level.skin[i] > 0;
         bare[i] = strands.skin[i] < kCovers && level.skin[i] >= kBare ? 1 : 0;
+        flap[i] = level.skin[i] < kCovers && level.hair[i] >= kBare && strands.skin[i] >= kBare ? 1 : 0;
     }
-    view.patchMm2 = static_cast<double>(largestPiece(std::move(bare), size)) * pixelMm * pixelMm;
+    const std::size_t largest =
+        std::max(largestPiece(std::move(bare), size), largestPiece(std::move(flap), size));
+    view.patchMm2 = static_cast<double>(largest) * pixelMm * pixelMm;
     const std::vector<Kind> ownKinds = kindsOf(strands, pixelMm), otherKinds = kindsOf(level, pixelMm);
     const Mask own = hairline(ownKinds, size), other = hairline(otherKinds, size);
     const std::vector<double> toOwn = squaresTo(own, size), toOther = squaresTo(other, size);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What a mean over all pixels does not see of a level: skin that its hair leaves bare, hairlines that moved
-// or are dark, scales, holes, and motion. Each has a limit, and a level that is beyond one fails.
+// What a mean over all pixels does not see of a level: skin that its hair leaves bare or hides, hairlines
+// that moved or are dark, scales, holes, and motion. Each has a limit, and a level that is beyond one fails.
 
 #include <optional>
 #include <span>
@@ -27,7 +27,8 @@ Print coarser(const Print& print, std::uint32_t by);
 /// Of a level beside all strands, over all directions. Nothing where there is nothing to measure: no head, no
 /// hairline, no piece of hair as large as it takes.
 struct Measures {
-    /// The largest connected piece of skin that strands cover and the level leaves bare, of one direction.
+    /// The largest connected piece of skin that strands cover and the level leaves bare, or that it covers
+    /// and strands leave bare, as a flap before the forehead does; of one direction.
     std::optional<double> largestPatchCm2;
     /// Distance between the lines where hair gets to cover a fifth of the skin, root mean square of both
     /// ways. What is farther than 5 mm counts as that.
@@ -47,7 +48,7 @@ struct Measures {
 /// A measure as tables name it, and what a level may have of it.
 struct Measure {
     std::string_view name;   ///< as JSON has it: "largest_patch_cm2"
-    std::string_view label;  ///< "bare patch"
+    std::string_view label;  ///< "patch"
     std::string_view unit;   ///< "cm²"; empty: a factor
     std::optional<double> Measures::*value;
     double least = 0, most = 0;  ///< of a level that does not fail
@@ -64,7 +65,7 @@ std::span<const Measure> allMeasures();
 
 /// Names of the measures that fail.
 std::vector<std::string> failsOf(const Measures& measures, double pixelMm);
-/// "bare patch 3.65 cm² (at most 0.1), rim 0.62 (0.8 to 1.2)": those that fail; empty where none does.
+/// "patch 3.65 cm² (at most 0.1), rim 0.62 (0.8 to 1.2)": those that fail; empty where none does.
 std::string failureWords(const Measures& measures, double pixelMm);
 
 /// What a direction adds to the measures.

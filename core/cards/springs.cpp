@@ -11,16 +11,15 @@
 namespace hairloom::cards {
 namespace {
 
-constexpr float kStep = 1.0f / 60;  // seconds
-/// How much joints at rest count, each as if it were off in so many frames.
-constexpr double kRestFrames = 1000;
+/// How much joints at rest count, each as if it were off for so long.
+constexpr double kRestSeconds = 1000.0 / 60;
 
 /// The bones of a chain, from joint to joint, as VRMC_springBone 1.0 moves them.
 class SwingingChain {
   public:
     SwingingChain(const Rig& rig, std::size_t chain, const Spring& spring,
-                  std::span<const Collider> colliders)
-        : spring_(spring), colliders_(colliders) {
+                  std::span<const Collider> colliders, float hz)
+        : step_(1 / hz), spring_(spring), colliders_(colliders) {
         for (std::uint32_t j = 0; j < rig.perChain; ++j)
             rest_.push_back(rig.joints[1 + chain * rig.perChain + j].position_ws);
         tails_.assign(rest_.begin() + 1, rest_.end());
@@ -36,7 +35,7 @@ class SwingingChain {
             if (!(length > 0)) continue;
             const Vec3f axis = parent * (bone / length);
             Vec3f next = tails_[j] + (1 - spring_.drag) * (tails_[j] - before_[j]);
-            next += kStep * spring_.stiffnessAt(j, joints) * axis - kStep * spring_.gravity * Vec3f::UnitY();
+            next += step_ * spring_.stiffnessAt(j, joints) * axis - step_ * spring_.gravity * Vec3f::UnitY();
             next = at + length * directionTo(next, at, axis);
             for (const Collider& collider : colliders_) {
                 const Vec3f centre = head_ws * collider.centre_ws;
@@ -65,6 +64,7 @@ class SwingingChain {
         const float length = way.norm();
         return length > 0 ? Vec3f(way / length) : otherwise;
     }
+    float step_;  ///< seconds
     Spring spring_;
     std::span<const Collider> colliders_;
     std::vector<Vec3f> rest_, tails_, before_;
@@ -113,7 +113,7 @@ std::vector<Collider> held(const Rig& rig, std::size_t chain, std::span<const Co
 /// Sum of squares, m².
 double squaresOff(const Rig& rig, std::size_t chain, const Spring& spring, const ChainMotion& wanted,
                   std::span<const Collider> colliders) {
-    SwingingChain swinging(rig, chain, spring, colliders);
+    SwingingChain swinging(rig, chain, spring, colliders, wanted.hz);
     double sum = 0;
     for (std::size_t f = 1; f < wanted.heads_ws.size(); ++f) {
         swinging.step(wanted.heads_ws[f]);
@@ -126,7 +126,8 @@ double squaresOff(const Rig& rig, std::size_t chain, const Spring& spring, const
     const std::vector<Vec3f> resting = settled(rig, chain, spring);
     for (std::size_t j = 0; j < resting.size(); ++j) {
         const Vec3f& at = rig.joints[2 + chain * rig.perChain + j].position_ws;
-        sum += kRestFrames * static_cast<double>((resting[j] - at).squaredNorm());
+        sum += kRestSeconds * static_cast<double>(wanted.hz) *
+               static_cast<double>((resting[j] - at).squaredNorm());
     }
     return sum;
 }
@@ -217,10 +218,36 @@ float settling(const Rig& rig, std::size_t chain, const Spring& spring) {
     return farthest;
 }
 
+ChainMotion atRate(const ChainMotion& motion, float hz, std::span<const Eigen::Isometry3f> heads_ws) {
+    ChainMotion result{hz, {heads_ws.begin(), heads_ws.end()}, {}};
+    const std::size_t last = motion.heads_ws.size() - 1;
+    std::vector<Eigen::Isometry3f> toHeads;
+    for (const Eigen::Isometry3f& head : motion.heads_ws) toHeads.push_back(head.inverse());
+    for (std::size_t f = 0; f < heads_ws.size(); ++f) {
+        const double at = static_cast<double>(f) * static_cast<double>(motion.hz) / static_cast<double>(hz);
+        const std::size_t k = std::min(static_cast<std::size_t>(at + 1e-6), last);
+        const auto t = static_cast<float>(std::clamp(at - static_cast<double>(k), 0.0, 1.0));
+        const std::array<std::size_t, 4> frames{k > 0 ? k - 1 : 0, k, std::min(k + 1, last),
+                                                std::min(k + 2, last)};
+        const float u = t * t, v = u * t;
+        const std::array<float, 4> weights{0.5f * (2 * u - t - v), 0.5f * (2 - 5 * u + 3 * v),
+                                           0.5f * (t + 4 * u - 3 * v), 0.5f * (v - u)};
+        std::vector<Vec3f> joints;
+        for (std::size_t j = 0; j < motion.joints_ws[k].size(); ++j) {
+            Vec3f seen = Vec3f::Zero();
+            for (std::size_t i = 0; i < 4; ++i)
+                seen += weights[i] * (toHeads[frames[i]] * motion.joints_ws[frames[i]][j]);
+            joints.push_back(heads_ws[f] * seen);
+        }
+        result.joints_ws.push_back(std::move(joints));
+    }
+    return result;
+}
+
 std::vector<std::vector<Vec3f>> swing(const Rig& rig, std::size_t chain, const Spring& spring,
                                       std::span<const Eigen::Isometry3f> heads_ws,
-                                      std::span<const Collider> colliders) {
-    SwingingChain swinging(rig, chain, spring, colliders);
+                                      std::span<const Collider> colliders, float hz) {
+    SwingingChain swinging(rig, chain, spring, colliders, hz);
     std::vector<std::vector<Vec3f>> frames;
     for (std::size_t f = 0; f < heads_ws.size(); ++f) {
         if (f > 0) swinging.step(heads_ws[f]);
@@ -254,7 +281,8 @@ SpringError springError(const Rig& rig, std::span<const Spring> springs, const C
     SpringError error;
     std::size_t count = 0;
     for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
-        const auto frames = swing(rig, chain, springs[chain], wanted.heads_ws, held(rig, chain, colliders));
+        const auto frames =
+            swing(rig, chain, springs[chain], wanted.heads_ws, held(rig, chain, colliders), wanted.hz);
         for (std::size_t f = 1; f < frames.size(); ++f) {
             for (std::size_t j = 1; j < frames[f].size(); ++j) {
                 const Vec3f& at = wanted.joints_ws[f][chain * rig.perChain + j];

@@ -3,6 +3,7 @@
 // How chains of joints swing in engines (VRMC_springBone 1.0), and springs that swing as the hair does.
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -41,17 +42,28 @@ std::vector<std::uint32_t> collidersOfChain(const Rig& rig, std::size_t chain,
 /// farthest.
 float settling(const Rig& rig, std::size_t chain, const Spring& spring);
 
-/// How chains are wanted to move, frame by frame, 60 a second, the first at rest.
+/// Updates a second that springs are fitted for unless another rate is asked for. They swing differently at
+/// any other: VRMC_springBone keeps (1 - drag) of a joint's way an update, however long that is.
+inline constexpr float kSpringHz = 60;
+/// Rates that engines run at, which reports tell of.
+inline constexpr std::array<float, 4> kEngineHz{30, 60, 120, 144};
+
+/// How chains are wanted to move, frame by frame, the first at rest.
 struct ChainMotion {
+    float hz = kSpringHz;                       ///< frames a second
     std::vector<Eigen::Isometry3f> heads_ws;    ///< from rest
     std::vector<std::vector<Vec3f>> joints_ws;  ///< by frames, of all chains, as in the rig but for its first
 };
 
+/// The same motion at another rate, with where its head is at each frame of that: joints lie between theirs
+/// on curves through them (Catmull and Rom 1974), as seen from the head.
+ChainMotion atRate(const ChainMotion& motion, float hz, std::span<const Eigen::Isometry3f> heads_ws);
+
 /// Where the joints of a chain are at each frame of such a motion of the head, with which its first joint
-/// goes.
+/// goes. Springs are updated once a frame.
 std::vector<std::vector<Vec3f>> swing(const Rig& rig, std::size_t chain, const Spring& spring,
                                       std::span<const Eigen::Isometry3f> heads_ws,
-                                      std::span<const Collider> colliders);
+                                      std::span<const Collider> colliders, float hz = kSpringHz);
 
 /// Motions of the rig's joints since rest, for skin(). `joints_ws` by chains, as swing() has them of a frame:
 /// each bone turns the shortest way, as VRMC_springBone turns it, and the last joint with the bone before it.
@@ -66,12 +78,20 @@ struct SpringError {
 SpringError springError(const Rig& rig, std::span<const Spring> springs, const ChainMotion& wanted,
                         std::span<const Collider> colliders);
 
+/// What springs do in an engine that updates them at that rate.
+struct SpringRate {
+    float hz = 0;
+    SpringError error;
+};
+
 /// How springs come to be what they are.
 struct SpringFit {
     std::string motion;  ///< of the head
     double seconds = 0;
-    SpringError before, after;  ///< as they were set, and fitted
-    double settlingMm = 0;      ///< settling() of the chain with the largest, fitted
+    float hz = kSpringHz;           ///< that they are fitted for
+    std::vector<SpringRate> rates;  ///< kEngineHz, and what they are fitted for where that is another
+    SpringError before, after;      ///< as they were set, and fitted
+    double settlingMm = 0;          ///< settling() of the chain with the largest, fitted
 };
 
 /// By chains, the springs that keep the joints nearest to where they are wanted, by the mean of squares, and

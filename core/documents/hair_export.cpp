@@ -180,8 +180,10 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
     report.format = writer.name;
     report.bytes = std::filesystem::file_size(whereWritten(path));
     report.companions = std::move(written->companions);
-    if (!written->holdsSprings)
+    if (!written->holdsSprings) {
         std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
+        report.springHz = 0;
+    }
     std::ranges::move(written->leftBehind, std::back_inserter(report.leftBehind));
     std::ranges::move(written->findings, std::back_inserter(report.findings));
     return report;

@@ -14,6 +14,16 @@
 namespace hairloom {
 namespace {
 
+/// "At 30 Hz: 11.5 and 71.9 mm, at 120 Hz …"
+std::string otherRates(const cards::SpringFit& fit) {
+    std::string words;
+    for (const cards::SpringRate& rate : fit.rates)
+        if (rate.hz != fit.hz)
+            words += fmt::format("{} {:g} Hz: {:.1f} and {:.1f} mm", words.empty() ? "At" : ", at", rate.hz,
+                                 rate.error.meanMm, rate.error.largestMm);
+    return words;
+}
+
 void addFindings(const cards::Chain& chain, const Groom& groom, ExportReport& report) {
     const IdleCardEdits idle = idleCardEdits(chain, groom);
     if (idle.lost > 0) {
@@ -31,11 +41,11 @@ void addFindings(const cards::Chain& chain, const Groom& groom, ExportReport& re
         report.findings.push_back(
             {Severity::Info,
              fmt::format(
-                 "while the head nods, springs keep joints {:.1f} mm from the strands, {:.1f} mm at most. "
-                 "Under a still head they settle {:.2g} mm at most",
-                 chain.springFit->after.meanMm, chain.springFit->after.largestMm,
-                 chain.springFit->settlingMm),
-             kSpringsPlace, ""});
+                 "while the head nods, springs keep joints {:.1f} mm from the strands, {:.1f} mm at most, in "
+                 "an engine of {:g} updates per second. {}. Under a still head they settle {:.2g} mm at most",
+                 chain.springFit->after.meanMm, chain.springFit->after.largestMm, chain.springFit->hz,
+                 otherRates(*chain.springFit), chain.springFit->settlingMm),
+             kSpringsPlace, "choose the engine's rate (--spring-hz)"});
     } else if (chain.rig.chains() > 0) {
         report.findings.push_back(
             {Severity::Warning, "springs were not fitted: the strands of this groom cannot be simulated",
@@ -74,7 +84,7 @@ Result<cards::Chain> makeLevels(const Groom& groom, const LevelBudget& budget, L
     if (!chain) return chain;
     // Where strands cannot be simulated, springs stay as they are set, and a finding says so.
     // Nor is there a motion to measure then.
-    if (fitSpringsOf(groom, *chain, cancel)) (void)measureMotion(groom, *chain, cancel);
+    if (fitSpringsOf(groom, *chain, options.springHz, cancel)) (void)measureMotion(groom, *chain, cancel);
     if (cards::cancelled(cancel)) return cards::stopped();
     return chain;
 }
@@ -106,6 +116,11 @@ ExportReport levelReport(const cards::Chain& chain, const Groom& groom) {
         const cards::Difference& off = level.difference;
         report.levels.push_back({level.name, level.cards(), level.triangles, level.bytes,
                                  cards::distanceOf(level.spec.headPx), off.coverage, off.flip, off.light});
+    }
+    if (chain.springFit) {
+        report.springHz = chain.springFit->hz;
+        for (const cards::SpringRate& rate : chain.springFit->rates)
+            report.springRates.push_back({rate.hz, rate.error.meanMm, rate.error.largestMm});
     }
     addFindings(chain, groom, report);
     return report;

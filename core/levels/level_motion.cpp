@@ -13,19 +13,20 @@ namespace hairloom {
 namespace {
 
 constexpr const char* kMotion = "nod";
-constexpr int kFrames = 120, kEvery = 4;  // frames, and those that are looked at
+constexpr int kFrames = 120, kEvery = 5;  // frames, and those that are looked at
 constexpr float kFrameSeconds = 1.0f / 60;
 constexpr std::size_t kMostStrands = 400;
 
 /// Points of some strands, at rest and frame by frame.
 struct Moved {
-    std::vector<Eigen::Isometry3f> heads_ws;  ///< of all frames, from rest
-    std::vector<Vec3f> rest_ws;               ///< kStations a strand
-    std::vector<int> frames;                  ///< that are looked at
+    std::vector<Eigen::Isometry3f> heads_ws;           ///< of all frames, from rest
+    std::vector<Eigen::Isometry3f> headsOfSprings_ws;  ///< likewise, at the rate of the springs
+    std::vector<Vec3f> rest_ws;                        ///< kStations a strand
+    std::vector<int> frames;                           ///< that are looked at
     std::vector<std::vector<Vec3f>> points_ws;
 };
 
-Result<Moved> nodOf(const Groom& groom, cards::Cancel cancel) {
+Result<Moved> nodOf(const Groom& groom, float springHz, cards::Cancel cancel) {
     std::vector<std::uint32_t> strands;
     const std::size_t step =
         std::max<std::size_t>(1, (groom.strandCount() + kMostStrands - 1) / kMostStrands);
@@ -61,7 +62,24 @@ Result<Moved> nodOf(const Groom& groom, cards::Cancel cancel) {
         moved.frames.push_back(frame);
         moved.points_ws.push_back(pointsOf(simulation->positions_ws()));
     }
+    for (int f = 0; static_cast<float>(f) <= kFrames * kFrameSeconds * springHz + 1; ++f)
+        moved.headsOfSprings_ws.push_back((*moving)->poseAt(static_cast<float>(f) / springHz).head_ws);
     return moved;
+}
+
+/// Joints of a chain at a frame, between updates of springs as seen from the head.
+std::vector<Vec3f> jointsAt(const Moved& moved, const std::vector<std::vector<Vec3f>>& updates,
+                            float springHz, std::size_t frame) {
+    const float at = static_cast<float>(frame) * kFrameSeconds * springHz;
+    const std::size_t k = std::min(static_cast<std::size_t>(at + 1e-3f), updates.size() - 2);
+    const float t = std::clamp(at - static_cast<float>(k), 0.0f, 1.0f);
+    const Eigen::Isometry3f before = moved.headsOfSprings_ws[k].inverse(),
+                            after = moved.headsOfSprings_ws[k + 1].inverse();
+    std::vector<Vec3f> joints;
+    for (std::size_t j = 0; j < updates[k].size(); ++j)
+        joints.push_back(moved.heads_ws[frame] *
+                         Vec3f((1 - t) * (before * updates[k][j]) + t * (after * updates[k + 1][j])));
+    return joints;
 }
 
 /// The points as vertices of the cards that they lie on, so that these move them.
@@ -108,7 +126,8 @@ double seenLength(const Vec3f& way, const std::vector<cards::View>& views) {
 Status measureMotion(const Groom& groom, cards::Chain& chain, cards::Cancel cancel) {
     const auto isMeasured = [](const cards::Level& level) { return level.measures.has_value(); };
     if (std::ranges::none_of(chain.levels, isMeasured)) return {};
-    const auto moved = nodOf(groom, cancel);
+    const float springHz = chain.springFit ? chain.springFit->hz : cards::kSpringHz;
+    const auto moved = nodOf(groom, springHz, cancel);
     if (!moved) return tl::unexpected(moved.error());
     const std::vector<cards::Collider> colliders = collidersOf(groom);
     std::vector<std::vector<std::vector<Vec3f>>> joints;  // by chains and frames
@@ -116,7 +135,8 @@ Status measureMotion(const Groom& groom, cards::Chain& chain, cards::Cancel canc
         std::vector<cards::Collider> met;
         for (const std::uint32_t i : cards::collidersOfChain(chain.rig, c, colliders))
             met.push_back(colliders[i]);
-        joints.push_back(cards::swing(chain.rig, c, chain.springs[c], moved->heads_ws, met));
+        joints.push_back(
+            cards::swing(chain.rig, c, chain.springs[c], moved->headsOfSprings_ws, met, springHz));
     }
     for (cards::Level& level : chain.levels) {
         if (!level.measures) continue;
@@ -141,7 +161,7 @@ Status measureMotion(const Groom& groom, cards::Chain& chain, cards::Cancel canc
                 for (std::size_t p = 0; p < points.size(); ++p) points[p] = head * moved->rest_ws[p];
             } else {
                 std::vector<std::vector<Vec3f>> now;
-                for (const auto& frames : joints) now.push_back(frames[frame]);
+                for (const auto& updates : joints) now.push_back(jointsAt(*moved, updates, springHz, frame));
                 cards::skin(binding, held.mesh, cards::jointMotions(chain.rig, head, now), points);
             }
             for (std::size_t p = 0; p < points.size(); ++p, ++count)

@@ -132,12 +132,22 @@ std::string markdown(const std::vector<std::vector<std::string>>& rows) {
 
 std::string springWords(const cards::SpringFit& fit) {
     return fmt::format(
-        "While the head makes the motion {} for {:g} s, springs keep the joints {:.1f} mm from the strands, "
+        "At {:g} updates per second, while the head makes the motion {} for {:g} s, springs keep the joints "
+        "{:.1f} mm from the strands, "
         "{:.1f} mm at most. Springs that are not fitted: {:.1f} and {:.1f} mm. Under a still head they "
         "settle "
         "{:.2g} mm at most.",
-        fit.motion, fit.seconds, fit.after.meanMm, fit.after.largestMm, fit.before.meanMm,
+        fit.hz, fit.motion, fit.seconds, fit.after.meanMm, fit.after.largestMm, fit.before.meanMm,
         fit.before.largestMm, fit.settlingMm);
+}
+
+/// What springs do at the rates of engines.
+std::vector<std::vector<std::string>> ratesOf(const cards::SpringFit& fit) {
+    std::vector<std::vector<std::string>> rows{{"updates per second", "joints off, mm", "largest, mm"}};
+    for (const cards::SpringRate& rate : fit.rates)
+        rows.push_back({fmt::format("{:g}", rate.hz), fmt::format("{:.1f}", rate.error.meanMm),
+                        fmt::format("{:.1f}", rate.error.largestMm)});
+    return rows;
 }
 
 std::string html(const Chain& chain, const std::string& commandLine) {
@@ -151,7 +161,10 @@ std::string html(const Chain& chain, const std::string& commandLine) {
         report.table(rows, failing(chain), HtmlReport::Strong::red);
     }
     report.drawing(svg(plotOf(chain)));
-    if (chain.springFit) report.paragraph(springWords(*chain.springFit));
+    if (chain.springFit) {
+        report.paragraph(springWords(*chain.springFit));
+        report.table(ratesOf(*chain.springFit));
+    }
     report.paragraph(
         "Coverage and light are relative to those of all strands. The step is the largest change of light "
         "when a level replaces the one before it, and on the way to the next. The outline error is the area "
@@ -204,13 +217,19 @@ nlohmann::ordered_json toJson(const Level& level) {
 }
 
 nlohmann::ordered_json toJson(const cards::SpringFit& fit) {
+    nlohmann::ordered_json rates = nlohmann::ordered_json::array();
+    for (const cards::SpringRate& rate : fit.rates)
+        rates.push_back(
+            {{"hz", rate.hz}, {"error_mm", rate.error.meanMm}, {"largest_mm", rate.error.largestMm}});
     return {{"motion", fit.motion},
             {"seconds", fit.seconds},
             {"error_mm", fit.after.meanMm},
             {"largest_mm", fit.after.largestMm},
             {"default_error_mm", fit.before.meanMm},
             {"default_largest_mm", fit.before.largestMm},
-            {"settling_mm", fit.settlingMm}};
+            {"settling_mm", fit.settlingMm},
+            {"hz", fit.hz},
+            {"rates", std::move(rates)}};
 }
 
 std::string levelTable(const Chain& chain) {

@@ -17,10 +17,11 @@ namespace hairloom {
 /// scaliness, motion_px, holes (null where there is nothing to measure) and fails.
 nlohmann::ordered_json toJson(const cards::Level& level);
 
-/// "bare patch 3.65 cm² (at most 0.1)": the measures that a level fails; empty where it fails none.
+/// "patch 3.65 cm² (at most 0.1)": the measures that a level fails; empty where it fails none.
 std::string failureWords(const cards::Level& level);
 
-/// motion, seconds, error_mm, largest_mm, and the same two of springs that are not fitted.
+/// motion, seconds, error_mm, largest_mm, the same two of springs that are not fitted, settling_mm, hz and
+/// rates (hz, error_mm, largest_mm).
 nlohmann::ordered_json toJson(const cards::SpringFit& fit);
 
 /// The table and that of measures as text of Markdown; names of levels that fail are bold.

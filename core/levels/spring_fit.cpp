@@ -15,6 +15,7 @@ namespace {
 constexpr const char* kMotion = "nod";
 constexpr int kFrames = 120;
 constexpr float kStep = 1.0f / 60;
+static_assert(cards::kSpringHz == 60);
 
 /// A strand near a chain, and its share of how the chain is to move.
 struct Near {
@@ -50,7 +51,8 @@ std::vector<std::vector<Near>> nearestStrands(const cards::Rig& rig,
 }
 
 /// How the chains are to move: as the strands near them do, seen from the head.
-Result<cards::ChainMotion> motionOf(const Groom& groom, const cards::Rig& rig, cards::Cancel cancel) {
+Result<cards::ChainMotion> motionOf(const Groom& groom, const cards::Rig& rig, const HeadMotion& moving,
+                                    cards::Cancel cancel) {
     std::vector<std::vector<Vec3f>> shapes(groom.strandCount());
     for (std::size_t s = 0; s < shapes.size(); ++s)
         if (polylineLength(groom.strand(s)) > 0)
@@ -64,9 +66,7 @@ Result<cards::ChainMotion> motionOf(const Groom& groom, const cards::Rig& rig, c
     std::vector<std::vector<PolylinePlace>> places;
     for (std::size_t s = 0; s < strands.size(); ++s)
         places.push_back(evenPlaces(few.strand(s), rig.perChain));
-    const auto moving = makeRigidMotion(kMotion, groom);
-    if (!moving) return tl::unexpected(moving.error());
-    auto simulation = Simulation::make(few, (*moving)->poseAt(0));
+    auto simulation = Simulation::make(few, moving.poseAt(0));
     if (!simulation) return tl::unexpected(simulation.error());
     const auto at = [&](std::span<const Vec3f> positions, std::size_t strand, std::uint32_t joint) {
         const PolylinePlace& place = places[strand][joint];
@@ -77,7 +77,7 @@ Result<cards::ChainMotion> motionOf(const Groom& groom, const cards::Rig& rig, c
     const std::vector<Vec3f> rest(few.positions().begin(), few.positions().end());
     for (int frame = 0; frame <= kFrames; ++frame) {
         if (cards::cancelled(cancel)) return cards::stopped();
-        const HeadPose pose = (*moving)->poseAt(kStep * static_cast<float>(frame));
+        const HeadPose pose = moving.poseAt(kStep * static_cast<float>(frame));
         if (frame > 0) simulation->step(kStep, pose);
         const Eigen::Isometry3f head = pose.head_ws, toHead = head.inverse();
         const std::span<const Vec3f> now = frame > 0 ? simulation->positions_ws() : rest;
@@ -108,19 +108,38 @@ std::vector<cards::Collider> collidersOf(const Groom& groom) {
     return colliders;
 }
 
-Status fitSpringsOf(const Groom& groom, cards::Chain& chain, cards::Cancel cancel) {
+Status fitSpringsOf(const Groom& groom, cards::Chain& chain, float hz, cards::Cancel cancel) {
     if (chain.rig.chains() == 0) return {};
-    const auto wanted = motionOf(groom, chain.rig, cancel);
-    if (!wanted) return tl::unexpected(wanted.error());
+    const auto moving = makeRigidMotion(kMotion, groom);
+    if (!moving) return tl::unexpected(moving.error());
+    const auto simulated = motionOf(groom, chain.rig, **moving, cancel);
+    if (!simulated) return tl::unexpected(simulated.error());
+    const auto wantedAt = [&](float rate) {
+        std::vector<Eigen::Isometry3f> heads;
+        for (int f = 0; static_cast<float>(f) <= kFrames * kStep * rate + 1e-3f; ++f)
+            heads.push_back((*moving)->poseAt(static_cast<float>(f) / rate).head_ws);
+        return cards::atRate(*simulated, rate, heads);
+    };
     const std::vector<cards::Collider> colliders = collidersOf(groom);
-    auto fitted = cards::fitSprings(chain.rig, *wanted, colliders, cancel);
+    const cards::ChainMotion wanted = hz == cards::kSpringHz ? *simulated : wantedAt(hz);
+    auto fitted = cards::fitSprings(chain.rig, wanted, colliders, cancel);
     if (!fitted) return tl::unexpected(fitted.error());
-    chain.springFit = cards::SpringFit{kMotion, kFrames / 60.0,
-                                       cards::springError(chain.rig, chain.springs, *wanted, colliders),
-                                       cards::springError(chain.rig, *fitted, *wanted, colliders)};
+    cards::SpringFit fit{kMotion,
+                         kFrames / 60.0,
+                         hz,
+                         {},
+                         cards::springError(chain.rig, chain.springs, wanted, colliders),
+                         cards::springError(chain.rig, *fitted, wanted, colliders)};
+    std::set<float> rates(cards::kEngineHz.begin(), cards::kEngineHz.end());
+    rates.insert(hz);
+    for (const float rate : rates)
+        fit.rates.push_back({rate, rate == hz
+                                       ? fit.after
+                                       : cards::springError(chain.rig, *fitted, wantedAt(rate), colliders)});
     for (std::size_t c = 0; c < chain.rig.chains(); ++c)
-        chain.springFit->settlingMm = std::max(
-            chain.springFit->settlingMm, 1000 * static_cast<double>(settling(chain.rig, c, (*fitted)[c])));
+        fit.settlingMm =
+            std::max(fit.settlingMm, 1000 * static_cast<double>(settling(chain.rig, c, (*fitted)[c])));
+    chain.springFit = std::move(fit);
     chain.springs = std::move(*fitted);
     return {};
 }

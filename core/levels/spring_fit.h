@@ -11,8 +11,9 @@ namespace hairloom {
 std::vector<cards::Collider> collidersOf(const Groom& groom);
 
 /// Simulates the strands that lie nearest to the rig's chains, alone, while the head nods for two seconds,
-/// and fits the chain's springs to them; cards::Chain::springFit says how near they come. Springs stay as
-/// they are set where there are no chains. Errors: those of Simulation::make(), stopped.
-Status fitSpringsOf(const Groom& groom, cards::Chain& chain, cards::Cancel cancel);
+/// and fits the chain's springs to them, for an engine of `hz` updates a second; cards::Chain::springFit says
+/// how near they come, there and at other rates. Springs stay as they are set where there are no chains.
+/// Errors: those of Simulation::make(), stopped.
+Status fitSpringsOf(const Groom& groom, cards::Chain& chain, float hz, cards::Cancel cancel);
 
 }  // namespace hairloom

@@ -159,6 +159,58 @@ TEST(Springs, TurnJointsAsTheirBonesTurn) {
         }
 }
 
+TEST(Springs, SwingDifferentlyAtEachRateAndAreFittedForOne) {
+    const Rig rig = hangingRig();
+    const Spring spring{0.3f, 0.1f, 0.15f, 0.1f, 0.008f};
+    ChainMotion wanted = motionBy(rig, std::vector<Spring>(2, spring), 90);
+    // What they make at 60 updates a second they do not make at others, where the head moves as it did.
+    const auto shakenAt = [](float hz) {
+        std::vector<Eigen::Isometry3f> heads;
+        for (int f = 0; static_cast<float>(f) <= 89 * hz / 60; ++f) {
+            const float angle = 0.4f * std::sin(0.13f * 60 / hz * static_cast<float>(f));
+            heads.push_back(Eigen::Translation3f(0, 1.6f, 0) * Eigen::AngleAxisf(angle, Vec3f::UnitX()) *
+                            Eigen::Translation3f(0, -1.6f, 0));
+        }
+        return heads;
+    };
+    for (const float hz : {30.0f, 144.0f}) {
+        const ChainMotion other = atRate(wanted, hz, shakenAt(hz));
+        EXPECT_EQ(other.hz, hz);
+        const auto found = fitSprings(rig, other, {}, nullptr);
+        ASSERT_TRUE(found) << found.error().message();
+        const SpringError as60 = springError(rig, std::vector<Spring>(2, spring), other, {}),
+                          fitted = springError(rig, *found, other, {});
+        EXPECT_GT(as60.meanMm, 3) << hz;
+        EXPECT_LT(fitted.meanMm, 0.5 * as60.meanMm) << hz;
+    }
+    EXPECT_EQ(springError(rig, std::vector<Spring>(2, spring), wanted, {}).largestMm, 0);
+}
+
+TEST(Springs, MotionAtAnotherRateGoesThroughTheSameJoints) {
+    const Rig rig = hangingRig();
+    const ChainMotion motion = motionBy(rig, std::vector<Spring>(2), 60);
+    std::vector<Eigen::Isometry3f> twice, half;
+    for (int f = 0; f < 119; ++f) {
+        const float angle = 0.4f * std::sin(0.065f * static_cast<float>(f));
+        twice.push_back(Eigen::Translation3f(0, 1.6f, 0) * Eigen::AngleAxisf(angle, Vec3f::UnitX()) *
+                        Eigen::Translation3f(0, -1.6f, 0));
+    }
+    for (std::size_t f = 0; f < 60; f += 2) half.push_back(motion.heads_ws[f]);
+    const ChainMotion finer = atRate(motion, 120, twice), coarser = atRate(motion, 30, half);
+    ASSERT_EQ(finer.joints_ws.size(), 119u);
+    for (std::size_t f = 0; f < 60; ++f)
+        for (std::size_t j = 0; j < 10; ++j) {
+            EXPECT_LT((finer.joints_ws[2 * f][j] - motion.joints_ws[f][j]).norm(), 1e-5f);
+            if (f % 2 == 1) continue;
+            EXPECT_LT((coarser.joints_ws[f / 2][j] - motion.joints_ws[f][j]).norm(), 1e-5f);
+        }
+    // Between two frames they lie near the middle of a curve: nearer to a chord than it is long.
+    for (std::size_t f = 10; f < 50; ++f) {
+        const Vec3f middle = 0.5f * (motion.joints_ws[f][4] + motion.joints_ws[f + 1][4]);
+        EXPECT_LT((finer.joints_ws[2 * f + 1][4] - middle).norm(), 0.004f);
+    }
+}
+
 TEST(Springs, StopWhenTheyAreCancelled) {
     const std::atomic<bool> cancel = true;
     const Rig rig = hangingRig();

@@ -144,6 +144,36 @@ TEST_F(LodJob, CardsAreExportedAsGltf) {
     EXPECT_NEAR(few["levels"][0]["distance_m"], 5.8, 0.01);
 }
 
+TEST_F(LodJob, SpringsAreFittedForTheRateOfTheEngine) {
+    makeHair();
+    const std::string levels = "export hair.hairloom --levels cards:12@64 --format ";
+    const auto errorAt = [](const nlohmann::json& report, double hz) {
+        for (const auto& rate : report["springs"]["rates"])
+            if (rate["hz"] == hz) return rate["error_mm"].get<double>();
+        return -1.0;
+    };
+    const auto plain = runJson(levels + "gltf -o plain.glb");
+    const auto slow = runJson(levels + "gltf --spring-hz 30 -o slow.glb");
+    EXPECT_EQ(plain["springs"]["hz"], 60);
+    EXPECT_EQ(slow["springs"]["hz"], 30);
+    ASSERT_EQ(slow["springs"]["rates"].size(), 4u) << "30, 60, 120 and 144";
+    EXPECT_LT(errorAt(slow, 30), errorAt(plain, 30));
+    EXPECT_LT(errorAt(plain, 60), errorAt(slow, 60));
+    EXPECT_GT(errorAt(plain, 144), errorAt(plain, 60)) << "other rates cost";
+    const auto odd = runJson(levels + "vrm --spring-hz 90 -o odd.vrm");
+    EXPECT_EQ(odd["springs"]["rates"].size(), 5u);
+    EXPECT_GE(errorAt(odd, 90), 0);
+    for (const auto& [name, hz] : {std::pair("plain.glb", 60), {"slow.glb", 30}, {"odd.vrm", 90}}) {
+        const std::string file = readText(folder / name);
+        std::uint32_t bytes = 0;
+        std::memcpy(&bytes, file.data() + 12, 4);
+        EXPECT_EQ(nlohmann::json::parse(file.substr(20, bytes))["extras"]["spring_hz"], hz) << name;
+    }
+    EXPECT_FALSE(runJson(levels + "obj-cards --spring-hz 30 -o hair.obj").contains("springs"))
+        << "it has none";
+    EXPECT_EQ(run(levels + "gltf --spring-hz 0 -o bad.glb").exitCode, 2);
+}
+
 TEST_F(LodJob, SpheresOfTheFileAreOnTheBonesOfTheCharacter) {
     makeHair();
     std::ofstream(folder / "spheres.json")
