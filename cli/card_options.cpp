@@ -39,7 +39,7 @@ std::vector<const CLI::Option*> addCardOptions(CLI::App& job, LevelBudget& budge
     added.push_back(job.add_option("--spring-hz", budget.chain.springHz,
                                    "Updates per second of the engine that springs are fitted for. They "
                                    "swing differently at any other rate")
-                        ->check(CLI::Range(10, 1000)));
+                        ->check(CLI::Range(10.0, 1000.0)));
     return added;
 }
 

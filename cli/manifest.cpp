@@ -77,6 +77,10 @@ Result<Report> manifestOf(const fs::path& manifest, const std::vector<fs::path>&
     for (const fs::path& input : notedInputs()) {
         // What came through a pipe is gone.
         if (!fs::is_regular_file(input, code)) continue;
+        if (isChangedByOthers(input))
+            return failIn(input.string(), {},
+                          "was changed after it was read: the manifest would name another file",
+                          "run the job again");
         auto row = rowOf(folder, input, input);
         if (!row) return row;
         if (looksLikeProject(input)) (*row)["groom"] = heldBy(input);

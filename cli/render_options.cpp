@@ -227,6 +227,7 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
                                  "Frame of the record, counted from 0, or of the simulation in 1/60 s");
     auto* frames =
         job.add_option("--frames", options->frames, "Frames FIRST,LAST[,STEP] to render, one image each")
+            ->check(CLI::Range(0, 1'000'000'000))
             ->delimiter(',')
             ->excludes(frame);
     for (CLI::Option* const option : {record, motion, frames}) show->excludes(option);

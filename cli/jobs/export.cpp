@@ -312,6 +312,7 @@ JobRun declare(CLI::App& job) {
     auto* frames =
         job.add_option("--frames", options->frames,
                        "FIRST,LAST of the record: exports animated strands, in formats with animation")
+            ->check(CLI::Range(0, 1'000'000'000))
             ->delimiter(',')
             ->needs(record);
     record->needs(frames);

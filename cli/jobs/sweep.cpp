@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "cli/backend.h"
 #include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
@@ -22,6 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::map<std::string, SweepProgress> kProgress{
+    {"bar", SweepProgress::bar}, {"lines", SweepProgress::lines}, {"openjd", SweepProgress::openjd}};
+
 struct SweepOptions {
     std::string file;
     std::string output;
@@ -30,11 +34,10 @@ struct SweepOptions {
     bool merge = false, status = false, slurm = false, writeOnly = false;
     std::string openjd;
     QueueOptions queue;
-    SweepProgress progress = SweepProgress::bar;
-};
+    std::string progress = "bar";
 
-const std::map<std::string, SweepProgress> kProgress{
-    {"bar", SweepProgress::bar}, {"lines", SweepProgress::lines}, {"openjd", SweepProgress::openjd}};
+    SweepProgress how() const { return kProgress.at(progress); }
+};
 
 Report reportOf(const SweepFolder& folder, const SweepOutcome& outcome) {
     return {{"parts", outcome.parts},          {"done", outcome.done},
@@ -118,10 +121,10 @@ Result<Report> run(const SweepOptions& options) {
     if (options.part) return runOne(*folder, *options.part);
     if (!options.parts.empty()) {
         const auto parts = orWrongUsage(partNumbers(options.parts, sweep->parts.size()));
-        return runSome(*folder, parts, options.progress);
+        return runSome(*folder, parts, options.how());
     }
     if (options.merge) return merged(*folder);
-    if (!options.status && !options.slurm && options.openjd.empty()) return runAll(*folder, options.progress);
+    if (!options.status && !options.slurm && options.openjd.empty()) return runAll(*folder, options.how());
     Report report = reportOf(*folder, statusOf(*folder));
     Result<Report> queued = Report::object();
     if (options.slurm) queued = submitToSlurm(*folder, options.queue);
@@ -166,7 +169,7 @@ JobRun declare(CLI::App& job) {
            "--progress", options->progress,
            "How to show progress: a bar on a terminal, lines on standard error, or what runners of Open "
            "Job Description read")
-        ->transform(CLI::CheckedTransformer(kProgress));
+        ->check(CLI::IsMember(namesOf(kProgress)));
     return [options](const std::string&) { return run(*options); };
 }
 

@@ -9,6 +9,7 @@
 #include <complex>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 namespace hairloom::cards {
 namespace {
@@ -203,7 +204,7 @@ class Spectrum {
 
     Spectrum() {
         for (int i = 0; i < kSide; ++i) {
-            const double turn = 2 * 3.14159265358979323846 * (i + 0.5) / kSide;
+            const double turn = 2 * std::numbers::pi * (i + 0.5) / kSide;
             window_[static_cast<std::size_t>(i)] = 0.5 - 0.5 * std::cos(turn);
             for (int k = 0; k <= kHigh; ++k)
                 waves_[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] = std::polar(1.0, -turn * k);

@@ -11,8 +11,8 @@
 namespace hairloom::cards {
 namespace {
 
-/// How much joints at rest count, each as if it were off for so long.
-constexpr double kRestSeconds = 1000.0 / 60;
+/// How much joints at rest count at 60 updates per second, each as if it were off for so many updates.
+constexpr double kRestUpdates = 1000;
 
 /// The bones of a chain, from joint to joint, as VRMC_springBone 1.0 moves them.
 class SwingingChain {
@@ -126,7 +126,7 @@ double squaresOff(const Rig& rig, std::size_t chain, const Spring& spring, const
     const std::vector<Vec3f> resting = settled(rig, chain, spring);
     for (std::size_t j = 0; j < resting.size(); ++j) {
         const Vec3f& at = rig.joints[2 + chain * rig.perChain + j].position_ws;
-        sum += kRestSeconds * static_cast<double>(wanted.hz) *
+        sum += kRestUpdates * (static_cast<double>(wanted.hz) / 60) *
                static_cast<double>((resting[j] - at).squaredNorm());
     }
     return sum;

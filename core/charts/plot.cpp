@@ -398,22 +398,4 @@ ChartImage image(const Plot& plot, double scale) {
     return std::move(canvas).finish();
 }
 
-ChartImage image(const std::vector<Plot>& plots, double scale) {
-    std::vector<ChartImage> images;
-    ChartImage all;
-    for (const Plot& plot : plots) {
-        images.push_back(image(plot, scale));
-        all.width = std::max(all.width, images.back().width);
-        all.height += images.back().height;
-    }
-    for (const ChartImage& one : images) {
-        for (std::uint32_t y = 0; y < one.height; ++y) {
-            const auto row = one.rgba.begin() + std::ptrdiff_t{4} * y * one.width;
-            all.rgba.insert(all.rgba.end(), row, row + std::ptrdiff_t{4} * one.width);
-            all.rgba.insert(all.rgba.end(), std::size_t{4} * (all.width - one.width), 255);
-        }
-    }
-    return all;
-}
-
 }  // namespace hairloom

@@ -123,8 +123,6 @@ struct ChartImage {
 };
 /// The same drawing, `scale` pixels for each of the plot's, 0.5 … 8.
 ChartImage image(const Plot& plot, double scale);
-/// Several under one another, each as wide as the widest.
-ChartImage image(const std::vector<Plot>& plots, double scale);
 
 /// Okabe and Ito's palette ("Color Universal Design", 2008), which colour-blind readers can tell apart; in an
 /// order in which the first few are also of different lightness.

@@ -45,7 +45,7 @@ void addFindings(const cards::Chain& chain, const Groom& groom, ExportReport& re
                  "an engine of {:g} updates per second. {}. Under a still head they settle {:.2g} mm at most",
                  chain.springFit->after.meanMm, chain.springFit->after.largestMm, chain.springFit->hz,
                  otherRates(*chain.springFit), chain.springFit->settlingMm),
-             kSpringsPlace, "choose the engine's rate (--spring-hz)"});
+             kSpringsPlace, "fit them for the rate of the engine that moves them"});
     } else if (chain.rig.chains() > 0) {
         report.findings.push_back(
             {Severity::Warning, "springs were not fitted: the strands of this groom cannot be simulated",

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/live/shown_parts.h"
+#include "core/render/tone_map.h"
 #include "core/shading/tables.h"
 
 namespace hairloom {
@@ -39,9 +39,7 @@ ShownTable shownTable(std::string name, const Table& table, const char* xName, c
 }
 
 std::uint8_t coded(float share) {
-    const float linear = std::clamp(share, 0.0f, 1.0f);
-    const float value = linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-    return static_cast<std::uint8_t>(std::lround(255 * value));
+    return render::toByte(render::encodeSrgb(share));
 }
 
 Plot mapPlot(const ShownTable& table) {

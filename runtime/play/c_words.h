@@ -81,7 +81,8 @@ inline constexpr std::size_t kLargestStruct = 4096;
 /// Whether a caller's struct of `size` bytes is one: no smaller than its first version.
 template <class Struct>
 Outcome checkSize(const char* name, std::size_t size, std::size_t least) {
-    // Where pointers have 32 bits, structs are smaller than their first version was with 64.
+    // Where pointers have 32 bits, structs are smaller than their first version was with 64: those programs
+    // have the structs of this version.
     least = std::min(least, sizeof(Struct));
     if (size >= least && size <= kLargestStruct && size % 4 == 0) return std::nullopt;
     return Refusal{HL_WRONG_SIZE, std::to_string(size) + " bytes of " + name + "; expected " +

@@ -117,8 +117,8 @@ TEST_F(ColourOfImages, APageHasTheViewAndOtherFormatsHaveNone) {
     unsetenv("HAIRLOOM_WEB");  // NOLINT(concurrency-mt-unsafe)
     EXPECT_FALSE(plain.contains("color"));
     EXPECT_EQ(film["color"]["view"], "Film");
-    EXPECT_THAT(file("plain/hair.js"), Not(HasSubstr("\"view\"")));
-    EXPECT_THAT(file("film/hair.js"), HasSubstr("\"view\""));
+    EXPECT_EQ(file("plain/hair.js").find("\"view\""), std::string::npos);
+    EXPECT_NE(file("film/hair.js").find("\"view\""), std::string::npos);
     EXPECT_EQ(lost.exitCode, 1);
     EXPECT_THAT(lost.errors, HasSubstr("lost.cube"));
     EXPECT_FALSE(std::filesystem::exists(folder / "lost"));

@@ -16,6 +16,15 @@ namespace hairloom::test {
 
 namespace fs = std::filesystem;
 
+CommandLineTest::CommandLineTest() {
+    // What a studio sets for all programs is not these tests' colours.
+#ifdef _WIN32
+    _putenv_s("OCIO", "");
+#else
+    unsetenv("OCIO");  // NOLINT(concurrency-mt-unsafe)
+#endif
+}
+
 Outcome CommandLineTest::run(const std::string& arguments) const {
     const fs::path out = folder / "stdout.txt";
     const fs::path err = folder / "stderr.txt";

@@ -26,6 +26,8 @@ std::string bustFile();
 
 class CommandLineTest : public testing::Test {
   protected:
+    CommandLineTest();
+
     /// 300 strands on the bust, as hair.hairloom.
     std::string createArguments(const std::string& more = "", int seed = 7, int points = 12) const {
         return "create --mesh '" + bustFile() + "' --scalp material:scalp --count 300 --placement dart" +

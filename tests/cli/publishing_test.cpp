@@ -181,6 +181,7 @@ TEST_F(CliPublishing, HandlesAreExportedAroundTheFramesWithTheirNumbers) {
     EXPECT_THAT(run(arguments + "--frames 2,5 --handles 1 --fps 30").errors,
                 HasSubstr("between frames of the file"));
     EXPECT_EQ(run(arguments + "--frames 2,6 --handles 2").exitCode, 1) << "the record ends before";
+    EXPECT_EQ(run(arguments + "--frames 2,18446744073709551615 --handles 2").exitCode, 2) << "no such number";
     EXPECT_EQ(run("export hair.hairloom --handles 2 --format usda -o hair.usda").exitCode, 2);
 }
 
@@ -197,6 +198,10 @@ TEST_F(CliPublishing, HandlesAreRenderedWithTheirNumbers) {
     EXPECT_EQ(runJson(arguments + "--frames 1,4 --handles 1 --start 1001")["pictures"], 6);
     EXPECT_TRUE(exists("p/i_1000.png") && exists("p/i_1005.png"));
     EXPECT_EQ(readText(folder / "p/i_1000.png"), readText(folder / "p/i_0000.png"));
+    for (const char* frames :
+         {"18446744073709551610,18446744073709551612 --handles 5", "0,0,9223372036854775808 --handles 2",
+          "18446744073709551615,18446744073709551615"})
+        EXPECT_EQ(run(arguments + "--frames " + frames).exitCode, 2) << frames;
     for (const char* wrong : {"--frames 1,4 --handles 2", "--frames 1,4 --handles 1 --start 0", "--handles 1",
                               "--turntable 4 --handles 1", "--turntable 4 --start 9"})
         EXPECT_EQ(run(arguments + wrong).exitCode, 2) << wrong;

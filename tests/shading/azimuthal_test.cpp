@@ -70,7 +70,6 @@ TEST(Azimuthal, EllipticFibresSpreadTheSameEnergy) {
     }
 }
 
-// A path's rays, deflected once more by random amounts, against N: azimuth by azimuth.
 /// Where the turn of light with one inner reflection, 4 γ_t − 2 γ_i, is greatest of all offsets.
 TEST(Azimuthal, CausticsLieWhereLightTurnsBack) {
     const auto turnsBackAt = [](double ior) {
@@ -95,6 +94,7 @@ TEST(Azimuthal, CausticsLieWhereLightTurnsBack) {
     EXPECT_NEAR(causticAzimuths(1.55, 1 / 1.2).greatest, elliptic.greatest, 1e-12) << "either way round";
 }
 
+// A path's rays, deflected once more by random amounts, against N: azimuth by azimuth.
 TEST(Azimuthal, ProfilesMatchTracedRays) {
     constexpr int kBins = 36;
     constexpr int kRays = 80000;
