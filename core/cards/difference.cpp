@@ -33,8 +33,7 @@ Outline outline(const Shot& a, const Shot& b) {
 double hairLuminance(std::span<const Shot> shots) {
     double sum = 0;
     for (const Shot& shot : shots)
-        for (const Vec3f& rgb : shot.hair)
-            sum += static_cast<double>(0.2126f * rgb.x() + 0.7152f * rgb.y() + 0.0722f * rgb.z());
+        for (const Vec3f& rgb : shot.hair) sum += static_cast<double>(luminance(rgb));
     return sum;
 }
 

@@ -35,6 +35,11 @@ struct Shot {
     std::vector<Vec3f> all;       ///< of hair, head and background
 };
 
+/// Of linear light, by Rec. 709.
+inline float luminance(const Vec3f& rgb) {
+    return 0.2126f * rgb.x() + 0.7152f * rgb.y() + 0.0722f * rgb.z();
+}
+
 /// Light that reaches the points of strands; the part that no direction changes.
 struct StrandLight {
     std::vector<float> open, lit;

@@ -309,9 +309,6 @@ constexpr std::array<Measure, 6> kMeasures{{
 }  // namespace
 
 Print printOf(const Shot& shot) {
-    const auto luminance = [](const Vec3f& rgb) {
-        return 0.2126f * rgb.x() + 0.7152f * rgb.y() + 0.0722f * rgb.z();
-    };
     Print print{shot.width, shot.height, shot.coverage, shot.skin, {}};
     print.light.reserve(shot.all.size());
     for (const Vec3f& rgb : shot.all) print.light.push_back(luminance(rgb));

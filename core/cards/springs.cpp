@@ -104,12 +104,6 @@ float hitRadiusOf(const Rig& rig, std::size_t chain, std::span<const Collider> c
     return std::max(radius, 0.0f);
 }
 
-std::vector<Collider> held(const Rig& rig, std::size_t chain, std::span<const Collider> colliders) {
-    std::vector<Collider> some;
-    for (const std::uint32_t c : collidersOfChain(rig, chain, colliders)) some.push_back(colliders[c]);
-    return some;
-}
-
 /// Sum of squares, m².
 double squaresOff(const Rig& rig, std::size_t chain, const Spring& spring, const ChainMotion& wanted,
                   std::span<const Collider> colliders) {
@@ -209,6 +203,12 @@ std::vector<std::uint32_t> collidersOfChain(const Rig& rig, std::size_t chain,
     return some;
 }
 
+std::vector<Collider> collidersMetBy(const Rig& rig, std::size_t chain, std::span<const Collider> colliders) {
+    std::vector<Collider> some;
+    for (const std::uint32_t c : collidersOfChain(rig, chain, colliders)) some.push_back(colliders[c]);
+    return some;
+}
+
 float settling(const Rig& rig, std::size_t chain, const Spring& spring) {
     float farthest = 0;
     const std::vector<Vec3f> resting = settled(rig, chain, spring);
@@ -281,8 +281,8 @@ SpringError springError(const Rig& rig, std::span<const Spring> springs, const C
     SpringError error;
     std::size_t count = 0;
     for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
-        const auto frames =
-            swing(rig, chain, springs[chain], wanted.heads_ws, held(rig, chain, colliders), wanted.hz);
+        const auto frames = swing(rig, chain, springs[chain], wanted.heads_ws,
+                                  collidersMetBy(rig, chain, colliders), wanted.hz);
         for (std::size_t f = 1; f < frames.size(); ++f) {
             for (std::size_t j = 1; j < frames[f].size(); ++j) {
                 const Vec3f& at = wanted.joints_ws[f][chain * rig.perChain + j];
@@ -301,7 +301,7 @@ Result<std::vector<Spring>> fitSprings(const Rig& rig, const ChainMotion& wanted
     std::vector<Spring> springs(rig.chains());
     parallelFor(springs.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t chain = begin; chain < end && !cancelled(cancel); ++chain)
-            springs[chain] = fitted(rig, chain, wanted, held(rig, chain, colliders));
+            springs[chain] = fitted(rig, chain, wanted, collidersMetBy(rig, chain, colliders));
     });
     if (cancelled(cancel)) return stopped();
     return springs;

@@ -37,6 +37,8 @@ struct Spring {
 /// they would push it away at once.
 std::vector<std::uint32_t> collidersOfChain(const Rig& rig, std::size_t chain,
                                             std::span<const Collider> colliders);
+/// The colliders with these numbers.
+std::vector<Collider> collidersMetBy(const Rig& rig, std::size_t chain, std::span<const Collider> colliders);
 
 /// Where the joints of a chain come to rest under a head that is still: metres from where they are, the
 /// farthest.

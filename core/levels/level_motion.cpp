@@ -12,9 +12,7 @@
 namespace hairloom {
 namespace {
 
-constexpr const char* kMotion = "nod";
-constexpr int kFrames = 120, kEvery = 5;  // frames, and those that are looked at
-constexpr float kFrameSeconds = 1.0f / 60;
+constexpr int kEvery = 5;  // frames, of which one is looked at
 constexpr std::size_t kMostStrands = 400;
 
 /// Points of some strands, at rest and frame by frame.
@@ -33,7 +31,7 @@ Result<Moved> nodOf(const Groom& groom, float springHz, cards::Cancel cancel) {
     for (std::size_t s = 0; s < groom.strandCount(); s += step)
         if (polylineLength(groom.strand(s)) > 0) strands.push_back(static_cast<std::uint32_t>(s));
     const Groom some = strandsOf(groom, strands);
-    const auto moving = makeRigidMotion(kMotion, groom);
+    const auto moving = makeRigidMotion(kFitMotion, groom);
     if (!moving) return tl::unexpected(moving.error());
     auto simulation = Simulation::make(some, (*moving)->poseAt(0));
     if (!simulation) return tl::unexpected(simulation.error());
@@ -52,17 +50,17 @@ Result<Moved> nodOf(const Groom& groom, float springHz, cards::Cancel cancel) {
     };
     Moved moved;
     moved.rest_ws = pointsOf(some.positions());
-    for (int frame = 0; frame <= kFrames; ++frame) {
+    for (int frame = 0; frame <= kFitFrames; ++frame) {
         if (cards::cancelled(cancel)) return cards::stopped();
-        const HeadPose pose = (*moving)->poseAt(kFrameSeconds * static_cast<float>(frame));
+        const HeadPose pose = (*moving)->poseAt(kFitFrameSeconds * static_cast<float>(frame));
         moved.heads_ws.push_back(pose.head_ws);
         if (frame == 0) continue;
-        simulation->step(kFrameSeconds, pose);
+        simulation->step(kFitFrameSeconds, pose);
         if (frame % kEvery != 0) continue;
         moved.frames.push_back(frame);
         moved.points_ws.push_back(pointsOf(simulation->positions_ws()));
     }
-    for (int f = 0; static_cast<float>(f) <= kFrames * kFrameSeconds * springHz + 1; ++f)
+    for (int f = 0; static_cast<float>(f) <= kFitFrames * kFitFrameSeconds * springHz + 1; ++f)
         moved.headsOfSprings_ws.push_back((*moving)->poseAt(static_cast<float>(f) / springHz).head_ws);
     return moved;
 }
@@ -70,7 +68,7 @@ Result<Moved> nodOf(const Groom& groom, float springHz, cards::Cancel cancel) {
 /// Joints of a chain at a frame, between updates of springs as seen from the head.
 std::vector<Vec3f> jointsAt(const Moved& moved, const std::vector<std::vector<Vec3f>>& updates,
                             float springHz, std::size_t frame) {
-    const float at = static_cast<float>(frame) * kFrameSeconds * springHz;
+    const float at = static_cast<float>(frame) * kFitFrameSeconds * springHz;
     const std::size_t k = std::min(static_cast<std::size_t>(at + 1e-3f), updates.size() - 2);
     const float t = std::clamp(at - static_cast<float>(k), 0.0f, 1.0f);
     const Eigen::Isometry3f before = moved.headsOfSprings_ws[k].inverse(),
@@ -131,13 +129,9 @@ Status measureMotion(const Groom& groom, cards::Chain& chain, cards::Cancel canc
     if (!moved) return tl::unexpected(moved.error());
     const std::vector<cards::Collider> colliders = collidersOf(groom);
     std::vector<std::vector<std::vector<Vec3f>>> joints;  // by chains and frames
-    for (std::size_t c = 0; c < chain.rig.chains(); ++c) {
-        std::vector<cards::Collider> met;
-        for (const std::uint32_t i : cards::collidersOfChain(chain.rig, c, colliders))
-            met.push_back(colliders[i]);
-        joints.push_back(
-            cards::swing(chain.rig, c, chain.springs[c], moved->headsOfSprings_ws, met, springHz));
-    }
+    for (std::size_t c = 0; c < chain.rig.chains(); ++c)
+        joints.push_back(cards::swing(chain.rig, c, chain.springs[c], moved->headsOfSprings_ws,
+                                      cards::collidersMetBy(chain.rig, c, colliders), springHz));
     for (cards::Level& level : chain.levels) {
         if (!level.measures) continue;
         if (level.spec.kind == cards::LevelKind::strands) {

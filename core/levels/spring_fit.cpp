@@ -12,9 +12,6 @@
 namespace hairloom {
 namespace {
 
-constexpr const char* kMotion = "nod";
-constexpr int kFrames = 120;
-constexpr float kStep = 1.0f / 60;
 static_assert(cards::kSpringHz == 60);
 
 /// A strand near a chain, and its share of how the chain is to move.
@@ -75,10 +72,10 @@ Result<cards::ChainMotion> motionOf(const Groom& groom, const cards::Rig& rig, c
     };
     cards::ChainMotion motion;
     const std::vector<Vec3f> rest(few.positions().begin(), few.positions().end());
-    for (int frame = 0; frame <= kFrames; ++frame) {
+    for (int frame = 0; frame <= kFitFrames; ++frame) {
         if (cards::cancelled(cancel)) return cards::stopped();
-        const HeadPose pose = moving.poseAt(kStep * static_cast<float>(frame));
-        if (frame > 0) simulation->step(kStep, pose);
+        const HeadPose pose = moving.poseAt(kFitFrameSeconds * static_cast<float>(frame));
+        if (frame > 0) simulation->step(kFitFrameSeconds, pose);
         const Eigen::Isometry3f head = pose.head_ws, toHead = head.inverse();
         const std::span<const Vec3f> now = frame > 0 ? simulation->positions_ws() : rest;
         std::vector<Vec3f> joints;
@@ -110,13 +107,13 @@ std::vector<cards::Collider> collidersOf(const Groom& groom) {
 
 Status fitSpringsOf(const Groom& groom, cards::Chain& chain, float hz, cards::Cancel cancel) {
     if (chain.rig.chains() == 0) return {};
-    const auto moving = makeRigidMotion(kMotion, groom);
+    const auto moving = makeRigidMotion(kFitMotion, groom);
     if (!moving) return tl::unexpected(moving.error());
     const auto simulated = motionOf(groom, chain.rig, **moving, cancel);
     if (!simulated) return tl::unexpected(simulated.error());
     const auto wantedAt = [&](float rate) {
         std::vector<Eigen::Isometry3f> heads;
-        for (int f = 0; static_cast<float>(f) <= kFrames * kStep * rate + 1e-3f; ++f)
+        for (int f = 0; static_cast<float>(f) <= kFitFrames * kFitFrameSeconds * rate + 1e-3f; ++f)
             heads.push_back((*moving)->poseAt(static_cast<float>(f) / rate).head_ws);
         return cards::atRate(*simulated, rate, heads);
     };
@@ -124,8 +121,8 @@ Status fitSpringsOf(const Groom& groom, cards::Chain& chain, float hz, cards::Ca
     const cards::ChainMotion wanted = hz == cards::kSpringHz ? *simulated : wantedAt(hz);
     auto fitted = cards::fitSprings(chain.rig, wanted, colliders, cancel);
     if (!fitted) return tl::unexpected(fitted.error());
-    cards::SpringFit fit{kMotion,
-                         kFrames / 60.0,
+    cards::SpringFit fit{kFitMotion,
+                         kFitFrames / 60.0,
                          hz,
                          {},
                          cards::springError(chain.rig, chain.springs, wanted, colliders),

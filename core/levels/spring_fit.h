@@ -7,6 +7,11 @@
 
 namespace hairloom {
 
+/// What springs are fitted to and levels' motion is measured in.
+inline constexpr const char* kFitMotion = "nod";
+inline constexpr int kFitFrames = 120;
+inline constexpr float kFitFrameSeconds = 1.0f / 60;
+
 /// The groom's collision spheres.
 std::vector<cards::Collider> collidersOf(const Groom& groom);
 

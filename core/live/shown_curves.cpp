@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "core/live/hair_look.h"
 #include "core/live/shown_parts.h"
@@ -45,20 +46,20 @@ Axis angleAxis(const char* title, int most) {
     return axis;
 }
 
-Plot longitudinalPlot(const std::string& title, const char* value, const char* unit) {
+Plot lobePlot(const std::string& title, Axis angle, const char* value, const char* unit) {
     Plot plot;
     plot.title = title;
-    plot.x = angleAxis("inclination of the view θ_o", 90);
+    plot.x = std::move(angle);
     plot.y = {.title = value, .unit = unit, .low = 0.0};
     return plot;
 }
 
+Plot longitudinalPlot(const std::string& title, const char* value, const char* unit) {
+    return lobePlot(title, angleAxis("inclination of the view θ_o", 90), value, unit);
+}
+
 Plot azimuthalPlot(const std::string& title, const char* value, const char* unit) {
-    Plot plot;
-    plot.title = title;
-    plot.x = angleAxis("azimuth of the view against the light φ", 180);
-    plot.y = {.title = value, .unit = unit, .low = 0.0};
-    return plot;
+    return lobePlot(title, angleAxis("azimuth of the view against the light φ", 180), value, unit);
 }
 
 std::string lightNote(const ShownHair& hair) {

@@ -2,6 +2,7 @@
 #include <QComboBox>
 #include <QEvent>
 #include <QHBoxLayout>
+#include <QImage>
 #include <QLabel>
 #include <QPainter>
 #include <QTimer>
@@ -42,6 +43,11 @@ class ChartView : public QWidget {
         const bool grows = shown.plots.size() != shown_.plots.size();
         shown_ = std::move(shown);
         if (grows) updateGeometry();
+        redraw();
+    }
+    /// Draws the charts anew: what repaints for any other reason shows them as they are.
+    void redraw() {
+        drawn_ = {};
         update();
     }
 
@@ -55,7 +61,18 @@ class ChartView : public QWidget {
   protected:
     void paintEvent(QPaintEvent*) override {
         if (shown_.plots.empty()) return;
-        QPainter painter(this);
+        const QSize wanted = (QSizeF(size()) * devicePixelRatioF()).toSize();
+        if (drawn_.size() != wanted) drawn_ = charts(wanted);
+        QPainter(this).drawImage(QRectF(rect()), drawn_);
+    }
+
+  private:
+    QImage charts(QSize pixels) const {
+        QImage all(pixels, QImage::Format_ARGB32_Premultiplied);
+        all.fill(Qt::transparent);
+        QPainter painter(&all);
+        painter.scale(static_cast<double>(pixels.width()) / width(),
+                      static_cast<double>(pixels.height()) / height());
         painter.setRenderHint(QPainter::SmoothPixmapTransform);
         const int high = height() / static_cast<int>(shown_.plots.size());
         for (std::size_t i = 0; i < shown_.plots.size(); ++i) {
@@ -69,11 +86,13 @@ class ChartView : public QWidget {
                                static_cast<int>(chart.height), QImage::Format_RGBA8888);
             painter.drawImage(QRectF(0, static_cast<double>(i) * high, width(), high), image);
         }
+        painter.end();
+        return all;
     }
 
-  private:
     const Preferences& preferences_;
     Shown shown_;
+    QImage drawn_;  ///< pixels of the device; empty where it is to be drawn
 };
 
 class ShadingChart : public QWidget {
@@ -110,7 +129,7 @@ class ShadingChart : public QWidget {
 
         connect(kinds_, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
         connect(light_, &NumberSpin::valueChanged, this, [this] { redraw(); });
-        connect(&preferences, &Preferences::changed, view_, qOverload<>(&QWidget::update));
+        connect(&preferences, &Preferences::changed, view_, &ChartView::redraw);
         // A control that moves says so more often than charts can be drawn.
         connect(&soon_, &QTimer::timeout, this, [this] { redraw(); });
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {

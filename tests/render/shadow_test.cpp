@@ -39,13 +39,19 @@ TEST(CountedFibres, AreThoseBetweenTwoPoints) {
 
 class ShadowTest : public RenderTest {};
 
-TEST_F(ShadowTest, TransmittanceAgreesWithCountedFibres) {
-    const TestHead head(1500);
+/// The hair of a head alone.
+RenderScene underOneLamp(const TestHead& head) {
     RenderScene scene = head.scene();
     scene.meshes.clear();
     Light light;
     light.toLight_ws = Vec3f(0.4f, 0.8f, 0.45f);
     scene.lights = {light};
+    return scene;
+}
+
+TEST_F(ShadowTest, TransmittanceAgreesWithCountedFibres) {
+    const TestHead head(1500);
+    const RenderScene scene = underOneLamp(head);
     const ShadowCases cases = countFibres(scene, 600, 8);
     const double mean = std::accumulate(cases.counted.begin(), cases.counted.end(), 0.0) / 600;
     EXPECT_GT(mean, 0.7);
@@ -203,11 +209,7 @@ TEST_F(ShadowTest, FiltersSpreadAnEdgeOverTheirTexels) {
 /// More texels bring light nearer to counted fibres, for texels much finer than the beams that are counted.
 TEST_F(ShadowTest, FiltersBringFineMapsNearerToCountedFibres) {
     const TestHead head(1500);
-    RenderScene scene = head.scene();
-    scene.meshes.clear();
-    Light light;
-    light.toLight_ws = Vec3f(0.4f, 0.8f, 0.45f);
-    scene.lights = {light};
+    const RenderScene scene = underOneLamp(head);
     const ShadowCases cases = countFibres(scene, 400, 8);
     const auto error = [&](ShadowFilter filter) {
         const auto found = shadowError(*device, scene, cases, Shadows::deepOpacity, 512, kDeepLayers, filter);
