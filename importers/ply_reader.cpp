@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
@@ -174,7 +175,7 @@ class Reader {
             if (element.properties[i].listSize) continue;
             counts_.push_back({i, std::ranges::find(kNames, element.properties[i].name) != kNames.end()});
         }
-        std::ranges::stable_partition(counts_, &Counts::isNamed);
+        std::stable_partition(counts_.begin(), counts_.end(), std::mem_fn(&Counts::isNamed));
     }
 
     void findValuesOfStrands(const PlyElement& element) {

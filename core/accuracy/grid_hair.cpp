@@ -23,7 +23,7 @@ std::vector<std::uint32_t> counting(std::size_t count) {
 /// Ascending, each once.
 void makeUnique(std::vector<std::uint32_t>& strands) {
     std::ranges::sort(strands);
-    strands.erase(std::ranges::unique(strands).begin(), strands.end());
+    strands.erase(std::unique(strands.begin(), strands.end()), strands.end());
 }
 
 /// Of one that is among them; they are ascending.

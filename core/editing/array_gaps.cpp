@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ranges>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -139,7 +138,7 @@ void carryOut(std::span<std::byte> bytes, std::size_t size, std::span<const Rang
         if (change == Gaps::close) {
             for (const Move& move : piece.moves) carryOut(bytes.data(), piece, move);
         } else {
-            for (const Move& move : std::views::reverse(piece.moves)) carryOut(bytes.data(), piece, move);
+            for (std::size_t m = piece.moves.size(); m-- > 0;) carryOut(bytes.data(), piece, piece.moves[m]);
         }
     });
 }

@@ -141,7 +141,7 @@ void ValidationCommandList::run(RecordedWork::Kind kind, const Pipeline* pipelin
             wrong("pipeline '" + work.pipeline + "' reads " + reader.name + " while it is written");
     }
     // Reads first: what this work writes does not count as content for it.
-    std::ranges::stable_partition(used, [](const Used& u) { return !u.write; });
+    std::stable_partition(used.begin(), used.end(), [](const Used& u) { return !u.write; });
     for (const Used& one : used) use(work, one);
     record_.push_back(std::move(work));
 }

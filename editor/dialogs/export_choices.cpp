@@ -49,9 +49,10 @@ const std::vector<ExportProgram>& programsToExportFor() {
             if (program.choices.size() == 1) continue;
             const std::string& name = program.choices.front().target->program;
             const HairWriter& best = preferredWriter(name, hairWriters());
-            std::ranges::stable_partition(program.choices, [&](const ExportChoice& choice) {
-                return choice.writer->name == (best.holdsCards() ? kCardFormat : best.name);
-            });
+            std::stable_partition(
+                program.choices.begin(), program.choices.end(), [&](const ExportChoice& choice) {
+                    return choice.writer->name == (best.holdsCards() ? kCardFormat : best.name);
+                });
         }
         return list;
     }();

@@ -260,9 +260,9 @@ TEST_F(RuntimeBody, ABoneThatTheFileLacksIsRefused) {
     ASSERT_FALSE(opened.asset->check());
     const std::span<const std::byte> body = opened.asset->body();
     constexpr std::array<std::byte, 4> kName{std::byte{'h'}, std::byte{'e'}, std::byte{'a'}, std::byte{'d'}};
-    const auto found = std::ranges::search(body, kName);
-    ASSERT_FALSE(found.empty());
-    copy.span()[static_cast<std::size_t>(found.data() - copy.span().data())] = std::byte{'H'};
+    const auto found = std::search(body.begin(), body.end(), kName.begin(), kName.end());
+    ASSERT_NE(found, body.end());
+    copy.span()[static_cast<std::size_t>(&*found - copy.span().data())] = std::byte{'H'};
     copy.seal();
     const auto problem = runtime::Asset::open(copy.span()).asset->check();
     ASSERT_TRUE(problem);

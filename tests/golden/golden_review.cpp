@@ -79,7 +79,7 @@ Result<Verdict> review(const Options& options, const Case& which, Painter& paint
 
 /// Those that have changed come first.
 std::string pageOf(std::vector<Verdict> verdicts) {
-    std::ranges::stable_partition(verdicts, [](const Verdict& v) { return !v.passes(); });
+    std::stable_partition(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return !v.passes(); });
     std::string rows;
     for (const Verdict& v : verdicts) {
         rows += fmt::format("<p{}>{}, {}<br><img src=\"{}.png\">\n", v.passes() ? "" : " class=other", v.name,
