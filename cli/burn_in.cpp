@@ -10,7 +10,7 @@
 #include "cli/record_comparison.h"
 #include "core/render/text.h"
 #include "core/simulation/frame_record.h"
-#include "hairloom/settings.h"
+#include "core/simulation/settings_text.h"
 
 namespace hairloom::cli {
 namespace {
@@ -35,18 +35,6 @@ std::string BurnIn::takeText() const {
                              : !options_.motion.empty() ? nameOf(options_.motion)
                                                         : "at rest";
     return fmt::format("{}, {}", nameOf(options_.input), take);
-}
-
-std::string BurnIn::settingsText() const {
-    const runtime::SimulationSettings& settings = groom_.simulation;
-    const bool isRods = settings.strandModel == runtime::StrandModel::rods;
-    std::string text =
-        isRods ? "rods"
-               : fmt::format("springs, {}",
-                             runtime::integratorNames()[static_cast<std::size_t>(settings.integrator)]);
-    text += fmt::format(", {} substep{}", settings.substeps, settings.substeps == 1 ? "" : "s");
-    if (settings.windSpeed > 0) text += fmt::format(", wind {:.3g} m/s", settings.windSpeed);
-    return text;
 }
 
 Result<std::string> BurnIn::errorText(const Shot& shot) {
@@ -75,7 +63,7 @@ Status BurnIn::draw(const Shot& shot, std::size_t index, render::Image& image) {
         } else if (what == "take") {
             lines.push_back(takeText());
         } else if (what == "settings") {
-            lines.push_back(settingsText());
+            lines.push_back(settingsText(groom_.simulation));
         } else if (what == "error") {
             lines.push_back(error);
         } else {

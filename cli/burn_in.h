@@ -25,7 +25,6 @@ class BurnIn {
   private:
     std::string frameText(const Shot& shot, std::size_t index) const;
     std::string takeText() const;
-    std::string settingsText() const;
     Result<std::string> errorText(const Shot& shot);
 
     const RenderJobOptions& options_;

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "cli/error_report.h"
-#include "cli/manifest.h"
 #include "cli/versions.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/base/output_batch.h"
 #include "core/base/write_rules.h"
+#include "core/groom/file/manifest.h"
 
 namespace hairloom::cli {
 namespace {
@@ -156,16 +156,6 @@ Status trySequence(const Output& output) {
     return file ? Status() : tl::unexpected(file.error());
 }
 
-/// Lists what waits for its batch.
-Status addManifest(const fs::path& path, Report& report) {
-    const auto content = manifestOf(path, waitingFiles(), manifest().commandLine);
-    if (!content) return tl::unexpected(content.error());
-    const std::string text = content->dump(1, ' ', false, Report::error_handler_t::replace) + "\n";
-    if (auto written = writeFileAtomically(path, std::string_view(text)); !written) return written;
-    report["manifest"] = path.string();
-    return {};
-}
-
 /// Where nothing fails all files are in place at once, with `run`'s report, and the manifest, if there is to
 /// be one.
 Result<Report> inBatch(const fs::path& manifestPath, const std::function<Result<Report>()>& run) {
@@ -173,7 +163,10 @@ Result<Report> inBatch(const fs::path& manifestPath, const std::function<Result<
     auto report = run();
     if (!report) return report;
     if (!manifestPath.empty()) {
-        if (auto status = addManifest(manifestPath, *report); !status) return tl::unexpected(status.error());
+        const ManifestSource source{"hairloom-cli " HAIRLOOM_VERSION, manifest().commandLine, notedInputs(),
+                                    nullptr, "run the job again"};
+        if (auto status = addManifest(manifestPath, source); !status) return tl::unexpected(status.error());
+        (*report)["manifest"] = manifestPath.string();
     }
     if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
     return report;
@@ -209,7 +202,7 @@ Result<Report> withOutputs(const std::vector<Output>& outputs, const std::functi
         if (isPipe(first->path))
             throw WrongUsage(fmt::format("{} is a pipe, which has no manifest", first->path),
                              "expected the name of a file");
-        manifestPath = first->path + ".manifest.json";
+        manifestPath = manifestName(first->path);
         all.push_back({manifestPath.string(), content::kJson});
     }
     refuseOneNameForTwo(all);

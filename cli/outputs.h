@@ -41,8 +41,9 @@ Result<Report> withOutputFolder(const std::string& folder, const std::vector<std
 /// withOutputFolder().
 void refusePipeForFolder(const std::string& folder);
 
-/// Called before a job runs: beside its outputs it writes a manifest (cli/manifest.h), F.manifest.json for a
-/// first output F, or manifest.json in a folder. The text is the program's command line.
+/// Called before a job runs: beside its outputs it writes a manifest (core/groom/file/manifest.h),
+/// F.manifest.json for a first output F, or manifest.json in a folder. The text is the program's command
+/// line.
 void writeManifest(const std::string& commandLine);
 
 /// The job writes its file to standard output, so that its report goes to standard error.

@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "cli/certificate_report.h"
-#include "cli/manifest.h"
 #include "cli/sweep_run.h"
 #include "core/base/file.h"
 #include "core/charts/html_report.h"
+#include "core/groom/file/manifest.h"
 
 namespace hairloom::cli {
 namespace {
@@ -162,7 +162,7 @@ std::string tableOf(const Parts& parts) {
 
 /// Every output with its hash, as JSON and as `xxhsum --check` reads it.
 std::pair<Report, std::string> manifestOf(const SweepFolder& folder, const Parts& parts) {
-    Report manifest = manifestHead();
+    Report manifest = manifestHead("hairloom-cli " HAIRLOOM_VERSION);
     manifest["sweep"] = folder.sweep().name;
     manifest["files"] = Report::array();
     std::string lines;

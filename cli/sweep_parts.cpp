@@ -14,12 +14,12 @@
 
 #include "cli/error_report.h"
 #include "cli/finite_numbers.h"
-#include "cli/manifest.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/log.h"
 #include "core/base/stopwatch.h"
 #include "core/groom/file/json_reader.h"
+#include "core/groom/file/manifest.h"
 
 namespace hairloom::cli {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <iterator>
 #include <numeric>
 
@@ -21,6 +22,17 @@
 
 namespace hairloom {
 namespace {
+
+/// The name's suffix where formats have it that are not the writer's; else empty.
+std::string suffixOfOtherFormat(const std::filesystem::path& path, const HairWriter& writer) {
+    std::string suffix = path.extension().string();
+    std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!suffix.empty()) suffix.erase(0, 1);
+    const bool isOthers =
+        suffix != writer.suffix() &&
+        std::ranges::find(hairWriters(), suffix, &HairWriter::suffix) != hairWriters().end();
+    return isOthers ? suffix : std::string();
+}
 
 /// Follow hairs in a frame, wisps as wide as their speed makes them.
 class MovingHairs {
@@ -326,6 +338,11 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
                                     "interpolation", "export hairs to write the rendered hairs"});
     }
     if (!report) return report;
+    if (const std::string other = suffixOfOtherFormat(path, writer); !other.empty())
+        report->findings.push_back(
+            {Severity::Warning, fmt::format("the name ends in .{}, but the file is {}", other, writer.name),
+             path.filename().string(),
+             fmt::format("name it .{}: other programs choose their reader by the name", writer.suffix())});
     if (cards::cancelled(wanted.cancel)) return cards::stopped();
     if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
     return report;

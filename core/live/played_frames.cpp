@@ -8,24 +8,28 @@ namespace hairloom {
 namespace {
 
 /// As visitFrames(); `before` is told of every frame before it is simulated, those of the run-up among them.
-Status play(const Groom& groom, const HeadMotion& motion, std::uint32_t count, float framesPerSecond,
-            std::uint32_t preRoll, const std::function<bool(std::uint32_t)>& before,
+Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& range,
+            const std::function<bool(std::uint32_t)>& before,
             const std::function<Status(std::uint32_t, RecordedFrame)>& take) {
-    HeadPose pose = inWorld(motion.poseAt(0));
+    const auto poseOf = [&](std::uint32_t frame) {
+        const float number = static_cast<float>(frame) - static_cast<float>(range.handles);
+        return inWorld(motion.poseAt(number / range.framesPerSecond));
+    };
+    HeadPose pose = poseOf(0);
     auto simulation = Simulation::make(groom, pose);
     if (!simulation) return tl::unexpected(simulation.error());
-    for (std::uint32_t frame = 0; frame < preRoll; ++frame) {
+    for (std::uint32_t frame = 0; frame < range.preRoll; ++frame) {
         if (!before(frame)) return fail("it was cancelled");
-        simulation->step(1 / framesPerSecond, pose);
+        simulation->step(1 / range.framesPerSecond, pose);
     }
-    for (std::uint32_t frame = 0; frame < count; ++frame) {
-        if (!before(preRoll + frame)) return fail("it was cancelled");
+    for (std::uint32_t frame = 0; frame < range.count; ++frame) {
+        if (!before(range.preRoll + frame)) return fail("it was cancelled");
         if (frame > 0) {
-            pose = inWorld(motion.poseAt(static_cast<float>(frame) / framesPerSecond));
-            simulation->step(1 / framesPerSecond, pose);
+            pose = poseOf(frame);
+            simulation->step(1 / range.framesPerSecond, pose);
         }
         const auto positions_ws = simulation->positions_ws();
-        auto taken = take(frame, {{positions_ws.begin(), positions_ws.end()}, pose, framesPerSecond});
+        auto taken = take(frame, {{positions_ws.begin(), positions_ws.end()}, pose, range.framesPerSecond});
         if (!taken) return taken;
     }
     return {};
@@ -34,15 +38,13 @@ Status play(const Groom& groom, const HeadMotion& motion, std::uint32_t count, f
 }  // namespace
 
 Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMotion& motion,
-                                              std::uint32_t count, float framesPerSecond,
-                                              const std::function<bool(std::uint32_t)>& progress,
-                                              std::uint32_t preRoll) {
+                                              const PlayedRange& range,
+                                              const std::function<bool(std::uint32_t)>& progress) {
     std::vector<RecordedFrame> frames;
-    auto played = play(groom, motion, count, framesPerSecond, preRoll, progress,
-                       [&](std::uint32_t, RecordedFrame frame) -> Status {
-                           frames.push_back(std::move(frame));
-                           return {};
-                       });
+    auto played = play(groom, motion, range, progress, [&](std::uint32_t, RecordedFrame frame) -> Status {
+        frames.push_back(std::move(frame));
+        return {};
+    });
     if (!played) return tl::unexpected(played.error());
     return frames;
 }
@@ -50,7 +52,7 @@ Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMoti
 Status visitFrames(const Groom& groom, const HeadMotion& motion, std::uint32_t count, float framesPerSecond,
                    const std::function<Status(std::uint32_t, RecordedFrame)>& take) {
     return play(
-        groom, motion, count, framesPerSecond, 0, [](std::uint32_t) { return true; }, take);
+        groom, motion, {count, framesPerSecond}, [](std::uint32_t) { return true; }, take);
 }
 
 }  // namespace hairloom

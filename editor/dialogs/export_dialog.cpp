@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 
+#include "core/base/output_batch.h"
 #include "core/colour/colour_choice.h"
 #include "core/documents/hair_export.h"
 #include "core/documents/web_page.h"
@@ -20,6 +22,7 @@
 #include "core/live/played_frames.h"
 #include "core/stability/certificate.h"
 #include "editor/dialogs/export_choices.h"
+#include "editor/document/publishing.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
@@ -82,6 +85,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       textures_(new QSpinBox),
       certify_(new QCheckBox("What your game may do to this hair")),
       physics_(new QCheckBox("Physics of curves")),
+      manifest_(new QCheckBox("Hashes of the files and the project")),
       summary_(new QLabel),
       findings_(new QTreeWidget) {
     setWindowTitle("Export hair");
@@ -168,6 +172,10 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
         "with the "
         "stiffness and thickness of the hair");
     form_->addRow("Simulators", physics_);
+    manifest_->setObjectName("manifest");
+    manifest_->setToolTip(
+        "Writes NAME.manifest.json beside the files: their bytes and hashes, the project, and its settings");
+    form_->addRow("Manifest", manifest_);
     layout->addWidget(many_);
     layout->addWidget(cluster_, 0, Qt::AlignLeft);
     summary_->setObjectName("willWrite");
@@ -185,8 +193,9 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     layout->addWidget(findings_, 1);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     write_ = buttons->addButton("Export…", QDialogButtonBox::AcceptRole);
+    write_->setObjectName("export");
     write_->setDefault(true);
-    write_->setToolTip("Choose a file name and export");
+    write_->setToolTip("Choose a file name and export. v### in the name takes the next free version");
     layout->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     connect(write_, &QPushButton::clicked, this, &ExportDialog::choosePath);
@@ -325,7 +334,7 @@ void ExportDialog::choosePath() {
     const QString suffix = "." + QString::fromStdString(choice.writer->suffix());
     const QString name = title + suffix;
     const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*" + suffix);
-    if (!path.isEmpty()) exportTo(path);
+    if (!path.isEmpty()) exportTo(withNextVersion(path));
 }
 
 StrandExportOptions ExportDialog::optionsAsked() const {
@@ -363,23 +372,27 @@ void ExportDialog::exportTo(const QString& path) {
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
     // One more for the end of the last frame's shutter.
     const bool hasShutter = motion_->isVisibleIn(*form_) && motion_->apply(wanted);
-    const std::uint32_t preRoll = motion_->isVisibleIn(*form_) ? motion_->preRoll() : 0;
-    const auto count = static_cast<std::uint32_t>(frames_->value()) + (hasShutter ? 1u : 0u);
+    PlayedRange range{static_cast<std::uint32_t>(frames_->value()) + (hasShutter ? 1u : 0u),
+                      kFramesPerSecond};
+    if (motion_->isVisibleIn(*form_)) {
+        range.preRoll = motion_->preRoll();
+        range.handles = motion_->handles();
+        range.count += 2 * range.handles;
+    }
+    std::optional<ManifestSource> manifest;
+    if (manifest_->isChecked()) manifest = manifestSource(document_, "Export: " + target_->currentText());
     write_->setEnabled(false);
     const bool started = tasks_.run<ExportReport>(
         QString("Exporting %1").arg(QFileInfo(path).fileName()),
-        [groom = document_.groom(), wanted, moves, count, preRoll, path, options, &writer,
+        [groom = document_.groom(), wanted, moves, range, manifest, path, options, &writer,
          isPage = choice.isPage, view](TaskControl& control) mutable -> Result<ExportReport> {
-            const float simulated = count > 0 ? 0.5f : 0;
-            if (count > 0) {
-                auto frames = playFrames(
-                    groom, *moves, count, kFramesPerSecond,
-                    [&](std::uint32_t done) {
-                        control.setProgress(simulated * static_cast<float>(done) /
-                                            static_cast<float>(preRoll + count));
-                        return !control.isCancelled();
-                    },
-                    preRoll);
+            const float simulated = range.count > 0 ? 0.5f : 0;
+            if (range.count > 0) {
+                auto frames = playFrames(groom, *moves, range, [&](std::uint32_t done) {
+                    control.setProgress(simulated * static_cast<float>(done) /
+                                        static_cast<float>(range.preRoll + range.count));
+                    return !control.isCancelled();
+                });
                 if (!frames) return tl::unexpected(frames.error());
                 wanted.frames = std::move(*frames);
             }
@@ -387,8 +400,19 @@ void ExportDialog::exportTo(const QString& path) {
                 control.setProgress(simulated + (1 - simulated) * static_cast<float>(share));
             };
             wanted.cancel = control.cancelFlag();
-            if (isPage) return exportWebPage(groom, wanted, path.toStdString(), view.get());
-            return exportHair(groom, wanted, writer, path.toStdString(), options);
+            OutputBatch batch;
+            auto report = isPage ? exportWebPage(groom, wanted, path.toStdString(), view.get())
+                                 : exportHair(groom, wanted, writer, path.toStdString(), options);
+            if (!report) return report;
+            if (manifest) {
+                manifest->groom = &groom;
+                const std::filesystem::path output = path.toStdString();
+                const auto name = isPage ? output / "manifest.json" : manifestName(output);
+                if (auto status = addManifest(name, *manifest); !status)
+                    return tl::unexpected(status.error());
+            }
+            if (auto status = batch.commit(); !status) return tl::unexpected(status.error());
+            return report;
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
             messages.say(

@@ -68,7 +68,7 @@ class ExportDialog : public QDialog {
     QComboBox* up_;
     QSpinBox* points_;
     QSpinBox *cards_, *textures_;
-    QCheckBox *certify_, *physics_;
+    QCheckBox *certify_, *physics_, *manifest_;
     QPushButton* write_;
     QLabel* summary_;
     QTreeWidget* findings_;

@@ -8,7 +8,7 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr int kMostRunUp = 10000, kFarthestFrame = 1'000'000;
+constexpr int kMostRunUp = 10000, kFarthestFrame = 1'000'000, kMostHandles = 1000;
 
 QWidget* sideBySide(QWidget* left, QWidget* right) {
     auto* row = new QWidget;
@@ -25,9 +25,11 @@ MotionRows::MotionRows(QObject* parent)
     : QObject(parent),
       preRoll_(new QSpinBox),
       start_(new QSpinBox),
+      handles_(new QSpinBox),
       samples_(new QSpinBox),
       shutter_(new QComboBox),
-      settling_(sideBySide(preRoll_, start_)),
+      settling_(preRoll_),
+      range_(sideBySide(start_, handles_)),
       exposure_(sideBySide(shutter_, samples_)) {
     preRoll_->setObjectName("preRoll");
     preRoll_->setRange(0, kMostRunUp);
@@ -39,9 +41,15 @@ MotionRows::MotionRows(QObject* parent)
         "settles");
     start_->setObjectName("startFrame");
     start_->setRange(-kFarthestFrame, kFarthestFrame);
-    start_->setPrefix("first frame ");
     start_->setAccessibleName("First frame");
-    start_->setToolTip("Number of the first frame in the file");
+    start_->setToolTip("Number of the first frame in the file, without the handles");
+    handles_->setObjectName("handles");
+    handles_->setRange(0, kMostHandles);
+    handles_->setSpecialValueText("no handles");
+    handles_->setSuffix(" frames of handles");
+    handles_->setAccessibleName("Handles");
+    handles_->setToolTip("Number of frames to export before and after the range as well, for editing");
+    connect(handles_, &QSpinBox::valueChanged, this, &MotionRows::changed);
     shutter_->setObjectName("shutter");
     shutter_->setAccessibleName("Shutter");
     shutter_->addItem("none: one sample per frame");
@@ -66,21 +74,24 @@ MotionRows::MotionRows(QObject* parent)
 
 void MotionRows::addTo(QFormLayout& form) {
     form.addRow("Run-up", settling_);
+    form.addRow("First frame", range_);
     form.addRow("Shutter", exposure_);
 }
 
 void MotionRows::show(QFormLayout& form, bool visible) {
     form.setRowVisible(settling_, visible);
+    form.setRowVisible(range_, visible);
     form.setRowVisible(exposure_, visible);
 }
 
 std::uint32_t MotionRows::samplesOf(int frames) const {
-    const int perFrame = shutter_->currentIndex() > 0 && frames > 1 ? samples_->value() : 1;
-    return static_cast<std::uint32_t>(frames * perFrame);
+    const int all = frames + 2 * handles_->value();
+    const int perFrame = shutter_->currentIndex() > 0 && all > 1 ? samples_->value() : 1;
+    return static_cast<std::uint32_t>(all * perFrame);
 }
 
 bool MotionRows::apply(HairToExport& wanted) const {
-    wanted.firstFrame = start_->value();
+    wanted.firstFrame = start_->value() - handles_->value();
     if (shutter_->currentIndex() == 0) return false;
     const auto open = shutter_->currentData().toPointF();
     wanted.shutter = {open.x(), open.y(), static_cast<std::uint32_t>(samples_->value())};

@@ -12,6 +12,8 @@
 #include <cmath>
 
 #include "core/base/output_batch.h"
+#include "core/simulation/settings_text.h"
+#include "editor/document/publishing.h"
 #include "editor/document/words.h"
 #include "editor/fields/number_spin.h"
 
@@ -34,13 +36,13 @@ QSpinBox* pixels(const char* name, int value, const QString& tip) {
 }  // namespace
 
 RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Messages& messages,
-                           const QString& title, QWidget* parent)
+                           const QtDocument& document, QWidget* parent)
     : QDialog(parent),
       viewport_(viewport),
       player_(player),
       tasks_(tasks),
       messages_(messages),
-      title_(title),
+      document_(document),
       form_(new QFormLayout),
       rows_(new QWidget),
       of_(new QComboBox),
@@ -49,6 +51,10 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
       rate_(new QComboBox),
       files_(new QComboBox),
       transparent_(new QCheckBox("Transparent")),
+      frame_(new QCheckBox("Frame")),
+      take_(new QCheckBox("Project and motion")),
+      settings_(new QCheckBox("Settings")),
+      manifest_(new QCheckBox("Hashes of the images and the project")),
       note_(new QLabel),
       progress_(new QProgressBar) {
     setWindowTitle("Render");
@@ -102,6 +108,23 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
         "Numbered images for editing, one animated file to show. WebP is lossy and a tenth "
         "as large");
     form_->addRow("Files", files_);
+    auto* burnIn = new QWidget;
+    auto* texts = new QHBoxLayout(burnIn);
+    texts->setContentsMargins(0, 0, 0, 0);
+    const auto addText = [&](QCheckBox* box, const char* name, const QString& tip) {
+        box->setObjectName(name);
+        box->setToolTip(tip);
+        texts->addWidget(box);
+    };
+    addText(frame_, "burnInFrame", "Writes the number of the frame into each image");
+    addText(take_, "burnInTake", "Writes the names of the project and the motion into each image");
+    addText(settings_, "burnInSettings", "Writes the strand model, substeps and wind into each image");
+    texts->addStretch(1);
+    form_->addRow("Burn in", burnIn);
+    manifest_->setObjectName("renderManifest");
+    manifest_->setToolTip(
+        "Writes NAME.manifest.json beside the images: their bytes and hashes, the project, and its settings");
+    form_->addRow("Manifest", manifest_);
     note_->setObjectName("renderNote");
     note_->setWordWrap(true);
     layout->addWidget(note_);
@@ -116,7 +139,7 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
     render_ = buttons->addButton("Render…", QDialogButtonBox::AcceptRole);
     render_->setObjectName("render");
     render_->setDefault(true);
-    render_->setToolTip("Choose a file name and render");
+    render_->setToolTip("Choose a file name and render. v### in the name takes the next free version");
     layout->addWidget(buttons);
     connect(render_, &QPushButton::clicked, this, &RenderDialog::choosePath);
     connect(buttons, &QDialogButtonBox::rejected, this, &RenderDialog::reject);
@@ -152,6 +175,18 @@ Film RenderDialog::filmAsked() const {
     return film;
 }
 
+std::vector<std::string> RenderDialog::linesAsked(const Film& film, const Groom& groom) const {
+    std::vector<std::string> lines;
+    if (take_->isChecked()) {
+        const bool moves = film.of == FilmOf::Simulation || player_.hasFrame();
+        const QString motion =
+            player_.motion() == "none" && film.of == FilmOf::Simulation ? "nod" : player_.motion();
+        lines.push_back(QString("%1, %2").arg(document_.title(), moves ? motion : "at rest").toStdString());
+    }
+    if (settings_->isChecked()) lines.push_back(settingsText(groom.simulation));
+    return lines;
+}
+
 void RenderDialog::showRows() {
     const Film film = filmAsked();
     const bool isFilm = film.of != FilmOf::View;
@@ -175,6 +210,7 @@ void RenderDialog::showRows() {
     } else {
         note_->setText("Camera, lights and look are those of the viewport, without its overlays.");
     }
+    frame_->setEnabled(isFilm);
     // Rows that come or go change the height that is needed.
     adjustSize();
 }
@@ -196,11 +232,12 @@ void RenderDialog::choosePath() {
     const Film film = filmAsked();
     const QString suffix = film.isAnimation() && film.files == FilmFiles::AnimatedWebp ? ".webp" : ".png";
     const bool isSequence = film.of != FilmOf::View && !film.isAnimation();
-    QString path =
-        QFileDialog::getSaveFileName(this, windowTitle(), title_ + suffix, "*" + suffix, nullptr,
-                                     isSequence ? QFileDialog::DontConfirmOverwrite : QFileDialog::Options());
+    QString path = QFileDialog::getSaveFileName(
+        this, windowTitle(), QFileInfo(document_.title()).completeBaseName() + suffix, "*" + suffix, nullptr,
+        isSequence ? QFileDialog::DontConfirmOverwrite : QFileDialog::Options());
     if (path.isEmpty()) return;
     if (QFileInfo(path).suffix().isEmpty()) path += suffix;
+    path = withNextVersion(path);
     if (mayReplace(path, film)) renderTo(path);
 }
 
@@ -212,6 +249,9 @@ void RenderDialog::renderTo(const QString& path) {
     view.height = film.view.height;
     view.seeThrough = transparent_->isChecked();
     view.quality.frames = static_cast<std::uint32_t>(passes_->value());
+    film.burnsInFrame = frame_->isEnabled() && frame_->isChecked();
+    film.burntIn = linesAsked(film, *view.groom);
+    if (manifest_->isChecked()) film.manifest = manifestSource(document_, "Render: " + of_->currentText());
     film.view = std::move(view);
     if (film.of == FilmOf::Simulation) {
         auto motion = player_.makeMeasuredMotion();

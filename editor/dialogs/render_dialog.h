@@ -14,6 +14,7 @@
 #include <QTimer>
 
 #include "editor/document/messages.h"
+#include "editor/document/qt_document.h"
 #include "editor/document/tasks.h"
 #include "editor/simulation/player.h"
 #include "editor/viewport/film.h"
@@ -25,8 +26,8 @@ class RenderDialog : public QDialog {
     Q_OBJECT
 
   public:
-    RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Messages& messages, const QString& title,
-                 QWidget* parent = nullptr);
+    RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Messages& messages,
+                 const QtDocument& document, QWidget* parent = nullptr);
     ~RenderDialog() override;
 
     /// Draws to this file with what is set; nothing remains where it is cancelled.
@@ -36,6 +37,8 @@ class RenderDialog : public QDialog {
 
   private:
     Film filmAsked() const;
+    /// What *Burn in* says of all images.
+    std::vector<std::string> linesAsked(const Film& film, const Groom& groom) const;
     bool isWorking() const { return work_ != Work::None; }
     void showRows();
     void showWork();
@@ -50,13 +53,13 @@ class RenderDialog : public QDialog {
     Player& player_;
     Tasks& tasks_;
     Messages& messages_;
-    const QString title_;
+    const QtDocument& document_;
     QFormLayout* form_;
     QWidget* rows_;
     QComboBox* of_;
     QSpinBox *width_, *height_, *images_, *passes_;
     QComboBox *rate_, *files_;
-    QCheckBox* transparent_;
+    QCheckBox *transparent_, *frame_, *take_, *settings_, *manifest_;
     QLabel* note_;
     QProgressBar* progress_;
     QPushButton *render_, *close_;

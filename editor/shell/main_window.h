@@ -88,6 +88,8 @@ class MainWindow : public QMainWindow {
     void chooseAndImport();
     bool save();
     bool saveAs();
+    /// To the next version of its name; as saveAs() where it was never saved.
+    bool saveIncremental();
     /// Whether a file may be replaced that other windows may have open.
     bool mayReplaceFile(const QString& path);
     Status write(const QString& path);

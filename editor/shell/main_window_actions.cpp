@@ -93,6 +93,10 @@ void MainWindow::addFileActions() {
     add({"file.saveAs", QString("Save &as…"), "", QString("Save the project to another file"),
          QKeySequence("Ctrl+Shift+S")},
         [this] { saveAs(); });
+    add({"file.saveIncremental", QString("Save &incremental"), "",
+         QString("Save the project as its next version: bob_v002 after bob or bob_v001"),
+         QKeySequence("Ctrl+Alt+S")},
+        [this] { saveIncremental(); });
     add({"file.revert",
          QString("Re&vert to saved"),
          "",
@@ -150,8 +154,7 @@ void MainWindow::addFileActions() {
          QString("Render the view, a turntable or the simulation to images or an animation"),
          QKeySequence("F12")},
         [this] {
-            RenderDialog dialog(*viewport_, player_, tasks_, messages_,
-                                QFileInfo(document_.title()).completeBaseName(), this);
+            RenderDialog dialog(*viewport_, player_, tasks_, messages_, document_, this);
             dialog.exec();
         });
     menu->addSeparator();

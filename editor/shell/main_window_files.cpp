@@ -12,6 +12,7 @@
 #include "core/groom/file/project_file.h"
 #include "editor/dialogs/head_dialog.h"
 #include "editor/dialogs/import_dialog.h"
+#include "editor/document/publishing.h"
 #include "editor/document/words.h"
 #include "editor/shell/files.h"
 #include "editor/shell/main_window.h"
@@ -163,7 +164,11 @@ bool MainWindow::saveAs() {
                              ? QFileInfo(document_.title()).completeBaseName() + ".hairloom"
                              : document_.path();
     const QString path = QFileDialog::getSaveFileName(this, "Save", name, "Hairloom projects (*.hairloom)");
-    return !path.isEmpty() && saveTo(path);
+    return !path.isEmpty() && saveTo(withNextVersion(path));
+}
+
+bool MainWindow::saveIncremental() {
+    return document_.path().isEmpty() ? saveAs() : saveTo(nextVersionOf(document_.path()));
 }
 
 bool MainWindow::saveScriptTo(const QString& path) {

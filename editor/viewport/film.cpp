@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/film.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -10,6 +12,7 @@
 #include "core/live/film.h"
 #include "core/live/played_frames.h"
 #include "core/render/png.h"
+#include "core/render/text.h"
 
 namespace hairloom::editor {
 namespace {
@@ -39,6 +42,11 @@ class FilmMaker {
         Status made = film_.of == FilmOf::Simulation ? simulate() : turn();
         if (made && film_.isAnimation())
             made = writeAnimation(film_.path, images_, std::max(1u, 1000 / film_.imagesPerSecond));
+        if (made && film_.manifest) {
+            ManifestSource source = *film_.manifest;
+            source.groom = film_.view.groom.get();
+            made = addManifest(manifestName(film_.path), source);
+        }
         return made ? batch.commit() : made;
     }
 
@@ -52,6 +60,9 @@ class FilmMaker {
         if (film_.bytesHeld() > kMostBytesOfFilm)
             return fail("an animation of this size needs more than 2 GiB of memory",
                         "numbered PNG images, fewer images or a smaller size");
+        if (film_.manifest) {
+            if (auto may = OutputFile::check(manifestName(film_.path), content::kJson); !may) return may;
+        }
         if (film_.isAnimation()) return tryPlace(film_.path, {});
         for (std::uint32_t i = 1; i < film_.images; ++i) {
             if (auto may = OutputFile::check(nameOf(i), content::kPng); !may) return may;
@@ -99,6 +110,10 @@ class FilmMaker {
         const auto picture = draw_(std::move(request));
         if (!picture) return tl::unexpected(picture.error());
         render::Image image = imageOf(*picture);
+        std::vector<std::string> lines;
+        if (film_.burnsInFrame) lines.push_back(fmt::format("frame {}", number));
+        lines.insert(lines.end(), film_.burntIn.begin(), film_.burntIn.end());
+        if (!lines.empty()) render::burnIn(image, lines);
         if (film_.isAnimation()) {
             images_.push_back(std::move(image));
         } else if (auto written = render::writePng(nameOf(number), image); !written) {

@@ -6,8 +6,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "core/base/result.h"
+#include "core/groom/file/manifest.h"
 #include "core/simulation/motion.h"
 #include "editor/viewport/picture_request.h"
 
@@ -25,6 +29,11 @@ struct Film {
     /// A divisor of 60, the frames that are simulated in a second.
     std::uint32_t imagesPerSecond = 30;
     std::shared_ptr<const HeadMotion> motion;  ///< of the simulation, which begins at rest
+
+    bool burnsInFrame = false;         ///< the frame's number, in the lower left corner
+    std::vector<std::string> burntIn;  ///< lines below it, the same in all pictures
+    /// Writes manifestName(path) beside the pictures; `groom` is the view's.
+    std::optional<ManifestSource> manifest;
 
     bool isAnimation() const { return of != FilmOf::View && files != FilmFiles::Pictures; }
     /// What an animation holds until it is written; 0 for pictures, which are written as they come.

@@ -194,6 +194,24 @@ Groom oddSettings() {
     return groom;
 }
 
+TEST_F(HairExportTest, ANameOfAnotherFormatIsTold) {
+    const Groom groom = oddSettings();
+    const auto told = [&](const char* name, const char* format) {
+        const auto report = exportHair(groom, {}, strandWriter(format), folder_ / name, {});
+        EXPECT_TRUE(report) << name;
+        return report && std::ranges::any_of(report->findings, [](const Finding& finding) {
+                   return finding.what.rfind("the name ends in", 0) == 0;
+               });
+    };
+    EXPECT_TRUE(told("hair.usda", "usdc")) << "USD's own library opens it as text, and fails";
+    EXPECT_TRUE(told("hair.ABC", "usdc"));
+    EXPECT_FALSE(told("hair.usdc", "usdc"));
+    EXPECT_FALSE(told("hair.USDA", "usda"));
+    EXPECT_FALSE(told("hair.usd", "usdc")) << "no format's own name";
+    EXPECT_FALSE(told("hair.abc", "abc-unreal"));
+    EXPECT_FALSE(told("hair", "usdc"));
+}
+
 TEST_F(HairExportTest, SettingsAreCustomDataOfUsdAndComeBackBitForBit) {
     const Groom groom = oddSettings();
     for (const char* const format : {"usda", "usdc"}) {

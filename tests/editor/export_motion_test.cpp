@@ -5,8 +5,13 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QFile>
 #include <QFileInfo>
+#include <QPushButton>
 #include <QSpinBox>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "editor/dialogs/export_dialog.h"
 #include "tests/editor/window_fixture.h"
@@ -14,7 +19,28 @@
 namespace hairloom::editor {
 namespace {
 
-class ExportMotionTest : public WindowTest {};
+class ExportMotionTest : public WindowTest {
+  protected:
+    std::string textOf(const char* name) const {
+        std::ifstream file(inFolder(name).toStdString());
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+};
+
+TEST_F(ExportMotionTest, AVersionInTheNameIsTheNextThatIsFree) {
+    openSampleHair("short");
+    openFirstStrands(20);
+    ASSERT_TRUE(QFile(inFolder("hair_v004.ply.report.txt")).open(QIODevice::WriteOnly));
+    ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
+    dialog.show();
+    dialog.findChild<QComboBox*>("target")->setCurrentText("PLY strands");
+    for (const char* name : {"hair_v005.ply", "hair_v006.ply"}) {
+        onceAskedForAFile(inFolder("hair_v###.ply"));
+        dialog.findChild<QPushButton*>("export")->click();
+        finishWork();
+        EXPECT_TRUE(QFileInfo::exists(inFolder(name))) << name;
+    }
+}
 
 TEST_F(ExportMotionTest, MotionIsAskedForWhereItIsWritten) {
     openSampleHair("short");
@@ -45,6 +71,22 @@ TEST_F(ExportMotionTest, MotionIsAskedForWhereItIsWritten) {
     EXPECT_EQ(dialog.report().frames, 3u) << window->statusLine().message().toStdString();
     EXPECT_EQ(dialog.report().samples, 9u);
     EXPECT_TRUE(QFileInfo::exists(inFolder("moving.usdc")));
+    dialog.findChild<QSpinBox*>("handles")->setValue(4);
+    shutter->setCurrentIndex(0);
+    dialog.findChild<QCheckBox*>("manifest")->setChecked(true);
+    dialog.findChild<QComboBox*>("format")->setCurrentText("USD .usda");
+    dialog.exportTo(inFolder("handles.usda"));
+    finishWork();
+    EXPECT_EQ(dialog.report().frames, 11u) << "three and four at each end";
+    const std::string usd = textOf("handles.usda");
+    EXPECT_NE(usd.find("startTimeCode = 997"), std::string::npos) << usd.substr(0, 400);
+    EXPECT_NE(usd.find("endTimeCode = 1007"), std::string::npos);
+    const auto manifest = nlohmann::json::parse(textOf("handles.usda.manifest.json"));
+    ASSERT_EQ(manifest["files"].size(), 1u);
+    EXPECT_EQ(manifest["files"][0]["name"], "handles.usda");
+    EXPECT_EQ(manifest["files"][0]["bytes"], usd.size());
+    EXPECT_EQ(manifest["groom"]["strands"], 20);
+    EXPECT_EQ(manifest["command"], "Export: Houdini");
     dialog.findChild<QComboBox*>("target")->setCurrentText("PLY strands");
     EXPECT_EQ(what->count(), 2);
     EXPECT_FALSE(shutter->isVisible());

@@ -127,6 +127,25 @@ TEST_F(RenderTest, AFilmOfTheSimulationMoves) {
     EXPECT_FALSE(parts().player.hasFrame()) << "what the window plays is as it was";
 }
 
+TEST_F(RenderTest, TextIsBurntInAndVersionsAreTaken) {
+    ASSERT_TRUE(parts().player.setMotion("spin"));
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::View, 320, 160);
+        EXPECT_FALSE(dialog.findChild<QCheckBox*>("burnInFrame")->isEnabled()) << "a view has no frame";
+        renderAs(dialog, "view_v##.png");
+        for (const char* name : {"burnInTake", "burnInSettings", "renderManifest"})
+            dialog.findChild<QCheckBox*>(name)->setChecked(true);
+        renderAs(dialog, "view_v##.png");
+        EXPECT_TRUE(note(dialog).startsWith("Rendered view_v02.png")) << note(dialog).toStdString();
+        dialog.reject();
+    });
+    ASSERT_EQ(written(), QStringList({"view_v01.png", "view_v02.png", "view_v02.png.manifest.json"}));
+    const QImage plain(inFolder("view_v01.png")), burnt(inFolder("view_v02.png"));
+    const QRect above(0, 0, 320, 100), corner(0, 120, 160, 40);
+    EXPECT_EQ(plain.copy(above), burnt.copy(above));
+    EXPECT_NE(plain.copy(corner), burnt.copy(corner));
+}
+
 TEST_F(RenderTest, CancelLeavesNoFileAndTheDialogGoesOn) {
     inDialog([&](RenderDialog& dialog) {
         set(dialog, FilmOf::Turntable, 64, 64);

@@ -51,6 +51,19 @@ TEST_F(SavingTest, WhatAnotherProgramSavedIsNotOverwrittenUnasked) {
     EXPECT_FALSE(window->isWindowModified());
 }
 
+TEST_F(SavingTest, SaveIncrementalTakesTheNextVersion) {
+    ASSERT_TRUE(window->saveTo(inFolder("a.hairloom")));
+    setDrag(5);
+    trigger("file.saveIncremental");
+    EXPECT_EQ(document().title().toStdString(), "a_v001.hairloom");
+    EXPECT_NE(dragIn(file("a.hairloom")), 5) << "the version before stays as it was";
+    EXPECT_EQ(dragIn(file("a_v001.hairloom")), 5);
+    fs::copy_file(file("a.hairloom"), file("a_v007.hairloom"));
+    trigger("file.saveIncremental");
+    EXPECT_TRUE(fs::exists(file("a_v008.hairloom")));
+    EXPECT_NE(dragIn(file("a_v007.hairloom")), 5);
+}
+
 TEST_F(SavingTest, TheirsCanBeReloadedAndOursSavedElsewhere) {
     const fs::path path = file("a.hairloom");
     ASSERT_TRUE(window->saveTo(inFolder("a.hairloom")));
