@@ -12,24 +12,13 @@
 #include "core/groom/point_width.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/live/hair_look.h"
+#include "core/live/head_tint.h"
 #include "core/live/root_rotations.h"
 #include "core/simulation/body_push.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom {
 namespace {
-
-/// Skin, and where hair grows half its colour: roots too fine to be drawn one by one shade the skin between
-/// them. A view's albedo is that of the whole head.
-std::vector<Vec3f> headColours(const Groom& groom, const std::optional<Vec3f>& asked) {
-    const Vec3f skin = asked.value_or(render::RenderMesh().albedo);
-    std::vector<Vec3f> albedo(groom.scalp->triangleCount(), skin);
-    if (groom.strandCount() == 0 || asked) return albedo;
-    for (const std::uint32_t triangle : groom.scalpSelection) {
-        albedo[triangle] = 0.5f * skin + 0.5f * groom.material.rootColour;
-    }
-    return albedo;
-}
 
 /// The same strands are in streaks and dyed, as strands and not the material say.
 bool hasSameStreaksAndDye(const HairMaterial& a, const HairMaterial& b) {
@@ -79,11 +68,13 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
     if (groom.scalp) {
         const auto hidden = facesOfGroups(*groom.scalp, hiddenGroups);
         if (!hidden) return tl::unexpected(hidden.error());
-        const auto colours = headColours(groom, view.headAlbedo);
+        // A view's albedo is that of the whole head.
+        const Vec3f skin = view.headAlbedo.value_or(render::RenderMesh().albedo);
+        scene.vertexAlbedo_ =
+            scene.matte_ ? std::vector<Vec3f>(groom.scalp->vertexCount(), skin) : headTint(groom, skin);
         for (const std::uint32_t face : invertSelection(*groom.scalp, *hidden)) {
             const Triangle& triangle = groom.scalp->triangles()[face];
             scene.indices_.insert(scene.indices_.end(), triangle.begin(), triangle.end());
-            scene.triangleAlbedo_.push_back(colours[face]);
         }
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) {
@@ -218,7 +209,7 @@ render::RenderScene GroomScene::scene() const {
         mesh.positions_ws = posed_.scalp->positions();
         mesh.normals_ws = posed_.scalp->normals();
         mesh.indices = indices_;
-        mesh.triangleAlbedo = triangleAlbedo_;
+        mesh.vertexAlbedo = vertexAlbedo_;
         mesh.matte = matte_;
         scene.meshes.push_back(mesh);
     }

@@ -95,7 +95,7 @@ class GroomScene {
     std::optional<runtime::FollowHairs> followHairs_;
     std::optional<runtime::BodyPush> push_;  ///< of what is drawn, where the groom has a body
     std::vector<std::uint32_t> indices_;     ///< of the head's triangles that are drawn
-    std::vector<Vec3f> triangleAlbedo_;      ///< of these: skin, tinted by hair where the scalp is
+    std::vector<Vec3f> vertexAlbedo_;        ///< of the head: skin, tinted by hair where that grows
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;

@@ -64,22 +64,22 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     std::vector<Vec3f> computed;
     if (mesh.normals_ws.empty()) computed = averagedNormals(mesh.positions_ws, mesh.indices);
     const std::span<const Vec3f> normals = mesh.normals_ws.empty() ? computed : mesh.normals_ws;
-    std::vector<shaders::float4> albedo;
+    std::vector<Vec3f> albedo(mesh.vertexAlbedo.begin(), mesh.vertexAlbedo.end());
+    if (albedo.empty()) albedo.assign(result.vertexCount, mesh.albedo);
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
-        const Vec3f& colour = mesh.triangleAlbedo.empty() ? mesh.albedo : mesh.triangleAlbedo[t];
-        albedo.push_back(toFloat4(colour, 1));
-        const Vec3f& a = mesh.positions_ws[mesh.indices[3 * t]];
-        const Vec3f ab = mesh.positions_ws[mesh.indices[3 * t + 1]] - a;
-        const Vec3f ac = mesh.positions_ws[mesh.indices[3 * t + 2]] - a;
-        const float area = 0.5f * ab.cross(ac).norm();
+        const std::uint32_t* const corner = &mesh.indices[3 * t];
+        const Vec3f& a = mesh.positions_ws[corner[0]];
+        const float area =
+            0.5f * (mesh.positions_ws[corner[1]] - a).cross(mesh.positions_ws[corner[2]] - a).norm();
         result.area += area;
-        result.meanAlbedo += area * colour;
+        result.meanAlbedo += area / 3 * (albedo[corner[0]] + albedo[corner[1]] + albedo[corner[2]]);
     }
     if (result.area > 0) result.meanAlbedo /= result.area;
     Gather gather;
     gather(result.positions, structured(device, "mesh positions", 4, std::as_bytes(mesh.positions_ws)));
     gather(result.normals, structured(device, "mesh normals", 4, std::as_bytes(normals)));
-    gather(result.albedo, structured(device, "mesh colours", sizeof(shaders::float4), bytes(albedo)));
+    gather(result.albedo,
+           structured(device, "mesh colours", 4, std::as_bytes(std::span<const Vec3f>(albedo))));
     gather(result.indexBuffer, structured(device, "mesh indices", 4, std::as_bytes(mesh.indices)));
     if (!gather.status()) return tl::unexpected(gather.status().error());
     return result;

@@ -14,9 +14,8 @@ Status checkMesh(const RenderMesh& mesh) {
     if (!mesh.normals_ws.empty() && mesh.normals_ws.size() != vertices) {
         return fail(fmt::format("a mesh of {} vertices with {} normals", vertices, mesh.normals_ws.size()));
     }
-    if (!mesh.triangleAlbedo.empty() && mesh.triangleAlbedo.size() != mesh.indices.size() / 3) {
-        return fail(fmt::format("a mesh of {} triangles with {} colours", mesh.indices.size() / 3,
-                                mesh.triangleAlbedo.size()));
+    if (!mesh.vertexAlbedo.empty() && mesh.vertexAlbedo.size() != vertices) {
+        return fail(fmt::format("a mesh of {} vertices with {} colours", vertices, mesh.vertexAlbedo.size()));
     }
     for (std::size_t i = 0; i < vertices; ++i) {
         if (!mesh.positions_ws[i].allFinite()) return fail(fmt::format("mesh vertex {} is not finite", i));

@@ -22,7 +22,7 @@ struct RenderMesh {
     std::span<const Vec3f> positions_ws;
     std::span<const Vec3f> normals_ws;         ///< one a vertex; empty: averaged from the faces
     std::span<const std::uint32_t> indices;    ///< three a triangle
-    std::span<const Vec3f> triangleAlbedo;     ///< linear RGB, one a triangle; empty: `albedo`
+    std::span<const Vec3f> vertexAlbedo;       ///< linear RGB, one a vertex; empty: `albedo`
     Vec3f albedo = Vec3f(0.5f, 0.35f, 0.27f);  ///< linear RGB
     bool matte = false;                        ///< a plain Lambertian: no light under the skin, no highlight
 };

@@ -8,7 +8,7 @@ struct Input {
     float4 position : SV_Position;
     float3 position_ws : POSITION;
     float3 normal_ws : NORMAL;
-    nointerpolation float3 albedo : ALBEDO;
+    float3 albedo : ALBEDO;
 };
 
 float4 main(Input i) : SV_Target0 {

@@ -5,13 +5,13 @@ cbuffer Constants : register(b1) { MeshConstants gMesh; };
 StructuredBuffer<float> gPositions : register(t0);  // three a vertex
 StructuredBuffer<float> gNormals : register(t1);
 StructuredBuffer<uint> gIndices : register(t2);
-StructuredBuffer<float4> gAlbedo : register(t3);  // per triangle
+StructuredBuffer<float> gAlbedo : register(t3);
 
 struct Output {
     float4 position : SV_Position;
     float3 position_ws : POSITION;
     float3 normal_ws : NORMAL;
-    nointerpolation float3 albedo : ALBEDO;
+    float3 albedo : ALBEDO;
 };
 
 Output main(uint corner : SV_VertexID) {
@@ -19,7 +19,7 @@ Output main(uint corner : SV_VertexID) {
     Output o;
     o.position_ws = float3(gPositions[at], gPositions[at + 1u], gPositions[at + 2u]);
     o.normal_ws = float3(gNormals[at], gNormals[at + 1u], gNormals[at + 2u]);
-    o.albedo = gAlbedo[corner / 3u].rgb;
+    o.albedo = float3(gAlbedo[at], gAlbedo[at + 1u], gAlbedo[at + 2u]);
     o.position = mul(gMesh.clipFromWorld, float4(o.position_ws, 1));
     return o;
 }

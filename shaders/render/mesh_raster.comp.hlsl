@@ -6,14 +6,14 @@
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
 StructuredBuffer<float> gNormals : register(t1);
-StructuredBuffer<float4> gAlbedo : register(t3);  // per triangle
+StructuredBuffer<float> gAlbedo : register(t3);
 StructuredBuffer<uint> gCover : register(t4);     // of hair, where that is sorted
 RWStructuredBuffer<uint> gNearest : register(u0);
 RWStructuredBuffer<uint> gLight : register(u1);
 
 float3 lightAt(Corners c, float2 at, uint face) {
     const float3 shares = sharesOfFace(c, at);
-    return skinLight(gShade, gMesh, onFace(gPositions, face, shares), onFace(gNormals, face, shares), gAlbedo[face].rgb);
+    return skinLight(gShade, gMesh, onFace(gPositions, face, shares), onFace(gNormals, face, shares), onFace(gAlbedo, face, shares));
 }
 
 void visitPixel(Corners c, int2 pixel, uint face) {

@@ -4,7 +4,7 @@
 #include "shaders/render/surface.hlsli"
 
 StructuredBuffer<float> gPast : register(t1);
-StructuredBuffer<float4> gAlbedo : register(t3);  // per triangle
+StructuredBuffer<float> gAlbedo : register(t3);
 
 void visitPixel(Corners c, int2 pixel, uint face) {
     const float2 middle = float2(pixel - c.origin) + 0.5;
@@ -15,5 +15,5 @@ void visitPixel(Corners c, int2 pixel, uint face) {
     const float3 shares = sharesOfFace(c, middle);
     const float3 position_ws = onFace(gPositions, face, shares);
     const float3 past_ws = gSurface.pastStrands > 0u ? onFace(gPast, face, shares) : position_ws;
-    gFound[at] = surfaceAt(position_ws, past_ws, HAIRLOOM_NO_STRAND, gAlbedo[face].rgb);
+    gFound[at] = surfaceAt(position_ws, past_ws, HAIRLOOM_NO_STRAND, onFace(gAlbedo, face, shares));
 }

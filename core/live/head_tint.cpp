@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/live/head_tint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/editing/root_grid.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::size_t kMostRoots = 20'000;  // enough to tell where hair grows
+constexpr std::size_t kProbes = 500;
+constexpr std::size_t kNeighbours = 4;
+constexpr float kDense = 1, kBare = 2.5f;  // distance of the fourth root, in typical ones
+constexpr float kShare = 0.5f;             // of hair's colour in the skin under it
+
+/// Evenly picked from the strands, which are in no order of place that this could meet.
+std::vector<Vec3f> someRoots(const Groom& groom) {
+    const std::size_t count = groom.strandCount(), taken = std::min(count, kMostRoots);
+    std::vector<Vec3f> roots;
+    for (std::size_t i = 0; i < taken; ++i)
+        roots.push_back(groom.strand(static_cast<std::uint32_t>(i * count / taken)).front());
+    return roots;
+}
+
+float areaOf(const Groom& groom) {
+    float area = 0;
+    for (const std::uint32_t face : groom.scalpSelection) area += groom.scalp->triangleArea(face);
+    return area;
+}
+
+/// Distance of the fourth root from a place; more than `radius` where there is none so near.
+float distanceOfFourth(const editing::RootGrid& grid, const Vec3f& place, float radius, std::size_t first) {
+    const auto near = grid.nearest(place, first + kNeighbours, radius);
+    return near.size() < first + kNeighbours ? 2 * radius : near.back().distance;
+}
+
+}  // namespace
+
+std::vector<Vec3f> headTint(const Groom& groom, const Vec3f& skin) {
+    std::vector<Vec3f> albedo(groom.scalp->vertexCount(), skin);
+    const std::vector<Vec3f> roots = someRoots(groom);
+    // As far apart as they would be evenly on their scalp.
+    const float even = std::sqrt(areaOf(groom) / static_cast<float>(std::max<std::size_t>(roots.size(), 1)));
+    if (roots.size() <= kNeighbours || !(even > 0) || !std::isfinite(even)) return albedo;
+    editing::RootGrid grid(2 * even);
+    for (std::size_t i = 0; i < roots.size(); ++i) grid.add(static_cast<std::uint32_t>(i), roots[i]);
+    std::vector<float> distances;
+    const std::size_t probes = std::min(roots.size(), kProbes);
+    for (std::size_t i = 0; i < probes; ++i)
+        distances.push_back(distanceOfFourth(grid, roots[i * roots.size() / probes], 4 * even, 1));
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    const float typical = *middle;
+    const std::span<const Vec3f> positions = groom.scalp->positions();
+    parallelFor(positions.size(), 512, [&](std::size_t first, std::size_t last) {
+        for (std::size_t v = first; v < last; ++v) {
+            const float distance = distanceOfFourth(grid, positions[v], kBare * typical, 0);
+            const float bare = std::clamp((distance / typical - kDense) / (kBare - kDense), 0.0f, 1.0f);
+            const float tint = kShare * (1 - bare * bare * (3 - 2 * bare));
+            albedo[v] = (1 - tint) * skin + tint * groom.material.rootColour;
+        }
+    });
+    return albedo;
+}
+
+}  // namespace hairloom
