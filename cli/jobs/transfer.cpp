@@ -16,7 +16,7 @@ namespace hairloom::cli {
 namespace {
 
 constexpr float kFar_m = 0.005f;  ///< roots that were farther off are named
-constexpr std::size_t kNamed = 100;
+constexpr std::size_t kNamed = 100, kNamedInWords = 3;
 constexpr std::size_t kFewFar = 10;  ///< one in so many far roots is worth no word
 
 struct TransferOptions {
@@ -48,7 +48,8 @@ Result<Report> transferHair(const TransferOptions& options) {
             "or hair lies on another part: look at it, and use --turn, --up or --leave-out",
             options.to, far, groom->strandCount(), 1e3f * kFar_m);
     report["strands_named"] = Report::array();
-    for (std::size_t s = 0; s < transfer->distances.size() && report["strands_named"].size() < kNamed; ++s) {
+    const std::size_t named = isReportJson() ? kNamed : kNamedInWords;
+    for (std::size_t s = 0; s < transfer->distances.size() && report["strands_named"].size() < named; ++s) {
         if (transfer->distances[s] > kFar_m)
             report["strands_named"].push_back(Report{{"strand", s}, {"mm", 1e3f * transfer->distances[s]}});
     }
