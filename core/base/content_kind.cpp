@@ -31,7 +31,7 @@ constexpr std::array kSignatures{
     Signature{"ply\n"sv, "a PLY file", "ply"},
     Signature{"ply\r"sv, "a PLY file"},
     Signature{"\x89PNG\r\n\x1a\n"sv, content::kPng},
-    Signature{"\x76\x2f\x31\x01"sv, "an OpenEXR picture"},
+    Signature{"\x76\x2f\x31\x01"sv, "an OpenEXR image"},
     Signature{"glTF"sv, "a binary glTF file", "glb"},
     Signature{"glTF"sv, "a binary glTF file", "vrm"},
     Signature{"\x03\x02\x23\x07"sv, "a compiled shader"},
@@ -77,7 +77,7 @@ std::string_view contentKind(std::span<const std::byte> beginning) {
         if (text.starts_with(signature.start)) return signature.kind;
     }
     if (text.starts_with("RIFF") && text.substr(std::min<std::size_t>(8, text.size())).starts_with("WEBP"))
-        return "a WebP picture";
+        return "a WebP image";
     if (!isText(text)) return "of no known kind";
     const std::size_t start = text.find_first_not_of(" \t\r\n");
     if (start != std::string_view::npos && (text[start] == '{' || text[start] == '[')) return content::kJson;

@@ -12,7 +12,7 @@ namespace content {
 inline constexpr std::string_view kEmpty = "empty";
 inline constexpr std::string_view kProject = "a Hairloom project";
 inline constexpr std::string_view kJson = "JSON";
-inline constexpr std::string_view kPng = "a PNG picture";
+inline constexpr std::string_view kPng = "a PNG image";
 inline constexpr std::string_view kFrames = "a record of frames";
 }  // namespace content
 

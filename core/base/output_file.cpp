@@ -158,10 +158,6 @@ Status OutputFile::tryOut() {
     return {};
 }
 
-bool OutputFile::isRegular() const {
-    return impl_->temporary.has_value();
-}
-
 Status OutputFile::write(std::span<const std::byte> bytes) {
     if (impl_->beginning.size() < kContentKindBytes) {
         const auto more = bytes.first(std::min(bytes.size(), kContentKindBytes - impl_->beginning.size()));

@@ -51,9 +51,6 @@ class OutputFile {
     /// Errors: the disk takes nothing. What is tried is no content: such a file is not to be finished.
     Status tryOut();
 
-    /// False for a device or a FIFO, which cannot be read back.
-    bool isRegular() const;
-
   private:
     struct Impl;
     explicit OutputFile(std::unique_ptr<Impl> impl);

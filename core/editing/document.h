@@ -46,7 +46,6 @@ class Document {
     const Groom& groom() const { return model_.groom; }
     const History& history() const { return history_; }
     void setHistoryLimit(std::size_t bytes) { history_.setLimit(bytes); }
-    void setClipNames(std::vector<std::string> names) { model_.clipNames = std::move(names); }
 
     /// Called after every change, in the order of subscription. Observers must not change the document.
     using Observer = std::function<void(const Change&)>;

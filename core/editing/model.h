@@ -68,7 +68,6 @@ struct Change {
 /// The state that commands exchange parts of. What a project saves is in the groom.
 struct Model {
     Groom groom;
-    std::vector<std::string> clipNames;  ///< animations of the character file; not saved, they are its own
     /// What the operators made last; null where nobody wants it kept.
     std::shared_ptr<StackCache> stackCache = nullptr;
 };

@@ -33,7 +33,6 @@ class View {
     Ray rayAt(const Vec2f& px) const;
     /// Width in metres of one pixel at a depth.
     float metresPerPixel(float depth) const;
-    const Vec3f& forward_ss() const { return forward_; }  ///< unit length
     const Vec2f& size_px() const { return size_; }
 
   private:

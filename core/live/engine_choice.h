@@ -22,7 +22,7 @@ std::string_view engineName(EngineKind kind);
 
 struct EngineChoice {
     EngineKind kind = EngineKind::cpu;
-    std::string why;  ///< "0.3 ms a frame on NVIDIA H100, 4.1 on the CPU"
+    std::string why;  ///< "0.3 ms per frame on NVIDIA H100, 4.1 on the CPU"
 
     bool operator==(const EngineChoice&) const = default;
 };

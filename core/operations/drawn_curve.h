@@ -40,7 +40,6 @@ class CurveLine {
     };
     Nearest nearest(const Vec3f& to) const;
     std::span<const Vec3f> points() const { return points_; }
-    float arcOf(std::size_t point) const { return arcs_[point]; }
 
   private:
     std::size_t segmentAt(float arc) const;

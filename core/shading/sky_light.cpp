@@ -62,20 +62,6 @@ SkyMoments momentsAt(const DualScattering& model, const AzimuthalMoments& azimut
 
 }  // namespace
 
-Vec3d skyLight(const SkyMoments& moments, const std::array<SlowLight, 3>& light, const Vec3d& along,
-               const Vec3d& across) {
-    Vec3d sum;
-    for (int c = 0; c < 3; ++c) {
-        const SlowLight& l = light[static_cast<std::size_t>(c)];
-        const double tt = along.dot(l.band2 * along), ff = across.dot(l.band2 * across);
-        const double tf = along.dot(l.band2 * across);
-        sum[c] = moments.even[c] * l.even + moments.along[c] * l.band1.dot(along) +
-                 moments.across[c] * l.band1.dot(across) + moments.alongAlong[c] * tt +
-                 moments.acrossAcross[c] * (ff + 0.5 * tt) + 2 * moments.alongAcross[c] * tf;
-    }
-    return sum;
-}
-
 Table bakeSky(const DualScattering& model, std::uint32_t size) {
     const AzimuthalMoments azimuthal(model);
     Table table{size, 7, std::vector<float>(std::size_t{4} * size * 7)};

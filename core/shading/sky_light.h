@@ -21,15 +21,6 @@ struct SkyMoments {
     Vec3d third = Vec3d::Zero();
 };
 
-/// Of light e + b·d + dᵀQd, one channel's.
-struct SlowLight {
-    double even = 0;
-    Vec3d band1 = Vec3d::Zero();
-    Eigen::Matrix3d band2 = Eigen::Matrix3d::Zero();
-};
-Vec3d skyLight(const SkyMoments& moments, const std::array<SlowLight, 3>& light, const Vec3d& along,
-               const Vec3d& across);
-
 /// The moments over (sin θ_o + 1)/2: a row each, in the order of SkyMoments.
 Table bakeSky(const DualScattering& model, std::uint32_t size = 32);
 

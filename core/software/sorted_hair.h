@@ -18,7 +18,6 @@ class SortedHair {
         : raster_(raster), stop_(std::move(stop)) {}
 
     void add(const RibbonBatch& batch) { batches_.push_back(batch); }
-    std::size_t batchCount() const { return batches_.size(); }
     bool found() const { return tiles_ != nullptr; }
 
     /// Looks for the fragments. `nearest`: depths of what hides hair as bits, `samples` a pixel. Writes into

@@ -15,7 +15,7 @@ namespace hairloom::software {
 using Stop = std::shared_ptr<const std::atomic<bool>>;
 
 /// Error of a command list that a stop has cut short.
-inline constexpr std::string_view kDropped = "nobody waits for this picture";
+inline constexpr std::string_view kDropped = "nobody waits for this image";
 
 inline bool isAsked(const Stop& stop) {
     return stop != nullptr && stop->load(std::memory_order_relaxed);

@@ -102,8 +102,8 @@ void HardCaseRun::inspect() {
     if (const std::string problem = engine_->problem(); !problem.empty()) expect(problem, "", 1.0, 0.0);
     const bool held = settings().lengthMethod == runtime::LengthMethod::constraint;
     const double stretch = held ? 0.01 : 0.48;
-    const double broken = static_cast<double>(m.nanCount) +
-                          (restoredAllowed_ ? 0.0 : static_cast<double>(engine_->lastStep().restoredStrands));
+    const double broken =
+        static_cast<double>(m.nanCount) + static_cast<double>(engine_->lastStep().restoredStrands);
     expect("points or strands lost", "", broken, 0.0);
     expect("stretch", "%", 100.0 * m.maxStretch, 100.0 * stretch);
     if (watchingSpheres_) expect("penetration", "mm", 1000.0 * m.maxPenetration, kMaxPenetration);

@@ -59,8 +59,6 @@ class HardCaseRun {
     void disclaim(const std::string& reason) {
         if (limit_.empty()) limit_ = reason;
     }
-    /// Strands that are put back to rest are part of the case.
-    void allowRestored(bool on) { restoredAllowed_ = on; }
 
     /// Another threshold.
     void expect(const std::string& what, const std::string& unit, double worst, double threshold);
@@ -97,7 +95,6 @@ class HardCaseRun {
     double maxEnergy_ = 0.0;  ///< kinetic, while there was a source
     bool watchingSpheres_ = false;
     bool sourceEnded_ = false;
-    bool restoredAllowed_ = false;
 };
 
 }  // namespace hairloom

@@ -98,9 +98,4 @@ void Preferences::addRecentFile(const QString& path) {
     Q_EMIT recentFilesChanged();
 }
 
-void Preferences::clearRecentFiles() {
-    QSettings().remove(kRecent);
-    Q_EMIT recentFilesChanged();
-}
-
 }  // namespace hairloom::editor

@@ -51,7 +51,6 @@ class Preferences : public QObject {
     /// The most recent first; those that are gone are left out.
     QStringList recentFiles() const;
     void addRecentFile(const QString& path);
-    void clearRecentFiles();
 
   Q_SIGNALS:
     void changed();

@@ -86,8 +86,6 @@ class Viewport : public QWidget {
     void setPreviewDensity(float share);
     float previewDensity() const { return previewDensity_; }
     void setHeadShown(bool on);
-    bool isHairShown() const { return showHair_; }
-    bool isHeadShown() const { return showHead_; }
     void setLightTurn(float degrees);
     float lightTurn() const { return lightTurn_; }
     void setExposure(float factor);
@@ -100,7 +98,6 @@ class Viewport : public QWidget {
     float lightScale() const { return lightScale_; }
     float environment() const { return environment_; }
     void setTurntable(bool on);
-    bool hasTurntable() const { return turntable_.isActive(); }
     void look(render::View view);
     void setOrthographic(bool on);
     void frameAll();

@@ -131,7 +131,6 @@ class Instance {
     std::uint64_t stateOf(bool hairs) const { return 2 * changes_ + (hairs ? 1 : 0); }
     void readGuidesInto(Reading& reading);
     void readHairsInto(Reading& reading);
-    void keepShown(Reading& reading);
     std::size_t hairPoints() const;
 
     void grow(const hl_reserve& wanted);

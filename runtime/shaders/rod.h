@@ -34,11 +34,6 @@ ROD_FUNCTION Real4 rodOfStrain(Real3 strain) {
     return real4(v, maximum(negMad(dot(v, v), ROD_NUMBER(0.5), ROD_NUMBER(1.0)), ROD_NUMBER(0.0)));
 }
 
-ROD_FUNCTION Real4 rodNormalized(Real4 q) {
-    const Real scale = ROD_NUMBER(1.0) / root(mad(q.w, q.w, dot(xyz(q), xyz(q))));
-    return real4(xyz(q) * scale, q.w * scale);
-}
-
 /// 1/(1 + |u|²/4).
 ROD_FUNCTION Real rodInverseOfTurn(Real3 u) {
     return ROD_NUMBER(1.0) / mad(dot(u, u), ROD_NUMBER(0.25), ROD_NUMBER(1.0));

@@ -54,8 +54,7 @@ TEST_F(OutputFileTest, AnotherKindOfFileIsReplacedOnlyByForce) {
     put("a.png", "\x89PNG\r\n\x1a\n....");
     put("a.json", "{}");
     put("empty", "");
-    EXPECT_THAT(writeError("a.png", "plain text"),
-                HasSubstr("is a PNG picture and would be replaced by text"));
+    EXPECT_THAT(writeError("a.png", "plain text"), HasSubstr("is a PNG image and would be replaced by text"));
     EXPECT_THAT(writeError("a.json", "plain text"), HasSubstr("is JSON"));
     EXPECT_EQ(get("a.png"), "\x89PNG\r\n\x1a\n....");
     EXPECT_EQ(writeError("a.json", "[1]"), "");
@@ -78,7 +77,7 @@ TEST_F(OutputFileTest, KindsAreToldFromTheContent) {
     EXPECT_EQ(kind("# made by hand\n\nv 1 2 3\n"), "an OBJ file");
     EXPECT_EQ(kind("# Notes\n\nvery short\n"), "text");
     EXPECT_EQ(kind("  {\"a\": 1}"), content::kJson);
-    EXPECT_EQ(kind("RIFF\1\2\3\4WEBPVP8 "), "a WebP picture");
+    EXPECT_EQ(kind("RIFF\1\2\3\4WEBPVP8 "), "a WebP image");
     EXPECT_EQ(kind("\1\2\3"), "of no known kind");
 }
 

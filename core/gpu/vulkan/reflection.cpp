@@ -102,20 +102,6 @@ ShaderRegister toRegister(std::uint32_t binding) {
     return {Binding::Kind::ConstantBuffer, binding - kConstantShift};
 }
 
-std::uint32_t toBinding(const ShaderRegister& shaderRegister) {
-    switch (shaderRegister.kind) {
-        case Binding::Kind::ConstantBuffer:
-            return kConstantShift + shaderRegister.slot;
-        case Binding::Kind::ShaderResource:
-            return kReadShift + shaderRegister.slot;
-        case Binding::Kind::Sampler:
-            return kSamplerShift + shaderRegister.slot;
-        case Binding::Kind::UnorderedAccess:
-            break;
-    }
-    return kWriteShift + shaderRegister.slot;
-}
-
 Result<std::vector<ReflectedBinding>> reflect(std::span<const std::uint32_t> words,
                                               VkShaderStageFlags stage) {
     const auto read = readModule(words);

@@ -24,7 +24,6 @@ struct ReflectedBinding {
 };
 
 ShaderRegister toRegister(std::uint32_t binding);
-std::uint32_t toBinding(const ShaderRegister& shaderRegister);
 
 /// Errors: not SPIR-V, or a kind of resource that the interface does not have. Does not judge validity
 /// otherwise.
