@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "cli/documents.h"
 #include "cli/head_options.h"
@@ -12,11 +16,14 @@
 #include "core/base/stopwatch.h"
 #include "core/documents/head_import.h"
 #include "core/documents/mask_image.h"
+#include "core/editing/document.h"
 #include "core/editing/sphere_parts.h"
+#include "core/editing/stack_commands.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/groom.h"
+#include "core/operations/curl_class.h"
 #include "importers/mesh_format.h"
 #include "importers/scene.h"
 
@@ -30,7 +37,8 @@ struct CreateOptions {
     double density = 0;
     std::string placement = "poissonDisk";
     float length = 0.15f;
-    std::uint32_t points = 16;
+    std::optional<std::uint32_t> points;
+    std::string curl;
     std::uint64_t seed = 0;
     HeadOptions head;
     std::string scalpMesh;
@@ -40,6 +48,13 @@ struct CreateOptions {
     std::string output;
 };
 
+/// As many as its curls need, where none are given.
+std::uint32_t pointsOf(const CreateOptions& options) {
+    const CurlClass* const curl = findCurlClass(options.curl);
+    const std::uint32_t needed = curl ? pointsForCurl(*curl, options.length) : 0;
+    return options.points.value_or(std::max(PlacementSettings().points, needed));
+}
+
 /// The settings as a project keeps them, so that an editor goes on from them.
 PlacementSettings settingsOf(const CreateOptions& options, std::size_t placed) {
     PlacementSettings settings;
@@ -48,7 +63,7 @@ PlacementSettings settingsOf(const CreateOptions& options, std::size_t placed) {
     settings.count = static_cast<std::uint32_t>(placed);
     settings.densityPerCm2 = static_cast<float>(options.density);
     settings.length = options.length;
-    settings.points = options.points;
+    settings.points = pointsOf(options);
     settings.seed = options.seed;
     return settings;
 }
@@ -111,7 +126,7 @@ Result<Report> create(const CreateOptions& options) {
     const double maskedM2 = maskedArea(*mesh, *faces, mask);
     const auto placement = place(*mesh, *faces, options, mask);
     if (!placement) return tl::unexpected(placement.error());
-    auto groom = growStraight(mesh, std::move(*faces), placement->roots, options.length, options.points);
+    auto groom = growStraight(mesh, std::move(*faces), placement->roots, options.length, pointsOf(options));
     if (!groom) return tl::unexpected(groom.error());
     groom->scalpExpression = options.scalp;
     groom->spheres = head->colliders.spheres;
@@ -121,6 +136,13 @@ Result<Report> create(const CreateOptions& options) {
     groom->interpolation.seed = options.seed;
     groom->placement = settingsOf(options, placement->roots.size());
     groom->scalpDensity = std::move(mask);
+    if (const CurlClass* curl = findCurlClass(options.curl)) {
+        editing::Document document(std::move(*groom));
+        auto curled = editing::setOperators(document.model(), operatorsOf(*curl), "Curl");
+        if (!curled) return tl::unexpected(curled.error());
+        if (*curled) document.perform(std::move(*curled));
+        *groom = document.groom();
+    }
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
 
     Report report;
@@ -144,6 +166,12 @@ Result<Report> create(const CreateOptions& options) {
     return report;
 }
 
+std::string curlHelp() {
+    std::string help = "Curl of the strands, by operators that stay in the stack.";
+    for (const CurlClass& curl : curlClasses()) help += fmt::format(" {}: {}.", curl.name, curl.description);
+    return help;
+}
+
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<CreateOptions>();
     job.add_option("--mesh", options->mesh, "Head mesh: " + labelsOf(meshFormats()))->required();
@@ -162,7 +190,9 @@ JobRun declare(CLI::App& job) {
                    "Root density: a PNG at the UVs of the mesh, or a text file with a number in [0, 1] per "
                    "vertex of the mesh file");
     job.add_option("--length", options->length, "Strand length, metres")->check(CLI::Range(1e-4, 10.0));
-    job.add_option("--points", options->points, "Points per strand")->check(CLI::Range(2, 1024));
+    job.add_option("--points", options->points, "Points per strand (default: 16, or as many as --curl needs)")
+        ->check(CLI::Range(2, 1024));
+    job.add_option("--curl", options->curl, curlHelp())->check(CLI::IsMember(curlNames()));
     job.add_option("--seed", options->seed, "Random seed");
     addHeadOptions(job, options->head);
     job.add_option("--scalp-mesh", options->scalpMesh,

@@ -18,6 +18,7 @@
 #include "core/editing/stack_commands.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
+#include "core/operations/curl_class.h"
 #include "core/operations/mask.h"
 #include "core/operations/stack_file.h"
 
@@ -28,6 +29,7 @@ struct StackOptions {
     std::string input;
     std::string from;
     std::string add;
+    std::string curl;
     std::string keep;
     std::string layer;  ///< name; empty: all
     std::string maskImage;
@@ -95,6 +97,12 @@ Status perform(const StackOptions& options, editing::Document& document, Filled&
         auto operators = loadOperators(options.from);
         if (!operators) return tl::unexpected(operators.error());
         if (auto done = step(editing::setOperators(model, std::move(*operators), "Operators"), options.from);
+            !done)
+            return done;
+    }
+    if (const CurlClass* curl = findCurlClass(options.curl)) {
+        if (auto done = step(editing::setOperators(model, withCurl(model.groom.operators, *curl), "Curl"),
+                             options.input);
             !done)
             return done;
     }
@@ -172,6 +180,10 @@ JobRun declare(CLI::App& job) {
     auto* bake =
         job.add_flag("--bake", options->bake, "Bake: apply all operators permanently and clear the stack");
     auto* add = job.add_option("--add", options->add, "Adds the operators of such a file or of a preset");
+    job.add_option("--curl", options->curl,
+                   "Adds the operators of a class of curl, in place of those of another: see create --curl")
+        ->check(CLI::IsMember(curlNames()))
+        ->needs(output);
     job.add_option("--at", options->at,
                    "Position of added operators: before this one, from 0 (default: at the end)")
         ->needs(add);

@@ -18,6 +18,7 @@
 #include "core/editing/document.h"
 #include "core/editing/mask_commands.h"
 #include "core/editing/stack_commands.h"
+#include "core/operations/curl_class.h"
 #include "core/operations/stack_file.h"
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"
@@ -168,7 +169,7 @@ class OperatorsPanel : public QWidget {
     QWidget* makePresetsButton() {
         auto* presets = new QPushButton("Presets");
         presets->setObjectName("operatorPresets");
-        presets->setToolTip("Operators that you saved for any project");
+        presets->setToolTip("Operators for a class of curl, and those that you saved for any project");
         auto* menu = new QMenu(presets);
         connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillPresets(*menu); });
         fillPresets(*menu);
@@ -200,6 +201,18 @@ class OperatorsPanel : public QWidget {
     }
     void fillPresets(QMenu& menu) {
         menu.clear();
+        QMenu* const curls = menu.addMenu("Curl");
+        for (const CurlClass& curl : curlClasses()) {
+            QAction* const action = curls->addAction(editor::labelOf(QString(curl.name)));
+            action->setToolTip(QString("Strands of this class: %1").arg(curl.description));
+            connect(action, &QAction::triggered, this, [this, &curl] {
+                auto stack = withCurl(operators(), curl);
+                const std::size_t last = stack.empty() ? kNone : stack.size() - 1;
+                perform(editing::setOperators(model(), std::move(stack), std::string("Curl ") + curl.name),
+                        last);
+            });
+        }
+        curls->setToolTipsVisible(true);
         for (const std::string& name : stackPresets(folderOfStacks())) {
             auto* action = new QWidgetAction(&menu);
             action->setText(QString::fromStdString(name));

@@ -13,9 +13,11 @@
 #include "core/editing/document.h"
 #include "core/editing/place.h"
 #include "core/editing/selection_commands.h"
+#include "core/editing/stack_commands.h"
 #include "core/editing/surface_disc.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
+#include "core/operations/curl_class.h"
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
@@ -155,12 +157,23 @@ class PlacePanel : public QWidget {
           tasks_(tasks),
           messages_(messages),
           viewport_(viewport),
+          curl_(new QComboBox),
           count_(new QLabel),
           note_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
         layout->addWidget(new FieldForm(document, preferences, placementFields(), &prices));
+        curl_->setObjectName("placeCurl");
+        curl_->setToolTip(
+            "Curl of new strands, by operators that stay in the stack. None leaves the stack as it is. Tight "
+            "curls "
+            "need many points per strand");
+        curl_->addItem("None");
+        for (const CurlClass& curl : curlClasses()) curl_->addItem(labelOf(QString(curl.name)));
+        auto* shape = new QFormLayout;
+        shape->addRow("Curl", curl_);
+        layout->addLayout(shape);
         auto* preview = new QPushButton("Preview roots");
         preview->setObjectName("placePreview");
         preview->setCheckable(true);
@@ -284,13 +297,32 @@ class PlacePanel : public QWidget {
                 }
                 document_.perform(std::move(*command));
                 messages_.say(QString("%L1 strands placed").arg(document_.groom().strandCount()));
+                curl();
             });
+    }
+
+    /// Another step: the operators of the class that is chosen.
+    void curl() {
+        const int chosen = curl_->currentIndex();
+        if (chosen <= 0) return;
+        const CurlClass& curl = curlClasses()[static_cast<std::size_t>(chosen) - 1];
+        const Groom& groom = document_.groom();
+        auto command = editing::setOperators(document_.editing().model(), withCurl(groom.operators, curl),
+                                             std::string("Curl ") + curl.name);
+        if (!command) return messages_.warn(errorText(command.error()));
+        if (*command) document_.perform(std::move(*command));
+        const std::uint32_t needed = pointsForCurl(curl, groom.placement.length);
+        if (groom.placement.points < needed)
+            messages_.warn(QString("%1 points per strand are too few for these curls: %2 make them round")
+                               .arg(groom.placement.points)
+                               .arg(needed));
     }
 
     QtDocument& document_;
     Tasks& tasks_;
     Messages& messages_;
     Viewport& viewport_;
+    QComboBox* curl_;
     QLabel* count_;
     QLabel* note_;
     Roots roots_;

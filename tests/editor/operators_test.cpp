@@ -191,6 +191,29 @@ TEST_F(OperatorsTest, AStackIsKeptWithAPictureAndUsedAgain) {
     undoAll();
 }
 
+TEST_F(OperatorsTest, ClassesOfCurlArePresets) {
+    auto* presets = window->panel("operators")->findChild<QPushButton*>("operatorPresets");
+    ASSERT_TRUE(presets);
+    const auto curl = [&](const QString& name) {
+        Q_EMIT presets->menu()->aboutToShow();
+        for (QAction* menu : presets->menu()->actions()) {
+            if (menu->text() != "Curl") continue;
+            for (QAction* action : menu->menu()->actions())
+                if (action->text() == name) return action->trigger();
+        }
+        ADD_FAILURE() << name.toStdString();
+    };
+    const std::size_t before = groom().operators.size();
+    curl("Curly");
+    EXPECT_EQ(groom().operators.size(), before + 3);
+    curl("Woolly");
+    EXPECT_EQ(groom().operators.size(), before + 2) << "in place of the other class";
+    expectEvaluated();
+    curl("Straight");
+    EXPECT_EQ(groom().operators.size(), before);
+    undoAll();
+}
+
 TEST_F(OperatorsTest, AMaskLimitsAnOperatorAndItsRampIsDrawn) {
     choose(kClump);
     const auto whole = hash();

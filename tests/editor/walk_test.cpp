@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From an empty window to an exported, moving hairstyle, as a person goes: the walk that docs/manual.md
 // shows.
+#include <QComboBox>
 #include <QDir>
 #include <QPushButton>
 
@@ -69,6 +70,17 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     finishWork();
     ASSERT_EQ(groom().strandCount(), 800u) << window->statusLine().message().toStdString();
     expectSound();
+    // With a curl, which the next placing of straight hair takes away.
+    find<QComboBox>("placeCurl")->setCurrentText("Wavy");
+    find<QPushButton>("place")->click();
+    finishWork();
+    ASSERT_EQ(groom().operators.size(), 1u);
+    EXPECT_EQ(groom().operators[0].op, "wave");
+    expectSound();
+    find<QComboBox>("placeCurl")->setCurrentText("Straight");
+    find<QPushButton>("place")->click();
+    finishWork();
+    EXPECT_TRUE(groom().operators.empty());
     // Grooming: comb down behind, cut the ends.
     trigger("tool.comb");
     auto& comb = dynamic_cast<BrushTool&>(*parts().tools.find("comb"));
