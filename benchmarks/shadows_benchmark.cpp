@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far shadow maps of hair are from fibres counted on the CPU, by kind, layers and resolution; and those
-// of the head on hair from rays. Errors, not times.
+// of the head on hair from rays; with memory and times of the former.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "benchmarks/benchmark.h"
 #include "core/charts/plot.h"
 #include "core/cost/head_scene.h"
+#include "core/render/opacity_layers.h"
+#include "core/render/picture.h"
+#include "core/render/plan.h"
 #include "core/render/shadow_truth.h"
 
 namespace hairloom::benchmarks {
@@ -18,32 +22,67 @@ namespace {
 
 using render::Shadows;
 
+constexpr std::uint32_t kTimed = 1024;  // pixels
+
 struct Kind {
-    const char* name;
-    Shadows shadows;
-    render::DeepLayers layers;
-    render::ShadowFilter filter = render::ShadowFilter::three;
+    std::string name;
+    render::RenderOptions options;
+    std::optional<render::DeepLayers> layers = {};  ///< in place of those of the options
+    bool inFigure = true;
 };
-// Ends of layers as parts of the depth that hair takes up. Layers that end where the next begins are none.
-constexpr Kind kKinds[] = {
-    {"deep opacity, 1 layer", Shadows::deepOpacity, {0.9998f, 0.9999f, 1.0f}},
-    {"deep opacity, 2 layers (0.1, 1)", Shadows::deepOpacity, {0.1f, 0.9999f, 1.0f}},
-    {"deep opacity, 3 layers (0.02, 0.08, 1)", Shadows::deepOpacity, {0.02f, 0.08f, 1.0f}},
-    {"deep opacity, 3 layers (0.04, 0.14, 1)", Shadows::deepOpacity, {0.04f, 0.14f, 1.0f}},
-    {"deep opacity, 3 layers (0.08, 0.25, 1)", Shadows::deepOpacity, {0.08f, 0.25f, 1.0f}},
-    {"deep opacity, 3 layers (0.15, 0.4, 1)", Shadows::deepOpacity, {0.15f, 0.4f, 1.0f}},
-    {"deep opacity, 3 equal layers", Shadows::deepOpacity, {0.3333f, 0.6667f, 1.0f}},
-    {"deep opacity, 3 layers (0.04, 0.14, 1), no filter",
-     Shadows::deepOpacity,
-     {0.04f, 0.14f, 1.0f},
-     render::ShadowFilter::off},
-    {"deep opacity, 3 layers (0.04, 0.14, 1), 5 × 5 texels",
-     Shadows::deepOpacity,
-     {0.04f, 0.14f, 1.0f},
-     render::ShadowFilter::five},
-    {"opacity maps, 4 equal layers", Shadows::opacityMaps, {}},
-    {"absorption by depth", Shadows::absorption, {}},
-};
+
+Kind deepOpacity(std::string name, const render::DeepLayers& layers,
+                 render::ShadowFilter filter = render::ShadowFilter::three) {
+    Kind kind{std::move(name), {}, layers};
+    kind.options.shadowFilter = filter;
+    return kind;
+}
+
+Kind layered(std::uint32_t layers, render::LayerEnds ends, const char* named, float growth = 2) {
+    Kind kind{fmt::format("deep opacity, {} layers, {}", layers, named), {}, {}};
+    kind.options.shadowLayers = layers;
+    kind.options.layerEnds = ends;
+    kind.options.layerGrowth = growth;
+    return kind;
+}
+
+Kind sliced(std::uint32_t slices) {
+    Kind kind{fmt::format("opacity maps, {} slices", slices), {}, {}};
+    kind.options.shadows = Shadows::opacityMaps;
+    kind.options.shadowSlices = slices;
+    return kind;
+}
+
+/// Ends of layers as parts of the depth that hair takes up. Layers that end where the next begins are none.
+std::vector<Kind> kinds() {
+    using render::LayerEnds, render::ShadowFilter;
+    std::vector<Kind> all{deepOpacity("deep opacity, 1 layer", {0.9998f, 0.9999f, 1.0f}),
+                          deepOpacity("deep opacity, 2 layers (0.1, 1)", {0.1f, 0.9999f, 1.0f}),
+                          deepOpacity("deep opacity, 3 layers (0.02, 0.08, 1)", {0.02f, 0.08f, 1.0f}),
+                          deepOpacity("deep opacity, 3 layers (0.04, 0.14, 1)", {0.04f, 0.14f, 1.0f}),
+                          deepOpacity("deep opacity, 3 layers (0.08, 0.25, 1)", {0.08f, 0.25f, 1.0f}),
+                          deepOpacity("deep opacity, 3 layers (0.15, 0.4, 1)", {0.15f, 0.4f, 1.0f}),
+                          layered(3, LayerEnds::linear, "linear"),
+                          deepOpacity("deep opacity, 3 layers (0.04, 0.14, 1), no filter",
+                                      {0.04f, 0.14f, 1.0f}, ShadowFilter::off),
+                          deepOpacity("deep opacity, 3 layers (0.04, 0.14, 1), 5 × 5 texels",
+                                      {0.04f, 0.14f, 1.0f}, ShadowFilter::five)};
+    for (const std::uint32_t layers : {7u, 11u}) {
+        all.push_back(layered(layers, LayerEnds::early, "early"));
+        all.push_back(layered(layers, LayerEnds::linear, "linear"));
+        all.push_back(layered(layers, LayerEnds::growing, "growing by 1.5", 1.5f));
+        all.push_back(layered(layers, LayerEnds::growing, "growing by 2", 2));
+    }
+    for (Kind& kind : all) {
+        const bool isUsual = kind.layers == render::DeepLayers{0.04f, 0.14f, 1.0f};
+        kind.inFigure = kind.layers ? isUsual : kind.options.layerEnds != LayerEnds::growing;
+    }
+    for (const std::uint32_t slices : {4u, 8u, 16u}) all.push_back(sliced(slices));
+    Kind absorption{"absorption by depth", {}, {}};
+    absorption.options.shadows = Shadows::absorption;
+    all.push_back(absorption);
+    return all;
+}
 
 struct HeadKind {
     const char* name;
@@ -57,7 +96,12 @@ constexpr HeadKind kHeadKinds[] = {{"test of depth", 0},
 
 struct ShadowRow {
     std::string name;
-    std::vector<double> errors;  ///< root mean square of the transmittance, by resolution
+    /// Root mean square of the transmittance, by resolution; not a number where the device has no buffer for
+    /// it.
+    std::vector<double> errors;
+    bool inFigure = true;
+    std::uint32_t bytes = 0;  ///< of a texel
+    double milliseconds = 0;  ///< that maps and what looks them up take at kTimed²; 0: not measured
 };
 
 struct ShadowBench {
@@ -105,21 +149,58 @@ Status measureHead(gpu::Device& device, render::RenderScene scene, ShadowBench& 
     return {};
 }
 
+/// The first hair's depth, and the layers.
+std::uint32_t bytesOf(const render::RenderOptions& options) {
+    const bool first = options.shadows != Shadows::opacityMaps;
+    return 4 * ((first ? 1 : 0) + render::opacityWords(options.shadows, render::layerCount(options)));
+}
+
+/// Of the passes that make maps and that look them up, for a frame; median.
+Result<double> timeOf(gpu::Device& device, const render::RenderScene& scene, render::RenderOptions options,
+                      std::size_t repeats) {
+    options.width = options.height = kTimed;
+    options.shadowResolution = kTimed;
+    options.frames = 1;
+    std::vector<double> times;
+    for (std::size_t i = 0; i <= repeats; ++i) {
+        const auto picture = render::renderPicture(device, scene, options);
+        if (!picture) return tl::unexpected(picture.error());
+        double sum = 0;
+        for (const gpu::PassTime& pass : picture->passes) {
+            for (const render::Pass one :
+                 {render::Pass::firstHair, render::Pass::opacity, render::Pass::shade})
+                if (pass.name == render::passName(one)) sum += pass.milliseconds;
+        }
+        if (i > 0) times.push_back(sum);  // the first compiles
+    }
+    std::ranges::sort(times);
+    return times[times.size() / 2];
+}
+
 Report rowsOf(const std::vector<ShadowRow>& all) {
     Report rows = Report::array();
-    for (const ShadowRow& row : all) rows.push_back(Report{{"name", row.name}, {"errors", row.errors}});
+    for (const ShadowRow& row : all) {
+        Report one{{"name", row.name}, {"errors", row.errors}};
+        if (row.bytes > 0) one["bytes_per_texel"] = row.bytes;
+        if (row.bytes > 0) one["ms"] = row.milliseconds;
+        rows.push_back(std::move(one));
+    }
     return rows;
 }
 
 std::string tableOf(const std::vector<std::uint32_t>& resolutions, const std::vector<ShadowRow>& rows) {
     std::string text = "| map |";
     for (const std::uint32_t resolution : resolutions) text += fmt::format(" {}² |", resolution);
+    const bool priced = !rows.empty() && rows.front().bytes > 0;
+    if (priced) text += " bytes a texel | ms |";
     text += "\n|---|";
-    for (std::size_t i = 0; i < resolutions.size(); ++i) text += "---|";
+    for (std::size_t i = 0; i < resolutions.size() + (priced ? 2 : 0); ++i) text += "---|";
     text += "\n";
     for (const ShadowRow& row : rows) {
         text += fmt::format("| {} |", row.name);
-        for (const double error : row.errors) text += fmt::format(" {:.3f} |", error);
+        for (const double error : row.errors)
+            text += std::isnan(error) ? " – |" : fmt::format(" {:.3f} |", error);
+        if (priced) text += fmt::format(" {} | {:.3f} |", row.bytes, row.milliseconds);
         text += "\n";
     }
     return text;
@@ -142,16 +223,28 @@ Result<ShadowBench> measureAll(const Options& options) {
     const render::ShadowCases cases = countFibres(scene, bench.points, 8);
     bench.fibres = std::accumulate(cases.counted.begin(), cases.counted.end(), 0.0) /
                    static_cast<double>(cases.counted.size());
-    for (const Kind& kind : kKinds) {
+    const std::vector<Kind> all = kinds();
+    for (const Kind& kind : all) {
         ShadowRow row{kind.name, {}};
+        render::RenderOptions picture = kind.options;
         for (const std::uint32_t resolution : bench.resolutions) {
-            const auto error =
-                shadowError(**device, scene, cases, kind.shadows, resolution, kind.layers, kind.filter);
+            picture.shadowResolution = resolution;
+            const bool has = render::layerCount(picture) > 0;
+            if (has && render::layersThatFit(picture, (*device)->info()) < render::layerCount(picture)) {
+                row.errors.push_back(std::numeric_limits<double>::quiet_NaN());
+                continue;
+            }
+            const auto error = shadowError(**device, scene, cases, picture, kind.layers);
             if (!error) return tl::unexpected(error.error());
             row.errors.push_back(*error);
         }
+        const auto time = timeOf(**device, scene, kind.options, options.quick ? 1 : 7);
+        if (!time) return tl::unexpected(time.error());
+        row.inFigure = kind.inFigure;
+        row.milliseconds = *time;
+        row.bytes = bytesOf(kind.options);
         bench.rows.push_back(std::move(row));
-        if (options.progress) options.progress("shadow maps", bench.rows.size(), std::size(kKinds));
+        if (options.progress) options.progress("shadow maps", bench.rows.size(), all.size());
     }
     if (auto measured = measureHead(**device, scene, bench); !measured)
         return tl::unexpected(measured.error());
@@ -169,9 +262,11 @@ std::string markdownOf(const ShadowBench& bench, const std::string& command) {
     std::string text = fmt::format(
         "Root mean square error of the transmittance exp(−n/2) of {} points in {} hairs, against n counted "
         "along beams of\n"
-        "{:.0f} mm across (mean n {:.2f}); maps of one RGBA16 texture but absorption, which has none. {}. "
-        "`{}`\n\n",
-        bench.points, bench.hairs, 2000 * render::kShadowFootprint, bench.fibres, bench.device, command);
+        "{:.0f} mm across (mean n {:.2f}); bytes of a texel are those of the first hair's depth and of its "
+        "layers, 16 bits each.\n"
+        "Times are of maps of {}², of the same hair, and of looking them up. {}. `{}`\n\n",
+        bench.points, bench.hairs, 2000 * render::kShadowFootprint, bench.fibres, kTimed, bench.device,
+        command);
     text += tableOf(bench.resolutions, bench.rows);
     text += fmt::format(
         "\nThe head on hair: root mean square error of what it leaves of the light, against rays ({:.0f} % "
@@ -190,11 +285,14 @@ std::string figureOf(const ShadowBench& bench) {
     plot.x = {.title = "resolution along a side", .scale = Scale::Logarithmic, .ticks = ticksAt(sides)};
     plot.y = {.title = "error of the transmittance", .low = 0};
     for (const ShadowRow& row : bench.rows) {
+        if (!row.inFigure) continue;
         const bool isDeep = row.name.starts_with("deep");
         Series series{.name = row.name,
                       .marker = isDeep ? Marker::Circle : Marker::Square,
                       .line = isDeep ? LineStyle::Solid : LineStyle::Dashed};
-        for (std::size_t i = 0; i < sides.size(); ++i) series.points.push_back({sides[i], row.errors[i]});
+        for (std::size_t i = 0; i < sides.size(); ++i) {
+            if (!std::isnan(row.errors[i])) series.points.push_back({sides[i], row.errors[i]});
+        }
         plot.series.push_back(std::move(series));
     }
     return svg(plot);

@@ -8,6 +8,7 @@ namespace hairloom::cli {
 std::vector<Section> settingsSections() {
     return {{"simulation", "how hair moves", fieldRows<runtime::SimulationSettings>()},
             {"material", "how hair looks", fieldRows<HairMaterial>()},
+            {"shadows", "how hair shadows itself in images", fieldRows<ShadowSettings>()},
             {"interpolation", "how follow hairs come from guides", fieldRows<InterpolationSettings>()}};
 }
 

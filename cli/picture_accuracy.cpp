@@ -11,6 +11,7 @@
 #include "cli/progress.h"
 #include "cli/vectors.h"
 #include "core/live/picture_cost_report.h"
+#include "core/live/picture_shadows.h"
 #include "core/live/view_file.h"
 
 namespace hairloom::cli {
@@ -67,6 +68,7 @@ Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std:
     measuring.repeats = repeats;
     auto groom = openGroom(groomFile);
     if (!groom) return tl::unexpected(groom.error());
+    takeShadows(groom->shadows, measuring.view, measuring.picture);
     const auto gpu = GpuBackend::make(std::nullopt, options.device);
     if (!gpu) return tl::unexpected(gpu.error());
     measuring.mostHairs = options.hairs.value_or(mostHairsOn((*gpu)->device()));

@@ -12,6 +12,8 @@
 #include "cli/colour_options.h"
 #include "cli/error_report.h"
 #include "cli/vectors.h"
+#include "core/documents/look_presets.h"
+#include "core/live/picture_shadows.h"
 #include "core/live/shown.h"
 #include "core/render/aov.h"
 
@@ -37,6 +39,9 @@ const std::map<std::string, render::Shadows> kShadows{{"none", render::Shadows::
 const std::map<std::string, render::ShadowFilter> kShadowFilters{{"off", render::ShadowFilter::off},
                                                                  {"3x3", render::ShadowFilter::three},
                                                                  {"5x5", render::ShadowFilter::five}};
+const std::map<std::string, render::LayerEnds> kLayerEnds{{"early", render::LayerEnds::early},
+                                                          {"linear", render::LayerEnds::linear},
+                                                          {"growing", render::LayerEnds::growing}};
 const std::map<std::string, render::Ribbons> kRibbons{{"auto", render::Ribbons::automatic},
                                                       {"strip", render::Ribbons::strip},
                                                       {"tess", render::Ribbons::tessellated},
@@ -74,21 +79,28 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.filter = aa.filter;
     picture.temporal = options.temporal;
     picture.frames = aa.once || options.temporal ? 1 : options.passes;
-    picture.shadows = kShadows.at(options.shadow);
     picture.shadowLights = options.shadowLights;
-    picture.shadowResolution =
-        options.shadowResolution.value_or(view.shadowResolution.value_or(picture.shadowResolution));
-    picture.shadowFilter = options.shadowFilter.empty() ? view.shadowFilter.value_or(picture.shadowFilter)
-                                                        : kShadowFilters.at(options.shadowFilter);
     picture.subdivisions = options.subdivisions.value_or(view.subdivisions.value_or(picture.subdivisions));
-    picture.headAbsorption = options.headAbsorption.value_or(view.headAbsorption.value_or(0));
-    picture.shadowBlur = options.shadowBlur.value_or(view.shadowBlur.value_or(0));
     picture.ribbons = kRibbons.at(options.ribbons);
     picture.transparency = kTransparency.at(options.transparency);
     picture.detail = options.detail;
     picture.exposure = options.exposure;
     picture.surface = !options.aovs.empty();
     return picture;
+}
+
+void takeShadows(const RenderJobOptions& options, const ShadowSettings& project, const ViewFile& view,
+                 render::RenderOptions& picture) {
+    hairloom::takeShadows(project, view, picture);
+    if (!options.shadow.empty()) picture.shadows = kShadows.at(options.shadow);
+    if (!options.shadowFilter.empty()) picture.shadowFilter = kShadowFilters.at(options.shadowFilter);
+    if (!options.layerEnds.empty()) picture.layerEnds = kLayerEnds.at(options.layerEnds);
+    picture.shadowResolution = options.shadowResolution.value_or(picture.shadowResolution);
+    picture.shadowLayers = options.shadowLayers.value_or(picture.shadowLayers);
+    picture.shadowSlices = options.shadowSlices.value_or(picture.shadowSlices);
+    picture.layerGrowth = options.layerGrowth.value_or(picture.layerGrowth);
+    picture.headAbsorption = options.headAbsorption.value_or(picture.headAbsorption);
+    picture.shadowBlur = options.shadowBlur.value_or(picture.shadowBlur);
 }
 
 Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
@@ -144,6 +156,10 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         ->allow_extra_args(false);
     job.add_option("--material", options->material,
                    "Sample material (fire, tentacles, …) or JSON file of material fields to apply");
+    job.add_option(
+           "--look", options->look,
+           "Look of the Look panel to apply (default: the view's). --material and --shading override it")
+        ->check(CLI::IsMember(lookNames()));
     job.add_option("--shading", options->shading, "Shading model (default: the project's)")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
     auto* show = job.add_option("--show", options->show, showHelp())->check(CLI::IsMember(shownNames()));
@@ -156,28 +172,47 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         ->check(CLI::IsMember({"single", "dual"}));
     job.add_option(
            "--shadow", options->shadow,
-           "Hair shadows: deep opacity maps, absorption by depth, opacity maps at fixed depths, or none")
+           "Hair shadows: deep opacity maps, absorption by depth, opacity maps at fixed depths, or none "
+           "(default: the view's, or the project's)")
         ->check(CLI::IsMember(namesOf(kShadows)));
     job.add_option("--shadow-lights", options->shadowLights,
                    "Maximum number of lights with shadow maps. Area lights and bright parts of images are "
                    "split into this many")
         ->check(CLI::Range(std::size_t{1}, render::kMaxLights));
     job.add_option("--shadow-resolution", options->shadowResolution,
-                   "Width and height of each shadow map in pixels (default: the view's, or 1024)")
+                   "Width and height of each shadow map in pixels (default: the view's, or the project's)")
         ->check(CLI::Range(render::kMinShadowResolution, render::kMaxShadowResolution));
     job.add_option(
            "--shadow-filter", options->shadowFilter,
            "Texels of shadow maps that are averaged at each point of the hair (default: the view's, or "
-           "3x3)")
+           "the project's)")
         ->check(CLI::IsMember(namesOf(kShadowFilters)));
+    job.add_option("--shadow-layers", options->shadowLayers,
+                   "Layers of deep opacity maps (default: the view's, or the project's)")
+        ->check(CLI::Range(render::kMinShadowLayers, render::kMaxShadowLayers));
+    job.add_option(
+           "--layer-ends", options->layerEnds,
+           "Where layers end: early, most of them where hair begins, linear, evenly, or growing, each "
+           "--layer-growth times as wide as the one before (default: the view's, or the project's)")
+        ->check(CLI::IsMember(namesOf(kLayerEnds)));
+    job.add_option("--layer-growth", options->layerGrowth,
+                   "Ratio of the widths of layers that grow (default: the view's, or the project's)")
+        ->check(CLI::Range(1.0f, render::kMaxLayerGrowth));
+    job.add_option("--shadow-slices", options->shadowSlices,
+                   "Slices of opacity maps, evenly spaced (default: the view's, or the project's)")
+        ->check(CLI::Range(std::uint32_t{1}, render::kMaxShadowSlices));
     job.add_option("--subdivisions", options->subdivisions,
                    "Curve segments per segment of a strand (default: the view's, or 2)")
         ->check(CLI::Range(std::uint32_t{1}, render::kMaxSubdivisions));
     job.add_option("--head-absorption", options->headAbsorption,
-                   "Fades light on hair behind the head with depth, per metre. 0 blocks it")
+                   "Fades light on hair behind the head with depth, per metre. 0 blocks it (default: the "
+                   "view's, or the "
+                   "project's)")
         ->check(CLI::Range(0.0f, render::kMaxHeadAbsorption));
-    job.add_option("--shadow-blur", options->shadowBlur,
-                   "Screen-space shadow blur in pixels, which draws everything twice. 0 turns it off")
+    job.add_option(
+           "--shadow-blur", options->shadowBlur,
+           "Screen-space shadow blur in pixels, which draws everything twice. 0 turns it off (default: the "
+           "view's, or the project's)")
         ->check(CLI::Range(0.0f, render::kMaxShadowBlur));
     job.add_option("--aa", options->antiAliasing,
                    "Samples per pixel and frame, or FXAA. auto uses as many as the device has, up to 8")

@@ -11,6 +11,7 @@
 
 #include "core/base/result.h"
 #include "core/colour/colour_choice.h"
+#include "core/groom/shadow_settings.h"
 #include "core/live/view_file.h"
 #include "core/render/options.h"
 
@@ -24,16 +25,21 @@ struct RenderJobOptions {
     std::string camera = "three-quarter";
     std::string view;
     std::string material;
+    std::string look;  ///< empty: the view's, or the project's
     std::string shading;
     std::string scatter = "dual";
-    std::string shadow = "dom";
+    // Empty: the view's, or the project's.
+    std::string shadow;
     std::uint32_t shadowLights = render::RenderOptions().shadowLights;
     std::string antiAliasing = "auto";
     std::string ribbons = "auto";
     std::string transparency = "auto";
     float detail = 0;
     std::optional<std::uint32_t> shadowResolution;
-    std::string shadowFilter;  ///< empty: the view's
+    std::string shadowFilter;
+    std::optional<std::uint32_t> shadowLayers, shadowSlices;
+    std::string layerEnds;
+    std::optional<float> layerGrowth;
     std::optional<std::uint32_t> subdivisions;
     std::optional<float> headAbsorption;
     std::optional<float> shadowBlur;
@@ -75,8 +81,11 @@ struct RenderJobOptions {
 /// Adds the options of `render` to `job`. They live as long as what is returned.
 std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job);
 
-/// How each image is drawn. Throws WrongUsage for a size that is none.
+/// How each image is drawn, but for its shadows. Throws WrongUsage for a size that is none.
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view);
+/// As the project has them, but for what the view says, and what the options say.
+void takeShadows(const RenderJobOptions& options, const ShadowSettings& project, const ViewFile& view,
+                 render::RenderOptions& picture);
 
 /// One picture of a sequence.
 struct Shot {

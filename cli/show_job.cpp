@@ -8,6 +8,7 @@
 #include "cli/error_report.h"
 #include "cli/outputs.h"
 #include "cli/vectors.h"
+#include "core/documents/look_presets.h"
 #include "core/documents/sample.h"
 #include "core/documents/sample_material.h"
 #include "core/live/shown.h"
@@ -45,11 +46,18 @@ Result<ShownHair> hairOf(const RenderJobOptions& options) {
         if (!opened) return tl::unexpected(opened.error());
         groom = std::move(*opened);
     }
+    if (const LookPreset* look = findLook(options.look)) {
+        applyLook(*look, groom.material);
+    } else if (auto status = applyLookOfView(options.view, hair.view.look, groom.material); !status) {
+        return tl::unexpected(status.error());
+    }
     if (!options.material.empty()) {
         const auto status = applyMaterial(findSamples(programFolder()), options.material, groom);
         if (!status) return tl::unexpected(status.error());
     }
     hair.material = groom.material;
+    takeShadows(options, groom.shadows, hair.view, hair.shadows);
+    hair.groom = std::make_shared<const Groom>(std::move(groom));
     return hair;
 }
 

@@ -12,13 +12,11 @@
 namespace hairloom {
 
 std::string settingsText(const Groom& groom) {
-    const nlohmann::ordered_json json{{"simulation", toJson(groom.simulation)},
-                                      {"material", toJson(groom.material)},
-                                      {"interpolation", toJson(groom.interpolation)},
-                                      {"placement", toJson(groom.placement)},
-                                      {"spheres", toJson(groom.spheres)},
-                                      {"layers", toJson(groom.layers)},
-                                      {"operators", toJson(groom.operators)}};
+    const nlohmann::ordered_json json{
+        {"simulation", toJson(groom.simulation)}, {"material", toJson(groom.material)},
+        {"shadows", toJson(groom.shadows)},       {"interpolation", toJson(groom.interpolation)},
+        {"placement", toJson(groom.placement)},   {"spheres", toJson(groom.spheres)},
+        {"layers", toJson(groom.layers)},         {"operators", toJson(groom.operators)}};
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -29,6 +27,7 @@ Result<std::shared_ptr<const Groom>> readSettingsText(const std::string& file, c
     JsonReader reader(*json, file);
     readSettings(reader.object("simulation"), authored->simulation);
     readSettings(reader.object("material"), authored->material);
+    if (reader.has("shadows")) readSettings(reader.object("shadows"), authored->shadows);
     readSettings(reader.object("interpolation"), authored->interpolation);
     readSettings(reader.object("placement"), authored->placement);
     for (JsonReader& sphere : reader.objects("spheres")) authored->spheres.push_back(readSphere(sphere));

@@ -352,6 +352,7 @@ void takeSettings(const RawStrands& raw, ImportedStrands& result) {
     result.hasSettings = true;
     result.groom.simulation = authored.simulation;
     result.groom.material = authored.material;
+    result.groom.shadows = authored.shadows;
     result.groom.interpolation = authored.interpolation;
     result.groom.placement = authored.placement;
     result.groom.spheres = authored.spheres;

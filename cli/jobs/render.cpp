@@ -22,6 +22,7 @@
 #include "cli/show_job.h"
 #include "core/base/content_kind.h"
 #include "core/base/output_batch.h"
+#include "core/documents/look_presets.h"
 #include "core/documents/sample.h"
 #include "core/documents/sample_material.h"
 #include "core/live/film.h"
@@ -244,6 +245,12 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     if (!shots) return tl::unexpected(shots.error());
     auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
+    takeShadows(options, groom->shadows, view, *how);
+    if (const LookPreset* look = findLook(options.look)) {
+        applyLook(*look, groom->material);
+    } else if (auto status = applyLookOfView(options.view, view.look, groom->material); !status) {
+        return tl::unexpected(status.error());
+    }
     if (!options.material.empty()) {
         const auto status = applyMaterial(findSamples(programFolder()), options.material, *groom);
         if (!status) return tl::unexpected(status.error());

@@ -13,6 +13,7 @@
 #include "core/base/file.h"
 #include "core/documents/dye_mask.h"
 #include "core/documents/hair_preset.h"
+#include "core/documents/look_presets.h"
 #include "core/documents/motions.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
@@ -25,6 +26,7 @@ struct SetOptions {
     std::string input;
     std::vector<std::string> assignments;
     std::string preset;
+    std::string look;
     std::string from;
     std::string dyeImage;
     std::string dyeAttribute;
@@ -81,6 +83,12 @@ bool isWrongForAnyGroom(const nlohmann::json& assignments) {
     return !applySettings(assignments, "", any);
 }
 
+std::size_t changedFields(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after) {
+    std::size_t count = 0;
+    for (const auto& [name, value] : after.items()) count += before.at(name) == value ? 0 : 1;
+    return count;
+}
+
 std::vector<std::string> presetNames() {
     std::vector<std::string> names;
     for (const runtime::HairPreset& preset : runtime::presets()) names.emplace_back(preset.name);
@@ -93,6 +101,11 @@ Result<Report> set(const SetOptions& options) {
     std::size_t changed = 0;
     if (const runtime::HairPreset* preset = runtime::findPreset(options.preset))
         changed += applyPreset(*preset, *groom);
+    if (const LookPreset* look = findLook(options.look)) {
+        const nlohmann::ordered_json before = toJson(groom->material);
+        applyLook(*look, groom->material);
+        changed += changedFields(before, toJson(groom->material));
+    }
     if (!options.from.empty()) {
         const auto text = readTextFile(options.from, kMaxJsonBytes);
         if (!text) return tl::unexpected(text.error());
@@ -146,26 +159,40 @@ Report presetRows() {
     return rows;
 }
 
+Report lookRows() {
+    Report rows = Report::array();
+    for (const LookPreset& look : lookPresets())
+        rows.push_back(Report{{"look", look.name}, {"hair", look.description}});
+    return rows;
+}
+
 Result<Report> list() {
     Report rows = Report::array();
     for (const Section& section : settingsSections()) {
         for (Report& row : reportOf(section.fields, section.name + ".")) rows.push_back(std::move(row));
     }
-    return Report{{"fields", std::move(rows)}, {"presets", presetRows()}};
+    return Report{{"fields", std::move(rows)}, {"presets", presetRows()}, {"looks", lookRows()}};
 }
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SetOptions>();
-    auto* listing = job.add_flag("--list", options->list,
-                                 "List every field with unit, range, default and meaning, and the presets");
+    auto* listing =
+        job.add_flag("--list", options->list,
+                     "List every field with unit, range, default and meaning, the presets and the "
+                     "looks");
     auto* input = job.add_option("groom", options->input, "Groom to change")->excludes(listing);
-    job.add_option("fields", options->assignments,
-                   "SECTION.FIELD=VALUE. Sections: simulation, material, interpolation. For a layer: "
-                   "layers.NAME.density=VALUE, layers.NAME.material.FIELD=VALUE, layers.NAME.material=null");
+    job.add_option(
+        "fields", options->assignments,
+        "SECTION.FIELD=VALUE. Sections: simulation, material, shadows, interpolation. For a layer: "
+        "layers.NAME.density=VALUE, layers.NAME.material.FIELD=VALUE, layers.NAME.material=null");
     job.add_option("--preset", options->preset,
                    "Preset of measured hair for stiffness, cross-section, thickness and colour. --from and "
                    "fields override it")
         ->check(CLI::IsMember(presetNames()));
+    job.add_option(
+           "--look", options->look,
+           "Look of the Look panel: colours, and of some the highlights. --from and fields override it")
+        ->check(CLI::IsMember(lookNames()));
     auto* image = job.add_option("--dye-image", options->dyeImage,
                                  "PNG at the root UVs. White strands take the dye of the material");
     job.add_option("--dye-attribute", options->dyeAttribute,

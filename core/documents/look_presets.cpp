@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/documents/look_presets.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -27,6 +30,19 @@ constexpr LookPreset kPresets[] = {
     {"platinum", "bleached blond", 0.03f, 0.02f, 0.12f},
     {"grey", "grey hair, with less and less pigment", 0.18f, 0.0f, 0.45f},
     {"white", "hair without pigment", 0.0f, 0.0f, 0.05f},
+    {"glossy", "dark hair with one narrow, strong highlight", 3.0f, 0.1f, 0.08f,
+     R"({"shadingModel": "sadeghi", "rIntensity": 2.5, "rWidth": 0.5, "trtIntensity": 0.6, "glintIntensity": 0.4})"},
+    {"satin", "brown hair with wide, soft highlights and no glints", 1.2f, 0.25f, 0.12f,
+     R"({"shadingModel": "sadeghi", "rIntensity": 0.7, "rWidth": 2.2, "trtWidth": 1.8, "glintIntensity": 0})"},
+    {"glints", "chestnut hair that sparkles as it turns", 0.8f, 0.5f, 0.2f,
+     R"({"shadingModel": "sadeghi", "rIntensity": 0.8, "trtIntensity": 1.3, "trtWidth": 0.8, "glintIntensity": 5,
+         "glintWidthDegrees": 6, "glintNearDegrees": 25, "glintFarDegrees": 60})"},
+    {"backlit", "blond hair that glows against the light", 0.15f, 0.15f, 0.2f,
+     R"({"shadingModel": "sadeghi", "ttIntensity": 2.5, "ttAzimuthalWidth": 1.6, "ttColour": [1, 0.85, 0.6],
+         "rIntensity": 0.7})"},
+    {"neon", "black hair with violet and cyan highlights", 5.0f, 0.0f, 0.1f,
+     R"({"shadingModel": "sadeghi", "rColour": [0.55, 0.2, 1], "rIntensity": 2.5, "rShiftDegrees": -2,
+         "trtColour": [0.1, 0.9, 1], "trtIntensity": 8, "trtShiftDegrees": 8, "trtWidth": 0.8})"},
 };
 constexpr std::string_view kSuffix = ".look.json";
 
@@ -37,10 +53,29 @@ Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness) {
     return (-absorption.cwiseMax(0.0).array().sqrt() / k).exp().matrix();
 }
 
+/// The model's and its highlights' fields as by default.
+void resetHighlights(HairMaterial& material) {
+    constexpr std::string_view kControls[] = {
+        "shadingModel",      "rIntensity",       "ttIntensity",    "trtIntensity",     "rWidth",
+        "ttWidth",           "trtWidth",         "rShiftDegrees",  "ttShiftDegrees",   "trtShiftDegrees",
+        "rColour",           "ttColour",         "trtColour",      "ttAzimuthalWidth", "glintIntensity",
+        "glintWidthDegrees", "glintNearDegrees", "glintFarDegrees"};
+    for (const std::string_view name : kControls) {
+        const Field<HairMaterial>& field = *runtime::findField<HairMaterial>(name);
+        for (std::uint32_t c = 0; c < field.components(); ++c) field.set(material, defaultValue(field, c), c);
+    }
+}
+
 }  // namespace
 
 std::span<const LookPreset> lookPresets() {
     return kPresets;
+}
+
+const LookPreset* findLook(std::string_view name) {
+    const auto* const found =
+        std::ranges::find(kPresets, name, [](const LookPreset& one) { return std::string_view(one.name); });
+    return found == std::end(kPresets) ? nullptr : found;
 }
 
 void applyLook(const LookPreset& preset, HairMaterial& material) {
@@ -48,6 +83,28 @@ void applyLook(const LookPreset& preset, HairMaterial& material) {
     material.pheomelanin = preset.pheomelanin;
     material.colourVariation = preset.variation;
     colourByMelanin(material);
+    if (!preset.controls) return;
+    resetHighlights(material);
+    const auto controls = nlohmann::json::parse(preset.controls);
+    JsonReader reader(controls, preset.name);
+    reader.fields(material);
+    assert(reader.ok());
+}
+
+std::vector<std::string> lookNames() {
+    std::vector<std::string> names;
+    for (const LookPreset& preset : kPresets) names.emplace_back(preset.name);
+    return names;
+}
+
+Status applyLookOfView(const std::string& view, const std::string& name, HairMaterial& material) {
+    if (name.empty()) return {};
+    const LookPreset* const look = findLook(name);
+    if (!look)
+        return failIn(view, {}, fmt::format("/look is '{}'", name),
+                      fmt::format("one of {}", fmt::join(lookNames(), ", ")));
+    applyLook(*look, material);
+    return {};
 }
 
 void colourByMelanin(HairMaterial& material) {

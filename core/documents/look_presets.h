@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
@@ -12,18 +13,28 @@
 
 namespace hairloom {
 
-/// Natural and dyed hair that comes along, from dark to light.
+/// Natural hair that comes along, from dark to light, then looks that turn Sadeghi's controls (thesis,
+/// Figures 13 and 33).
 struct LookPreset {
     const char* name;  ///< "auburn"
     const char* description;
     float eumelanin, pheomelanin;  ///< as HairMaterial has them
     float variation;               ///< of colour from strand to strand, 0…1
+    /// Other fields of the material as a JSON object, the model among them; null: they stay.
+    const char* controls = nullptr;
 };
 std::span<const LookPreset> lookPresets();
+/// The preset of that name, or null.
+const LookPreset* findLook(std::string_view name);
 
-/// Sets melanin, the colours that this melanin makes, and their variation; shape of the fibre, model and its
-/// controls stay.
+/// Sets melanin, the colours that this melanin makes, and their variation. Presets with controls set the
+/// model and all controls of its highlights, of which those that they do not name get their defaults. What
+/// else there is stays, as the shape of the fibre, streaks and dye.
 void applyLook(const LookPreset& preset, HairMaterial& material);
+
+std::vector<std::string> lookNames();
+/// That of a view: `name` as the file `view` has it; nothing where it is empty. Error: no such look.
+Status applyLookOfView(const std::string& view, const std::string& name, HairMaterial& material);
 
 /// Gives the material the root and tip colours that its melanin makes.
 void colourByMelanin(HairMaterial& material);

@@ -150,6 +150,7 @@ Status applySettings(const nlohmann::json& document, const std::string& source, 
     JsonReader reader(document, source);
     if (reader.has("simulation")) readSettings(reader.object("simulation"), groom.simulation);
     if (reader.has("material")) readSettings(reader.object("material"), groom.material);
+    if (reader.has("shadows")) readSettings(reader.object("shadows"), groom.shadows);
     if (reader.has("interpolation")) readSettings(reader.object("interpolation"), groom.interpolation);
     if (reader.has("layers")) readLayerSettings(reader.object("layers"), document.at("layers"), groom);
     reader.finish();

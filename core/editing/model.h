@@ -38,6 +38,7 @@ enum class Part : std::uint32_t {
     Masks = 1u << 16u,          ///< as they were painted, for operators
     Cards = 1u << 17u,          ///< levels' cards shaped by hand
     Widths = 1u << 18u,         ///< of hair, as they were painted
+    Shadows = 1u << 19u,        ///< settings of them
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {

@@ -83,6 +83,7 @@ Part differenceOf(const Groom& a, const Groom& b) {
         {Part::Spheres, differs(a.spheres, b.spheres) || a.body != b.body},
         {Part::Physics, differs(a.simulation, b.simulation)},
         {Part::Material, differs(a.material, b.material)},
+        {Part::Shadows, differs(a.shadows, b.shadows)},
         {Part::Interpolation, differs(a.interpolation, b.interpolation)},
         {Part::Cards, differs(a.cardEdits, b.cardEdits)},
         {Part::Operators, a.operators != b.operators || !a.operators.empty()},
@@ -151,6 +152,13 @@ std::unique_ptr<Command> setPhysics(const Model& model, const runtime::Simulatio
         std::move(name), Part::Physics,
         [](Model& m) -> runtime::SimulationSettings& { return m.groom.simulation; }, settings,
         settingsRecord("simulation", settings));
+}
+
+std::unique_ptr<Command> setShadows(const Model& model, const ShadowSettings& settings, std::string name) {
+    if (hairloom::toJson(model.groom.shadows) == hairloom::toJson(settings)) return nullptr;
+    return valueCommand<ShadowSettings>(
+        std::move(name), Part::Shadows, [](Model& m) -> ShadowSettings& { return m.groom.shadows; }, settings,
+        settingsRecord("shadows", settings));
 }
 
 std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings,
@@ -232,6 +240,7 @@ Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<Ca
 std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std::string name) {
     std::vector<std::unique_ptr<Command>> steps;
     steps.push_back(setMaterial(model, from.material, name));
+    steps.push_back(setShadows(model, from.shadows, name));
     steps.push_back(setPhysics(model, from.simulation, name));
     steps.push_back(setInterpolation(model, from.interpolation, name));
     steps.push_back(setPlacementSettings(model, from.placement, name));
@@ -305,6 +314,7 @@ MakeCommand readTriangulate(JsonReader&) {
 constexpr RecordedOperation kSettingsCommandsRecords[] = {
     {"material", readSettingsStep<HairMaterial, setMaterial>},
     {"simulation", readSettingsStep<runtime::SimulationSettings, setPhysics>},
+    {"shadows", readSettingsStep<ShadowSettings, setShadows>},
     {"interpolation", readSettingsStep<InterpolationSettings, setInterpolation>},
     {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
     {"spheres", readSpheres},

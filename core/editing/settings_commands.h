@@ -17,6 +17,7 @@ std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& mat
                                      std::string name = "Look");
 std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings,
                                     std::string name = "Physics");
+std::unique_ptr<Command> setShadows(const Model& model, const ShadowSettings& settings, std::string name);
 std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings,
                                           std::string name = "Follow hairs");
 std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings,

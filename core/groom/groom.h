@@ -16,6 +16,7 @@
 #include "core/groom/card_edits.h"
 #include "core/groom/material.h"
 #include "core/groom/operator_stack.h"
+#include "core/groom/shadow_settings.h"
 #include "hairloom/settings.h"
 
 namespace hairloom {
@@ -82,6 +83,7 @@ struct Groom {
     /// names of the bones that move it; null: none. Shared and immutable. Goes with its scalp.
     std::shared_ptr<const runtime::BodyField> body;
     HairMaterial material;
+    ShadowSettings shadows;
     runtime::SimulationSettings simulation;
     InterpolationSettings interpolation;
     PlacementSettings placement;

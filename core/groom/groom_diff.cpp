@@ -92,6 +92,7 @@ std::string unitOf(std::string_view where) {
     static const std::map<std::string_view, std::vector<FieldRow>> kSections{
         {"simulation", fieldRows<runtime::SimulationSettings>()},
         {"material", fieldRows<HairMaterial>()},
+        {"shadows", fieldRows<ShadowSettings>()},
         {"interpolation", fieldRows<InterpolationSettings>()},
         {"placement", fieldRows<PlacementSettings>()}};
     const std::size_t dot = where.rfind('.');

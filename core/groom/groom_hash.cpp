@@ -86,6 +86,7 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     if (groom.body) hasher.array(std::span<const std::uint8_t>(groom.body->toBytes()));
     for (const CardEdit& edit : groom.cardEdits) hasher.text(toJson(edit).dump());
     hashFields(hasher, groom.material);
+    hashFields(hasher, groom.shadows);
     hashFields(hasher, groom.interpolation);
     hashFields(hasher, groom.placement);
     hashFields(hasher, groom.simulation);

@@ -27,6 +27,12 @@ enum class EnergyRule : std::uint32_t {
     published,  ///< as much as the published models, which may be more
 };
 
+/// How light's way around a fibre of Marschner is found.
+enum class AzimuthalSolver : std::uint32_t {
+    exact,  ///< by the true angles (thesis, Eq. 40)
+    cubic,  ///< by Marschner's cubic (Eq. 42)
+};
+
 /// Units, ranges and meanings stand in fieldsOf() (core/groom/file/fields.h).
 struct HairMaterial {
     ShadingModel shadingModel = ShadingModel::kajiya;
@@ -78,6 +84,12 @@ struct HairMaterial {
     float glintIntensity = 1.0f;
     float glintWidthDegrees = 10.0f;
     float glintNearDegrees = 30.0f, glintFarDegrees = 45.0f;
+
+    // Where TRT of Marschner's fibres would be infinite, a Gaussian replaces it.
+    float causticWidthDegrees = 0.0f;  ///< 0: as the fibre's roughness asks for
+    float causticFade = 0.3f;
+    float causticIntensity = 1.0f;  ///< k_G
+    AzimuthalSolver azimuthalSolver = AzimuthalSolver::exact;
 
     EnergyRule energy = EnergyRule::bounded;
 

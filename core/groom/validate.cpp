@@ -53,6 +53,7 @@ void findSettings(const Groom& groom, std::vector<Finding>& findings) {
             continue;
         report(which, {fmt::format("its density is {}; expected 0 to {}", layer.density, kMaxLayerDensity)});
     }
+    report("shadows", fieldsOutOfRange(groom.shadows));
     report("interpolation", fieldsOutOfRange(groom.interpolation));
     report("placement", fieldsOutOfRange(groom.placement));
     report("simulation", runtime::validate(groom.simulation));

@@ -103,6 +103,17 @@ struct LobeControls {
     }
 };
 
+/// What of Marschner's fibres alone is authored.
+void setCaustics(const HairMaterial& authored, const FibreView& view, shading::AzimuthalParameters& fibre) {
+    const double width =
+        view.causticWidth.value_or(asDouble(authored.causticWidthDegrees) * shading::kDegree);
+    if (width > 0) fibre.causticWidth = width;
+    fibre.causticFade = view.causticFade.value_or(asDouble(authored.causticFade));
+    fibre.glint = view.causticIntensity.value_or(asDouble(authored.causticIntensity));
+    const bool isCubic = view.azimuthalSolver.value_or(authored.azimuthalSolver) == AzimuthalSolver::cubic;
+    fibre.roots = isCubic ? shading::RootMethod::Cubic : shading::RootMethod::Exact;
+}
+
 /// What Sadeghi's lobes have that Marschner's have not.
 void paintLobes(const HairMaterial& authored, double ior, double axisRatio, shading::SadeghiParameters& s) {
     s.r.tint = authored.rColour.cast<double>();
@@ -204,7 +215,10 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
                        shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
     const LobeControls controls(authored);
     const render::ShadingModel model = shadingModel(authored, view);
-    if (model == render::ShadingModel::marschner) controls.applyTo(m);
+    if (model == render::ShadingModel::marschner) {
+        controls.applyTo(m);
+        setCaustics(authored, view, m.azimuthal);
+    }
     if (view.width) m.width = *view.width;
     if (view.tilt) m.tilt = *view.tilt;
 

@@ -15,6 +15,7 @@ namespace hairloom {
 /// | energy | `bounded`, also of Sadeghi's lobes |
 /// | tipColour, colourVariation | `albedo`, `variation` |
 /// | indexOfRefraction, roughnesses, scaleTiltDegrees, eccentricity, r…, tt…, trt… | `fibre.marschner` |
+/// | caustic…, azimuthalSolver | `fibre.marschner` of Marschner |
 /// | those, tints, ttAzimuthalWidth, glints | `fibre.sadeghi`, from the Marschner fibre of the same hair |
 /// | colours, melanin, gradient, streaks, dye, emission | `look`; even hair has none, but a fibre's
 /// absorption |

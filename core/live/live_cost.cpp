@@ -4,6 +4,7 @@
 #include "core/base/stopwatch.h"
 #include "core/gpu/frames_under_way.h"
 #include "core/live/moving_picture.h"
+#include "core/live/picture_shadows.h"
 
 namespace hairloom {
 namespace {
@@ -40,6 +41,8 @@ LiveLoop::LiveLoop(gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLi
 
 Result<LiveCost> LiveLoop::run(const Groom& groom, const HeadMotion& motion, EngineKind engine,
                                std::uint32_t frames) {
+    takeShadows(groom.shadows, options_);
+    simplifyWhileMoving(options_);
     auto scene = GroomScene::make(groom, {}, {});
     if (!scene) return tl::unexpected(scene.error());
     auto hair = MovingHair::make(engine, device_, kernels_, *scene, motion.skin(), {motion.poseAt(0)});

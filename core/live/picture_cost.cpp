@@ -65,6 +65,17 @@ class Candidates {
                 "shadowFilter", &render::RenderOptions::shadowFilter,
                 {{"off", ShadowFilter::off}, {"3x3", ShadowFilter::three}, {"5x5", ShadowFilter::five}});
         }
+        if (now.picture.shadows == Shadows::deepOpacity) {
+            using render::LayerEnds;
+            numbers("shadowLayers", {3, 7, 11}, &render::RenderOptions::shadowLayers);
+            choices<LayerEnds>("layerEnds", &render::RenderOptions::layerEnds,
+                               {{"early", LayerEnds::early},
+                                {"linear", LayerEnds::linear},
+                                {"growing", LayerEnds::growing}});
+        }
+        if (now.picture.shadows == Shadows::opacityMaps) {
+            numbers("shadowSlices", {4, 8, 16}, &render::RenderOptions::shadowSlices);
+        }
         if (scatters) {
             add("scattering", "single", [](Settings& s) { s.scattering = render::Scattering::single; });
             add("scattering", "dual", [](Settings& s) { s.scattering = render::Scattering::dual; });

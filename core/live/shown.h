@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Curves and tables of the shading models as charts (Rünz 2012, Figures 14, 23 and 24), from the same code
-// that bakes what shaders look up: for `render --show` and the Look panel.
+// that bakes what shaders look up, and opacity maps (Figure 29): for `render --show` and the Look panel.
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string_view>
 
 #include "core/charts/plot.h"
-#include "core/groom/material.h"
+#include "core/groom/groom.h"
 #include "core/live/view_file.h"
 
 namespace hairloom {
 
 struct ShownHair {
     HairMaterial material;
-    ViewFile view;                  ///< its members of fibres come first, as when hair is drawn
-    double inclinationDegrees = 0;  ///< of the light for M, −85…85; |θ_d| for N
+    ViewFile view;                       ///< its members of fibres come first, as when hair is drawn
+    double inclinationDegrees = 0;       ///< of the light for M, −85…85; |θ_d| for N
+    std::shared_ptr<const Groom> groom;  ///< whose shadows are shown; null: none
+    render::RenderOptions shadows;       ///< of them: layers, slices, resolution
 };
 
 /// A look-up table, or what one holds. Row after row from the lowest.
@@ -49,6 +52,7 @@ struct ShownKind {
     const char* meaning;  ///< a line of help
     /// Whose it is; nothing: of the model that hair is drawn with.
     std::optional<render::ShadingModel> model;
+    bool ofGroom = false;  ///< it shows the hair itself, not its material
     Result<Shown> (*make)(const ShownHair& hair);
 };
 

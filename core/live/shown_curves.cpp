@@ -210,6 +210,7 @@ std::vector<ShownNumber> parametersOf(const shading::MarschnerParameters& model)
             {"caustic_width_deg", {a.causticWidth / kDegree}},
             {"caustic_fade", {a.causticFade}},
             {"caustic_intensity", {a.glint}},
+            {"cubic", {a.roots == shading::RootMethod::Cubic ? 1.0 : 0.0}},
             {"tilt_deg", degreesOf(model.tilt)},
             {"width_deg", degreesOf(model.width)},
             {"intensity", {model.intensity[0], model.intensity[1], model.intensity[2]}}};

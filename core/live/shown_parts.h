@@ -17,6 +17,10 @@ Result<Shown> sadeghiN(const ShownHair& hair);
 Result<Shown> marschnerTables(const ShownHair& hair);
 Result<Shown> sadeghiTables(const ShownHair& hair);
 
+/// Of the hair itself.
+Result<Shown> deepOpacityMap(const ShownHair& hair);
+Result<Shown> opacityMaps(const ShownHair& hair);
+
 /// The fibre as the model of its kind sees it.
 render::FibreMaterial fibreOf(const ShownHair& hair, render::ShadingModel model);
 

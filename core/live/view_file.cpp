@@ -147,6 +147,14 @@ void readHair(JsonReader reader, ViewFile& view) {
         fibre.azimuthalRoughness = reader.number("azimuthal_roughness", 0, 1);
     }
     if (reader.has("axis_ratio")) fibre.axisRatio = reader.number("axis_ratio", 0.5, 2);
+    if (reader.has("caustic_width_deg"))
+        fibre.causticWidth = reader.number("caustic_width_deg", 0, 60, "degrees") * shading::kDegree;
+    if (reader.has("caustic_fade")) fibre.causticFade = reader.number("caustic_fade", 0, 1);
+    if (reader.has("caustic_intensity")) fibre.causticIntensity = reader.number("caustic_intensity", 0, 10);
+    if (reader.has("azimuthal_solver")) {
+        constexpr std::string_view kSolvers[] = {"exact", "cubic"};
+        fibre.azimuthalSolver = static_cast<AzimuthalSolver>(reader.choice("azimuthal_solver", kSolvers));
+    }
     reader.finish();
 }
 
@@ -194,6 +202,24 @@ Result<ViewFile> parseViewFile(const std::string& path, std::string_view text,
         constexpr std::string_view kFilters[] = {"off", "3x3", "5x5"};
         view.shadowFilter = static_cast<render::ShadowFilter>(reader.choice("shadow_filter", kFilters));
     }
+    if (reader.has("shadow")) {
+        constexpr std::string_view kKinds[] = {"none", "dom", "absorption", "opacity"};
+        view.shadows = static_cast<render::Shadows>(reader.choice("shadow", kKinds));
+    }
+    if (reader.has("shadow_layers"))
+        view.shadowLayers = static_cast<std::uint32_t>(
+            reader.count("shadow_layers", render::kMinShadowLayers, render::kMaxShadowLayers));
+    if (reader.has("layer_ends")) {
+        constexpr std::string_view kEnds[] = {"early", "linear", "growing"};
+        view.layerEnds = static_cast<render::LayerEnds>(reader.choice("layer_ends", kEnds));
+    }
+    if (reader.has("layer_growth"))
+        view.layerGrowth = static_cast<float>(
+            reader.number("layer_growth", 1, static_cast<double>(render::kMaxLayerGrowth)));
+    if (reader.has("shadow_slices"))
+        view.shadowSlices =
+            static_cast<std::uint32_t>(reader.count("shadow_slices", 1, render::kMaxShadowSlices));
+    if (reader.has("look")) view.look = reader.string("look");
     if (reader.has("subdivisions"))
         view.subdivisions =
             static_cast<std::uint32_t>(reader.count("subdivisions", 1, render::kMaxSubdivisions));

@@ -13,6 +13,7 @@
 
 #include "core/base/math.h"
 #include "core/base/result.h"
+#include "core/groom/material.h"
 #include "core/render/camera.h"
 #include "core/render/environment.h"
 #include "core/render/fibre_material.h"
@@ -33,6 +34,9 @@ struct FibreView {
     std::optional<std::array<double, 3>> width, tilt;  ///< of R, TT, TRT in radians of θ_h
     std::optional<double> azimuthalRoughness;
     std::optional<double> axisRatio;
+    std::optional<double> causticWidth;  ///< radians
+    std::optional<double> causticFade, causticIntensity;
+    std::optional<AzimuthalSolver> azimuthalSolver;
 
     bool saysColour() const { return absorption || melanin || colour; }
 };
@@ -48,12 +52,18 @@ struct ViewFile {
     std::optional<Vec3f> headAlbedo;
     std::optional<float> rootRadius;  ///< metres
     std::optional<float> tipScale;
-    std::optional<std::uint32_t> shadowResolution;  ///< pixels, as render::RenderOptions
+    // As render::RenderOptions has them.
+    std::optional<render::Shadows> shadows;
+    std::optional<std::uint32_t> shadowResolution;  ///< pixels
     std::optional<render::ShadowFilter> shadowFilter;
+    std::optional<std::uint32_t> shadowLayers, shadowSlices;
+    std::optional<render::LayerEnds> layerEnds;
+    std::optional<float> layerGrowth;
     std::optional<std::uint32_t> subdivisions;  ///< likewise
     std::optional<float> headAbsorption;        ///< 1/m, as render::RenderOptions
     std::optional<float> shadowBlur;            ///< pixels, likewise
     FibreView fibre;
+    std::string look;  ///< name of a look that the groom's material gets; empty: its own
 };
 /// Images that it names are read, too: they lie in its own folder and below it, or in `imageFolders`.
 /// Errors: what is wrong in the file, or in such an image.

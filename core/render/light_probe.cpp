@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/render/light_probe.h"
 
+#include "core/render/opacity_layers.h"
 #include "core/render/passes.h"
 #include "core/render/shadow_maps.h"
 
@@ -44,7 +45,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
 Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const RenderScene& scene,
                                                      const RenderOptions& options,
                                                      std::span<const shaders::LightCase> cases,
-                                                     const DeepLayers& layers) {
+                                                     const std::optional<DeepLayers>& layers) {
     const auto failed = [](const Error& error) { return tl::unexpected(error); };
     RendererState state(device);
     state.deepLayers = layers;
@@ -76,6 +77,47 @@ Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const 
     if (auto read = device.readBuffer(*out, 0, std::as_writable_bytes(std::span(results))); !read)
         return failed(read.error());
     return results;
+}
+
+Result<OpacityTexels> readOpacity(gpu::Device& device, const RenderScene& scene,
+                                  const RenderOptions& options) {
+    const auto failed = [](const Error& error) { return tl::unexpected(error); };
+    OpacityTexels texels{options.shadowResolution, layerCount(options), {}, {}};
+    if (texels.layers == 0) return fail("these shadows have no opacity map", "deep opacity or opacity maps");
+    RendererState state(device);
+    if (auto status = prepare(device, scene, options, state); !status) return failed(status.error());
+    const ShadowAtlas atlas = [&] {
+        fitViews(state, false);
+        return lightAtlas(state);
+    }();
+    if (state.scene.batches.empty() || atlas.views.empty())
+        return fail("there is no hair in the light, and so no map of it", "hair, and a light with shadows");
+    auto list = device.createCommandList();
+    if (!list) return failed(list.error());
+    setUpLights(state);
+    recordCurves(**list, state);
+    recordMaps(**list, state, atlas);
+    if (auto status = state.pipelines.takeStatus(); !status) return failed(status.error());
+    const auto submission = device.submit(std::move(*list));
+    if (!submission) return failed(submission.error());
+    const std::size_t words = opacityWords(options.shadows, texels.layers);
+    std::vector<std::uint32_t> all(words * atlas.width() * texels.side);
+    if (auto read =
+            device.readBuffer(state.targets[BufferId::opacity], 0, std::as_writable_bytes(std::span(all)));
+        !read)
+        return failed(read.error());
+    for (std::size_t i = 0; i < std::size_t{texels.side} * texels.side; ++i) {
+        const std::size_t texel = words * (i / texels.side * atlas.width() + i % texels.side);
+        float sum = 0;
+        for (std::size_t layer = 0; layer < texels.layers; ++layer) {
+            // As packShares() in opacity.hlsli.
+            const std::uint32_t share = all[texel + layer / 2] >> (16 * (layer % 2)) & 0xffffu;
+            texels.fibres.push_back(64 * static_cast<float>(share) / 65535);
+            sum += texels.fibres.back();
+        }
+        texels.hair.push_back(sum > 0);
+    }
+    return texels;
 }
 
 }  // namespace hairloom::render

@@ -4,6 +4,7 @@
 // measurements and tests.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/gpu/device.h"
@@ -13,14 +14,25 @@
 
 namespace hairloom::render {
 
-/// Ends of the deep opacity layers, as RendererState::deepLayers.
+/// Ends of three deep opacity layers, as RendererState::deepLayers.
 using DeepLayers = std::array<float, 3>;
-inline constexpr DeepLayers kDeepLayers{0.04f, 0.14f, 1.0f};
 
-/// Of the first light, and of light from around. Errors: what the device reports.
+/// Of the first light, and of light from around. `layers`: in place of those of the options. Errors: what the
+/// device reports.
 Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const RenderScene& scene,
                                                      const RenderOptions& options,
                                                      std::span<const shaders::LightCase> cases,
-                                                     const DeepLayers& layers = kDeepLayers);
+                                                     const std::optional<DeepLayers>& layers = {});
+
+/// The opacity map of hair that the first light with shadows has, as shading reads it.
+struct OpacityTexels {
+    std::uint32_t side = 0;     ///< texels; rows from the top
+    std::uint32_t layers = 0;   ///< of a texel, nearest the light first
+    std::vector<float> fibres;  ///< that each layer holds, those of a texel one after the other
+    std::vector<bool> hair;     ///< whether a texel has any
+};
+/// Errors: shadows without layers, no hair, no light, or what the device reports.
+Result<OpacityTexels> readOpacity(gpu::Device& device, const RenderScene& scene,
+                                  const RenderOptions& options);
 
 }  // namespace hairloom::render

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/render/light.h"
+#include "core/render/opacity_layers.h"
 #include "shaders/shared/render_types.h"
 
 namespace hairloom::render {
@@ -24,6 +25,15 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.shadowResolution < kMinShadowResolution || o.shadowResolution > kMaxShadowResolution ||
         o.shadowResolution > limit)
         return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
+    if (o.shadowLayers < kMinShadowLayers || o.shadowLayers > kMaxShadowLayers)
+        return fail(fmt::format("{} layers of deep opacity maps", o.shadowLayers),
+                    fmt::format("{} to {}", kMinShadowLayers, kMaxShadowLayers));
+    if (o.shadowSlices < 1 || o.shadowSlices > kMaxShadowSlices)
+        return fail(fmt::format("{} slices of opacity maps", o.shadowSlices),
+                    fmt::format("1 to {}", kMaxShadowSlices));
+    if (!(o.layerGrowth >= 1 && o.layerGrowth <= kMaxLayerGrowth))
+        return fail(fmt::format("layers that grow by {}", o.layerGrowth),
+                    fmt::format("1 to {}", kMaxLayerGrowth));
     if (o.shadowLights < 1 || o.shadowLights > kMaxLights)
         return fail(fmt::format("{} lights with shadows", o.shadowLights),
                     fmt::format("1 to {}", kMaxLights));
@@ -56,10 +66,12 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
 }
 
 std::uint32_t shadowLightsOf(const RenderOptions& options, const gpu::DeviceInfo& device) {
-    // Depths of heads lie side by side in a texture, two words a texel of opacity in a buffer.
+    // Depths of heads lie side by side in a texture, the words of a texel of opacity in a buffer.
     const std::uint64_t side = options.shadowResolution;
+    const std::uint64_t bytes =
+        4 * std::max<std::uint64_t>(opacityWords(options.shadows, layerCount(options)), 2);
     const std::uint64_t room =
-        std::min<std::uint64_t>(device.maxTextureSize / side, device.maxBufferBytes / (8 * side * side));
+        std::min<std::uint64_t>(device.maxTextureSize / side, device.maxBufferBytes / (bytes * side * side));
     return static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(options.shadowLights, 1, std::max<std::uint64_t>(room, 1)));
 }
@@ -80,6 +92,8 @@ Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::Dev
 RenderOptions chooseWays(const RenderOptions& options, std::uint32_t samples, bool kernels,
                          const gpu::DeviceInfo& device) {
     RenderOptions chosen = options;
+    (chosen.shadows == Shadows::opacityMaps ? chosen.shadowSlices : chosen.shadowLayers) =
+        layersThatFit(chosen, device);
     const std::uint64_t words =
         std::uint64_t{options.width} * options.height * std::max(samples, std::uint32_t{HAIRLOOM_FRAGMENTS});
     const bool fits = words * sizeof(std::uint32_t) <= device.maxBufferBytes;

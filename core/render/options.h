@@ -13,9 +13,9 @@ namespace hairloom::render {
 /// How hair stands between a point and a light. The head is a depth map in all of them.
 enum class Shadows {
     none,
-    deepOpacity,  ///< Yuksel and Keyser 2008: three layers that follow the first hair, and its depth
+    deepOpacity,  ///< Yuksel and Keyser 2008: layers that follow the first hair, and its depth
     absorption,   ///< depth behind the first hair alone, hair taken to be spread evenly
-    opacityMaps,  ///< Kim and Neumann 2001: four layers at fixed depths
+    opacityMaps,  ///< Kim and Neumann 2001: layers at fixed depths
 };
 
 /// Over how many texels of a shadow map finished comparisons are averaged (percentage-closer filtering:
@@ -24,6 +24,13 @@ enum class ShadowFilter {
     off,    ///< the nearest texel alone
     three,  ///< 3 × 3
     five,   ///< 5 × 5
+};
+
+/// Where deep opacity layers end, as parts of the depth that hair takes up.
+enum class LayerEnds {
+    early,    ///< three at 0.04, 0.14 and 1; more cut each of these into parts of one width
+    linear,   ///< all are as wide
+    growing,  ///< each is RenderOptions::layerGrowth times as wide as the one before
 };
 
 /// How ribbons come about. All draw the same curve.
@@ -59,6 +66,12 @@ struct RenderOptions {
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
     Shadows shadows = Shadows::deepOpacity;
     ShadowFilter shadowFilter = ShadowFilter::three;
+    /// Of deep opacity maps, 3…11, four to a texture of four channels, one of which holds the first hair's
+    /// depth. Fewer where the device has no room for them: chooseWays().
+    std::uint32_t shadowLayers = 3;
+    LayerEnds layerEnds = LayerEnds::early;
+    float layerGrowth = 2;           ///< 1…8, for LayerEnds::growing
+    std::uint32_t shadowSlices = 4;  ///< of opacity maps, 1…16, evenly spaced; fewer as layers are
     /// Most lights with shadow maps, parts of areas and of images among them, 1…16; fewer where the device
     /// has no room for as many maps.
     std::uint32_t shadowLights = 8;
@@ -93,8 +106,11 @@ struct RenderOptions {
 };
 inline constexpr std::uint32_t kMaxSubdivisions = 64;
 inline constexpr std::uint32_t kMinShadowResolution = 64, kMaxShadowResolution = 4096;  ///< pixels
-inline constexpr float kMaxHeadAbsorption = 10'000;                                     ///< 1/m
-inline constexpr float kMaxShadowBlur = 32;                                             ///< pixels
+inline constexpr std::uint32_t kMinShadowLayers = 3, kMaxShadowLayers = 11;
+inline constexpr std::uint32_t kMaxShadowSlices = 16;
+inline constexpr float kMaxLayerGrowth = 8;
+inline constexpr float kMaxHeadAbsorption = 10'000;  ///< 1/m
+inline constexpr float kMaxShadowBlur = 32;          ///< pixels
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
 
 /// Shadow maps of this resolution that the device has room for, at most `shadowLights` of the options.
@@ -106,8 +122,8 @@ Status check(const RenderOptions& options, const gpu::DeviceInfo& device);
 /// `samples` of the options, with 0 resolved. Errors: the device has no such number of samples.
 Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::DeviceInfo& device);
 
-/// `ribbons` and `transparency`, with automatic resolved for a picture of so many samples a pixel.
-/// `kernels`: what is drawn can be rasterised by kernels.
+/// `ribbons` and `transparency`, with automatic resolved for a picture of so many samples a pixel, and as
+/// many layers of shadows as the device has room for. `kernels`: what is drawn can be rasterised by kernels.
 RenderOptions chooseWays(const RenderOptions& options, std::uint32_t samples, bool kernels,
                          const gpu::DeviceInfo& device);
 

@@ -49,8 +49,9 @@ struct RendererState {
     RenderOptions options;
     std::uint32_t samples = 1;
     HairDetail detail;
-    /// Ends of the deep opacity layers behind the first hair, as parts of the depth that hair takes up.
-    std::array<float, 3> deepLayers{0.04f, 0.14f, 1.0f};
+    /// Ends of three deep opacity layers in place of those of the options, as parts of the depth that hair
+    /// takes up; for measurements.
+    std::optional<std::array<float, 3>> deepLayers;
     RenderPlan plan;
     struct {
         std::uint32_t frames = 0;  ///< that have joined; 0: nothing is known of one before

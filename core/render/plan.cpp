@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "core/render/opacity_layers.h"
 #include "shaders/shared/render_types.h"
 
 namespace hairloom::render {
@@ -73,9 +74,7 @@ class Planner {
              : hair ? "fixed layers need no first depth"
                     : noHair);
         pass(Pass::opacity, layers,
-             layers
-                 ? (options_.shadows == Shadows::deepOpacity ? "counts hair in three layers behind the first"
-                                                             : "counts hair in four layers at fixed depths")
+             layers ? layersWhy()
              : hair ? "absorption assumes evenly spread hair"
                     : noHair);
         atlas(TargetId::headDepth, options_.shadowResolution, facts_.shadowLights, on && facts_.meshes,
@@ -84,10 +83,23 @@ class Planner {
         const bool deep = options_.shadows == Shadows::deepOpacity;
         buffer(BufferId::firstHair, square * facts_.shadowLights, 4, first,
                "first hair seen from the lights");
-        buffer(BufferId::layerCounts, square * (deep ? 3 : 4), 4, layers,
+        const std::uint32_t count = layerCount(options_);
+        buffer(BufferId::layerCounts, square * count, 4, layers,
                "fibres of one light's layers during counting");
-        buffer(BufferId::opacity, 2 * square * facts_.shadowLights, 4, layers,
-               deep ? "three layers and the depth they are relative to" : "four layers");
+        buffer(BufferId::opacity, opacityWords(options_.shadows, count) * square * facts_.shadowLights, 4,
+               layers,
+               deep ? fmt::format("{} layers and the depth they are relative to", count)
+                    : fmt::format("{} slices", count));
+    }
+
+    std::string layersWhy() const {
+        const std::uint32_t count = layerCount(options_);
+        std::string why = options_.shadows == Shadows::deepOpacity
+                              ? fmt::format("counts hair in {} layers behind the first", count)
+                              : fmt::format("counts hair in {} slices at fixed depths", count);
+        if (facts_.askedLayers > count)
+            why += fmt::format(", since {} do not fit in a buffer of this device", facts_.askedLayers);
+        return why;
     }
 
     void planSky() {

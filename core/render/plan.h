@@ -98,9 +98,10 @@ struct SceneFacts {
     bool environment = false;        ///< light from around
     bool overlay = false;            ///< marks that meshes hide
     bool overlayOnTop = false;
-    bool look = false;             ///< some hair does not look the same everywhere
-    bool presents = true;          ///< there is a target to show the picture in
-    std::uint64_t tableBytes = 0;  ///< of the materials' look-up tables on the device
+    bool look = false;              ///< some hair does not look the same everywhere
+    std::uint32_t askedLayers = 0;  ///< of opacity, where the options have fewer; else no matter
+    bool presents = true;           ///< there is a target to show the picture in
+    std::uint64_t tableBytes = 0;   ///< of the materials' look-up tables on the device
 
     bool operator==(const SceneFacts&) const = default;
 };

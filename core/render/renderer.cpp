@@ -8,6 +8,7 @@
 
 #include "core/base/profiler.h"
 #include "core/render/display_table.h"
+#include "core/render/opacity_layers.h"
 #include "core/render/passes.h"
 #include "core/render/shadow_maps.h"
 
@@ -39,7 +40,8 @@ struct Changes {
 /// Which work another set of options calls for. Size and samples show in the targets.
 Changes compare(const RenderOptions& before, const RenderOptions& now) {
     Changes changes = Changes::placeholderTexture();
-    if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows) {
+    if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows ||
+        layerCount(now) != layerCount(before) || growthOf(now) != growthOf(before)) {
         changes.add(Changes::lights());
     }
     if (now.skyStrands != before.skyStrands) changes.add(Changes::head());
@@ -64,6 +66,7 @@ struct Renderer::Parts {
     Environment environment;
     bool newLights = true;
     std::uint32_t accumulated = 0;
+    std::uint32_t askedLayers = 0;  ///< of opacity, by the options, which the device may have no room for
     bool holdsMaps = false, holdsAverage = false;
     Changes heldBack = Changes::placeholderTexture();  ///< what waits for maps to be drawn anew
     std::vector<bool> mapped;  ///< which lights the maps are of; empty: there are none
@@ -246,6 +249,7 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     facts.overlay = state.overlay.needsDepth();
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
     facts.presents = presents;
+    facts.askedLayers = askedLayers;
     for (const StrandGroup& group : state.scene.groups) {
         for (const MaterialOnDevice& material : group.materials) {
             facts.look = facts.look || material.shading.look.has_value();
@@ -299,12 +303,14 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     const RenderOptions resolved = chooseWays(options, *samples, !state.scene.hasTubes(), device.info());
     changes.add(compare(state.options, resolved));
     if (newLights || resolved.shadowLights != state.options.shadowLights ||
-        resolved.shadowResolution != state.options.shadowResolution) {
+        resolved.shadowResolution != state.options.shadowResolution ||
+        layerCount(resolved) != layerCount(state.options)) {
         takeLights(state, lights, environment, shadowLightsOf(resolved, device.info()));
         newLights = false;
         changes.add(Changes::lights());
     }
     state.options = resolved;
+    askedLayers = layerCount(options);
     state.samples = *samples;
     const HairDetail detail = detailOf(state);
     if (detail != state.detail) changes.add(Changes::geometry());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/render/opacity_layers.h"
 
 namespace hairloom::render {
 namespace {
@@ -16,12 +17,20 @@ bool castsShadow(const RendererState& state, std::size_t light) {
     return state.options.shadows != Shadows::none && state.lights[light].castsShadow;
 }
 
-shaders::float4 layersOf(const RendererState& state, Shadows shadows, const LightView& view) {
+/// Ends of layers in metres: of all where there are few, else the last alone, from which the others follow.
+shaders::float4 layersOf(const RendererState& state, const ShadowAtlas& atlas, const LightView& view) {
     const float range = view.hairRange;
-    switch (shadows) {
+    const auto end = [&](std::uint32_t i) { return layerEnd(i, atlas.layerCount, atlas.growth) * range; };
+    switch (atlas.shadows) {
         case Shadows::deepOpacity:
-            return {state.deepLayers[0] * range, state.deepLayers[1] * range, state.deepLayers[2] * range, 0};
+            if (state.deepLayers) {
+                const auto& ends = *state.deepLayers;
+                return {ends[0] * range, ends[1] * range, ends[2] * range, 0};
+            }
+            if (atlas.layerCount > 3) return {0, 0, range, 0};
+            return {end(0), end(1), end(2), 0};
         case Shadows::opacityMaps:
+            if (atlas.layerCount != 4) return {0, 0, 0, range};
             return {0.25f * range, 0.5f * range, 0.75f * range, range};
         case Shadows::absorption: {
             const HairMeasure measure = state.scene.measure();
@@ -31,10 +40,6 @@ shaders::float4 layersOf(const RendererState& state, Shadows shadows, const Ligh
             break;
     }
     return {};
-}
-
-std::uint32_t layerCount(Shadows shadows) {
-    return shadows == Shadows::deepOpacity ? 3 : 4;
 }
 
 /// For drawing strands into a square.
@@ -49,7 +54,7 @@ shaders::ViewConstants squareConstants(const RendererState& state, const ShadowA
     c.fibresForEach = 1 / atlas.share;
     c.samples = 1;
     c.shadows = static_cast<std::uint32_t>(atlas.shadows);
-    c.layers = layersOf(state, atlas.shadows, view);
+    c.layers = layersOf(state, atlas, view);
     c.depthRange = view.depthRange;
     c.nearPlane = view.nearPlane;
     c.hairBegins = view.hairStart;
@@ -64,7 +69,8 @@ void rasterise(gpu::CommandList& list, const RendererState& state, const ShadowA
     raster.window = {static_cast<float>(atlas.left(square)), 0, side, side};
     raster.bufferWidth = atlas.width();
     raster.samples = 1;
-    raster.layers = layerCount(atlas.shadows);
+    raster.layers = atlas.layerCount;
+    raster.layerGrowth = atlas.growth;
     raster.slices = 1;
     list.setConstants(0, gpu::bytesOf(squareConstants(state, atlas, square)));
     dispatchStrands(list, state, raster, atlas.share);
@@ -96,6 +102,8 @@ void recordLayers(gpu::CommandList& list, RendererState& state, const ShadowAtla
         constants.shadows = static_cast<std::uint32_t>(atlas.shadows);
         constants.depthRange = atlas.views[i]->depthRange;
         constants.nearPlane = atlas.views[i]->nearPlane;
+        constants.layers = atlas.layerCount;
+        constants.words = opacityWords(atlas.shadows, atlas.layerCount);
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list,
              {Binding::read(0, state.orPlaceholder(atlas.first)),
@@ -197,6 +205,8 @@ ShadowAtlas lightAtlas(const RendererState& state) {
     ShadowAtlas atlas;
     atlas.side = state.options.shadowResolution;
     atlas.shadows = state.options.shadows;
+    atlas.layerCount = layerCount(state.options);
+    atlas.growth = growthOf(state.options);
     for (std::size_t i = 0; i < state.lightViews.size(); ++i) {
         if (castsShadow(state, i)) atlas.views.push_back(&state.lightViews[i]);
     }
@@ -236,7 +246,9 @@ shaders::LightConstants mapConstants(const RendererState& state, const ShadowAtl
     c.shadows = hair ? static_cast<float>(atlas.shadows) : 0.0f;
     c.nearPlane = view.nearPlane;
     c.hairBegins = view.hairStart;
-    c.layers = layersOf(state, atlas.shadows, view);
+    c.layers = layersOf(state, atlas, view);
+    c.layerCount = static_cast<float>(atlas.layerCount);
+    c.layerGrowth = atlas.growth;
     const float distance =
         view.eye_ws.w() > 0 ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
     const float texel = view.spread * distance / side;

@@ -12,6 +12,8 @@ struct ShadowAtlas {
     std::uint32_t side = 1;               ///< texels of a square
     Shadows shadows = Shadows::none;      ///< how hair is in it
     float share = 1;                      ///< of the strands, each counted as so many more
+    std::uint32_t layerCount = 3;         ///< of opacity
+    float growth = 0;                     ///< of layers: growthOf()
     TargetId head = TargetId::headDepth;
     BufferId first = BufferId::firstHair, counts = BufferId::layerCounts, layers = BufferId::opacity;
     Pass headPass = Pass::headDepth, firstPass = Pass::firstHair, layersPass = Pass::opacity;

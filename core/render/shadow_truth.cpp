@@ -124,12 +124,7 @@ ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64
 }
 
 Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const ShadowCases& cases,
-                           Shadows kind, std::uint32_t resolution, const DeepLayers& layers,
-                           ShadowFilter filter) {
-    RenderOptions options;
-    options.shadows = kind;
-    options.shadowFilter = filter;
-    options.shadowResolution = resolution;
+                           RenderOptions options, const std::optional<DeepLayers>& layers) {
     options.subdivisions = 1;
     const auto results = probeLight(device, scene, options, cases.cases, layers);
     if (!results) return tl::unexpected(results.error());

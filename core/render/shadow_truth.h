@@ -18,10 +18,10 @@ inline constexpr double kShadowFootprint = 0.0025;  ///< metres, radius of the b
 /// as with one subdivision. The scene has one group of strands with radii and one directional light.
 ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64_t seed);
 
-/// Root of the mean square error of the transmittance exp(−n/2). Errors: as probeLight().
+/// Root of the mean square error of the transmittance exp(−n/2), with one subdivision. Errors: as
+/// probeLight().
 Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const ShadowCases& cases,
-                           Shadows kind, std::uint32_t resolution, const DeepLayers& layers = kDeepLayers,
-                           ShadowFilter filter = ShadowFilter::three);
+                           RenderOptions options, const std::optional<DeepLayers>& layers = {});
 
 /// Shadows of the head on hair, found by rays.
 struct HeadCases {

@@ -34,6 +34,11 @@ double deflection(int p, double h, double etaPrime) {
     return 2 * p * std::asin(std::clamp(h / etaPrime, -1.0, 1.0)) - 2 * std::asin(std::clamp(h, -1.0, 1.0));
 }
 
+double deflection(RootMethod method, int p, double h, double etaPrime) {
+    if (method == RootMethod::Exact) return deflection(p, h, etaPrime);
+    return CubicDeflection(p, etaPrime)(std::asin(h));
+}
+
 /// γ in low…high where the deflection (monotone there, with the values fLow and fHigh at the ends) is
 /// `target`: Newton from `start`, kept inside by bisection. Returns false where there is none.
 struct Bracket {
@@ -73,14 +78,12 @@ struct Crossings {
 
 /// Eq. 41–44.
 Crossings cubicCrossings(int p, double etaPrime, double target) {
-    const double c = std::asin(1 / etaPrime);
-    const double a = -8 * p * c / (kPi * kPi * kPi);
-    const double b = 6 * p * c / kPi - 2;
-    const RealRoots roots = solveCubic(a, b, -target);
+    const CubicDeflection cubic(p, etaPrime);
+    const RealRoots roots = solveCubic(cubic.a, cubic.b, -target);
     Crossings found;
     for (int i = 0; i < roots.count; ++i) {
         const double gamma = roots.x[static_cast<std::size_t>(i)];
-        if (std::abs(gamma) <= kPi / 2) found.add(gamma, 3 * a * gamma * gamma + b);
+        if (std::abs(gamma) <= kPi / 2) found.add(gamma, cubic.slope(gamma));
     }
     return found;
 }
@@ -116,7 +119,11 @@ Crossings exactCrossings(int p, double etaPrime, double target) {
 }
 
 /// φ_c: where dφ/dh = 0 of TRT. η' < 2.
-double causticOf(double etaPrime) {
+double causticOf(RootMethod method, double etaPrime) {
+    if (method == RootMethod::Cubic) {
+        const CubicDeflection cubic(2, etaPrime);
+        return std::abs(cubic(cubic.turn()));
+    }
     return std::abs(deflection(2, std::sqrt((4 - etaPrime * etaPrime) / 3), etaPrime));
 }
 
@@ -138,7 +145,9 @@ double smoothstep(double low, double high, double x) {
 }  // namespace
 
 CausticAzimuths causticAzimuths(double ior, double axisRatio) {
-    const auto at = [](double eta) { return eta < 2 ? causticOf(std::max(eta, kLeastIor)) : 0.0; };
+    const auto at = [](double eta) {
+        return eta < 2 ? causticOf(RootMethod::Exact, std::max(eta, kLeastIor)) : 0.0;
+    };
     const EllipticIors eta(ior, axisRatio);
     const auto [least, greatest] = std::minmax({at(eta.first), at(eta.second)});
     return {at(ior), least, greatest};
@@ -188,7 +197,7 @@ AzimuthalProfile::Section AzimuthalProfile::makeSection(double ior) const {
     if (parameters_.causticWidth <= 0) return section;
     const double etaPrime = section.optics.indices().perpendicular;
     if (etaPrime < 2) {
-        section.causticPhi = causticOf(etaPrime);
+        section.causticPhi = causticOf(parameters_.roots, etaPrime);
         section.fade = 1;
     } else {
         section.fade = 1 - smoothstep(2, 2 + parameters_.causticFade, etaPrime);
@@ -197,7 +206,7 @@ AzimuthalProfile::Section AzimuthalProfile::makeSection(double ior) const {
     // Marschner et al. estimate the energy of a caustic from its curvature and cap it (Δh_M); here it is what
     // the fade takes away.
     overOffsets(kEnergyQuadrature, [&](double h, double weight) {
-        const double lost = 1 - kept(section, deflection(2, h, etaPrime));
+        const double lost = 1 - kept(section, deflection(parameters_.roots, 2, h, etaPrime));
         section.removed += weight * lost * attenuation(section.optics.at(h), 2);
     });
     return section;
@@ -242,7 +251,7 @@ Vec3d AzimuthalProfile::rough(const Section& section, Lobe lobe, double phi) con
     const double etaPrime = section.optics.indices().perpendicular;
     Vec3d sum = Vec3d::Zero();
     overOffsets(kQuadrature, [&](double h, double weight) {
-        const double turned = deflection(p, h, etaPrime);
+        const double turned = deflection(parameters_.roots, p, h, etaPrime);
         const double shape = 0.5 * (wrappedGauss(phi - p * kPi - turned, parameters_.width) +
                                     wrappedGauss(phi - p * kPi + turned, parameters_.width));
         const double share = lobe == Lobe::TRT ? kept(section, turned) : 1;

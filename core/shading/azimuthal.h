@@ -21,10 +21,10 @@ constexpr std::size_t index(Lobe lobe) {
     return static_cast<std::size_t>(lobe);
 }
 
-/// How the offset of the ray that leaves in a given direction is found.
+/// How far light turns on its way around the fibre, and so where it leaves.
 enum class RootMethod {
-    Exact,  ///< the true angles (Eq. 40), by safeguarded Newton steps
-    Cubic,  ///< Marschner's approximation of γ_t (Eq. 41 and 42), solved in closed form
+    Exact,  ///< the true angles (Eq. 40); the offset of a ray is found by safeguarded Newton steps
+    Cubic,  ///< Marschner's approximation of γ_t (Eq. 41 and 42); the offset follows in closed form
 };
 
 struct AzimuthalParameters {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/shading/azimuthal.h"
+#include "core/shading/cubic.h"
 
 namespace hairloom::shading {
 namespace {
@@ -95,7 +96,9 @@ void AzimuthalProfile::addRough(const Section& section, std::span<const Lobe> lo
         const CrossSection::Ray ray = section.optics.at(h);
         for (const Lobe lobe : lobes) {
             const int p = order(lobe);
-            const double turned = 2 * p * inside - 2 * gamma;
+            const double turned = parameters_.roots == RootMethod::Exact
+                                      ? 2 * p * inside - 2 * gamma
+                                      : CubicDeflection(p, etaPrime)(gamma);
             const double share = lobe == Lobe::TRT ? kept(section, turned) : 1;
             const double weight = 0.5 * share * std::cos(gamma) * (kPi / 2) / kOffsets;
             const Vec3d amount = weight * attenuation(ray, p);

@@ -35,4 +35,15 @@ RealRoots solveCubic(double a, double b, double c) {
     return roots;
 }
 
+CubicDeflection::CubicDeflection(int p, double etaPrime) {
+    constexpr double kPi = std::numbers::pi;
+    const double c = std::asin(1 / etaPrime);
+    a = -8 * p * c / (kPi * kPi * kPi);
+    b = 6 * p * c / kPi - 2;
+}
+
+double CubicDeflection::turn() const {
+    return std::sqrt(-b / (3 * a));
+}
+
 }  // namespace hairloom::shading

@@ -2,6 +2,7 @@
 #include "core/software/light_maps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace hairloom::software {
@@ -30,6 +31,20 @@ float metresBehind(const shaders::ViewConstants& view, float depth) {
     return view.nearPlane > 0
                ? view.nearPlane * farPlane / (farPlane - depth * view.depthRange) - view.nearPlane
                : depth * view.depthRange;
+}
+
+/// As opacity.hlsli has it.
+std::uint32_t layerAt(float part, std::uint32_t count, float growth) {
+    const auto all = static_cast<float>(count);
+    float place = part;
+    if (growth == 0) {
+        place = part < 0.04f   ? part / 0.12f
+                : part < 0.14f ? 1.0f / 3 + (part - 0.04f) / 0.3f
+                               : 2.0f / 3 + (part - 0.14f) / 2.58f;
+    } else if (std::abs(growth - 1) >= 1e-3f) {
+        place = std::log(1 + max(part, 0.0f) * (std::pow(growth, all) - 1)) / (std::log(growth) * all);
+    }
+    return static_cast<std::uint32_t>(std::clamp(place * all, 0.0f, all - 1));
 }
 
 }  // namespace
@@ -111,6 +126,7 @@ void LightMaps::countLayers(const RibbonBatch& all, const shaders::RasterConstan
     const std::unique_ptr<RibbonTiles> tiles = takeTiles(batch, raster);
     const shaders::ViewConstants& view = batch.view;
     const bool fixedLayers = view.shadows == HAIRLOOM_SHADOWS_OPACITY_MAPS;
+    const bool few = raster.layers == (fixedLayers ? 4u : 3u);
     const auto left = static_cast<std::size_t>(raster.window.x);
     const auto top = static_cast<std::size_t>(raster.window.y);
     const auto columns = static_cast<std::size_t>(raster.window.z);
@@ -124,8 +140,11 @@ void LightMaps::countLayers(const RibbonBatch& all, const shaders::RasterConstan
         const float begins =
             fixedLayers ? view.hairBegins : metresBehind(view, asfloat(first[y * raster.bufferWidth + x]));
         const float behind = metresBehind(view, depth) - begins;
-        const std::uint32_t layer = (behind >= view.layers.x ? 1u : 0u) +
-                                    (behind >= view.layers.y ? 1u : 0u) + (behind >= view.layers.z ? 1u : 0u);
+        const std::uint32_t layer = few ? (behind >= view.layers.x ? 1u : 0u) +
+                                              (behind >= view.layers.y ? 1u : 0u) +
+                                              (behind >= view.layers.z ? 1u : 0u)
+                                        : layerAt(behind / (fixedLayers ? view.layers.w : view.layers.z),
+                                                  raster.layers, raster.layerGrowth);
         const std::size_t texel = (y - top) * columns + (x - left);
         counts[texel * raster.layers + min(layer, raster.layers - 1)] += amount;
     };

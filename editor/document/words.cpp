@@ -31,8 +31,9 @@ QString labelOf(const QString& name) {
     for (const QLatin1String unit : {QLatin1String(" degrees"), QLatin1String(" per cm2")}) {
         if (label.endsWith(unit)) label.chop(unit.size());
     }
-    // "spacing2" is one of several.
-    if (label.size() > 1 && label.back().isDigit() && label.at(label.size() - 2).isLetter())
+    // "spacing2" is one of several, "3x3" is not.
+    if (label.size() > 1 && !label.at(0).isDigit() && label.back().isDigit() &&
+        label.at(label.size() - 2).isLetter())
         label.insert(label.size() - 1, ' ');
     return label;
 }

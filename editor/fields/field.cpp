@@ -151,6 +151,23 @@ std::vector<Field> followHairFields() {
     return fieldsIn(&Groom::interpolation, editing::Part::Interpolation);
 }
 
+std::vector<Field> shadowFields() {
+    // Names that stand beside those of other settings of pictures, and that prices have.
+    constexpr std::pair<const char*, const char*> kNames[] = {
+        {"kind", "shadows"},        {"filter", "shadowFilter"}, {"resolution", "shadowResolution"},
+        {"layers", "shadowLayers"}, {"slices", "shadowSlices"}, {"blur", "shadowBlur"}};
+    std::vector<Field> fields = fieldsIn(&Groom::shadows, editing::Part::Shadows);
+    for (Field& field : fields) {
+        for (const auto& [name, shown] : kNames) {
+            if (field.name != std::string_view(name)) continue;
+            field.name = shown;
+            field.label = labelOf(shown);
+            break;
+        }
+    }
+    return fields;
+}
+
 std::vector<Field> placementFields() {
     return fieldsIn(&Groom::placement, editing::Part::Placement);
 }

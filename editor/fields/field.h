@@ -40,6 +40,7 @@ struct Field : FieldInfo {
 std::vector<Field> simulationFields();
 std::vector<Field> materialFields();
 std::vector<Field> followHairFields();
+std::vector<Field> shadowFields();
 std::vector<Field> placementFields();
 /// The density of the layer at `index`, or the material that it has of its own.
 Field layerDensityField(std::size_t index);

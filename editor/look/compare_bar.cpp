@@ -59,7 +59,7 @@ class CompareBar : public QWidget {
   private:
     Viewport::Comparison now() const {
         const Groom& groom = document_.groom();
-        return {groom.material, groom.interpolation, viewport_.quality()};
+        return {groom.material, groom.interpolation, groom.shadows, viewport_.quality()};
     }
 
     void swapLooks() {
@@ -68,6 +68,7 @@ class CompareBar : public QWidget {
         Groom groom = document_.groom();
         groom.material = kept_->material;
         groom.interpolation = kept_->interpolation;
+        groom.shadows = kept_->shadows;
         const PictureQuality quality = kept_->quality;
         kept_ = before;
         document_.perform(editing::setSettings(document_.editing().model(), groom, "Swap looks"));

@@ -12,7 +12,7 @@ class PictureForm : public OptionForm {
     PictureForm(const Preferences& preferences, const Prices& prices, Viewport& viewport)
         : OptionForm(preferences, &prices), viewport_(viewport) {
         addEdges();
-        addShadows();
+        addScattering();
         connect(&viewport_, &Viewport::lookChanged, this, &OptionForm::refresh);
     }
 
@@ -44,18 +44,6 @@ class PictureForm : public OptionForm {
             [this, member, minimum](int index) {
                 PictureQuality quality = viewport_.quality();
                 quality.*member = minimum << static_cast<std::uint32_t>(index);
-                viewport_.setQuality(quality);
-            });
-    }
-
-    void addAmount(const char* name, const QString& label, const QString& tip, const char* unit,
-                   float maximum, float PictureQuality::*member) {
-        addNumber(
-            name, label, tip, unit, 0, static_cast<double>(maximum), false,
-            [this, member] { return static_cast<double>(viewport_.quality().*member); },
-            [this, member](double value) {
-                PictureQuality quality = viewport_.quality();
-                quality.*member = static_cast<float>(value);
                 viewport_.setQuality(quality);
             });
     }
@@ -104,27 +92,7 @@ class PictureForm : public OptionForm {
             });
     }
 
-    void addShadows() {
-        addEnum("shadows", "Shadows",
-                "How hair shadows hair: opacity layers behind the first hair, absorption by depth alone, "
-                "opacity maps at fixed depths, or none",
-                {QString("None"), QString("Deep opacity"), QString("Absorption"), QString("Opacity maps")},
-                &PictureQuality::shadows);
-        addPower("shadowResolution", "Shadow map",
-                 "Width and height of each light's shadow map. More pixels give sharper shadows", 256, 5,
-                 "%1 px", &PictureQuality::shadowResolution);
-        addEnum("shadowFilter", "Shadow filter",
-                "Texels of the shadow map that are averaged at each point of the hair. More give smoother "
-                "shadows and cost more",
-                {QString("Off"), QString("3 × 3"), QString("5 × 5")}, &PictureQuality::shadowFilter);
-        addAmount("headAbsorption", "Through the head",
-                  "Makes light on hair behind the head fade with depth, by this much per metre. This is "
-                  "softer and less noisy, but light leaks through thin parts. 0 blocks all light",
-                  "1/m", render::kMaxHeadAbsorption, &PictureQuality::headAbsorption);
-        addAmount("shadowBlur", "Shadow blur",
-                  "Radius of the screen-space shadow blur while nothing moves. Hair looks less sharp, and "
-                  "shadows leak over edges into lit areas",
-                  "px", render::kMaxShadowBlur, &PictureQuality::shadowBlur);
+    void addScattering() {
         addEnum("scattering", "Scattered light",
                 "Light scattered by other hairs: ignored (single) or added by dual scattering (dual). For "
                 "Marschner and Sadeghi",

@@ -38,7 +38,7 @@ class PicturePrices : public QWidget {
         connect(&viewport_, &Viewport::lookChanged, this, &PicturePrices::outdate);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
             if (contains(parts, editing::kHairParts | editing::Part::Material | editing::Part::Interpolation |
-                                    editing::Part::Dye | editing::Part::Widths))
+                                    editing::Part::Dye | editing::Part::Widths | editing::Part::Shadows))
                 outdate();
         });
         connect(&document_, &QtDocument::replaced, this, [this] {
@@ -68,7 +68,7 @@ class PicturePrices : public QWidget {
                 if (!device) return tl::unexpected(device.error());
                 const bool software = (*device)->info().type == gpu::DeviceType::Cpu;
                 const float exposure = options.picture.exposure;
-                options.picture = stillOptions(quality, (*device)->info());
+                options.picture = stillOptions(quality, groom->shadows, (*device)->info());
                 options.picture.exposure = exposure;
                 const double scale = (software ? kMeasuredSoftware_px : kMeasured_px) /
                                      std::max({1.0, size_px.width(), size_px.height()});

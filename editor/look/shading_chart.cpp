@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/editing/document.h"
+#include "core/live/picture_shadows.h"
 #include "core/live/shown.h"
 #include "editor/fields/number_spin.h"
 #include "editor/look/parts.h"
@@ -17,8 +19,9 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr double kShape = 0.8;       // of a chart's height to its width
-constexpr double kLeastWidth = 320;  // pixels that text and legend need
+constexpr double kShape = 0.8;             // of a chart's height to its width
+constexpr double kLeastWidth = 320;        // pixels that text and legend need
+constexpr std::uint32_t kMapTexels = 128;  // along a side of a shadow map that is drawn again and again
 
 /// Light for dark and the reverse, with the same hues.
 void turnLightness(ChartImage& image) {
@@ -133,7 +136,10 @@ class ShadingChart : public QWidget {
         // A control that moves says so more often than charts can be drawn.
         connect(&soon_, &QTimer::timeout, this, [this] { redraw(); });
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
-            if (contains(changed, editing::Part::Material) && isVisible()) soon_.start();
+            const bool shows = shownKind(kinds_->currentData().toString().toStdString())->ofGroom
+                                   ? contains(changed, editing::Part::Shadows | editing::kHairParts)
+                                   : contains(changed, editing::Part::Material);
+            if (shows && isVisible()) soon_.start();
         });
     }
 
@@ -148,6 +154,14 @@ class ShadingChart : public QWidget {
         const ShownKind* const kind = shownKind(kinds_->currentData().toString().toStdString());
         ShownHair hair;
         hair.material = document_.groom().material;
+        if (kind->ofGroom) {
+            // Without follow hairs, which would take as long as the picture itself.
+            Groom strands = document_.groom();
+            strands.interpolation.followPerGuide = 0;
+            takeShadows(strands.shadows, hair.shadows);
+            hair.shadows.shadowResolution = std::min(hair.shadows.shadowResolution, kMapTexels);
+            hair.groom = std::make_shared<const Groom>(std::move(strands));
+        }
         hair.inclinationDegrees = light_->value();
         auto shown = hairloom::show(*kind, hair);
         note_->setVisible(!shown);

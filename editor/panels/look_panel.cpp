@@ -55,6 +55,10 @@ const std::vector<Group>& groups() {
         {"First highlight (R)", {"rIntensity", "rWidth", "rShiftDegrees"}, kFibres, false},
         {"Transmission (TT)", {"ttIntensity", "ttWidth", "ttShiftDegrees"}, kFibres, false},
         {"Second highlight (TRT)", {"trtIntensity", "trtWidth", "trtShiftDegrees"}, kFibres, false},
+        {"Caustics",
+         {"causticWidthDegrees", "causticFade", "causticIntensity", "azimuthalSolver"},
+         kMarschner,
+         false},
         {"Colours of the highlights",
          {"rColour", "ttColour", "trtColour", "ttAzimuthalWidth"},
          kSadeghi,
@@ -90,7 +94,7 @@ class LookPanel : public QWidget {
         layout_->addWidget(collapsible("Shading charts", makeShadingChart(document_, preferences_), false));
         layout_->addWidget(
             collapsible("Edges and shadows",
-                        column({makePictureForm(preferences_, prices_, viewport_),
+                        column({makePictureForm(preferences_, prices_, viewport_), form(shadowFields()),
                                 makePicturePrices(document_, parts.tasks, viewport_, parts.prices)}),
                         false));
         layout_->addWidget(collapsible("Interpolated hairs", form(followHairFields()), false));

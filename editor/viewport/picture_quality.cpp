@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
+#include "core/live/picture_shadows.h"
+
 namespace hairloom::editor {
 
-render::RenderOptions stillOptions(const PictureQuality& quality, const gpu::DeviceInfo& device) {
+render::RenderOptions stillOptions(const PictureQuality& quality, const ShadowSettings& shadows,
+                                   const gpu::DeviceInfo& device) {
     render::RenderOptions options;
     options.samples = 1;
     for (const std::uint32_t count : device.sampleCounts) {
@@ -19,11 +22,7 @@ render::RenderOptions stillOptions(const PictureQuality& quality, const gpu::Dev
     if (!sorted && (device.tessellation || quality.ribbons != render::Ribbons::tessellated))
         options.ribbons = quality.ribbons;
     options.subdivisions = quality.subdivisions;
-    options.shadows = quality.shadows;
-    options.headAbsorption = quality.headAbsorption;
-    options.shadowBlur = quality.shadowBlur;
-    options.shadowFilter = quality.shadowFilter;
-    options.shadowResolution = quality.shadowResolution;
+    takeShadows(shadows, options);
     return options;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// How finely the viewport draws. Not part of the document.
+// How finely the viewport draws. Not part of the document, which has the shadows (ShadowSettings).
 
+#include "core/groom/shadow_settings.h"
 #include "core/render/fibre_material.h"
 #include "core/render/options.h"
 
@@ -16,11 +17,6 @@ struct PictureQuality {
     render::Transparency transparency = render::Transparency::automatic;
     /// Strips where the device cannot tessellate.
     render::Ribbons ribbons = render::Ribbons::automatic;
-    render::Shadows shadows = render::Shadows::deepOpacity;
-    std::uint32_t shadowResolution = 1024;
-    render::ShadowFilter shadowFilter = render::ShadowFilter::three;
-    float headAbsorption = 0;                                  ///< 1/m, as render::RenderOptions
-    float shadowBlur = 0;                                      ///< pixels, likewise; while nothing moves
     std::uint32_t subdivisions = 2;                            ///< curve segments per segment of a strand
     render::Scattering scattering = render::Scattering::dual;  ///< not of Kajiya-Kay
 
@@ -28,6 +24,7 @@ struct PictureQuality {
 };
 
 /// Of a picture while nothing moves, with what the device can; size and exposure are the caller's.
-render::RenderOptions stillOptions(const PictureQuality& quality, const gpu::DeviceInfo& device);
+render::RenderOptions stillOptions(const PictureQuality& quality, const ShadowSettings& shadows,
+                                   const gpu::DeviceInfo& device);
 
 }  // namespace hairloom::editor

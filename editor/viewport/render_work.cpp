@@ -301,7 +301,7 @@ Status RenderWork::showDye(const PictureRequest& request) {
 }
 
 render::RenderOptions RenderWork::options() const {
-    render::RenderOptions options = stillOptions(last_->quality, device_.info());
+    render::RenderOptions options = stillOptions(last_->quality, last_->groom->shadows, device_.info());
     options.width = width_;
     options.height = height_;
     options.exposure = last_->exposure;

@@ -427,6 +427,7 @@ void Viewport::post() {
             Groom other = *groom_;
             other.material = comparison_->material;
             other.interpolation = comparison_->interpolation;
+            other.shadows = comparison_->shadows;
             other_ = std::make_shared<const Groom>(std::move(other));
         }
         request.other = other_;

@@ -46,6 +46,7 @@ class Viewport : public QWidget {
     struct Comparison {
         HairMaterial material;
         InterpolationSettings interpolation;
+        ShadowSettings shadows;
         PictureQuality quality;
     };
     /// Shows that look left of a line that can be dragged; nothing: only the document's.

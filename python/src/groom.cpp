@@ -178,6 +178,7 @@ nb::object settings(PyGroom& groom) {
     const Use use(groom.inUse, kTheGroom);
     const nlohmann::ordered_json all{{"simulation", toJson(groom.groom.simulation)},
                                      {"material", toJson(groom.groom.material)},
+                                     {"shadows", toJson(groom.groom.shadows)},
                                      {"interpolation", toJson(groom.groom.interpolation)}};
     return valueOfJson(all.dump());
 }

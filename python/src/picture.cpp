@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include "core/documents/look_presets.h"
 #include "core/live/groom_scene.h"
 #include "core/live/moving_picture.h"
+#include "core/live/picture_shadows.h"
 #include "core/live/view_file.h"
 #include "core/software/device.h"
 #include "python/src/arrays.h"
@@ -22,7 +24,10 @@ Result<render::Image> draw(const Groom& groom, const render::RenderOptions& aske
         if (!read) return tl::unexpected(read.error());
         view = std::move(*read);
     }
-    auto shown = GroomScene::make(groom, view, {});
+    Groom looks = groom;
+    if (auto status = applyLookOfView(viewFile, view.look, looks.material); !status)
+        return tl::unexpected(status.error());
+    auto shown = GroomScene::make(looks, view, {});
     if (!shown) return tl::unexpected(shown.error());
     if (frame) shown->pose(*frame->positions_ws, *frame->velocities_ws, *frame->pose);
     render::RenderScene scene = shown->scene();
@@ -36,6 +41,7 @@ Result<render::Image> draw(const Groom& groom, const render::RenderOptions& aske
     scene.background = view.background.value_or(scene.background);
     const software::DeviceChoice device = software::chooseDevice();
     render::RenderOptions options = asked;
+    takeShadows(groom.shadows, view, options);
     if (software::isSoftware(*device.device)) takeWaysOfSoftware(options);
     auto picture = render::renderPicture(*device.device, scene, options);
     if (!picture) return tl::unexpected(picture.error());

@@ -18,8 +18,13 @@ void visitPixel(RibbonPiece piece, int2 pixel) {
         fixedLayers ? gView.hairBegins : metresBehindNear(gView.depthRange, gView.nearPlane, asfloat(gFirst[pixelIndex(pixel)]));
     const float behind = metresBehindNear(gView.depthRange, gView.nearPlane, z) - begins;
     const uint last = gRaster.layers - 1u;
-    const uint layer = (behind >= gView.layers.x ? 1u : 0u) + (behind >= gView.layers.y ? 1u : 0u) +
-                       (behind >= gView.layers.z ? 1u : 0u);
+    uint layer = 0u;
+    if (gRaster.layers == (fixedLayers ? 4u : 3u)) {
+        layer = (behind >= gView.layers.x ? 1u : 0u) + (behind >= gView.layers.y ? 1u : 0u) +
+                (behind >= gView.layers.z ? 1u : 0u);
+    } else {
+        layer = layerAt(behind / (fixedLayers ? gView.layers.w : gView.layers.z), gRaster.layers, gRaster.layerGrowth);
+    }
     const int2 inSquare = pixel - int2(gRaster.window.xy);
     const uint texel = uint(inSquare.y) * uint(gRaster.window.z) + uint(inSquare.x);
     InterlockedAdd(gCounts[texel * (last + 1u) + min(layer, last)], amount);

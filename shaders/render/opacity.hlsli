@@ -8,6 +8,31 @@
 // The same while fibres are being counted.
 #define FIBRE_COUNT 65536.0
 
+// Ends of layer `i` of `count`, as parts of the depth that hair takes up. `growth`: how much wider each is than the one before; 0:
+// early, at 0.04, 0.14 and 1 of three, each of which more cut evenly.
+float layerEnd(uint i, uint count, float growth) {
+    const float number = float(i + 1u);
+    const float all = float(count);
+    const float place = number / all;
+    if (growth == 0.0)
+        return place <= 1.0 / 3.0 ? 0.12 * place
+               : place <= 2.0 / 3.0 ? 0.04 + 0.3 * (place - 1.0 / 3.0)
+                                    : 0.14 + 2.58 * (place - 2.0 / 3.0);
+    if (abs(growth - 1.0) < 1e-3) return place;
+    return (pow(growth, number) - 1.0) / (pow(growth, all) - 1.0);
+}
+
+// The layer at a part of that depth; those behind the last belong to it.
+uint layerAt(float part, uint count, float growth) {
+    const float all = float(count);
+    float place = part;
+    if (growth == 0.0)
+        place = part < 0.04 ? part / 0.12 : part < 0.14 ? 1.0 / 3.0 + (part - 0.04) / 0.3 : 2.0 / 3.0 + (part - 0.14) / 2.58;
+    else if (abs(growth - 1.0) >= 1e-3)
+        place = log(1.0 + max(part, 0.0) * (pow(growth, all) - 1.0)) / (log(growth) * all);
+    return uint(clamp(place * all, 0.0, all - 1.0));
+}
+
 // Four 16-bit shares of 1, as a texel of RGBA16_UNORM holds them.
 uint2 packShares(float4 share) {
     const uint4 s = uint4(saturate(share) * 65535.0 + 0.5);

@@ -7,7 +7,7 @@
 
 Texture2D<float> gHeadDepth : register(t8);
 StructuredBuffer<uint> gFirstHair : register(t9);  // depths as bits
-StructuredBuffer<uint> gOpacity : register(t10);    // two words a texel
+StructuredBuffer<uint> gOpacity : register(t10);    // two words a texel, or more where there are more layers
 
 static const float kSkinPatch = 0.05;  // metres: radius of skin that is lit alike
 
@@ -29,6 +29,35 @@ Occlusion shadowOf(LightConstants light, Occlusion o) {
     return o;
 }
 
+// Share `i` of 1, of those that begin at a word.
+float shareAt(uint word, uint i) {
+    return float((gOpacity[word + i / 2u] >> (16u * (i & 1u))) & 0xffffu) * (1.0 / 65535.0);
+}
+
+// fibresInLayers(), or fibres in slices at fixed depths, of any number of layers.
+float fibresInManyLayers(LightConstants light, uint texel, float depth) {
+    const bool fixedLayers = uint(light.shadows) == HAIRLOOM_SHADOWS_OPACITY_MAPS;
+    const uint count = uint(light.layerCount);
+    const uint words = 2u * ((count + (fixedLayers ? 0u : 1u) + 3u) / 4u);
+    const uint word = words * texel;
+    const float range = fixedLayers ? light.layers.w : light.layers.z;
+    const float starts = fixedLayers ? light.hairBegins : (1.0 - shareAt(word, 2u * words - 1u)) * light.depthRange;
+    const float behind = depth - starts;
+    if (behind <= 0.0) return 0.0;
+    float fibres = 0.0;
+    float begins = 0.0;
+    for (uint i = 0u; i < count && begins < behind; ++i) {
+        float ends = range * layerEnd(i, count, light.layerGrowth);
+        if (!fixedLayers && i + 1u == count) ends = max(min(range, light.hairBegins + range - starts), 1.01 * begins);
+        const float part = saturate((behind - begins) / (ends - begins));
+        const float inLayer = shareAt(word, i) / OPACITY_UNIT;
+        fibres += inLayer * part;
+        if (!fixedLayers && i == 0u) fibres += min(inLayer, light.layers.w) * (1.0 - part);
+        begins = ends;
+    }
+    return fibres;
+}
+
 // Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
 float fibresAt(LightConstants light, uint texel, float depth, float bias) {
     const uint mode = uint(light.shadows);
@@ -37,6 +66,7 @@ float fibresAt(LightConstants light, uint texel, float depth, float bias) {
         const float behind = depth - metresBehindNear(light.depthRange, light.nearPlane, asfloat(gFirstHair[texel])) - bias;
         return light.layers.y * (1.0 - exp(-max(behind, 0.0) * light.layers.x / max(light.layers.y, 1e-6)));
     }
+    if (uint(light.layerCount) != (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS ? 4u : 3u)) return fibresInManyLayers(light, texel, depth - bias);
     const float4 layers = unpackShares(uint2(gOpacity[2u * texel], gOpacity[2u * texel + 1u]));
     if (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS) {
         const float4 begins = float4(0, light.layers.xyz);

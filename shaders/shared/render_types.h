@@ -119,15 +119,17 @@ struct LightConstants {
     float shadows;      // HAIRLOOM_SHADOWS_*
     float nearPlane;    // of a perspective view, metres; 0 for an orthographic one
     float hairBegins;   // metres behind the near plane
-    float4 layers;      // ends of the opacity layers in metres behind the first hair (w: the part of a texel
-                    // that a fibre covers), or behind where hair begins; absorption: x: fibres a metre, y:
-                    // most fibres
-    float stopping;        // exp(-stopping n) of the light passes n fibres that a texel counts
-    float texelSize;       // metres
+    float4 layers;    // ends of three opacity layers in metres behind the first hair (w: the part of a texel
+                      // that a fibre covers), or of four slices behind where hair begins; of other numbers of
+                      // them that of the last, as z or w; absorption: x: fibres a metre, y: most fibres
+    float stopping;   // exp(-stopping n) of the light passes n fibres that a texel counts
+    float texelSize;  // metres
     float headAbsorption;  // of hair behind the head, 1/m; 0: a test of depth
     float withoutShadows;  // 1: shadows of the light itself are left out
     float filterTexels;    // a side of what is averaged: 1, 3 or 5
-    float unused0, unused1, unused2;
+    float layerCount;      // of opacity
+    float layerGrowth;     // of their widths from one to the next; 0: early ends (opacity.hlsli)
+    float unused0;
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.
@@ -228,7 +230,8 @@ struct RasterConstants {
     uint slices;        // that a triangle is cut into
     uint sorts;         // 1: hair is kept as each pixel's nearest fragments
     float sampleReach;  // farthest that a sample lies from the middle of its pixel along x or y, pixels
-    float unused1, unused2, unused3;
+    float layerGrowth;  // of opacity: see LightConstants
+    float unused2, unused3;
     float4
         samplePositions[HAIRLOOM_MAX_SAMPLES / 2];  // of the samples from the middle, in pixels, two in each
 };
@@ -309,7 +312,8 @@ struct PackConstants {
     uint shadows;      // HAIRLOOM_SHADOWS_*
     float depthRange;  // see LightConstants
     float nearPlane;
-    float unused0, unused1;
+    uint layers;  // of opacity
+    uint words;   // of a texel's shares, two in each
 };
 
 struct MeshConstants {

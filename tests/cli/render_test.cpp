@@ -98,6 +98,31 @@ TEST_F(RenderJob, EccentricFibresLookOtherwiseInEachModel) {
     }
 }
 
+TEST_F(RenderJob, CausticsShowInPictures) {
+    const auto drawn = [&](const std::string& fields) {
+        runJson(
+            "set hair.hairloom material.shadingModel=marschner material.azimuthalRoughness=0.01 "
+            "material.eumelanin=0.1 material.rootRadius=0.0006 " +
+            fields + " -o other.hairloom");
+        runJson("render other.hairloom -o hair.png --size 96x96 --passes 1 --engine software");
+        return readText(folder / "hair.png");
+    };
+    const std::string usual = drawn("");
+    EXPECT_EQ(drawn("material.causticFade=0.3 material.causticIntensity=1"), usual);
+    std::set<std::string> pictures{usual};
+    const std::vector<std::string> ways{"material.causticWidthDegrees=2",
+                                        "material.causticWidthDegrees=60",
+                                        "material.causticFade=1 material.causticIntensity=9",
+                                        "material.causticIntensity=0",
+                                        "material.causticIntensity=10",
+                                        "material.azimuthalSolver=cubic"};
+    for (const std::string& way : ways) pictures.insert(drawn(way));
+    EXPECT_EQ(pictures.size(), ways.size() + 1);
+    for (const char* const wrong :
+         {"causticWidthDegrees=61", "causticFade=-0.1", "causticIntensity=11", "azimuthalSolver=quartic"})
+        EXPECT_NE(run(std::string("set hair.hairloom -o x.hairloom material.") + wrong).exitCode, 0) << wrong;
+}
+
 TEST_F(RenderJob, AViewSetsShadowMapsAndCurvesAndOptionsOverrideIt) {
     const auto drawn = [&](const std::string& way) {
         picture("--engine software" + way);
@@ -121,6 +146,96 @@ TEST_F(RenderJob, AViewSetsShadowMapsAndCurvesAndOptionsOverrideIt) {
     EXPECT_NE(drawn(" --shadow-filter off"), usual);
     for (const char* const wrong : {"--shadow-resolution 63", "--shadow-resolution 4097", "--subdivisions 0"})
         EXPECT_EQ(run(std::string("render hair.hairloom -o x.png ") + wrong).exitCode, 2) << wrong;
+}
+
+TEST_F(RenderJob, ShadowsAreSavedInTheProjectAndViewsAndOptionsOverrideThem) {
+    runJson("create --mesh '" + bustFile() +
+            "' --scalp material:scalp --count 3000 --length 0.05 --points 4 -o hair.hairloom");
+    const auto drawn = [&](const std::string& fields, const std::string& way = "") {
+        runJson("set hair.hairloom material.rootRadius=0.0005 material.eumelanin=0 " + fields +
+                " -o other.hairloom");
+        const auto report = runJson(
+            "render other.hairloom -o hair.png --size 96x96 --passes 1 --engine software --shading "
+            "marschner " +
+            way);
+        return std::pair(readText(folder / "hair.png"), report);
+    };
+    const std::string usual = drawn("shadows.kind=deepOpacity").first;
+    const std::pair<const char*, const char*> same[] = {
+        {"shadows.kind=none", "--shadow none"},
+        {"shadows.kind=absorption", "--shadow absorption"},
+        {"shadows.kind=opacityMaps", "--shadow opacity"},
+        {"shadows.kind=opacityMaps shadows.slices=9", "--shadow opacity --shadow-slices 9"},
+        {"shadows.filter=5x5", "--shadow-filter 5x5"},
+        {"shadows.resolution=128", "--shadow-resolution 128"},
+        {"shadows.layers=7", "--shadow-layers 7"},
+        {"shadows.layers=11 shadows.layerEnds=linear", "--shadow-layers 11 --layer-ends linear"},
+        {"shadows.layerEnds=growing shadows.layerGrowth=3", "--layer-ends growing --layer-growth 3"},
+        {"shadows.headAbsorption=50", "--head-absorption 50"},
+        {"shadows.blur=2", "--shadow-blur 2"}};
+    std::set<std::string> pictures{usual};
+    for (const auto& [saved, option] : same) {
+        const std::string picture = drawn(saved).first;
+        EXPECT_EQ(picture, drawn("shadows.kind=deepOpacity", option).first) << saved;
+        EXPECT_TRUE(pictures.insert(picture).second) << saved << " looks as another";
+    }
+    const std::string asUsual =
+        view("usual.json", R"({"shadow": "dom", "shadow_layers": 3, "layer_ends": "early",
+        "shadow_filter": "3x3", "shadow_resolution": 1024})");
+    EXPECT_EQ(
+        drawn("shadows.layers=11 shadows.layerEnds=linear shadows.filter=off shadows.resolution=64", asUsual)
+            .first,
+        usual);
+    EXPECT_EQ(drawn("shadows.layers=11", asUsual + " --shadow none").first, drawn("shadows.kind=none").first);
+    const std::string layered =
+        view("layered.json", R"({"layer_ends": "growing", "layer_growth": 3, "shadow_slices": 5})");
+    EXPECT_EQ(drawn("shadows.kind=deepOpacity", layered).first,
+              drawn("shadows.layerEnds=growing shadows.layerGrowth=3").first);
+    const auto plan = drawn("shadows.layers=11").second["plan"].dump();
+    EXPECT_THAT(plan, HasSubstr("counts hair in 11 layers"));
+    for (const char* const wrong :
+         {"shadows.layers=2", "shadows.layers=12", "shadows.slices=0", "shadows.slices=17",
+          "shadows.layerGrowth=0.5", "shadows.kind=moon", "shadows.resolution=63"})
+        EXPECT_NE(run(std::string("set hair.hairloom -o x.hairloom ") + wrong).exitCode, 0) << wrong;
+    for (const char* const wrong : {"--shadow-layers 2", "--shadow-layers 12", "--shadow-slices 17",
+                                    "--layer-growth 0.5", "--layer-ends late"})
+        EXPECT_EQ(run(std::string("render hair.hairloom -o x.png ") + wrong).exitCode, 2) << wrong;
+}
+
+TEST_F(RenderJob, LooksAreAppliedByNameByOptionsAndViews) {
+    const auto drawn = [&](const std::string& way) {
+        runJson("render hair.hairloom -o hair.png --size 96x96 --passes 1 --engine software " + way);
+        return readText(folder / "hair.png");
+    };
+    std::set<std::string> names;
+    const auto listed = runJson("set --list");
+    for (const auto& look : listed["looks"]) names.insert(look["look"]);
+    EXPECT_GE(names.size(), 17u);
+    std::set<std::string> pictures;
+    for (const std::string& name : names) {
+        const std::string picture = drawn("--look '" + name + "'");
+        pictures.insert(picture);
+        EXPECT_EQ(drawn(view("look.json", R"({"look": ")" + name + "\"}")), picture) << name;
+        runJson("set hair.hairloom --look '" + name + "' -o other.hairloom");
+        runJson("render other.hairloom -o hair.png --size 96x96 --passes 1 --engine software");
+        EXPECT_EQ(readText(folder / "hair.png"), picture) << name;
+    }
+    EXPECT_EQ(pictures.size(), names.size());
+    EXPECT_EQ(drawn(view("look.json", R"({"look": "neon"})") + " --look brown"), drawn("--look brown"));
+    const auto unknown = run("render hair.hairloom -o x.png" + view("look.json", R"({"look": "moon"})"));
+    EXPECT_EQ(unknown.exitCode, 1);
+    EXPECT_THAT(unknown.errors, HasSubstr("look.json"));
+    EXPECT_THAT(unknown.errors, HasSubstr("auburn"));
+    EXPECT_EQ(run("render hair.hairloom -o x.png --look moon").exitCode, 2);
+    EXPECT_EQ(run("set hair.hairloom -o x.hairloom --look moon").exitCode, 2);
+    // Fields go before it, and a natural look keeps the controls that there are.
+    const auto material = [&](const std::string& how) {
+        runJson("set hair.hairloom -o other.hairloom " + how);
+        const std::string text = readText(folder / "other.hairloom");
+        return text;
+    };
+    EXPECT_THAT(material("--look glints material.glintIntensity=7"), HasSubstr("\"glintIntensity\": 7"));
+    EXPECT_THAT(material("--look glints"), HasSubstr("\"shadingModel\": \"sadeghi\""));
 }
 
 TEST_F(RenderJob, TheSoftwareRendererDrawsWhereThereIsNoGpu) {

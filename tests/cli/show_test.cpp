@@ -8,66 +8,12 @@
 #include <numbers>
 #include <set>
 
-#include "tests/cli/command.h"
+#include "tests/cli/show_job.h"
 
 namespace hairloom::test {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi, kRadians = kPi / 180;
-
-struct Curve {
-    std::vector<double> x, y;
-
-    double at(double place) const {
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            if (std::abs(x[i] - place) < 1e-9) return y[i];
-        }
-        ADD_FAILURE() << "no value at " << place;
-        return 0;
-    }
-};
-
-class ShowJob : public CommandLineTest {
-  protected:
-    nlohmann::json shown(const std::string& name, const std::string& more = "") const {
-        return runJson("render --show " + name + " -o " + name + ".png " + more);
-    }
-    /// A file for --material.
-    std::string material(const std::string& fields) const {
-        std::ofstream(folder / "material.json") << R"({"material": {)" << fields << "}}";
-        return " --material material.json";
-    }
-    static Curve curve(const nlohmann::json& report, const std::string& name) {
-        for (const auto& one : report["curves"]) {
-            if (one["name"] == name) return {one["x"], one["y"]};
-        }
-        ADD_FAILURE() << "no curve " << name;
-        return {};
-    }
-    /// Width and height in the head of a PNG.
-    std::pair<std::uint32_t, std::uint32_t> sizeOf(const std::string& file) const {
-        const std::string bytes = readText(folder / file);
-        const auto number = [&](std::size_t at) {
-            std::uint32_t value = 0;
-            for (std::size_t i = 0; i < 4; ++i)
-                value = value << 8u | static_cast<unsigned char>(bytes[at + i]);
-            return value;
-        };
-        EXPECT_THAT(bytes.substr(1, 3), "PNG");
-        return {number(16), number(20)};
-    }
-};
-
-/// Of unpolarised light that meets glass at an angle, by Snell's law and complex amplitudes.
-double fresnelOfGlass(double ior, double angle) {
-    const double cosine = std::cos(angle), sine = std::sin(angle) / ior;
-    const double inside = std::sqrt(1 - sine * sine);
-    const double s = (cosine - ior * inside) / (cosine + ior * inside);
-    const double p = (ior * cosine - inside) / (ior * cosine + inside);
-    return 0.5 * (s * s + p * p);
-}
 
 const std::vector<std::string> kNames{"curves",      "tables",      "kajiya-m",
                                       "marschner-m", "marschner-n", "marschner-tables",
@@ -262,6 +208,49 @@ TEST_F(ShowJob, TablesHoldWhatTheThesisSays) {
                         1e-5);
         }
     }
+}
+
+TEST_F(ShowJob, OpacityMapsHoldTheFibresThatTheLightMeets) {
+    // Each way of cutting the depth of hair counts the same fibres.
+    runJson("create --mesh '" + bustFile() +
+            "' --scalp material:scalp --count 400 --length 0.1 --points 6 -o hair.hairloom");
+    const auto totals = [&](const std::string& what) {
+        const auto report = runJson("render hair.hairloom --shadow-resolution 64 -o a.png --show " + what);
+        const auto& table = report["tables"][0];
+        std::vector<double> sums(table["x"].size() * table["y"].size());
+        std::size_t layers = 0;
+        for (const auto& [name, values] : table["channels"].items()) {
+            ++layers;
+            for (std::size_t i = 0; i < sums.size(); ++i) {
+                EXPECT_GE(values[i], 0);
+                sums[i] += values[i].get<double>();
+            }
+        }
+        EXPECT_EQ(report["parameters"]["layers"], layers) << what;
+        return std::pair(layers, sums);
+    };
+    const auto [three, expected] = totals("deep-opacity-map");
+    EXPECT_EQ(three, 3u);
+    EXPECT_EQ(expected.size(), 64u * 64u);
+    EXPECT_GT(*std::ranges::max_element(expected), 0.1);
+    EXPECT_EQ(std::ranges::count(expected, 0) > 100, true) << "light passes beside the hair";
+    const std::string picture = readText(folder / "a.png");
+    const std::pair<const char*, std::size_t> ways[] = {
+        {"deep-opacity-map --shadow-layers 11 --layer-ends growing", 11},
+        {"deep-opacity-map --shadow-layers 7 --layer-ends linear", 7},
+        {"opacity-maps", 4},
+        {"opacity-maps --shadow-slices 9", 9}};
+    for (const auto& [way, layers] : ways) {
+        const auto [count, sums] = totals(way);
+        EXPECT_EQ(count, layers) << way;
+        for (std::size_t i = 0; i < sums.size(); ++i)
+            ASSERT_NEAR(sums[i], expected[i], 0.001 * static_cast<double>(layers)) << way << " " << i;
+        EXPECT_NE(readText(folder / "a.png"), picture) << way;
+    }
+    const Outcome none = run("render --show deep-opacity-map -o b.png");
+    EXPECT_EQ(none.exitCode, 1);
+    EXPECT_THAT(none.errors, HasSubstr("no hair"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "b.png"));
 }
 
 TEST_F(ShowJob, TakesTheHairOfAGroomAMaterialAViewAndTheModelAskedFor) {

@@ -78,6 +78,37 @@ TEST(HairLook, EccentricFibresGlintOverAWiderRange) {
     }
 }
 
+TEST(HairLook, CausticsAreAsRoughnessAsksUnlessAuthored) {
+    Groom groom = plainGroom();
+    const auto azimuthal = [&](render::ShadingModel model) {
+        return strandMaterials(groom, viewOf(model)).material.fibre.marschner.azimuthal;
+    };
+    EXPECT_EQ(azimuthal(render::ShadingModel::marschner).causticWidth, 0);
+    groom.material.azimuthalRoughness = 0.01f;
+    shading::AzimuthalParameters smooth = azimuthal(render::ShadingModel::marschner);
+    const shading::AzimuthalParameters usual;
+    EXPECT_EQ(smooth.causticWidth, usual.causticWidth);
+    EXPECT_NEAR(smooth.causticFade, usual.causticFade, 1e-7);
+    EXPECT_EQ(smooth.glint, usual.glint);
+    EXPECT_EQ(smooth.roots, usual.roots);
+    const shading::AzimuthalParameters sadeghi = azimuthal(render::ShadingModel::sadeghi);
+    for (const float roughness : {0.01f, 0.4f}) {
+        groom.material.azimuthalRoughness = roughness;
+        groom.material.causticWidthDegrees = 9;
+        groom.material.causticFade = 0.6f;
+        groom.material.causticIntensity = 4;
+        groom.material.azimuthalSolver = AzimuthalSolver::cubic;
+        const shading::AzimuthalParameters made = azimuthal(render::ShadingModel::marschner);
+        EXPECT_NEAR(made.causticWidth, 9 * shading::kDegree, 1e-6);
+        EXPECT_NEAR(made.causticFade, 0.6, 1e-6);
+        EXPECT_NEAR(made.glint, 4, 1e-6);
+        EXPECT_EQ(made.roots, shading::RootMethod::Cubic);
+    }
+    groom.material.azimuthalRoughness = 0.01f;
+    EXPECT_EQ(azimuthal(render::ShadingModel::sadeghi), sadeghi)
+        << "Sadeghi's glints are controls of their own";
+}
+
 TEST(HairLook, PaintedWidthsAreInAllRadii) {
     Groom groom = plainGroom();
     groom.material.rootRadius = 4e-5f;

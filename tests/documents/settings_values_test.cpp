@@ -42,6 +42,7 @@ void expectRefused(const char* section) {
 TEST(SettingsValues, WhatIsNoNumberIsRefusedForEveryField) {
     expectRefused<runtime::SimulationSettings>("simulation");
     expectRefused<HairMaterial>("material");
+    expectRefused<ShadowSettings>("shadows");
     expectRefused<InterpolationSettings>("interpolation");
 }
 

@@ -6,6 +6,7 @@
 #include <QDoubleSpinBox>
 #include <QListWidget>
 #include <QPushButton>
+#include <algorithm>
 #include <cstdlib>
 
 #include "core/documents/look_presets.h"
@@ -110,8 +111,94 @@ TEST_F(LookTest, APresetGivesItsPigmentAndColours) {
     EXPECT_EQ(hash(), before);
     Q_EMIT looks->itemClicked(looks->item(0));
     const Vec3f black = groom().material.tipColour;
-    Q_EMIT looks->itemClicked(looks->item(static_cast<int>(lookPresets().size()) - 1));
+    const auto white = std::ranges::find(lookPresets(), std::string_view("white"),
+                                         [](const LookPreset& one) { return std::string_view(one.name); });
+    Q_EMIT looks->itemClicked(looks->item(static_cast<int>(white - lookPresets().begin())));
     EXPECT_GT(groom().material.tipColour.minCoeff(), 10 * black.maxCoeff());
+}
+
+TEST_F(LookTest, APresetMayTurnTheHighlightsAndANaturalOneLeavesThem) {
+    const auto choose = [&](const char* name) {
+        auto* looks = find<QListWidget>("looks");
+        const auto found =
+            std::ranges::find(lookPresets(), std::string_view(name),
+                              [](const LookPreset& one) { return std::string_view(one.name); });
+        ASSERT_NE(found, lookPresets().end()) << name;
+        Q_EMIT looks->itemClicked(looks->item(static_cast<int>(found - lookPresets().begin())));
+    };
+    choose("neon");
+    EXPECT_EQ(groom().material.shadingModel, ShadingModel::sadeghi);
+    EXPECT_LT(groom().material.rColour.y(), 0.5f);
+    choose("glints");
+    EXPECT_EQ(groom().material.rColour, Vec3f(Vec3f::Ones())) << "that of another look goes";
+    EXPECT_EQ(groom().material.glintIntensity, 5);
+    choose("brown");
+    EXPECT_EQ(groom().material.glintIntensity, 5);
+    EXPECT_EQ(document().stepCount(), 3);
+}
+
+TEST_F(LookTest, CausticsAreControlsOfMarschnerAndMoveItsCharts) {
+    EXPECT_FALSE(offers("causticWidthDegrees"));
+    chooseModel(2);
+    EXPECT_FALSE(offers("causticWidthDegrees"));
+    chooseModel(1);
+    for (const char* field : {"causticWidthDegrees", "causticFade", "causticIntensity", "azimuthalSolver"})
+        EXPECT_TRUE(find<QWidget>(field)) << field;
+    auto* kinds = find<QComboBox>("shadingChart");
+    QWidget* const chart = find<QWidget>("shadingChartImage");
+    kinds->parentWidget()->show();
+    chart->setFixedSize(340, 280);
+    kinds->setCurrentIndex(kinds->findData(QString("marschner-n")));
+    const auto drawn = [&] {
+        QApplication::processEvents();
+        return chart->grab().toImage();
+    };
+    find<NumberBox>("azimuthalRoughness")->spinBox().setValue(0.01);
+    const QImage usual = drawn();
+    find<NumberBox>("causticWidthDegrees")->spinBox().setValue(40);
+    EXPECT_FLOAT_EQ(groom().material.causticWidthDegrees, 40);
+    const QImage wide = drawn();
+    EXPECT_NE(wide, usual);
+    find<NumberBox>("causticIntensity")->spinBox().setValue(4);
+    const QImage strong = drawn();
+    EXPECT_NE(strong, wide);
+    auto* solver = find<QComboBox>("azimuthalSolver");
+    solver->setCurrentIndex(1);
+    Q_EMIT solver->activated(1);
+    EXPECT_EQ(groom().material.azimuthalSolver, AzimuthalSolver::cubic);
+    EXPECT_NE(drawn(), strong);
+}
+
+TEST_F(LookTest, ShadowsBelongToTheProjectAndHaveTheirCharts) {
+    const auto before = hash();
+    auto* kinds = find<QComboBox>("shadingChart");
+    QWidget* const chart = find<QWidget>("shadingChartImage");
+    kinds->parentWidget()->show();
+    chart->setFixedSize(340, 280);
+    kinds->setCurrentIndex(kinds->findData(QString("deep-opacity-map")));
+    const auto drawn = [&] {
+        QApplication::processEvents();
+        return chart->grab().toImage();
+    };
+    const QImage three = drawn();
+    EXPECT_FALSE(chart->isHidden());
+    find<NumberBox>("shadowLayers")->spinBox().setValue(9);
+    EXPECT_EQ(groom().shadows.layers, 9u);
+    EXPECT_NE(drawn(), three) << "of nine layers there are three charts";
+    auto* filter = find<QComboBox>("shadowFilter");
+    filter->setCurrentIndex(2);
+    Q_EMIT filter->activated(2);
+    EXPECT_EQ(groom().shadows.filter, ShadowFiltering::five);
+    const auto changed = hash();
+    EXPECT_NE(changed, before);
+    ASSERT_TRUE(window->saveTo(inFolder("shadows.hairloom")));
+    document().goToStep(0);
+    EXPECT_EQ(hash(), before);
+    EXPECT_EQ(drawn(), three);
+    files().open(inFolder("shadows.hairloom"));
+    finishWork();
+    EXPECT_EQ(hash(), changed) << "it belongs to the file";
+    EXPECT_EQ(groom().shadows.layers, 9u);
 }
 
 TEST_F(LookTest, LooksAreKeptInFilesAndFoundAgain) {
@@ -226,9 +313,10 @@ TEST_F(LookPictureTest, TwoLooksStandSideBySideAndTheLineIsDragged) {
 TEST_F(LookPictureTest, QualityChangesThePicture) {
     const QImage before = shot();
     auto* shadows = find<QComboBox>("shadows");
-    shadows->setCurrentIndex(0);
-    Q_EMIT shadows->activated(0);
-    EXPECT_EQ(viewport().quality().shadows, render::Shadows::none);
+    ASSERT_EQ(shadows->itemText(3), "None");
+    shadows->setCurrentIndex(3);
+    Q_EMIT shadows->activated(3);
+    EXPECT_EQ(groom().shadows.kind, ShadowKind::none);
     const QImage bright = shot();
     EXPECT_GT(difference(before, bright, before.rect()), 0.1);
     auto* frames = find<QComboBox>("frames");
@@ -307,7 +395,8 @@ TEST_F(LookTest, SettingsOfThePictureSayWhatTheyCost) {
     find<QPushButton>("pictureMeasure")->click();
     finishWork();
     EXPECT_EQ(hash(), before);
-    for (const char* setting : {"samples", "shadows", "shadowResolution", "subdivisions", "transparency"}) {
+    for (const char* setting : {"samples", "shadows", "shadowResolution", "shadowFilter", "shadowLayers",
+                                "layerEnds", "subdivisions", "transparency"}) {
         const auto* priced = find<PriceTag>((QString(setting) + "Cost").toUtf8().constData());
         EXPECT_TRUE(priced->words().contains("FLIP")) << setting;
     }

@@ -73,8 +73,10 @@ class WindowTest : public testing::Test {
         PictureQuality quality = viewport().quality();
         quality.samples = 1;
         quality.frames = 2;
-        quality.shadowResolution = 256;
         viewport().setQuality(quality);
+        ShadowSettings shadows = groom().shadows;
+        shadows.resolution = 256;
+        document().perform(editing::setShadows(document().editing().model(), shadows, "Shadow resolution"));
     }
     /// Waits for work off the interface thread and what comes of it.
     void finishWork() {

@@ -95,6 +95,7 @@ void tellsEach(const std::string& section, S Groom::*settings) {
 TEST(GroomDiff, TellsEverySettingByItsName) {
     tellsEach("simulation", &Groom::simulation);
     tellsEach("material", &Groom::material);
+    tellsEach("shadows", &Groom::shadows);
     tellsEach("interpolation", &Groom::interpolation);
     tellsEach("placement", &Groom::placement);
 }

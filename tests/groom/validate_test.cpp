@@ -99,6 +99,8 @@ std::vector<Broken> brokenGrooms() {
          "'head'"},
         {"Material", [](Groom& g) { g.material.specular = 7; }, error, "specular is 7; expected 0 to 2",
          "material"},
+        {"Shadows", [](Groom& g) { g.shadows.layers = 12; }, error, "layers is 12; expected 3 to 11",
+         "shadows"},
         {"Interpolation", [](Groom& g) { g.interpolation.followPerGuide = 5000; }, error, "followPerGuide",
          "interpolation"},
         {"Simulation", [](Groom& g) { g.simulation.substeps = 0; }, error, "substeps", "simulation"},

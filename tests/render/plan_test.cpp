@@ -5,6 +5,8 @@
 
 #include <set>
 
+#include "core/render/opacity_layers.h"
+
 namespace hairloom::render {
 namespace {
 
@@ -82,6 +84,76 @@ TEST(RenderPlan, EachKindOfShadowHasItsPasses) {
     EXPECT_EQ(deep.buffer(BufferId::opacity).bytes(), 2u * 64u * 64u * 8u);
     // What counts them is there for one light after the other.
     EXPECT_EQ(deep.buffer(BufferId::layerCounts).bytes(), 64u * 64u * 3u * 4u);
+}
+
+TEST(RenderPlan, MoreLayersTakeMoreTexturesAndFewerWhereThereIsNoRoom) {
+    // Of four channels each, one of which holds the first hair's depth.
+    const std::pair<std::uint32_t, std::uint32_t> textures[] = {{3, 1}, {4, 2}, {7, 2}, {8, 3}, {11, 3}};
+    for (const auto& [layers, count] : textures) {
+        RenderOptions deep = options();
+        deep.shadowLayers = layers;
+        const RenderPlan plan = planRender(wholeScene(), deep, 1);
+        EXPECT_EQ(plan.buffer(BufferId::opacity).bytes(), 2u * 64u * 64u * 8u * count) << layers;
+        EXPECT_EQ(plan.buffer(BufferId::layerCounts).bytes(), 64u * 64u * 4u * layers);
+        EXPECT_NE(plan.passes[static_cast<std::size_t>(Pass::opacity)].why.find(std::to_string(layers)),
+                  std::string::npos);
+    }
+    for (const std::uint32_t slices : {1u, 4u, 5u, 16u}) {
+        RenderOptions maps = options(Shadows::opacityMaps);
+        maps.shadowSlices = slices;
+        EXPECT_EQ(planRender(wholeScene(), maps, 1).buffer(BufferId::opacity).bytes(),
+                  2u * 64u * 64u * 8u * ((slices + 3) / 4));
+    }
+    gpu::DeviceInfo small;
+    small.maxBufferBytes = 64u * 64u * 4u * 7u;
+    small.maxTextureSize = 4096;
+    RenderOptions asked = options();
+    asked.shadowLayers = 11;
+    const RenderOptions chosen = chooseWays(asked, 1, true, small);
+    EXPECT_EQ(chosen.shadowLayers, 7u);
+    SceneFacts facts = wholeScene();
+    facts.askedLayers = 11;
+    EXPECT_NE(planRender(facts, chosen, 1)
+                  .passes[static_cast<std::size_t>(Pass::opacity)]
+                  .why.find("11 do not fit"),
+              std::string::npos);
+    asked.shadowLayers = 3;
+    EXPECT_EQ(chooseWays(asked, 1, true, small).shadowLayers, 3u);
+    RenderOptions maps = options(Shadows::opacityMaps);
+    maps.shadowSlices = 16;
+    EXPECT_EQ(chooseWays(maps, 1, true, small).shadowSlices, 7u);
+    for (RenderOptions* wrong : {&asked, &maps}) {
+        wrong->shadowLayers = 12;
+        EXPECT_FALSE(check(*wrong, small));
+        wrong->shadowLayers = 3;
+        wrong->shadowSlices = 0;
+        EXPECT_FALSE(check(*wrong, small));
+        wrong->shadowSlices = 4;
+        wrong->layerGrowth = 0.5f;
+        EXPECT_FALSE(check(*wrong, small));
+        wrong->layerGrowth = 2;
+    }
+}
+
+TEST(RenderPlan, LayersEndWhereTheyAreAuthored) {
+    for (const std::uint32_t count : {3u, 4u, 7u, 11u}) {
+        for (const float growth : {0.0f, 1.0f, 1.5f, 2.0f, 8.0f}) {
+            float before = 0, width = 0;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const float end = layerEnd(i, count, growth), now = end - before;
+                EXPECT_GT(now, 0);
+                if (growth >= 1 && i > 0) {
+                    EXPECT_NEAR(now / width, growth, 0.02f * growth) << count << i;
+                }
+                width = now;
+                before = end;
+            }
+            EXPECT_EQ(before, 1.0f) << count << growth;
+        }
+    }
+    EXPECT_EQ(layerEnd(0, 3, 0), 0.04f);
+    EXPECT_EQ(layerEnd(1, 3, 0), 0.14f);
+    EXPECT_NEAR(layerEnd(1, 6, 0), 0.04f, 1e-6f);
 }
 
 TEST(RenderPlan, BytesAreThoseOfItsTargets) {

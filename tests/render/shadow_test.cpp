@@ -56,7 +56,10 @@ TEST_F(ShadowTest, TransmittanceAgreesWithCountedFibres) {
     const double mean = std::accumulate(cases.counted.begin(), cases.counted.end(), 0.0) / 600;
     EXPECT_GT(mean, 0.7);
     const auto error = [&](Shadows kind) {
-        const auto found = shadowError(*device, scene, cases, kind, 256);
+        RenderOptions options;
+        options.shadows = kind;
+        options.shadowResolution = 256;
+        const auto found = shadowError(*device, scene, cases, options);
         EXPECT_TRUE(found) << (found ? "" : found.error().message());
         return found.value_or(1);
     };
@@ -67,6 +70,31 @@ TEST_F(ShadowTest, TransmittanceAgreesWithCountedFibres) {
     EXPECT_LT(deep, maps);
     EXPECT_LT(maps, absorption);
     EXPECT_LT(absorption, 0.3);
+}
+
+/// Against counted fibres: the more layers there are, the nearer.
+TEST_F(ShadowTest, MoreLayersAndSlicesFollowHairMoreClosely) {
+    const TestHead head(1500);
+    const RenderScene scene = underOneLamp(head);
+    const ShadowCases cases = countFibres(scene, 600, 8);
+    const auto error = [&](Shadows kind, std::uint32_t layers, LayerEnds ends = LayerEnds::linear) {
+        RenderOptions options;
+        options.shadows = kind;
+        options.shadowResolution = 256;
+        options.layerEnds = ends;
+        (kind == Shadows::deepOpacity ? options.shadowLayers : options.shadowSlices) = layers;
+        const auto found = shadowError(*device, scene, cases, options);
+        EXPECT_TRUE(found) << (found ? "" : found.error().message());
+        return found.value_or(1);
+    };
+    const double three = error(Shadows::deepOpacity, 3), seven = error(Shadows::deepOpacity, 7),
+                 eleven = error(Shadows::deepOpacity, 11);
+    EXPECT_LT(seven, three);
+    EXPECT_LT(eleven, 1.02 * seven);
+    EXPECT_LT(error(Shadows::deepOpacity, 3, LayerEnds::growing), three) << "hair is dense where it begins";
+    const double four = error(Shadows::opacityMaps, 4), sixteen = error(Shadows::opacityMaps, 16);
+    EXPECT_LT(sixteen, four);
+    EXPECT_LT(four, error(Shadows::opacityMaps, 1));
 }
 
 /// A sheet of hair across the light, and a point at each depth under it.
@@ -148,6 +176,62 @@ TEST_F(ShadowTest, LightBehindTheHeadFadesWithDepth) {
     }
 }
 
+/// Sheets of fibres one behind the other, with points between them: every way of cutting their depth into
+/// layers counts all sheets behind the last, and none before the first.
+TEST_F(ShadowTest, AnyNumberOfLayersCountsTheSameFibres) {
+    TestStrands strands;
+    constexpr int kSheets = 24;
+    for (int sheet = 0; sheet < kSheets; ++sheet) {
+        for (int i = 0; i < 100; ++i) {
+            const float z = 0.0005f + 0.001f * static_cast<float>(i), y = -0.002f * static_cast<float>(sheet);
+            strands.add({Vec3f(0.001f, y, z), Vec3f(0.099f, y, z)}, 0.0006f);
+        }
+    }
+    RenderScene scene;
+    scene.strands = {strands.view()};
+    Light light;
+    light.toLight_ws = Vec3f::UnitY();
+    scene.lights = {light};
+    std::vector<shaders::LightCase> cases;
+    for (int sheet = 0; sheet <= kSheets; ++sheet)
+        cases.push_back({{0.05f, 0.001f - 0.002f * static_cast<float>(sheet), 0.05f, 0}, {0, 1, 0, 0}});
+    const auto fibres = [&](const RenderOptions& options) {
+        const auto found = probeLight(*device, scene, options, cases);
+        EXPECT_TRUE(found) << (found ? "" : found.error().message());
+        std::vector<double> all;
+        if (found)
+            for (const auto& answer : *found) all.push_back(static_cast<double>(answer.onHair.w));
+        return all;
+    };
+    RenderOptions options;
+    options.subdivisions = 1;
+    options.shadowResolution = 128;
+    const double whole = fibres(options).back();
+    EXPECT_GT(whole, 0.5 * kSheets);
+    const auto follows = [&](const char* what, double tolerance) {
+        const std::vector<double> counted = fibres(options);
+        ASSERT_EQ(counted.size(), cases.size());
+        EXPECT_NEAR(counted.front(), 0, 1e-3) << what;
+        EXPECT_NEAR(counted.back(), whole, 0.01 * whole) << what;
+        for (std::size_t i = 1; i < counted.size(); ++i) {
+            EXPECT_GE(counted[i], counted[i - 1] - 1e-4) << what << i;
+            EXPECT_NEAR(counted[i], whole * static_cast<double>(i) / kSheets, tolerance * whole) << what << i;
+        }
+    };
+    for (const std::uint32_t layers : {3u, 4u, 5u, 7u, 8u, 11u}) {
+        options.shadowLayers = layers;
+        for (const LayerEnds ends : {LayerEnds::early, LayerEnds::linear, LayerEnds::growing}) {
+            options.layerEnds = ends;
+            follows(("layers " + std::to_string(layers)).c_str(), 0.07);
+        }
+    }
+    options.shadows = Shadows::opacityMaps;
+    for (const std::uint32_t slices : {1u, 2u, 3u, 4u, 5u, 9u, 16u}) {
+        options.shadowSlices = slices;
+        follows(("slices " + std::to_string(slices)).c_str(), 0.07);
+    }
+}
+
 /// Under the straight edge of a shadow the light goes over as a B-spline's integral does: over n texels of a
 /// map that holds a step, the change has the variance of n − 1 boxes of one texel, (n − 1)/12.
 TEST_F(ShadowTest, FiltersSpreadAnEdgeOverTheirTexels) {
@@ -212,7 +296,10 @@ TEST_F(ShadowTest, FiltersBringFineMapsNearerToCountedFibres) {
     const RenderScene scene = underOneLamp(head);
     const ShadowCases cases = countFibres(scene, 400, 8);
     const auto error = [&](ShadowFilter filter) {
-        const auto found = shadowError(*device, scene, cases, Shadows::deepOpacity, 512, kDeepLayers, filter);
+        RenderOptions options;
+        options.shadowResolution = 512;
+        options.shadowFilter = filter;
+        const auto found = shadowError(*device, scene, cases, options);
         EXPECT_TRUE(found) << (found ? "" : found.error().message());
         return found.value_or(1);
     };

@@ -168,6 +168,31 @@ TEST(Azimuthal, CausticsAreFiniteAndContinuous) {
     }
 }
 
+TEST(Azimuthal, TheCubicKeepsTheEnergyAndItsCausticsAreFinite) {
+    for (const double degrees : {0.0, 30.0, 47.0, 60.0}) {
+        for (const double width : {0.0, 0.2}) {
+            AzimuthalParameters parameters;
+            parameters.roots = RootMethod::Cubic;
+            parameters.width = width;
+            parameters.causticWidth = 0.05;
+            const AzimuthalProfile profile(parameters, degrees * kDegrees);
+            for (const Lobe lobe : kLobes) {
+                EXPECT_NEAR(integral(profile, lobe, width == 0 ? 4000 : 180).x(), profile.energy(lobe).x(),
+                            8e-3 * profile.energy(Lobe::TT).x())
+                    << degrees << " " << width << " " << order(lobe);
+            }
+            const AzimuthalProfile::Grid grid = profile.grid();
+            for (std::size_t i = 0; i < AzimuthalProfile::kGridSize; ++i) {
+                EXPECT_LT(grid.trt[0][i], 1.0f) << degrees << " " << width << " " << i;
+                if (i % 12 == 0) {
+                    const double phi = static_cast<double>(i) * kPi / (AzimuthalProfile::kGridSize - 1);
+                    EXPECT_NEAR(static_cast<double>(grid.trt[0][i]), profile(Lobe::TRT, phi).x(), 1e-3) << i;
+                }
+            }
+        }
+    }
+}
+
 TEST(Azimuthal, GlintsScaleTheCausticAlone) {
     AzimuthalParameters parameters;
     const AzimuthalProfile plain(parameters, 0.2);
@@ -179,7 +204,7 @@ TEST(Azimuthal, GlintsScaleTheCausticAlone) {
 
 // The thesis solves Eq. 42 instead of Eq. 40. What that costs is in docs/rendering.md.
 TEST(Azimuthal, CubicApproximatesTheExactAngles) {
-    for (const double degrees : {0.0, 30.0, 60.0}) {
+    for (const double degrees : {0.0, 15.0, 30.0, 40.0, 60.0}) {
         AzimuthalParameters parameters;
         const AzimuthalProfile exact(parameters, degrees * kDegrees);
         parameters.roots = RootMethod::Cubic;
@@ -190,7 +215,7 @@ TEST(Azimuthal, CubicApproximatesTheExactAngles) {
                 const double phi = (i + 0.5) * kPi / 720;
                 difference += std::abs(exact(lobe, phi).x() - cubic(lobe, phi).x()) * 2 * kPi / 720;
             }
-            EXPECT_LT(difference, 0.06 * exact.energy(lobe).x()) << degrees << " " << order(lobe);
+            EXPECT_LT(difference, 0.075 * exact.energy(lobe).x()) << degrees << " " << order(lobe);
         }
     }
 }

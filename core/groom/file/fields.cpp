@@ -9,10 +9,15 @@ namespace {
 using M = HairMaterial;
 using I = InterpolationSettings;
 using P = PlacementSettings;
+using S = ShadowSettings;
 
 constexpr const char* kShadingModels[] = {"kajiya", "marschner", "sadeghi"};
 constexpr const char* kColourSources[] = {"melanin", "colours"};
 constexpr const char* kEnergyRules[] = {"bounded", "published"};
+constexpr const char* kAzimuthalSolvers[] = {"exact", "cubic"};
+constexpr const char* kShadowKinds[] = {"deepOpacity", "absorption", "opacityMaps", "none"};
+constexpr const char* kShadowFilters[] = {"off", "3x3", "5x5"};
+constexpr const char* kLayerEnds[] = {"early", "linear", "growing"};
 constexpr const char* kPlacementMethods[] = {"random", "poissonDisk"};
 
 // clang-format off
@@ -66,6 +71,10 @@ constexpr Field<M> kMaterialFields[] = {
     field<&M::glintWidthDegrees>("glintWidthDegrees", "°", 1, 90, "azimuthal width of the glints (Sadeghi)"),
     field<&M::glintNearDegrees>("glintNearDegrees", "°", 0, 180, "smallest angle of the glints, which varies randomly between strands (Sadeghi)"),
     field<&M::glintFarDegrees>("glintFarDegrees", "°", 0, 180, "largest angle of the glints (Sadeghi)"),
+    field<&M::causticWidthDegrees>("causticWidthDegrees", "°", 0, 60, "width of the glints that replace caustics: 0 takes 11.5° for smooth fibres and leaves rough ones as they are (Marschner)"),
+    field<&M::causticFade>("causticFade", "", 0, 1, "range of refraction, above the index 2 where caustics end, over which glints fade out (Marschner)"),
+    field<&M::causticIntensity>("causticIntensity", "", 0, 10, "strength of the glints that replace caustics, k_G: 1 keeps the energy (Marschner)"),
+    choiceField<&M::azimuthalSolver>("azimuthalSolver", "how light's way around the fibre is found: exact, by the true angles; cubic, by Marschner's approximation, which sends up to 4 % of a highlight's light elsewhere (Marschner)", kAzimuthalSolvers),
     choiceField<&M::energy>("energy", "bounded: Kajiya-Kay and Sadeghi hair reflects no more light than it receives; published: the authors' formulas, with bright hair up to three times as bright", kEnergyRules),
     boolField<&M::tubes>("tubes", "draws strands as round tubes with skin, for tentacles"),
     field<&M::rootOpacity>("rootOpacity", "", 0, 1, "opacity at the root"),
@@ -81,6 +90,18 @@ constexpr Field<I> kInterpolationFields[] = {
     field<&I::wispRadiusTip>("wispRadiusTip", "m", 0, 0.1, "radius of a wisp at the tip"),
     field<&I::blend>("blend", "", 0, 1, "0 follows one guide in wisps, 1 interpolates the three guides of a root triangle"),
     seedField<&I::seed>("seed", "random seed of the follow hairs"),
+};
+
+constexpr Field<S> kShadowFields[] = {
+    choiceField<&S::kind>("kind", "how hair shadows hair: deepOpacity, layers behind the first hair; absorption, depth behind the first hair alone; opacityMaps, slices at fixed depths; none", kShadowKinds),
+    choiceField<&S::filter>("filter", "texels of the shadow map that are averaged at each point of the hair: more give smoother shadows", kShadowFilters),
+    field<&S::resolution>("resolution", "px", 64, 4096, "width and height of a light's shadow map"),
+    field<&S::layers>("layers", "", 3, 11, "layers of deep opacity maps"),
+    choiceField<&S::layerEnds>("layerEnds", "where layers end: early, most of them where hair begins; linear, evenly; growing, each as much wider as layerGrowth says", kLayerEnds),
+    field<&S::layerGrowth>("layerGrowth", "", 1, 8, "ratio of the width of a layer to that of the layer before, for growing ends"),
+    field<&S::slices>("slices", "", 1, 16, "slices of opacity maps, evenly spaced"),
+    field<&S::headAbsorption>("headAbsorption", "1/m", 0, 10'000, "light on hair behind the head fades with depth, by this much per metre: 0 blocks all of it"),
+    field<&S::blur>("blur", "px", 0, 32, "blurs shadows in the image by this standard deviation: 0 turns it off"),
 };
 
 constexpr Field<P> kPlacementFields[] = {
@@ -101,6 +122,9 @@ std::span<const Field<HairMaterial>> fieldsOf(const HairMaterial&) {
 }
 std::span<const Field<InterpolationSettings>> fieldsOf(const InterpolationSettings&) {
     return kInterpolationFields;
+}
+std::span<const Field<ShadowSettings>> fieldsOf(const ShadowSettings&) {
+    return kShadowFields;
 }
 std::span<const Field<PlacementSettings>> fieldsOf(const PlacementSettings&) {
     return kPlacementFields;

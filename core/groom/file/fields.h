@@ -28,6 +28,7 @@ using runtime::setFieldValue;
 
 std::span<const Field<HairMaterial>> fieldsOf(const HairMaterial&);
 std::span<const Field<InterpolationSettings>> fieldsOf(const InterpolationSettings&);
+std::span<const Field<ShadowSettings>> fieldsOf(const ShadowSettings&);
 std::span<const Field<PlacementSettings>> fieldsOf(const PlacementSettings&);
 
 /// "5e-06 to 0.005 m": the range with its unit, for messages.

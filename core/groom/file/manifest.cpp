@@ -41,7 +41,7 @@ Result<Json> rowOf(const fs::path& folder, const fs::path& file, const fs::path&
 Json rowOfGroom(const Groom& groom, const fs::path& project) {
     Json content{{"content_hash", fmt::format("{:016x}", contentHash(groom))}};
     const Json head = projectHead(groom, project);
-    for (const char* member : {"strands", "points", "simulation", "material", "interpolation"})
+    for (const char* member : {"strands", "points", "simulation", "material", "shadows", "interpolation"})
         content[member] = head.at(member);
     return content;
 }

@@ -58,6 +58,7 @@ Json projectHead(const Groom& groom, const std::filesystem::path& path) {
     head["groups"] = groom.groupNames;
     head["spheres"] = toJson(groom.spheres);
     head["material"] = toJson(groom.material);
+    head["shadows"] = toJson(groom.shadows);
     head["simulation"] = toJson(groom.simulation);
     head["interpolation"] = toJson(groom.interpolation);
     head["placement"] = toJson(groom.placement);

@@ -43,6 +43,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     groom.groupNames = head.strings("groups");
     for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));
     readSettings(head.object("material"), groom.material);
+    if (head.has("shadows")) readSettings(head.object("shadows"), groom.shadows);
     readSettings(head.object("simulation"), groom.simulation);
     readSettings(head.object("interpolation"), groom.interpolation);
     if (version >= kFirstWithPlacement) readSettings(head.object("placement"), groom.placement);

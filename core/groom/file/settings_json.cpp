@@ -33,6 +33,9 @@ void readTipShare(JsonReader& reader, runtime::SimulationSettings& settings) {
 Json toJson(const HairMaterial& material) {
     return fieldsToJson(material);
 }
+Json toJson(const ShadowSettings& settings) {
+    return fieldsToJson(settings);
+}
 Json toJson(const InterpolationSettings& settings) {
     return fieldsToJson(settings);
 }
@@ -57,6 +60,9 @@ Json toJson(const std::vector<CollisionSphere>& spheres) {
 
 void readSettings(JsonReader reader, HairMaterial& material) {
     readFields(std::move(reader), material);
+}
+void readSettings(JsonReader reader, ShadowSettings& settings) {
+    readFields(std::move(reader), settings);
 }
 void readSettings(JsonReader reader, InterpolationSettings& settings) {
     readFields(std::move(reader), settings);

@@ -8,6 +8,7 @@
 namespace hairloom {
 
 nlohmann::ordered_json toJson(const HairMaterial& material);
+nlohmann::ordered_json toJson(const ShadowSettings& settings);
 nlohmann::ordered_json toJson(const InterpolationSettings& settings);
 nlohmann::ordered_json toJson(const PlacementSettings& settings);
 nlohmann::ordered_json toJson(const runtime::SimulationSettings& settings);
@@ -17,6 +18,7 @@ nlohmann::ordered_json toJson(const std::vector<CollisionSphere>& spheres);
 /// reader. Of the simulation angularTipShare, which was there before angularCurve, is read as a straight
 /// curve.
 void readSettings(JsonReader reader, HairMaterial& material);
+void readSettings(JsonReader reader, ShadowSettings& settings);
 void readSettings(JsonReader reader, InterpolationSettings& settings);
 void readSettings(JsonReader reader, PlacementSettings& settings);
 void readSettings(JsonReader reader, runtime::SimulationSettings& settings);

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The layers of hair that a texel of a shadow map counts, as shaders/render/opacity.hlsli has them.
+
+#include "core/render/options.h"
+
+namespace hairloom::render {
+
+/// Of the kind of shadow; 0 where it has none.
+std::uint32_t layerCount(const RenderOptions& options);
+
+/// As many of those as the device has buffers for, at least one, or three of deep opacity maps; those of the
+/// options where the kind has none.
+std::uint32_t layersThatFit(RenderOptions options, const gpu::DeviceInfo& device);
+
+/// Of a texel, in words of 32 bits: four shares of 16 bits, a texture of four channels, take two. Deep
+/// opacity maps have the first hair's depth as the last of them.
+std::uint32_t opacityWords(Shadows shadows, std::uint32_t layers);
+
+/// How layers grow from one to the next, as the shaders know it; 0: LayerEnds::early.
+float growthOf(const RenderOptions& options);
+
+/// End of layer `i` of `count`, as a part of the depth that hair takes up, 0…1. `growth`: growthOf().
+float layerEnd(std::uint32_t i, std::uint32_t count, float growth);
+
+}  // namespace hairloom::render
