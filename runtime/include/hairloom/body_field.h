@@ -114,6 +114,8 @@ class PosedBody {
     Float3 place(Float3 point_ss) const;
     /// What takes places near one of the body at rest to the world.
     BonePose poseAt(Float3 point_ss) const;
+    /// Of each entry of the field's palette; one alone where the body moves as a whole.
+    std::span<const BonePose> palette() const { return palette_; }
     std::uint32_t flattened() const { return flattened_; }
     float cell() const { return field_->cell; }
 

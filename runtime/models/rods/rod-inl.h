@@ -35,7 +35,8 @@ struct RodPoint {
     V3 newDisplacement;
     V4 newRelative;
     RodContact contact;
-    V near;  ///< 1 where a shape is near the outer node, as predicted
+    V near;                ///< 1 where a shape is near the outer node, as predicted
+    V3 tangent, position;  ///< predicted, of the segment and its outer node, relative to the root at the end
 };
 
 /// One vector of strands in one substep. Of a chain, which does not bend back, nothing of strains is read,
@@ -166,33 +167,45 @@ class RodStrip {
         return u * hn::IfThenElse(longer, most / hn::Sqrt(squared), all(1.0f));
     }
 
-    /// Repeats the last substep's rotations, in lanes that keep them, and finds the objective there and where
-    /// nothing turns.
-    void predict() {
+    /// Repeats the last substep's rotations, in lanes that keep them.
+    void placePrediction() {
         V3 outer = inDisplacement_;
-        V4 before = inner_;
-        objective_ = startObjective_ = stiffnessSum_ = touched_ = hn::Zero(D());
-        near_ = noLane();
         V3 position = zero3();  // of the inner node, relative to the root at the end of the substep
         if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
         for (std::uint32_t j = first_; j < segments_; ++j) {
             RodPoint& point = points_[j];
-            const std::size_t i = at(j), node = at(j + 1);
+            const std::size_t i = at(j);
             const V4 old = loadRotation(rod_.rotation, i);
-            const V3 along = restTangent(j), oldTangent = rodRotate(old, along);
+            const V3 along = restTangent(j);
             V3 u = load3(rod_.increment, i) * all(context_.stepRatio);
             u = onlyWhere(kept_, shortened(u));
             const V length = lengthOf(j);
-            outer = mad3(rodTangentChange(u, oldTangent), length, outer);
+            outer = mad3(rodTangentChange(u, rodRotate(old, along)), length, outer);
             point.increment = u;
             point.rotation = rodTurned(old, u);
             point.displacement = outer;
-            const V3 tangent = rodRotate(point.rotation, along);
-            position = mad3(tangent, length, position);
-            aim(point, node, tangent, position);
-            if constexpr (kContacts) meet(point, tangent, position, j + 1);
+            point.tangent = rodRotate(point.rotation, along);
+            position = mad3(point.tangent, length, position);
+            point.position = position;
+        }
+    }
 
-            const V3 off = outer - point.target, offStart = inDisplacement_ - point.target;
+    /// Finds the objective of the prediction and where nothing turns, and what it meets.
+    void predict() {
+        placePrediction();
+        if constexpr (kContacts) {
+            if (context_.body) searchPrediction();
+        }
+        V4 before = inner_;
+        objective_ = startObjective_ = stiffnessSum_ = touched_ = hn::Zero(D());
+        near_ = noLane();
+        for (std::uint32_t j = first_; j < segments_; ++j) {
+            RodPoint& point = points_[j];
+            const std::size_t i = at(j);
+            aim(point, at(j + 1), point.tangent, point.position);
+            if constexpr (kContacts) meet(point, point.tangent, point.position, j + 1);
+
+            const V3 off = point.displacement - point.target, offStart = inDisplacement_ - point.target;
             if constexpr (kBends) {
                 const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i);
                 const V4 last = rodOfStrain(strain);
@@ -202,15 +215,17 @@ class RodStrip {
                 const RodSection section = sectionOf(i, bend);
                 stiffnessSum_ = stiffnessSum_ + bend;
                 objective_ = objective_ + rodTwiceEnergy(twice(point.relative) - wanted, bend, section);
-                const V3 strainStart = j == first_ ? twice(rodRelative(inner_, old, last)) : strain;
+                V3 strainStart = strain;
+                if (j == first_)
+                    strainStart = twice(rodRelative(inner_, loadRotation(rod_.rotation, i), last));
                 startObjective_ = startObjective_ + rodTwiceEnergy(strainStart - wanted, bend, section);
             }
             objective_ = objective_ + point.weight * dot(off, off);
             startObjective_ = startObjective_ + point.weight * dot(offStart, offStart);
             if constexpr (kContacts) {
                 objective_ = objective_ + point.contact.twiceEnergy;
-                startObjective_ =
-                    startObjective_ + rodContactTwiceEnergy(point.contact, inDisplacement_ - outer);
+                startObjective_ = startObjective_ +
+                                  rodContactTwiceEnergy(point.contact, inDisplacement_ - point.displacement);
             }
             before = point.rotation;
         }
@@ -284,9 +299,6 @@ class RodStrip {
 
     RodNode nodeOf(const RodPoint& point, V3 displacement, V3 tangent, V3 position, std::uint32_t p) const {
         const std::size_t node = at(p);
-        const float along = static_cast<float>(p) / static_cast<float>(segments_);
-        const float radius = context_.collisionRadiusAtRoot +
-                             along * (context_.collisionRadiusAtTip - context_.collisionRadiusAtRoot);
         const V3 velocity = load3(rod_.velocity, node);
         const V stiffness = hn::Load(D(), rod_.mass + node) *
                             all(static_cast<float>(HAIRLOOM_ROD_CONTACT) / (context_.h * context_.h));
@@ -299,7 +311,13 @@ class RodStrip {
                 stiffness,
                 hn::Load(D(), rod_.load + node),
                 step_,
-                all(radius)};
+                all(radiusOf(p))};
+    }
+    /// Metres that node p keeps from shapes.
+    float radiusOf(std::uint32_t p) const {
+        const float along = static_cast<float>(p) / static_cast<float>(segments_);
+        return context_.collisionRadiusAtRoot +
+               along * (context_.collisionRadiusAtTip - context_.collisionRadiusAtRoot);
     }
     void press(const RodTouch& touch, RodMask held, const RodNode& node, RodContact& contact) const {
         if (hn::AllFalse(D(), held)) return;
@@ -323,11 +341,13 @@ class RodStrip {
     template <class Visit>
     void forEachShape(V3 root, const RodNode& node, std::uint32_t p, RodMask near, Visit&& visit) {
         if (!hn::AllFalse(D(), near)) forEachTouch(lanes_, root, node, context_, visit);
-        if (context_.body)
-            touchBody(*context_.body, root, node, block_, at(p), context_.index, planes_[p - 1], visit);
+        if (context_.body) touchBody(node, block_, at(p), planes_[p - 1], visit);
     }
 
     // models/rods/rod_look-inl.h
+    BodySearch bodySearch() const { return {*context_.body, block_, context_.index, lane_, planes_}; }
+    void searchPrediction();
+    void searchStep();
     RodMask mayTouch(std::uint32_t j) const;
     bool anyMayTouch() const;
     template <class Visit>

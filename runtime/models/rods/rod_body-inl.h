@@ -7,6 +7,8 @@
 #define HAIRLOOM_RUNTIME_ROD_BODY_INL_H
 #endif
 
+#include <bit>
+#include <cstring>
 #include <limits>
 
 #include "engine/body_free.h"
@@ -183,33 +185,70 @@ HWY_INLINE V shareOfLanes(const MovingBody& body, std::size_t bone, V3 rest) {
     return hn::ConvertTo(D(), share);
 }
 
-/// What takes places near those at rest to the world, of lanes in `bits`; others keep theirs.
-HWY_INLINE void poseOfLanes(const PosedBody& posed, V3 rest, std::uint32_t bits, LanePose& pose) {
-    const SplitLanes at(rest);
-    SplitLanes x(pose.x), y(pose.y), z(pose.z), origin(pose.origin);
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {
-        if ((bits >> lane & 1u) == 0) continue;
-        const BonePose own = posed.poseAt(at[lane]);
-        x.set(lane, own.x);
-        y.set(lane, own.y);
-        z.set(lane, own.z);
-        origin.set(lane, own.origin);
+/// As PosedBody::poseAt(), of lanes in `bits`; others keep theirs.
+HWY_INLINE void poseOfLanes(const MovingBody& body, const PosedBody& posed, V3 rest, std::uint32_t bits,
+                            LanePose& pose) {
+    const std::span<const BonePose> palette = posed.palette();
+    if (palette.size() == 1) {
+        putPose(maskOf(bits), palette[0], pose);
+        return;
     }
-    pose = {x.all(), y.all(), z.all(), origin.all()};
+    const BodyField& field = body.field();
+    const auto lengthOf = [&](std::size_t axis) { return static_cast<float>(field.size[axis]); };
+    const V one = all(1.0f);
+    const BodyPlace place = bodyPlaceAt((rest - all3(field.low_ss)) * all(1 / field.cell),
+                                        all3({lengthOf(0), lengthOf(1), lengthOf(2)}) - V3{one, one, one});
+    const auto row = static_cast<std::int32_t>(field.size[0] + 1);
+    const auto layer = row * static_cast<std::int32_t>(field.size[1] + 1);
+    alignas(64) std::int32_t corners[kWidth];
+    hn::Store(place.z * allWords(layer) + place.y * allWords(row) + place.x, BodyInts(), corners);
+    // As Trilinear::weights() has it.
+    alignas(64) float weights[8][kWidth];
+    const V x = place.in.x, y = place.in.y, z = place.in.z, a = one - x, b = one - y, c = one - z;
+    const V ab = a * b, xb = x * b, ay = a * y, xy = x * y;
+    const V shares[8] = {ab * c, xb * c, ay * c, xy * c, ab * z, xb * z, ay * z, xy * z};
+    for (int k = 0; k < 8; ++k) hn::Store(shares[k], D(), weights[k]);
+    // A pose is twelve numbers, up to four of which are reckoned at once.
+    static_assert(sizeof(BonePose) == 12 * sizeof(float) && sizeof(LanePose) == 12 * sizeof(V));
+    const hn::CappedTag<float, 4> four;
+    constexpr std::size_t kAtOnce = hn::MaxLanes(four);
+    alignas(64) float numbers[12][kWidth];
+    std::memcpy(numbers, &pose, sizeof(numbers));
+    const std::int32_t steps[8] = {0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1};
+    for (; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        const std::uint16_t* const skins = field.skins.data() + corners[lane];
+        bool same = true;
+        for (const std::int32_t step : steps) same = same && skins[step] == skins[0];
+        const float* const only = &palette[skins[0]].x.x;
+        alignas(16) float own[12];
+        for (std::size_t part = 0; part < 12; part += kAtOnce) {
+            auto sum = hn::LoadU(four, only + part);
+            if (!same) {
+                sum = hn::Zero(four);
+                for (int k = 0; k < 8; ++k)
+                    sum = hn::Add(sum, hn::Mul(hn::Set(four, weights[k][lane]),
+                                               hn::LoadU(four, &palette[skins[steps[k]]].x.x + part)));
+            }
+            hn::Store(sum, four, own + part);
+        }
+        for (std::size_t k = 0; k < 12; ++k) numbers[k][lane] = own[k];
+    }
+    std::memcpy(&pose, numbers, sizeof(numbers));
 }
 
 /// Where skin takes places in the world from, by repeated substitution from `rest` on. Skin between two bones
 /// turns along one line, on which two steps tell where all others lead (Anderson's mixing of two). Gives
 /// back lanes where it settles. No lane hangs on another.
-HWY_INLINE RodMask followOfLanes(const PosedBody& posed, V3 point_ws, RodMask lanes, V3& rest,
-                                 LanePose& map) {
+HWY_INLINE RodMask followOfLanes(const MovingBody& body, const PosedBody& posed, V3 point_ws, RodMask lanes,
+                                 V3& rest, LanePose& map) {
     constexpr int kMostRounds = 12;
     constexpr float kIsSettled = 1e-5f, kIsLost = 2e-3f;  // metres
     V3 stepBefore = zero3(), nextBefore = zero3();
     V off = all(kOutOfReach);
     auto going = lanes;
     for (int round = 0; round < kMostRounds; ++round) {
-        poseOfLanes(posed, rest, bitsOf(going), map);
+        poseOfLanes(body, posed, rest, bitsOf(going), map);
         const V3 next = LaneUndone(map).apply(point_ws - map.origin);
         const V3 step = next - rest, turned = step - stepBefore;
         off = choose(going, hn::Sqrt(dot(step, step)), off);
@@ -276,7 +315,7 @@ HWY_NOINLINE LaneContact contactOfLanes(const MovingBody& body, std::uint32_t su
             tried = hn::AndNot(freeOfLanes(body, rest) * all(0.5f * least) > nearest.distance, tried);
             if (hn::AllFalse(D(), tried)) continue;
             LanePose map = allPose(BonePose{});
-            const auto settled = followOfLanes(body.posed(substep + 1), position_ws, tried, rest, map);
+            const auto settled = followOfLanes(body, body.posed(substep + 1), position_ws, tried, rest, map);
             for (std::size_t k = 0; k < kMostFound; ++k)
                 found[k] = select(both(settled, count == all(static_cast<float>(k))), rest, found[k]);
             count = choose(settled, count + all(1.0f), count);
@@ -385,7 +424,7 @@ HWY_NOINLINE LaneLook lookOfLanes(const MovingBody& body, std::uint32_t substep,
     look.distance = contact.distance;
     if (body.moves()) {
         LanePose was = allPose(BonePose{});
-        poseOfLanes(body.posed(substep), contact.rest, bitsOf(look.met), was);
+        poseOfLanes(body, body.posed(substep), contact.rest, bitsOf(look.met), was);
         look.way = position_ws - was.apply(contact.rest);
     }
     // By the plane that is there at the end; skin curves away from it.

@@ -54,6 +54,30 @@ void RodStrip<kBends, kTwists, kContacts>::forEachNode(Visit&& visit) {
     }
 }
 
+/// Finds the body where the prediction has nodes.
+template <bool kBends, bool kTwists, bool kContacts>
+void RodStrip<kBends, kTwists, kContacts>::searchPrediction() {
+    BodySearch search = bodySearch();
+    const V3 root = rootPosition();
+    for (std::uint32_t j = first_; j < segments_; ++j) {
+        const RodPoint& point = points_[j];
+        search.add(root, point.position, point.displacement, all(radiusOf(j + 1)), j + 1, hn::Not(noLane()));
+    }
+    search.finish();
+}
+
+/// Finds the body where the step has led, for nodes that may touch there, which are near from now on.
+template <bool kBends, bool kTwists, bool kContacts>
+void RodStrip<kBends, kTwists, kContacts>::searchStep() {
+    BodySearch search = bodySearch();
+    const V3 root = rootPosition();
+    forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
+        point.near = choose(lanes, all(1.0f), point.near);
+        search.add(root, node.position, node.displacement, node.radius, p, lanes);
+    });
+    search.finish();
+}
+
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the
 /// prediction had outside, or holds one that it has lifted off, what it has found is the next guess;
 /// false: nowhere. Looks after the first are for hair that comes to rest: one step leaves what it has
@@ -62,6 +86,7 @@ void RodStrip<kBends, kTwists, kContacts>::forEachNode(Visit&& visit) {
 template <bool kBends, bool kTwists, bool kContacts>
 bool RodStrip<kBends, kTwists, kContacts>::lookAgain(int look) {
     if (HWY_LIKELY(!anyMayTouch())) return false;
+    if (context_.body) searchStep();
     const V3 root = rootPosition();
     const bool isFirst = look == 0, isDeepOnly = look >= HAIRLOOM_ROD_CONTACT_LOOKS;
     const V reach = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_LOOK));
@@ -74,7 +99,6 @@ bool RodStrip<kBends, kTwists, kContacts>::lookAgain(int look) {
     auto wrong = noLane();
     V farthest = hn::Zero(D());  // squared, of where a node has gone
     forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
-        point.near = choose(lanes, all(1.0f), point.near);
         const auto held = point.contact.touching > hn::Zero(D());
         const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
         auto inside = noLane(), lifted = both(held, slack == hn::Zero(D()));
