@@ -63,6 +63,7 @@ class EngineMethod : public StrandMethod {
     bool setState(const runtime::State& state) override { return engine_.setState(state); }
     bool measuresFromOrigin() const override { return true; }
     double stepMilliseconds() const override { return milliseconds_; }
+    std::optional<std::uint32_t> substeps() const override { return engine_.lastStep().substeps; }
     std::uint32_t restoredStrands() const override { return engine_.lastStep().restoredStrands; }
     std::uint32_t guardedStrands() const override { return engine_.lastStep().guardedStrands; }
     runtime::Measurements measure() const override { return engine_.measure(); }

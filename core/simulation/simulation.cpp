@@ -111,7 +111,7 @@ void Simulation::step(float dt, const HeadPose& given) {
     input.body_ws = body;
     impl_->method->step(impl_->scene, pose, input);
     impl_->readPositions();
-    impl_->substeps += substepsIn(impl_->scene.groom().simulation, dt);
+    impl_->substeps += impl_->method->substeps().value_or(substepsIn(impl_->scene.groom().simulation, dt));
     impl_->gather();
 }
 

@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ class StrandMethod {
     virtual bool measuresFromOrigin() const { return false; }
     /// Of the last step.
     virtual double stepMilliseconds() const = 0;
+    /// Of the last step, where it does not take those of the settings.
+    virtual std::optional<std::uint32_t> substeps() const { return std::nullopt; }
     /// The first thing that went wrong outside of the strands: a device that was lost, say.
     virtual Status status() const { return {}; }
     /// Strands that the last step put back to rest because they were no numbers.

@@ -380,7 +380,7 @@ void Engine::Impl::step(const FrameInput& input) {
     takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
     report_.rejectedSpheres = spheres_.rejected;
     report_.rejectedWinds = takeWind(settings_, input, wind_);
-    substeps_ = substepsOf(input);
+    report_.substeps = substeps_ = substepsOf(input);
     takeBody(input);
     wakeBlocks();
     replan(spheres_.usable, spheres_.motion,

@@ -133,6 +133,24 @@ TEST(BodyContact, RodsAreLedOutOfABodyThatStartsAndStopsAtFiveMetresPerSecond) {
     EXPECT_EQ(ran.stats.restoredStrands, 0u);
 }
 
+/// Mean of substeps in a frame, as the price of one tells.
+double substepsOf(const SimulationStats& stats, const Groom& groom) {
+    return 1e6 * stats.millisecondsPerFrame /
+           (stats.nanosecondsPerParticleSubstep * static_cast<double>(groom.pointCount()));
+}
+
+TEST(BodyContact, ThePriceOfASubstepCountsThoseThatWereTaken) {
+    const Groom& groom = hairyBody();
+    const auto still = run(groom, 10, [](float) { return HeadPose{}; }).stats;
+    EXPECT_NEAR(substepsOf(still, groom), groom.simulation.substeps, 1e-6);
+    const auto fast = run(groom, 10, [](float time) {
+                          HeadPose pose;
+                          pose.head_ws = Eigen::Translation3f(5 * time, 0, 0);
+                          return pose;
+                      }).stats;
+    EXPECT_NEAR(substepsOf(fast, groom), 4 * groom.simulation.substeps, 1e-6);
+}
+
 TEST(BodyContact, HairComesToRestOnIt) {
     const Groom& groom = hairyBody();
     const Ran ran = run(groom, 900, [](float) { return HeadPose{}; });
@@ -150,6 +168,26 @@ TEST(BodyContact, GivesTheSameBitsOnAnyNumberOfThreads) {
     const std::uint64_t three = run(groom, 30, noddingAt).stats.stateHash;
     setThreadCount(0);
     EXPECT_EQ(one, three);
+}
+
+/// Nodes that look for the skin at once are gathered from many strands.
+TEST(BodyContact, AStrandHangsOnNoneBesideIt) {
+    const Groom& groom = hairyBody();
+    const std::size_t strands = groom.strandCount();
+    std::vector<std::uint32_t> offsets;
+    for (std::uint32_t s = 0; s <= strands; ++s) offsets.push_back(s * kPoints);
+    std::vector<Vec3f> positions;
+    for (std::size_t s = strands; s-- > 0;)
+        for (std::size_t p = 0; p < kPoints; ++p) positions.push_back(groom.positions()[s * kPoints + p]);
+    Groom turned = makeGroom(std::move(offsets), std::move(positions));
+    turned.scalp = groom.scalp;
+    turned.simulation = groom.simulation;
+    turned.body = groom.body;
+    const Ran ran = run(groom, 60, noddingAt), other = run(turned, 60, noddingAt);
+    for (std::size_t s = 0; s < strands; ++s)
+        for (std::size_t p = 0; p < kPoints; ++p)
+            ASSERT_EQ(ran.positions_ws[s * kPoints + p], other.positions_ws[(strands - 1 - s) * kPoints + p])
+                << "strand " << s << ", point " << p;
 }
 
 TEST(BodyContact, GoesOnFromAState) {

@@ -54,6 +54,8 @@ struct StepReport {
     /// Rods whose speeds no force explains: more energy than before on a head at rest. It was taken out of
     /// them.
     std::uint32_t guardedStrands = 0;
+    /// That the step took: those of the settings, more where a body or hair beside it is fast.
+    std::uint32_t substeps = 0;
 };
 
 /// What changes from step to step (src/state.h): for those who go on elsewhere, as the engine on a GPU does.
