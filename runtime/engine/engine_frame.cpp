@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kBlocksPerJob = 4;
 /// Metres that a point may go before the body has to be looked at again.
 constexpr float kNeverSeen = -1e30f;
+/// Times the substeps of the settings, in a frame that is too fast for them beside a body.
+constexpr std::uint32_t kMostMore = 4;
 
 RootBounds noRoots() {
     RootBounds bounds;
@@ -131,10 +133,8 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (std::string error = validationError(settings); !error.empty()) return error;
     const SimulationSettings before = std::exchange(settings_, settings);
     const bool other = before.strandModel != settings.strandModel;
-    if (other) {
-        strands_ = OwnedStrands(model().make());
-        allocateForBody();
-    }
+    if (other) strands_ = OwnedStrands(model().make());
+    if (other || before.substeps != settings.substeps) allocateForBody();
     strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_, host_);
     strands_->takeState(*shape_, settings_, state_);
     scratch_ = {};
@@ -270,6 +270,10 @@ void Engine::Impl::allocateForBody() {
     bodyCarriers_ = meetsBody() ? carriersOf(*shape_, *body_) : std::vector<std::uint32_t>();
     bodySeen_ = Floats(meetsBody() ? kBodyPlanes * shape_->planeFloats : 0, kNeverSeen);
     bodyLost_ = true;
+    movingBody_ = {};
+    if (!meetsBody()) return;
+    const std::uint32_t most = kMostMore * substepsIn(settings_, kUsualFrame);
+    movingBody_.reserve(*body_, bodyTable_, bodyCarriers_, std::min(most, kMaxSubsteps));
 }
 
 /// More than the settings ask for where there is a body and hair or roots are so fast that a substep would
@@ -278,7 +282,6 @@ std::uint32_t Engine::Impl::substepsOf(const FrameInput& input) const {
     const std::uint32_t usual = substepsIn(settings_, input.dt);
     if (!meetsBody()) return usual;
     constexpr float kFar = 0.025f, kNear = 0.01f;  // metres in a substep: too far, and what is wanted then
-    constexpr std::uint32_t kMostMore = 4;
     const float way = std::max(rootMotion_, state_.fastest * input.dt);
     if (!(way > kFar * static_cast<float>(usual)) || !std::isfinite(way)) return usual;
     const float wanted = std::min(std::ceil(way / kNear), static_cast<float>(kMostMore * usual));

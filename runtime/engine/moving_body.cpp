@@ -39,7 +39,7 @@ void MovingBody::take(const BodyField& field, const BodyTable& table, std::span<
     carrierCount_ = std::min(carriers.size(), bones_);
     inverses_.resize(substeps * bones_);
     leasts_.resize(substeps * bones_);
-    at_.resize(std::size_t{substeps} + 1);
+    at_.resize(std::max(at_.size(), std::size_t{substeps} + 1));
     carriers_.resize(substeps * carrierCount_);
     wholes_.resize(substeps);
     between_.resize(bones_);
@@ -77,6 +77,16 @@ void MovingBody::take(const BodyField& field, const BodyTable& table, std::span<
         before_.swap(between_);
         between_.resize(bones_);
     }
+}
+
+void MovingBody::reserve(const BodyField& field, const BodyTable& table,
+                         std::span<const std::uint32_t> carriers, std::uint32_t substeps) {
+    // Bones that go apart need most.
+    std::vector<BonePose> poses(std::max<std::size_t>(field.bones.size(), 1));
+    for (std::size_t b = 0; b < poses.size(); ++b) poses[b].origin.x = static_cast<float>(b);
+    take(field, table, poses, poses, carriers, substeps);
+    strayed_ = {};
+    clear();
 }
 
 void MovingBody::takeCarriers(std::uint32_t substep, std::span<const std::uint32_t> bones,

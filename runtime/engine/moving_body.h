@@ -38,8 +38,12 @@ class MovingBody {
     /// `field` and `table` are of one body and outlive it.
     void take(const BodyField& field, const BodyTable& table, std::span<const BonePose> from,
               std::span<const BonePose> to, std::span<const std::uint32_t> carriers, std::uint32_t substeps);
-    void clear() { at_.clear(); }
-    bool empty() const { return at_.empty(); }
+    /// Takes the memory that frames of up to so many substeps need.
+    void reserve(const BodyField& field, const BodyTable& table, std::span<const std::uint32_t> carriers,
+                 std::uint32_t substeps);
+    /// Keeps its memory for the next frame.
+    void clear() { field_ = nullptr; }
+    bool empty() const { return field_ == nullptr; }
     const BodyField& field() const { return *field_; }
     const BodyTable& table() const { return *table_; }
     float cell() const { return field_->cell; }
@@ -86,7 +90,8 @@ class MovingBody {
     float stray(std::size_t carrier, const BonePose& way, std::span<const BonePose> before,
                 std::span<const BonePose> after) const;
 
-    std::vector<PosedBody> at_;  ///< at the start of the frame, and at the end of each substep
+    /// At the start of the frame, and at the end of each substep; behind them those of longer frames before.
+    std::vector<PosedBody> at_;
     std::vector<BonePose> between_, before_;
     std::vector<BonePose> inverses_;  ///< of each bone at the end of each substep
     std::vector<float> leasts_;       ///< metres in the world of one that it carries, at least; 0: it is flat

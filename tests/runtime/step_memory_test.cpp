@@ -101,6 +101,58 @@ TEST(StepMemory, CollisionLeavesAndJoins) {
     EXPECT_TRUE(engine.plan().on(Effect::collision));
 }
 
+/// Skin at y = 0 of two bones, one on each side, below hair that is level.
+std::shared_ptr<const BodyField> floorOfTwoBones() {
+    auto field = std::make_shared<BodyField>();
+    field->low_ss = {-0.5f, -0.3f, -0.5f};
+    field->cell = 0.1f;
+    field->size = {10, 6, 10};
+    field->unit = 1e-4f;
+    for (std::uint32_t z = 0; z <= 10; ++z)
+        for (std::uint32_t y = 0; y <= 6; ++y)
+            for (std::uint32_t x = 0; x <= 10; ++x) {
+                field->distances.push_back(static_cast<std::int16_t>(1000 * (static_cast<int>(y) - 3)));
+                field->skins.push_back(static_cast<std::uint16_t>(x < 5 ? 0 : x == 5 ? 1 : 2));
+            }
+    field->palette = {
+        {{0, 1, 0, 0}, {255, 0, 0, 0}}, {{0, 1, 0, 0}, {128, 127, 0, 0}}, {{0, 1, 0, 0}, {0, 255, 0, 0}}};
+    field->blocks.assign(10 * 6 * 10, BodyField::kNoBlock);
+    field->bones = {"left", "right"};
+    field->boxes = {{{-0.6f, -0.4f, -0.6f}, {0.1f, 0.4f, 0.6f}}, {{-0.1f, -0.4f, -0.6f}, {0.6f, 0.4f, 0.6f}}};
+    return field;
+}
+
+/// Bones apart and together, and frames so fast that they take more substeps.
+TEST(StepMemory, ABodyTakesNone) {
+    const Strands strands = tuft(100, true);
+    SimulationSettings s;
+    s.restGravity = 0.0f;
+    Engine engine = makeEngine(strands, s);
+    ASSERT_EQ(engine.setBody(floorOfTwoBones()), "");
+    std::vector<std::vector<RootFrame>> roots;
+    for (int f = 0; f < 40; ++f) {
+        const float t = static_cast<float>(f);
+        roots.push_back(strands.roots({(f > 20 ? 0.15f : 0.01f) * std::sin(t), 0.0f, 0.0f}));
+    }
+    std::uint32_t most = 0;
+    const auto step = [&](std::size_t f) {
+        std::array<BonePose, 2> bones{};
+        bones[1].origin.y = f % 3 == 0 ? 0.0f : 0.01f;
+        FrameInput input;
+        input.dt = kFrame;
+        input.time = static_cast<double>(kFrame) * static_cast<double>(f);
+        input.roots_ws = roots[f];
+        input.body_ws = bones;
+        engine.step(input);
+        most = std::max(most, engine.lastStep().substeps);
+    };
+    step(0);
+    const std::size_t before = allocationCount();
+    for (std::size_t f = 1; f < roots.size(); ++f) step(f);
+    EXPECT_EQ(allocationCount(), before);
+    EXPECT_EQ(most, 4 * s.substeps);
+}
+
 /// A copy taken in mid-run goes on as the original does, through sleep and wind.
 TEST(SavedState, ResumesWithTheSameBits) {
     Strands strands = tuft(60, true);
