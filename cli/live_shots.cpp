@@ -2,20 +2,30 @@
 #include "cli/live_shots.h"
 
 namespace hairloom::cli {
-namespace {
-
-constexpr float kFrame = 1.0f / 60;  // seconds
-
-}  // namespace
-
 Result<std::unique_ptr<LiveShots>> LiveShots::make(gpu::Device& device,
                                                    std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                                                    GroomScene scene, const HeadMotion& motion,
-                                                   EngineKind engine) {
-    auto hair =
-        MovingHair::make(engine, device, std::move(kernels), scene, motion.skin(), {motion.poseAt(0)});
+                                                   const runtime::SimulationSettings& settings,
+                                                   const FramePace& pace, EngineKind engine) {
+    const HeadPose first = motion.poseAt(0);
+    auto hair = MovingHair::make(engine, device, std::move(kernels), scene, motion.skin(), {first});
     if (!hair) return tl::unexpected(hair.error());
-    return std::unique_ptr<LiveShots>(new LiveShots(device, std::move(scene), motion, std::move(*hair)));
+    std::unique_ptr<LiveShots> shots(
+        new LiveShots(device, std::move(scene), motion, settings, pace, std::move(*hair)));
+    for (std::uint64_t step = 0; step < pace.preRoll * pace.steps(); ++step) {
+        if (auto settled = shots->hair_.step(pace.dt(), first); !settled)
+            return tl::unexpected(settled.error());
+    }
+    return shots;
+}
+
+Status LiveShots::stepWithin(std::uint64_t frame) {
+    for (std::uint32_t step = 1; step < pace_.steps(); ++step) {
+        const float time = pace_.timeOf(static_cast<float>(frame), step);
+        if (auto given = keyed_.give(hair_, time); !given) return given;
+        if (auto moved = hair_.step(pace_.dt(), motion_.poseAt(time)); !moved) return moved;
+    }
+    return {};
 }
 
 Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::RenderScene& scene,
@@ -27,12 +37,16 @@ Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::Rende
     if (auto set = renderer_.setCamera(scene.camera, !how.temporal); !set) return tl::unexpected(set.error());
     gpu::SubmissionPtr last;
     for (; frame_ < frame; ++frame_) {
+        if (auto moved = stepWithin(frame_ + 1); !moved) return tl::unexpected(moved.error());
+        const float time = pace_.timeOf(static_cast<float>(frame_ + 1), pace_.steps());
+        if (auto given = keyed_.give(hair_, time); !given) return tl::unexpected(given.error());
         auto list = device_.createCommandList();
         if (!list) return tl::unexpected(list.error());
         if (how.surface && !how.temporal && frame_ + 1 == frame) {
             if (auto past = renderer_.recordPast(**list, how); !past) return tl::unexpected(past.error());
         }
-        if (auto moved = hair_.step(**list, kFrame, motion_); !moved) return tl::unexpected(moved.error());
+        if (auto moved = hair_.step(**list, pace_.dt(), motion_.poseAt(time)); !moved)
+            return tl::unexpected(moved.error());
         if (auto shown = hair_.show(renderer_, scene_); !shown) return tl::unexpected(shown.error());
         if (how.temporal && frame_ + 1 < frame) {
             if (auto drawn = renderer_.record(**list, how, nullptr); !drawn)

@@ -4,35 +4,45 @@
 
 #include "core/live/moving_hair.h"
 #include "core/render/picture.h"
+#include "core/simulation/time_line_motion.h"
 
 namespace hairloom::cli {
 
 class LiveShots {
   public:
-    /// `motion` and `device` outlive it.
+    /// `motion` and `device` outlive it. `settings` are authored; the scene's groom has those that
+    /// `motion` begins with.
     static Result<std::unique_ptr<LiveShots>> make(gpu::Device& device,
                                                    std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                                                    GroomScene scene, const HeadMotion& motion,
-                                                   EngineKind engine);
+                                                   const runtime::SimulationSettings& settings,
+                                                   const FramePace& pace, EngineKind engine);
 
     /// Strands at rest.
     const GroomScene& scene() const { return scene_; }
-    /// After so many frames of 1/60 s, not fewer than at the last call; `scene` says camera, lights and
+    /// After so many frames, not fewer than at the last call; `scene` says camera, lights and
     /// background. Of a temporal picture all frames before are drawn as well.
     Result<render::Picture> take(std::uint64_t frame, const render::RenderScene& scene,
                                  const render::RenderOptions& how);
 
   private:
-    LiveShots(gpu::Device& device, GroomScene scene, const HeadMotion& motion, MovingHair hair)
+    LiveShots(gpu::Device& device, GroomScene scene, const HeadMotion& motion,
+              const runtime::SimulationSettings& settings, const FramePace& pace, MovingHair hair)
         : device_(device),
           scene_(std::move(scene)),
           motion_(motion),
+          keyed_(motion, settings),
+          pace_(pace),
           hair_(std::move(hair)),
           renderer_(device) {}
+    /// All steps of the next frame but the last, which goes into the frame's own list.
+    Status stepWithin(std::uint64_t frame);
 
     gpu::Device& device_;
     GroomScene scene_;
     const HeadMotion& motion_;
+    KeyedSettings keyed_;
+    FramePace pace_;
     MovingHair hair_;
     render::Renderer renderer_;
     bool shown_ = false;

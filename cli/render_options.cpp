@@ -239,7 +239,8 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
     auto* motion = job.add_option("--motion", options->motion,
                                   "Simulate the hair while rendering, with this head motion: none, spin, "
-                                  "nod, clip:NAME or a keyframe file F.json")
+                                  "nod, clip:NAME, a keyframe file F.json, or timeline: the project's clips, "
+                                  "keys, frame rate and pre-roll")
                        ->excludes(record);
     job.add_flag("--temporal", options->temporal,
                  "Temporal anti-aliasing: draws each frame of the simulation once and accumulates earlier "
@@ -258,8 +259,10 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
            "is none, and simulates where it was measured to be faster. cpu and gpu simulate there. gpu draws "
            "with the graphics API only. software draws and simulates without a graphics API")
         ->check(CLI::IsMember({"auto", "cpu", "gpu", "software"}));
-    auto* frame = job.add_option("--frame", options->frame,
-                                 "Frame of the record, counted from 0, or of the simulation in 1/60 s");
+    auto* frame = job.add_option(
+        "--frame", options->frame,
+        "Frame of the record, counted from 0, or of the simulation in 1/60 s, or at the time line's "
+        "frame rate");
     auto* frames =
         job.add_option("--frames", options->frames, "Frames FIRST,LAST[,STEP] to render, one image each")
             ->check(CLI::Range(0, 1'000'000'000))

@@ -188,10 +188,13 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
         playing.engine = chooseEngine(wish, &gpu.device(), gpu.kernels(), groom, EngineMemory::ofUser());
     }
     if (wish == EngineWish::gpu && playing.engine.kind != EngineKind::gpu) return fail(playing.engine.why);
+    const runtime::SimulationSettings authored = groom.simulation;
+    groom.simulation = KeyedSettings(*playing.motion, authored).first();
     auto scene = GroomScene::make(groom, view, options.hiddenGroups);
     if (!scene) return tl::unexpected(scene.error());
-    auto made =
-        LiveShots::make(gpu.device(), gpu.kernels(), std::move(*scene), *playing.motion, playing.engine.kind);
+    auto made = LiveShots::make(gpu.device(), gpu.kernels(), std::move(*scene), *playing.motion, authored,
+                                options.motion == kTimeLineMotion ? paceOf(timeLineOf(groom)) : FramePace(),
+                                playing.engine.kind);
     if (!made) return tl::unexpected(made.error());
     playing.shots = std::move(*made);
     return playing;

@@ -25,16 +25,16 @@
 #include "core/simulation/rest_positions.h"
 #include "core/simulation/sag.h"
 #include "core/simulation/simulation.h"
+#include "core/simulation/time_line_motion.h"
 
 namespace hairloom::cli {
 namespace {
 
 struct SimulateOptions {
     std::string input;
-    std::uint64_t frames = 60;
-    std::uint64_t preRoll = 0;
+    std::optional<std::uint64_t> frames, preRoll;
     std::uint64_t handles = 0;  ///< frames at each end
-    float framesPerSecond = 60;
+    std::optional<float> framesPerSecond;
     std::string engine;
     std::string backend = "cpu";
     std::optional<std::uint32_t> device;
@@ -52,6 +52,23 @@ struct SimulateOptions {
     std::string against;
     std::string output;
 };
+
+/// How long, how finely: as asked, else by the time line where that plays.
+struct Span {
+    FramePace pace;
+    std::uint64_t frames = 60;
+};
+Span spanOf(const SimulateOptions& options, const Groom& groom) {
+    Span span;
+    if (options.motion == kTimeLineMotion) {
+        TimeLine line = timeLineOf(groom);
+        line.framesPerSecond = options.framesPerSecond.value_or(line.framesPerSecond);
+        span = {paceOf(line), line.frameCount()};
+    }
+    return {{options.framesPerSecond.value_or(span.pace.framesPerSecond),
+             options.preRoll.value_or(span.pace.preRoll)},
+            options.frames.value_or(span.frames)};
+}
 
 SimulationOptions methodOf(const SimulateOptions& options) {
     SimulationOptions result;
@@ -200,21 +217,26 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (options.sag) return sagOf(*groom, options);
     const auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
-    const auto poseOf = [&](std::uint64_t frame) {
-        const float number = static_cast<float>(frame) - static_cast<float>(options.handles);
-        return (*motion)->poseAt(number / options.framesPerSecond);
+    const Span span = spanOf(options, *groom);
+    const FramePace& pace = span.pace;
+    const std::uint32_t steps = pace.steps();
+    const float dt = pace.dt();
+    const auto timeOf = [&](std::uint64_t frame, std::uint32_t step) {
+        return pace.timeOf(static_cast<float>(frame) - static_cast<float>(options.handles), step);
     };
-    HeadPose pose = poseOf(0);
+    KeyedSettings keyed(**motion, groom->simulation);
+    groom->simulation = keyed.first();
+    HeadPose pose = (*motion)->poseAt(timeOf(0, steps));
     SimulationOptions methodOptions = methodOf(options);
     const auto engine = engineOf(options, *groom);
     if (!engine) return tl::unexpected(engine.error());
     if (engine->gpu) methodOptions.backend = engine->gpu->engine();
     auto simulation = Simulation::make(*groom, pose, methodOptions);
     if (!simulation) return tl::unexpected(simulation.error());
-    const Report advice = adviceReport(*groom, 1.0f / options.framesPerSecond);
+    const Report advice = adviceReport(*groom, dt);
     std::optional<FrameRecorder> recorder;
     if (!options.record.empty()) {
-        auto opened = FrameRecorder::open(options.record, *groom, options.framesPerSecond);
+        auto opened = FrameRecorder::open(options.record, *groom, pace.framesPerSecond);
         if (!opened) return tl::unexpected(opened.error());
         recorder.emplace(std::move(*opened));
     }
@@ -224,16 +246,21 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (!options.against.empty()) comparison.emplace(options.against);
 
     std::optional<DrawnDepthMeter> depth = depthMeter(*groom);
-    const std::uint64_t frames = options.frames + 2 * options.handles;
-    Progress progress("simulating", options.preRoll + frames);
-    for (std::uint64_t frame = 1; frame <= options.preRoll; ++frame) {
-        simulation->step(1.0f / options.framesPerSecond, pose);
+    const std::uint64_t frames = span.frames + 2 * options.handles;
+    Progress progress("simulating", pace.preRoll + frames);
+    for (std::uint64_t frame = 1; frame <= pace.preRoll; ++frame) {
+        for (std::uint32_t step = 1; step <= steps; ++step) simulation->step(dt, pose);
         if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
         progress.done(frame);
     }
     for (std::uint64_t frame = 1; frame <= frames; ++frame) {
-        pose = poseOf(frame);
-        simulation->step(1.0f / options.framesPerSecond, pose);
+        for (std::uint32_t step = 1; step <= steps; ++step) {
+            const float time = timeOf(frame, step);
+            if (const auto given = keyed.give(*simulation, time); !given)
+                return tl::unexpected(given.error());
+            pose = (*motion)->poseAt(time);
+            simulation->step(dt, pose);
+        }
         if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
         if (depth) {
             // A tenth of a gigabyte for ten million points that nothing follows.
@@ -251,13 +278,14 @@ Result<Report> simulate(const SimulateOptions& options) {
                 return tl::unexpected(compared.error());
             }
         }
-        progress.done(options.preRoll + frame);
+        progress.done(pace.preRoll + frame);
     }
 
     Report report = statsReport(*groom, simulation->stats());
     report["advice"] = advice;
-    report["frames"] = options.frames;
-    report["pre_roll"] = options.preRoll;
+    report["frames"] = span.frames;
+    report["fps"] = pace.framesPerSecond;
+    report["pre_roll"] = pace.preRoll;
     report["handles"] = options.handles;
     report["method"] = options.method;
     report["engine"] = engineName(engine->choice.kind);
@@ -288,13 +316,15 @@ Result<Report> simulate(const SimulateOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SimulateOptions>();
     job.add_option("groom", options->input, "Project or hair file")->required();
-    job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
+    job.add_option("--frames", options->frames, "Frames to simulate (default: 60, or the time line's range)")
+        ->check(CLI::Range(1, 1'000'000));
     job.add_option(
            "--pre-roll", options->preRoll,
            "Frames to simulate before these on the motion's first pose. They settle the hair, and are "
-           "not recorded")
+           "not recorded (default: 0, or the time line's)")
         ->check(CLI::Range(0, 100'000));
-    job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
+    job.add_option("--fps", options->framesPerSecond, "Frames per second (default: 60, or the time line's)")
+        ->check(CLI::Range(1.0, 1000.0));
     job.add_option("--engine", options->engine,
                    "Device that simulates: the CPU, a GPU, or the one that was measured to be faster")
         ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
@@ -311,8 +341,10 @@ JobRun declare(CLI::App& job) {
            "Time steps per 1/60 s, instead of the groom's own. Springs on a groom of rods take at least 8")
         ->check(CLI::Range(1u, runtime::kMaxSubsteps));
     job.add_option("--wind", options->wind, "Wind velocity X,Y,Z in m/s, instead of the groom's own");
-    job.add_option("--motion", options->motion,
-                   "Head motion: none, spin, nod, clip:NAME or a keyframe file F.json");
+    job.add_option(
+        "--motion", options->motion,
+        "Head motion: none, spin, nod, clip:NAME, a keyframe file F.json, or timeline: the project's "
+        "clips and keys of head, wind and settings");
     job.add_option("--character", options->character,
                    "File with skeleton and clips, if other than the scalp's file");
     job.add_option("--method", options->method,

@@ -60,6 +60,14 @@ ActorPose Actor::poseAt(std::uint32_t clip, float time, Wrap wrap) const {
     return posedBy(localMatrices(skeleton_, clips_[clip], time, wrap));
 }
 
+ActorPose Actor::poseBetween(const At& from, const At& to, float share) const {
+    const auto local = [this](const At& at) {
+        assert(at.clip < clips_.size());
+        return localMatrices(skeleton_, clips_[at.clip], at.time, at.wrap);
+    };
+    return posedBy(blended(local(from), local(to), share));
+}
+
 ActorPose Actor::restPose() const {
     return posedBy(localMatrices(skeleton_));
 }

@@ -40,6 +40,13 @@ class Actor {
 
     /// Const and safe on any number of threads. `clip` is an index into clips().
     ActorPose poseAt(std::uint32_t clip, float time, Wrap wrap) const;
+    /// From the pose of `from` to that of `to`, bone by bone: `share` 0 … 1 of the way.
+    struct At {
+        std::uint32_t clip;
+        float time;
+        Wrap wrap;
+    };
+    ActorPose poseBetween(const At& from, const At& to, float share) const;
     /// Without animation.
     ActorPose restPose() const;
 

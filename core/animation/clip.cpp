@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace hairloom {
@@ -107,6 +108,24 @@ std::vector<Eigen::Affine3f> localMatrices(const Skeleton& skeleton, const Clip&
                               Eigen::Scaling(sample(channel.scale, at, Vec3f::Ones()));
     }
     return local;
+}
+
+std::vector<Eigen::Affine3f> blended(std::span<const Eigen::Affine3f> from,
+                                     std::span<const Eigen::Affine3f> to, float share) {
+    assert(from.size() == to.size());
+    std::vector<Eigen::Affine3f> result(from.begin(), from.end());
+    for (std::size_t bone = 0; bone < from.size(); ++bone) {
+        if (from[bone].matrix() == to[bone].matrix()) continue;
+        Eigen::Matrix3f rotationFrom, rotationTo, scaleFrom, scaleTo;
+        from[bone].computeRotationScaling(&rotationFrom, &scaleFrom);
+        to[bone].computeRotationScaling(&rotationTo, &scaleTo);
+        const Vec3f place =
+            from[bone].translation() + share * (to[bone].translation() - from[bone].translation());
+        const Quatf rotation = Quatf(rotationFrom).slerp(share, Quatf(rotationTo)).normalized();
+        result[bone].translation() = place;
+        result[bone].linear() = rotation.toRotationMatrix() * (scaleFrom + share * (scaleTo - scaleFrom));
+    }
+    return result;
 }
 
 std::vector<Eigen::Affine3f> skinMatrices(const Skeleton& skeleton, std::span<const Eigen::Affine3f> local) {

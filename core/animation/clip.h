@@ -2,6 +2,7 @@
 #pragma once
 // Recorded motion of bones.
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,10 @@ Quatf sample(const Track<Quatf>& track, float time);
 std::vector<Eigen::Affine3f> localMatrices(const Skeleton& skeleton, const Clip& clip, float time, Wrap wrap);
 /// At rest.
 std::vector<Eigen::Affine3f> localMatrices(const Skeleton& skeleton);
+
+/// Bone by bone, `share` 0 … 1 of the way: rotations along the shorter arc, places and scales linear.
+std::vector<Eigen::Affine3f> blended(std::span<const Eigen::Affine3f> from,
+                                     std::span<const Eigen::Affine3f> to, float share);
 
 /// From the mesh's rest space to the world, per bone: world matrix × inverse bind matrix.
 std::vector<Eigen::Affine3f> skinMatrices(const Skeleton& skeleton, std::span<const Eigen::Affine3f> local);

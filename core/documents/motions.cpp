@@ -9,6 +9,7 @@
 #include "core/documents/keyed_motion.h"
 #include "core/documents/open.h"
 #include "core/simulation/clip_motion.h"
+#include "core/simulation/time_line_motion.h"
 
 namespace hairloom {
 namespace {
@@ -70,6 +71,19 @@ Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const st
                                                const Groom& groom) {
     constexpr std::string_view kClip = "clip:", kFile = ".json";
     if (name.size() > kFile.size() && name.ends_with(kFile)) return readKeyedMotion(name);
+    if (name == kTimeLineMotion) {
+        const TimeLine& line = timeLineOf(groom);
+        std::shared_ptr<const Actor> actor;
+        if (!line.clips.empty()) {
+            auto loaded = loadActor(character, groom);
+            if (!loaded) return tl::unexpected(loaded.error());
+            actor = std::move(*loaded);
+        }
+        auto motion = makeTimeLineMotion(line, std::move(actor), groom);
+        if (!motion && !line.clips.empty())
+            return tl::unexpected(inFile(motion.error(), characterOf(character, groom)));
+        return motion;
+    }
     if (name.rfind(kClip, 0) != 0) return makeRigidMotion(name, groom);
     auto actor = loadActor(character, groom);
     if (!actor) return tl::unexpected(actor.error());

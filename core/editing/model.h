@@ -39,6 +39,7 @@ enum class Part : std::uint32_t {
     Cards = 1u << 17u,          ///< levels' cards shaped by hand
     Widths = 1u << 18u,         ///< of hair, as they were painted
     Shadows = 1u << 19u,        ///< settings of them
+    TimeLine = 1u << 20u,       ///< clips, keys and range
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {

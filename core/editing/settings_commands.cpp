@@ -12,6 +12,7 @@
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/layers_json.h"
 #include "core/groom/file/settings_json.h"
+#include "core/groom/file/time_line_json.h"
 #include "core/groom/groom_hash.h"
 #include "hairloom/body_field.h"
 
@@ -86,6 +87,7 @@ Part differenceOf(const Groom& a, const Groom& b) {
         {Part::Shadows, differs(a.shadows, b.shadows)},
         {Part::Interpolation, differs(a.interpolation, b.interpolation)},
         {Part::Cards, differs(a.cardEdits, b.cardEdits)},
+        {Part::TimeLine, timeLineOf(a) != timeLineOf(b)},
         {Part::Operators, a.operators != b.operators || !a.operators.empty()},
         {Part::Layers, differs(a.layers, b.layers) || a.groupNames != b.groupNames},
         {Part::Triangulation, !sameTriangles(a, b)},
@@ -237,6 +239,21 @@ Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<Ca
         std::move(edits), std::move(record), bytes);
 }
 
+Result<std::unique_ptr<Command>> setTimeLine(const Model& model, TimeLine line, std::string name) {
+    using Held = std::shared_ptr<const TimeLine>;
+    if (const auto problems = problemsOf(line); !problems.empty())
+        return fail(problems[0].where + " " + problems[0].what, problems[0].expected);
+    if (timeLineOf(model.groom) == line) return nullptr;
+    std::string record = recordOf("time_line", {{"time_line", hairloom::toJson(line)}});
+    std::size_t bytes = sizeof(TimeLine) + line.clips.size() * sizeof(ClipStrip) +
+                        line.head.size() * sizeof(HeadKey) + line.wind.size() * sizeof(WindKey);
+    for (const SettingTrack& track : line.settings) bytes += track.keys.size() * sizeof(SettingKey);
+    return valueCommand<Held>(
+        std::move(name), Part::TimeLine, [](Model& m) -> Held& { return m.groom.timeLine; },
+        line == TimeLine() ? nullptr : std::make_shared<const TimeLine>(std::move(line)), std::move(record),
+        bytes);
+}
+
 std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std::string name) {
     std::vector<std::unique_ptr<Command>> steps;
     steps.push_back(setMaterial(model, from.material, name));
@@ -299,6 +316,12 @@ MakeCommand readCards(JsonReader& reader) {
     };
 }
 
+MakeCommand readTimeLineStep(JsonReader& reader) {
+    return [line = readTimeLine(reader)](const Document& document) {
+        return setTimeLine(document.model(), line, "Time line");
+    };
+}
+
 MakeCommand readLayerList(JsonReader& reader) {
     return [layers = readLayers(reader)](const Document& document) -> CommandResult {
         if (layers.size() < document.groom().layers.size())
@@ -320,6 +343,7 @@ constexpr RecordedOperation kSettingsCommandsRecords[] = {
     {"spheres", readSpheres},
     {"layers", readLayerList},
     {"card_edits", readCards},
+    {"time_line", readTimeLineStep},
     {"triangulate", readTriangulate},
 };
 

@@ -34,6 +34,9 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
 Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<CardEdit> edits,
                                               std::string name);
 
+/// Errors: what problemsOf() finds, the first one.
+Result<std::unique_ptr<Command>> setTimeLine(const Model& model, TimeLine line, std::string name);
+
 /// Of another groom all that the commands above set but the layers: what a preset or a field changes.
 std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std::string name);
 

@@ -21,6 +21,7 @@
 
 namespace hairloom {
 
+struct TimeLine;
 namespace runtime {
 struct BodyField;
 }
@@ -88,6 +89,8 @@ struct Groom {
     InterpolationSettings interpolation;
     PlacementSettings placement;
     std::vector<CardEdit> cardEdits;  ///< of levels of detail
+    /// What moves and changes when (core/groom/time_line.h); null: nothing. Shared and immutable.
+    std::shared_ptr<const TimeLine> timeLine;
 
     /// The mesh that strands are rooted on; null for hair that came without one. Shared and immutable.
     std::shared_ptr<const ScalpMesh> scalp;

@@ -59,6 +59,11 @@ void findSettings(const Groom& groom, std::vector<Finding>& findings) {
     report("simulation", runtime::validate(groom.simulation));
 }
 
+void findTimeLine(const Groom& groom, std::vector<Finding>& findings) {
+    for (const TimeLineProblem& problem : problemsOf(timeLineOf(groom)))
+        findings.push_back({Severity::Error, problem.what, "time_line/" + problem.where, problem.expected});
+}
+
 }  // namespace
 
 std::string_view severityName(Severity severity) {
@@ -79,6 +84,7 @@ std::vector<Finding> validateSettings(const Groom& groom) {
     findSpheres(groom, findings);
     findWeights(groom, findings);
     findSettings(groom, findings);
+    findTimeLine(groom, findings);
     return findings;
 }
 

@@ -30,7 +30,7 @@ std::vector<Finding> validate(const Groom& groom);
 /// check it.
 Status checkStructure(const Groom& groom);
 
-/// The part of validate() that concerns layers, spheres and settings; all of them errors.
+/// The part of validate() that concerns layers, spheres, settings and the time line; all of them errors.
 std::vector<Finding> validateSettings(const Groom& groom);
 
 /// The part of validate() that concerns widths no hair has: what Blender gives hair without any.

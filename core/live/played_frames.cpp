@@ -2,6 +2,7 @@
 #include "core/live/played_frames.h"
 
 #include "core/simulation/simulation.h"
+#include "core/simulation/time_line_motion.h"
 
 namespace hairloom {
 
@@ -11,12 +12,14 @@ namespace {
 Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& range,
             const std::function<bool(std::uint32_t)>& before,
             const std::function<Status(std::uint32_t, RecordedFrame)>& take) {
-    const auto poseOf = [&](std::uint32_t frame) {
-        const float number = static_cast<float>(frame) - static_cast<float>(range.handles);
-        return inWorld(motion.poseAt(number / range.framesPerSecond));
+    const auto timeOf = [&](std::uint32_t frame) {
+        return (static_cast<float>(frame) - static_cast<float>(range.handles)) / range.framesPerSecond;
     };
-    HeadPose pose = poseOf(0);
-    auto simulation = Simulation::make(groom, pose);
+    HeadPose pose = inWorld(motion.poseAt(timeOf(0)));
+    KeyedSettings keyed(motion, groom.simulation);
+    Groom begun = groom;
+    begun.simulation = keyed.first();
+    auto simulation = Simulation::make(begun, pose);
     if (!simulation) return tl::unexpected(simulation.error());
     for (std::uint32_t frame = 0; frame < range.preRoll; ++frame) {
         if (!before(frame)) return fail("it was cancelled");
@@ -25,7 +28,8 @@ Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& ran
     for (std::uint32_t frame = 0; frame < range.count; ++frame) {
         if (!before(range.preRoll + frame)) return fail("it was cancelled");
         if (frame > 0) {
-            pose = poseOf(frame);
+            if (auto given = keyed.give(*simulation, timeOf(frame)); !given) return given;
+            pose = inWorld(motion.poseAt(timeOf(frame)));
             simulation->step(1 / range.framesPerSecond, pose);
         }
         const auto positions_ws = simulation->positions_ws();

@@ -83,6 +83,15 @@ HeadPose inWorld(HeadPose pose) {
     return pose;
 }
 
+void moveBy(const Eigen::Isometry3f& offset, HeadPose& pose) {
+    pose.head_ws = offset * pose.head_ws;
+    for (Vec3f& position : pose.scalpPositions_ws) position = offset * position;
+    for (Vec3f& centre : pose.sphereCentres_ws) centre = offset * centre;
+    for (auto* bones : {&pose.bones_ws, &pose.body_ws}) {
+        for (Eigen::Affine3f& bone : *bones) bone = offset * bone;
+    }
+}
+
 Result<std::unique_ptr<HeadMotion>> makeRigidMotion(std::string_view name, const Groom& groom) {
     if (name == "none") return std::make_unique<RestMotion>();
     if (name == "spin") return std::make_unique<TurnMotion>(pivotOf(groom), Vec3f::UnitY(), spinAngle);

@@ -33,11 +33,20 @@ struct HeadPose {
 /// The same measured from the origin of the world.
 HeadPose inWorld(HeadPose pose);
 
+/// Moves all of it rigidly, measured from its origin; the wind stays.
+void moveBy(const Eigen::Isometry3f& offset, HeadPose& pose);
+
 class HeadMotion {
   public:
     virtual ~HeadMotion() = default;
     /// The pose at `time` ≥ 0 seconds. Const and safe on any number of threads.
     virtual HeadPose poseAt(float time) const = 0;
+    /// The settings at that time, where this keys some: `authored` with these.
+    virtual std::optional<runtime::SimulationSettings> settingsAt(
+        float time, const runtime::SimulationSettings& authored) const {
+        static_cast<void>(time), static_cast<void>(authored);
+        return std::nullopt;
+    }
     /// The scalp's, whose bones the poses name; null where it moves without. Lives as long as this.
     virtual const SkinWeights* skin() const { return nullptr; }
 };

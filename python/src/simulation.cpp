@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/simulation/simulation.h"
+#include "core/simulation/time_line_motion.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>
@@ -26,6 +27,7 @@ using namespace nb::literals;
 struct PySimulation {
     Groom groom;
     std::unique_ptr<HeadMotion> motion;
+    std::optional<KeyedSettings> keyed;
     std::optional<Simulation> simulation;
     std::uint64_t frames = 0, next = 1;
     double framesPerSecond = 60;
@@ -52,6 +54,8 @@ Status begin(PySimulation& run, const std::string& motion, const std::string& ch
     auto moving = makeMotion(motion, character, run.groom);
     if (!moving) return tl::unexpected(moving.error());
     run.motion = std::move(*moving);
+    run.keyed.emplace(*run.motion, run.groom.simulation);
+    run.groom.simulation = run.keyed->first();
     const HeadPose start = run.motion->poseAt(0);
     auto made = Simulation::make(run.groom, start);
     if (!made) return tl::unexpected(made.error());
@@ -88,7 +92,9 @@ PyFrame nextFrame(PySimulation& run) {
     if (run.next > run.frames) throw nb::stop_iteration();
     PyFrame frame{run.next, static_cast<double>(run.next) / run.framesPerSecond, {}, {}, {}};
     unwrap(withoutGil([&]() -> Status {
-        const HeadPose pose = run.motion->poseAt(static_cast<float>(frame.time));
+        const auto time = static_cast<float>(frame.time);
+        if (auto given = run.keyed->give(*run.simulation, time); !given) return given;
+        const HeadPose pose = run.motion->poseAt(time);
         run.simulation->step(static_cast<float>(1 / run.framesPerSecond), pose);
         const auto points = run.simulation->positions_ws();
         frame.positions_ws = std::make_shared<const std::vector<Vec3f>>(points.begin(), points.end());

@@ -80,6 +80,19 @@ TEST(Clip, LoopsOrHoldsOutsideItsDuration) {
     EXPECT_EQ(localMatrices(moved.skeleton)[0].translation(), Vec3f(9, 9, 9));
 }
 
+TEST(Clip, PosesBlendBoneByBone) {
+    const auto at = [](const Vec3f& place, float angle, float scale) {
+        return Eigen::Affine3f(Eigen::Translation3f(place) * turn(angle, {0, 0, 1}) * Eigen::Scaling(scale));
+    };
+    const std::vector<Eigen::Affine3f> from{at({0, 0, 0}, 3.0f, 1), at({1, 2, 3}, 0.4f, 1)};
+    const std::vector<Eigen::Affine3f> to{at({2, 0, 4}, -3.0f, 3), from[1]};
+    const auto half = blended(from, to, 0.5f);
+    EXPECT_TRUE(half[0].isApprox(at({1, 0, 2}, kPi, 2), 1e-5f)) << "over pi, which is nearer than over 0";
+    EXPECT_EQ(half[1].matrix(), from[1].matrix()) << "what is the same stays, bit by bit";
+    EXPECT_TRUE(blended(from, to, 0)[0].isApprox(from[0], 1e-5f));
+    EXPECT_TRUE(blended(from, to, 1)[0].isApprox(to[0], 1e-5f));
+}
+
 TEST(Clip, ValidationNamesClipAndBone) {
     OneBone broken;
     EXPECT_TRUE(validate(broken.clip, broken.skeleton));

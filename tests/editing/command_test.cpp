@@ -12,6 +12,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
 #include "core/geometry/selection.h"
+#include "core/groom/time_line.h"
 #include "tests/editing/editing_samples.h"
 
 namespace hairloom::editing {
@@ -123,6 +124,17 @@ std::vector<Action> actions() {
                  edits.push_back(anyCardEdit(r));
                  if (edits.size() > 3) edits.erase(edits.begin());
                  auto made = setCardEdits(m, std::move(edits), "Cards");
+                 EXPECT_TRUE(made);
+                 return std::move(*made);
+             }},
+            {"SetTimeLine",
+             [](const Model& m, Random& r) {
+                 TimeLine line = timeLineOf(m.groom);
+                 line.preRoll = 1 + r.below(100);
+                 line.head.resize(1);
+                 line.head[0].degrees = r.uniform(-90, 90);
+                 line.settings = {{"simulation.windSpeed", {{r.uniform(), Vec3d(r.uniform(), 0, 0)}}}};
+                 auto made = setTimeLine(m, std::move(line), "Time line");
                  EXPECT_TRUE(made);
                  return std::move(*made);
              }},

@@ -13,6 +13,7 @@
 #include "core/base/random.h"
 #include "core/geometry/closest_point.h"
 #include "core/groom/groom.h"
+#include "core/groom/time_line.h"
 
 namespace hairloom {
 
@@ -153,6 +154,16 @@ inline Groom fullGroom() {
     groom.cardEdits = {anyCardEdit(random), anyCardEdit(random)};
     groom.cardEdits[0].strip.clear();
     groom.cardEdits[1].strip.assign(kCardStations, {Vec3f(0, 1.7f, 0.1f), Vec3f::UnitX(), 0.01f, -3, 2e-5f});
+    TimeLine line;
+    line.framesPerSecond = 23.976f;
+    line.start = 0.25f, line.end = 7, line.preRoll = 12, line.loop = false;
+    line.clips = {{"Walk \"β\"", 0, 0.5f, 2, 1.25f, true, 0}, {"Run", 2.5f, 0, 0, 1, false, 0.75f}};
+    line.head = {{0, Vec3d::Zero(), Vec3f(0, 2, 0), 30, KeyInterpolation::step},
+                 {1.5f, Vec3d(0.1, 1e5, -2), Vec3f::UnitX(), -400, KeyInterpolation::smooth}};
+    line.wind = {{0.1f, Vec3f(3, 0, 0.7f), KeyInterpolation::linear}};
+    line.settings = {{"simulation.gravity", {{0, Vec3d(0, -9.5, 1), KeyInterpolation::smooth}}},
+                     {"simulation.windKind", {{2, Vec3d(1, 0, 0), KeyInterpolation::step}}}};
+    groom.timeLine = std::make_shared<const TimeLine>(std::move(line));
     groom.scalpDensity.assign(groom.scalp->vertexCount(), 0.25f);
     groom.triangulation.triangles = {{0, 1, 2}, {2, 1, 3}};
     groom.triangulation.coincident = {{4, 0}};

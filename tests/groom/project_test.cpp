@@ -74,7 +74,7 @@ class OlderProject {
         now_ = ArchiveReader::open("a", readFile(path_).value(), section::kKind, kProjectVersion);
         EXPECT_TRUE(now_);
         head = now_->head();
-        for (const char* member : {"kind", "version", "arrays", "operators", "card_edits"})
+        for (const char* member : {"kind", "version", "arrays", "operators", "card_edits", "time_line"})
             head.erase(member);
     }
     Result<Groom> load(std::uint32_t version, std::string_view without = {}) {
@@ -99,6 +99,7 @@ class OlderProject {
 Groom groomOfBefore() {
     Groom groom = fullGroom();
     groom.cardEdits.clear();
+    groom.timeLine.reset();
     return groom;
 }
 
@@ -332,6 +333,14 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h.erase("placement"); }, "/placement is missing"},
         {[](Json& h) { h["placement"]["points"] = 1; }, "/placement/points is 1"},
         {[](Json& h) { h.erase("card_edits"); }, "/card_edits is missing"},
+        {[](Json& h) { h.erase("time_line"); }, "/time_line is missing"},
+        {[](Json& h) { h["time_line"]["clips"][1]["blend"] = 7e6; }, "/time_line/clips/1/blend is 7000000"},
+        {[](Json& h) { h["time_line"]["head"][1]["t"] = 0; }, "/time_line/head/1/t is 0 s, not later"},
+        {[](Json& h) { h["time_line"]["end"] = 0.25; }, "/time_line/end is 0.25 s; expected more than start"},
+        {[](Json& h) { h["time_line"]["settings"][0]["keys"] = Json::array(); },
+         "/time_line/settings/0/keys is empty"},
+        {[](Json& h) { h["time_line"]["settings"][1]["name"] = "simulation.gravity"; },
+         "/time_line/settings/1/keys/0/value is not a vector"},
         {[](Json& h) { h["card_edits"][0]["level"] = 0; }, "/card_edits/0/level is 0"},
         {[](Json& h) {
              h["card_edits"][0]["roots"] = {1, 2};

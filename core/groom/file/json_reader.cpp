@@ -149,6 +149,12 @@ void JsonReader::complain(std::string_view key, const std::string& problem, cons
     context_->error = Error{context_->file, {}, where + " " + problem, expected};
 }
 
+void JsonReader::complainBelow(std::string_view path, const std::string& problem,
+                               const std::string& expected) {
+    if (context_->error) return;
+    context_->error = Error{context_->file, {}, fmt::format("{}/{} {}", path_, path, problem), expected};
+}
+
 Status JsonReader::status() const {
     if (context_->error) return tl::unexpected(*context_->error);
     return {};

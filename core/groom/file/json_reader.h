@@ -72,6 +72,8 @@ class JsonReader {
     /// Complains about the first member that nobody asked for, naming those that were.
     void finish();
     void complain(std::string_view key, const std::string& problem, const std::string& expected = {});
+    /// The same of a place further below: "keys/3/t".
+    void complainBelow(std::string_view path, const std::string& problem, const std::string& expected);
     bool ok() const { return !context_->error; }
     Status status() const;
     const std::string& path() const { return path_; }

@@ -14,6 +14,7 @@
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
+#include "core/groom/file/time_line_json.h"
 #include "core/groom/validate.h"
 #include "hairloom/body_field.h"
 
@@ -24,6 +25,7 @@ constexpr std::uint64_t kFirstWithPlacement = 2;  ///< version that has density 
 constexpr std::uint64_t kFirstWithOperators = 6;
 constexpr std::uint64_t kFirstWithCardEdits = 9;
 constexpr std::uint64_t kFirstWithBody = 10;
+constexpr std::uint64_t kFirstWithTimeLine = 11;
 
 struct Counts {
     std::uint64_t version;
@@ -48,6 +50,10 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     readSettings(head.object("interpolation"), groom.interpolation);
     if (version >= kFirstWithPlacement) readSettings(head.object("placement"), groom.placement);
     if (version >= kFirstWithCardEdits) groom.cardEdits = readCardEdits(head);
+    if (version >= kFirstWithTimeLine) {
+        if (TimeLine line = readTimeLine(head); line != TimeLine())
+            groom.timeLine = std::make_shared<const TimeLine>(std::move(line));
+    }
     groom.characterFile = head.string("character_file");
     groom.characterMetresPerUnit = static_cast<float>(head.number("character_metres_per_unit", 0, 1e6));
     groom.scalpExpression = head.string("scalp_expression");
