@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/job.h"
 #include "core/base/result.h"
 #include "core/colour/colour_choice.h"
 #include "core/groom/shadow_settings.h"
@@ -95,5 +96,8 @@ struct Shot {
 
 /// The images that are asked for, at most 10,000. Throws WrongUsage for frames that are no sequence.
 Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options);
+
+/// What `render` does once its outputs are held; images go where the options name a file.
+Result<Report> renderToFile(const RenderJobOptions& options);
 
 }  // namespace hairloom::cli

@@ -150,7 +150,9 @@ Status writePictures(const RenderJobOptions& options, const std::optional<colour
     const auto name = [&](const std::string& path) {
         return many ? numbered(path, number) : std::filesystem::path(path);
     };
-    if (auto written = render::writePng(name(options.output), picture.image); !written) return written;
+    if (!options.output.empty()) {
+        if (auto written = render::writePng(name(options.output), picture.image); !written) return written;
+    }
     if (options.exr.empty()) return {};
     render::LinearSpace space;
     if (colours) {
@@ -229,6 +231,8 @@ Result<DrawingDevice> deviceOf(const RenderJobOptions& options, const Groom& gro
     }
     return chooseDrawingDevice(byPasses);
 }
+
+}  // namespace
 
 Result<Report> renderToFile(const RenderJobOptions& options) {
     ViewFile view;
@@ -314,6 +318,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     }
     return report;
 }
+
+namespace {
 
 JobRun declare(CLI::App& job) {
     const auto options = addRenderOptions(job);

@@ -11,12 +11,14 @@
 #include "cli/body_notes.h"
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/jobs/simulate.h"
 #include "cli/motions.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/record_comparison.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
+#include "core/documents/takes.h"
 #include "core/editing/document.h"
 #include "core/editing/take_shape.h"
 #include "core/groom/file/project_file.h"
@@ -29,29 +31,6 @@
 
 namespace hairloom::cli {
 namespace {
-
-struct SimulateOptions {
-    std::string input;
-    std::optional<std::uint64_t> frames, preRoll;
-    std::uint64_t handles = 0;  ///< frames at each end
-    std::optional<float> framesPerSecond;
-    std::string engine;
-    std::string backend = "cpu";
-    std::optional<std::uint32_t> device;
-    std::string model;
-    std::string integrator;
-    std::uint32_t substeps = 0;
-    std::string wind;
-    std::string motion = "none";
-    std::string character;
-    std::string method = "strands";
-    bool hairHair = false;
-    bool sag = false;
-    bool take = false;
-    std::string record;
-    std::string against;
-    std::string output;
-};
 
 /// How long, how finely: as asked, else by the time line where that plays.
 struct Span {
@@ -209,6 +188,8 @@ Result<JobEngine> engineOf(const SimulateOptions& options, const Groom& groom) {
     return chooseJobEngine(options.engine.empty() ? "gpu" : options.engine, backend, options.device, groom);
 }
 
+}  // namespace
+
 Result<Report> simulate(const SimulateOptions& options) {
     checkMotion(options.motion);
     auto groom = openGroom(options.input);
@@ -236,7 +217,9 @@ Result<Report> simulate(const SimulateOptions& options) {
     const Report advice = adviceReport(*groom, dt);
     std::optional<FrameRecorder> recorder;
     if (!options.record.empty()) {
-        auto opened = FrameRecorder::open(options.record, *groom, pace.framesPerSecond);
+        auto opened = FrameRecorder::open(
+            options.record, *groom, pace.framesPerSecond,
+            takeNotes(options.motion, *groom, std::string(engineName(engine->choice.kind)), pace.preRoll));
         if (!opened) return tl::unexpected(opened.error());
         recorder.emplace(std::move(*opened));
     }
@@ -313,49 +296,60 @@ Result<Report> simulate(const SimulateOptions& options) {
     return report;
 }
 
-JobRun declare(CLI::App& job) {
-    const auto options = std::make_shared<SimulateOptions>();
-    job.add_option("groom", options->input, "Project or hair file")->required();
-    job.add_option("--frames", options->frames, "Frames to simulate (default: 60, or the time line's range)")
+std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& options) {
+    const std::vector<CLI::Option*> before = job.get_options();
+    job.add_option("--frames", options.frames, "Frames to simulate (default: 60, or the time line's range)")
         ->check(CLI::Range(1, 1'000'000));
     job.add_option(
-           "--pre-roll", options->preRoll,
+           "--pre-roll", options.preRoll,
            "Frames to simulate before these on the motion's first pose. They settle the hair, and are "
            "not recorded (default: 0, or the time line's)")
         ->check(CLI::Range(0, 100'000));
-    job.add_option("--fps", options->framesPerSecond, "Frames per second (default: 60, or the time line's)")
+    job.add_option("--fps", options.framesPerSecond, "Frames per second (default: 60, or the time line's)")
         ->check(CLI::Range(1.0, 1000.0));
-    job.add_option("--engine", options->engine,
+    job.add_option("--engine", options.engine,
                    "Device that simulates: the CPU, a GPU, or the one that was measured to be faster")
         ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
-    job.add_option("--backend", options->backend,
+    job.add_option("--backend", options.backend,
                    "Graphics API of the GPU. Without --engine, it selects the GPU")
         ->check(CLI::IsMember({"cpu", "vulkan", "d3d11"}));
-    job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
-    job.add_option("--model", options->model, "Strand model, instead of the groom's own")
+    job.add_option("--device", options.device, "GPU to use, by its index in `devices`");
+    job.add_option("--model", options.model, "Strand model, instead of the groom's own")
         ->check(CLI::IsMember({"rods", "springs"}));
-    job.add_option("--integrator", options->integrator, "Integrator of springs. Uses springs")
+    job.add_option("--integrator", options.integrator, "Integrator of springs. Uses springs")
         ->check(CLI::IsMember(runtime::integratorNames()));
     job.add_option(
-           "--substeps", options->substeps,
+           "--substeps", options.substeps,
            "Time steps per 1/60 s, instead of the groom's own. Springs on a groom of rods take at least 8")
         ->check(CLI::Range(1u, runtime::kMaxSubsteps));
-    job.add_option("--wind", options->wind, "Wind velocity X,Y,Z in m/s, instead of the groom's own");
+    job.add_option("--wind", options.wind, "Wind velocity X,Y,Z in m/s, instead of the groom's own");
     job.add_option(
-        "--motion", options->motion,
+        "--motion", options.motion,
         "Head motion: none, spin, nod, clip:NAME, a keyframe file F.json, or timeline: the project's "
         "clips and keys of head, wind and settings");
-    job.add_option("--character", options->character,
+    job.add_option("--character", options.character,
                    "File with skeleton and clips, if other than the scalp's file");
-    job.add_option("--method", options->method,
+    job.add_option("--method", options.method,
                    "Simulation method: the strand engine, projective equations, or a lattice around the head")
         ->check(CLI::IsMember({"strands", "projective", "lattice"}));
-    job.add_flag("--hair-hair", options->hairHair, "Hair-hair collision, through a volume between frames");
+    job.add_flag("--hair-hair", options.hairHair, "Hair-hair collision, through a volume between frames");
+    std::vector<CLI::Option*> added = job.get_options();
+    added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));
+    return added;
+}
+
+namespace {
+
+JobRun declare(CLI::App& job) {
+    const auto options = std::make_shared<SimulateOptions>();
+    job.add_option("groom", options->input, "Project or hair file")->required();
+    addSimulationOptions(job, *options);
     auto* sag =
         job.add_flag("--sag", options->sag,
                      "Let the authored shape hang under gravity and contact for two seconds. Reports how far "
                      "each strand sags, as it is and as rods that carry their weight. -o saves the latter");
-    auto* record = job.add_option("--record", options->record, "File for all frames");
+    auto* record = job.add_option("--record", options->record,
+                                  "File for all frames, or a take where it ends in .hltake");
     auto* handles =
         job.add_option("--handles", options->handles,
                        "Number of frames to simulate and record before and behind --frames as well. "
@@ -377,8 +371,9 @@ JobRun declare(CLI::App& job) {
           "--character", "--method", "--hair-hair", "--record", "--against", "--take"})
         sag->excludes(other);
     return [options](const std::string&) {
-        return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},
-                           [&] { return simulate(*options); });
+        return withOutputs(
+            {{options->output, content::kProject}, {options->record, recordKind(options->record)}},
+            [&] { return simulate(*options); });
     };
 }
 

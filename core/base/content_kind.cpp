@@ -19,6 +19,7 @@ struct Signature {
 constexpr std::array kSignatures{
     Signature{"HAIRLOOM"sv, content::kProject},
     Signature{"HLFRAMES"sv, content::kFrames},
+    Signature{"HLTAKE\r\n"sv, content::kTake},
     Signature{"HAIR"sv, "a .hair file", "hair"},
     Signature{"\x89HRT\r\n\x1a\n"sv, "a runtime asset", "hairrt"},
     Signature{"\0\0\x80\x40"sv, "a TressFX 4 file", "tfx"},

@@ -184,12 +184,17 @@ Status OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> byte
     return {};
 }
 
+void OutputFile::keepUnfinished() {
+    if (impl_->temporary) impl_->temporary->setKept(true);
+}
+
 Status Coming::putInPlace(bool isOldKept) {
     if (!temporary) {
         if (auto status = writeThrough(target, held); !status) return notWritten(path, status.error());
         return {};
     }
     if (temporary->equalsTarget()) {
+        temporary->setKept(false);
         temporary.reset();
     } else if (auto status = temporary->replaceTarget(accessed, isOldKept); !status) {
         return notWritten(path, status.error());

@@ -42,6 +42,9 @@ class OutputFile {
     Status write(std::span<const std::byte> bytes);
     /// Over what was written.
     Status writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
+    /// What was written stays as a left-over where it is not finished, whatever ends the process: half of it
+    /// is worth something. Not of a device.
+    void keepUnfinished();
     /// Flushes file and folder to the disk and puts the content in place. Errors: as for open(), checked
     /// again.
     Status finish();

@@ -49,6 +49,8 @@ class TemporaryFile {
     Status writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
     /// Onto the disk: that it is full shows here, at the latest.
     Status flush();
+    /// Stays as a left-over where it does not take the target's place, also when the process is ended.
+    void setKept(bool isKept);
     /// Where its content lies now.
     std::filesystem::path path() const;
     /// Whether the target has the same bytes.

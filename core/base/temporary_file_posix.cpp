@@ -210,7 +210,7 @@ struct TemporaryFile::Impl {
         Descriptor file;  ///< locked, as what is being written
     } old;
     bool isTouched = false;  ///< the target is no longer as it was
-    bool isLeft = false;     ///< the target is torn, and this has all of what it was to become
+    bool isLeft = false;  ///< it stays: the target is torn and this has all of its content, or by setKept()
 
     Impl() = default;
     Impl(const Impl&) = delete;
@@ -292,6 +292,11 @@ Status TemporaryFile::flush() {
 
 fs::path TemporaryFile::path() const {
     return impl_->target.parent_path() / impl_->name;
+}
+
+void TemporaryFile::setKept(bool isKept) {
+    impl_->isLeft = isKept;
+    if (isKept) impl_->clearSlot();
 }
 
 bool TemporaryFile::equalsTarget() const {

@@ -222,7 +222,7 @@ struct TemporaryFile::Impl {
     bool isOldCopy = false;  ///< of its content; else the file itself by another name
     DWORD oldAttributes = FILE_ATTRIBUTE_NORMAL;
     bool isTouched = false;  ///< the target is no longer as it was
-    bool isLeft = false;     ///< the target is torn, and this has all of what it was to become
+    bool isLeft = false;  ///< it stays: the target is torn and this has all of its content, or by setKept()
 
     Impl() = default;
     Impl(const Impl&) = delete;
@@ -292,6 +292,11 @@ Status TemporaryFile::flush() {
 
 fs::path TemporaryFile::path() const {
     return impl_->path;
+}
+
+void TemporaryFile::setKept(bool isKept) {
+    impl_->isLeft = isKept;
+    if (isKept) impl_->clearSlot();
 }
 
 bool TemporaryFile::equalsTarget() const {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Recorded motion on disk: for each frame the strands' points and the scalp's vertices. Layout in
-// docs/formats/frames.md.
+// Recorded motion on disk: for each frame the strands' points and the scalp's vertices, exact (layout in
+// docs/formats/frames.md), or, under a name that ends in .hltake, as a take (take_file.h).
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/math.h"
@@ -22,12 +24,16 @@ struct RecordedFrame {
     std::uint64_t framesInRecord = 0;  ///< 0 where it is of none
 };
 
+/// What FrameRecorder writes under this name: one of hairloom::content.
+std::string_view recordKind(const std::filesystem::path& path);
+
 /// Writes frames as they come into a temporary file; `finish` puts it under the name asked for. A recorder
-/// that is destroyed unfinished leaves nothing.
+/// that is destroyed unfinished leaves nothing, or the blocks of a take.
 class FrameRecorder {
   public:
+    /// `notes`: TakeInfo::notes, of a take.
     static Result<FrameRecorder> open(const std::filesystem::path& path, const Groom& groom,
-                                      float framesPerSecond);
+                                      float framesPerSecond, std::string notes = {});
     FrameRecorder(FrameRecorder&&) noexcept;
     FrameRecorder& operator=(FrameRecorder&&) noexcept;
     ~FrameRecorder();
@@ -41,8 +47,8 @@ class FrameRecorder {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Frame `index` of a record made from this groom. Errors: damage with its place, a record of another groom
-/// (other point or vertex count), an index past the end (naming the number of frames).
+/// Frame `index` of a record or take made from this groom. Errors: damage with its place, a record of another
+/// groom (other point or vertex count), an index past the end (naming the number of frames).
 Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& groom, std::uint64_t index);
 
 }  // namespace hairloom

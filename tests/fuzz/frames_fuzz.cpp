@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libFuzzer's entry for records of frames, of a groom of two strands of three points.
+// libFuzzer's entry for records of frames and takes, of a groom of two strands of three points.
 
 #include <cstdlib>
 

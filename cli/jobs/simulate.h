@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What `simulate` and `takes --record` share.
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/job.h"
+
+namespace hairloom::cli {
+
+struct SimulateOptions {
+    std::string input;
+    std::optional<std::uint64_t> frames, preRoll;  ///< by default 60 and 0, or the time line's
+    std::uint64_t handles = 0;  ///< frames at each end
+    std::optional<float> framesPerSecond;  ///< by default 60, or the time line's
+    std::string engine;
+    std::string backend = "cpu";
+    std::optional<std::uint32_t> device;
+    std::string model;
+    std::string integrator;
+    std::uint32_t substeps = 0;
+    std::string wind;
+    std::string motion = "none";
+    std::string character;
+    std::string method = "strands";
+    bool hairHair = false;
+    bool sag = false;
+    bool take = false;
+    std::string record;
+    std::string against;
+    std::string output;
+};
+
+/// Adds those of the motion and of how it is simulated; `options` must live as long as the job.
+std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& options);
+
+Result<Report> simulate(const SimulateOptions& options);
+
+}  // namespace hairloom::cli

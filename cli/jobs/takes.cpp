@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "cli/documents.h"
+#include "cli/error_report.h"
+#include "cli/job.h"
+#include "cli/jobs/simulate.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+#include "cli/render_options.h"
+#include "core/base/content_kind.h"
+#include "core/base/log.h"
+#include "core/base/write_rules.h"
+#include "core/documents/hair_export.h"
+#include "core/documents/takes.h"
+#include "core/simulation/frame_record.h"
+
+namespace hairloom::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRecordFormat = "frames";
+constexpr const char* kFilmFormat = "webp";
+
+struct TakesOptions {
+    SimulateOptions simulation;  ///< with the groom
+    std::string record;          ///< names of takes, also below
+    std::string exported;
+    std::string removed;
+    std::vector<std::string> renamed;
+    std::vector<std::string> compared;
+    std::string format;
+    std::vector<std::uint64_t> range;  ///< first and last frame to export; empty: all
+    std::string size = "640x640";
+    std::string camera = "three-quarter";
+    std::string output;
+};
+
+Report rowOfTake(const Take& take, const Groom& groom) {
+    const TakeInfo& info = take.info;
+    const std::string motion = motionOfNotes(info.notes);
+    const double points = static_cast<double>(info.points) * static_cast<double>(info.frames);
+    Report row{{"name", take.name},
+               {"frames", info.frames},
+               {"fps", info.framesPerSecond},
+               {"bytes", info.bytes},
+               {"bytes_per_point_and_frame",
+                points > 0 ? Report(static_cast<double>(info.bytes) / points) : Report()},
+               {"max_error_mm", 1e3 * static_cast<double>(info.largestError)},
+               {"motion", motion.empty() ? Report() : Report(motion)},
+               {"finished", info.isFinished},
+               {"groom_changed", info.shapeHash != takeShapeHash(groom)},
+               {"file", take.file.string()}};
+    if (!take.problem.empty()) row["problem"] = take.problem;
+    return row;
+}
+
+void warnOfChange(const Take& take, const Groom& groom) {
+    if (take.problem.empty() && take.info.shapeHash != takeShapeHash(groom))
+        log::warning("take '{}' was recorded before the groom or its head changed shape", take.name);
+}
+
+Report rowsOf(const Takes& found, const Groom& groom) {
+    for (const std::string& name : found.recovered)
+        log::warning("take '{}' was recovered: its recording was ended before it was done", name);
+    Report rows = Report::array();
+    for (const Take& take : found.takes) {
+        if (!take.problem.empty()) log::warning("{}", take.problem);
+        warnOfChange(take, groom);
+        rows.push_back(rowOfTake(take, groom));
+    }
+    return rows;
+}
+
+Result<Report> listTakes(const TakesOptions& options) {
+    const auto groom = openGroom(options.simulation.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const Takes found = findTakes(options.simulation.input);
+    return Report{{"folder", takesFolder(options.simulation.input).string()},
+                  {"takes", rowsOf(found, *groom)},
+                  {"recovered", found.recovered}};
+}
+
+/// A take that is there, and a warning where it is of another shape.
+Result<fs::path> takeFor(const TakesOptions& options, const std::string& name, const Groom& groom) {
+    auto path = existingTake(options.simulation.input, name);
+    if (!path) return path;
+    const auto reader = TakeReader::open(*path);
+    if (!reader) return tl::unexpected(reader.error());
+    warnOfChange({name, *path, reader->info(), {}}, groom);
+    return path;
+}
+
+// --- Recording ---
+
+Result<Report> recordTake(TakesOptions& options) {
+    const auto path = takePath(options.simulation.input, options.record);
+    if (!path) throw WrongUsage(path.error());
+    if (!fs::is_regular_file(options.simulation.input))
+        return failIn(options.simulation.input, {}, "is not a file", "expected a project or hair file");
+    findTakes(options.simulation.input);  // what was cut off gets its name before another takes it
+    if (fs::exists(*path) && !writeRules().force)
+        return failIn(path->string(), {}, fmt::format("there is a take '{}' already", options.record),
+                      "expected another name, or --force");
+    std::error_code code;
+    const fs::path folder = takesFolder(options.simulation.input);
+    fs::create_directory(folder, code);
+    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    options.simulation.record = path->string();
+    auto report =
+        withOutputs({{path->string(), content::kTake}}, [&] { return simulate(options.simulation); });
+    if (!report) {
+        fs::remove(folder, code);  // where nothing is in it
+        return report;
+    }
+    const auto groom = openGroom(options.simulation.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const auto reader = TakeReader::open(*path);
+    if (!reader) return tl::unexpected(reader.error());
+    (*report)["takes"] = Report::array({rowOfTake({options.record, *path, reader->info(), {}}, *groom)});
+    return report;
+}
+
+// --- Export ---
+
+/// The frames that are asked for. Throws WrongUsage where the take has no such.
+std::pair<std::uint64_t, std::uint64_t> rangeOf(const TakesOptions& options, const TakeInfo& info) {
+    if (info.frames == 0) throw WrongUsage("the take has no frames", "expected one with frames");
+    if (options.range.empty()) return {0, info.frames - 1};
+    if (options.range.size() != 2 || options.range[1] < options.range[0])
+        throw WrongUsage("--range runs backwards or is not two numbers", "FIRST,LAST");
+    if (options.range[1] >= info.frames)
+        throw WrongUsage(fmt::format("--range ends at frame {}", options.range[1]),
+                         fmt::format("the take has {} frames, counted from 0", info.frames));
+    return {options.range[0], options.range[1]};
+}
+
+/// Each frame of the range, in order.
+Status visitRange(TakeReader& reader, std::pair<std::uint64_t, std::uint64_t> range,
+                  const std::function<Status(RecordedFrame)>& visit) {
+    Progress progress("reading", static_cast<std::size_t>(range.second - range.first + 1));
+    for (std::uint64_t number = range.first; number <= range.second; ++number) {
+        auto frame = reader.frame(number);
+        if (!frame) return tl::unexpected(frame.error());
+        if (auto status = visit(std::move(*frame)); !status) return status;
+        progress.done(static_cast<std::size_t>(number - range.first + 1));
+    }
+    return {};
+}
+
+Result<Report> exportRecord(TakeReader& reader, const Groom& groom,
+                            std::pair<std::uint64_t, std::uint64_t> range, const std::string& output) {
+    auto recorder = FrameRecorder::open(output, groom, reader.info().framesPerSecond);
+    if (!recorder) return tl::unexpected(recorder.error());
+    const auto status = visitRange(reader, range, [&](const RecordedFrame& frame) {
+        return recorder->add(frame.positions_ws, frame.pose);
+    });
+    if (!status) return tl::unexpected(status.error());
+    if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
+    return Report{{"frames", range.second - range.first + 1}, {"output", output}};
+}
+
+Result<Report> exportStrands(TakeReader& reader, const Groom& groom,
+                             std::pair<std::uint64_t, std::uint64_t> range, const TakesOptions& options) {
+    constexpr double kMost = 4e9;
+    const double bytes = static_cast<double>(range.second - range.first + 1) *
+                         static_cast<double>(reader.info().points * sizeof(Vec3f));
+    if (bytes > kMost)
+        return fail(
+            fmt::format("frames {} to {} take {:.1f} GB of memory", range.first, range.second, bytes / 1e9),
+            fmt::format("expected at most {:.0f} GB: export parts by --range", kMost / 1e9));
+    const HairWriter& writer = strandWriter(options.format, hairWriters());
+    HairToExport wanted;
+    wanted.firstFrame = static_cast<double>(range.first);
+    const auto status = visitRange(reader, range, [&](RecordedFrame frame) -> Status {
+        wanted.frames.push_back(std::move(frame));
+        return {};
+    });
+    if (!status) return tl::unexpected(status.error());
+    const auto written = exportHair(groom, wanted, writer, options.output, writer.targets.front().options);
+    if (!written) return tl::unexpected(written.error());
+    tellFindings(written->findings);
+    Report report = toJson(*written);
+    report["frames"] = range.second - range.first + 1;
+    return report;
+}
+
+Result<Report> exportFilm(const TakeInfo& info, std::pair<std::uint64_t, std::uint64_t> range,
+                          const fs::path& take, const TakesOptions& options) {
+    constexpr double kMostRate = 30;
+    const auto rate = static_cast<double>(info.framesPerSecond);
+    const auto step = static_cast<std::uint64_t>(std::max(1.0, std::round(rate / kMostRate)));
+    RenderJobOptions film;
+    film.input = options.simulation.input;
+    film.record = take.string();
+    film.frames = {range.first, range.second, step};
+    film.size = options.size;
+    film.camera = options.camera;
+    film.animation = options.output;
+    film.milliseconds =
+        static_cast<std::uint32_t>(std::clamp(1e3 * static_cast<double>(step) / rate, 1.0, 65535.0));
+    constexpr double kMost = 2e9;
+    const auto how = pictureOptions(film, {});
+    const auto shots = shotsOf(film);
+    if (!how) return tl::unexpected(how.error());
+    if (!shots) return tl::unexpected(shots.error());
+    const double bytes = 4.0 * how->width * how->height * static_cast<double>(shots->size());
+    if (bytes > kMost)
+        return fail(
+            fmt::format("{} images of {} take {:.1f} GB of memory", shots->size(), options.size, bytes / 1e9),
+            fmt::format("expected at most {:.0f} GB: a smaller --size or --range", kMost / 1e9));
+    auto report = renderToFile(film);
+    if (report) (*report)["output"] = options.output;
+    return report;
+}
+
+Result<Report> exportTake(const TakesOptions& options) {
+    const auto groom = openGroom(options.simulation.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const auto path = takeFor(options, options.exported, *groom);
+    if (!path) return tl::unexpected(path.error());
+    auto reader = TakeReader::open(*path);
+    if (!reader) return tl::unexpected(reader.error());
+    if (auto status = reader->use(*groom); !status) return tl::unexpected(status.error());
+    const auto range = rangeOf(options, reader->info());
+    if (options.format == kFilmFormat) return exportFilm(reader->info(), range, *path, options);
+    if (options.format == kRecordFormat) return exportRecord(*reader, *groom, range, options.output);
+    return exportStrands(*reader, *groom, range, options);
+}
+
+/// Throws WrongUsage for what takes cannot become.
+std::string_view kindOfExport(const std::string& format) {
+    if (format == kRecordFormat) return content::kFrames;
+    if (format == kFilmFormat) return {};
+    if (format == "mp4")
+        throw WrongUsage("MP4 cannot be written: there is no video encoder in this program",
+                         "expected --format webp, or images of render --record for an encoder");
+    if (format == "runtime")
+        throw WrongUsage("runtime assets hold no recorded motion: a game simulates",
+                         "expected --format abc, usdc, usda or frames");
+    return contentKindOfSuffix(strandWriter(format, hairWriters()).suffix());
+}
+
+std::vector<std::string> takeFormats() {
+    std::vector<std::string> names{kRecordFormat, kFilmFormat, "mp4", "runtime"};
+    for (const HairWriter& writer : hairWriters()) {
+        if (writer.animates) names.push_back(writer.name);
+    }
+    return names;
+}
+
+// --- The rest ---
+
+Result<Report> distanceOfTakes(const TakesOptions& options) {
+    if (options.compared.size() != 2)
+        throw WrongUsage("--compare is not the names of two takes", "expected --compare A B");
+    const auto groom = openGroom(options.simulation.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const auto a = takeFor(options, options.compared[0], *groom);
+    if (!a) return tl::unexpected(a.error());
+    const auto b = takeFor(options, options.compared[1], *groom);
+    if (!b) return tl::unexpected(b.error());
+    const auto difference = compareTakes(*a, *b, *groom, [](std::uint64_t) {});
+    if (!difference) return tl::unexpected(difference.error());
+    Report rows = Report::array();
+    for (const TakeDifference::Frame& frame : difference->frames)
+        rows.push_back(Report{{"frame", frame.number}, {"rms_mm", frame.rmsMm}, {"max_mm", frame.largestMm}});
+    Report report{{"takes", options.compared},
+                  {"frames", difference->frames.size()},
+                  {"rms_mm", difference->rmsMm},
+                  {"max_mm", difference->largestMm},
+                  {"worst_frame", difference->worstFrame}};
+    if (isReportJson()) report["by_frame"] = std::move(rows);
+    return report;
+}
+
+Result<Report> runTakes(TakesOptions& options) {
+    if (!options.record.empty()) return recordTake(options);
+    if (!options.exported.empty()) {
+        if (options.format.empty() || options.output.empty())
+            throw WrongUsage("--export needs --format and -o", "--export NAME --format abc -o F.abc");
+        const std::string_view kind = kindOfExport(options.format);
+        return withOutputs(
+            {{options.output, kind}}, [&] { return exportTake(options); }, ReadBack::Yes);
+    }
+    if (!options.removed.empty()) {
+        if (auto status = removeTake(options.simulation.input, options.removed); !status)
+            return tl::unexpected(status.error());
+        return listTakes(options);
+    }
+    if (!options.renamed.empty()) {
+        if (options.renamed.size() != 2)
+            throw WrongUsage("--rename is not two names", "expected --rename OLD NEW");
+        if (auto status = renameTake(options.simulation.input, options.renamed[0], options.renamed[1]);
+            !status)
+            return tl::unexpected(status.error());
+        return listTakes(options);
+    }
+    return options.compared.empty() ? listTakes(options) : distanceOfTakes(options);
+}
+
+JobRun declare(CLI::App& job) {
+    const auto options = std::make_shared<TakesOptions>();
+    job.add_option("groom", options->simulation.input, "Project or hair file")->required();
+    auto* record = job.add_option("--record", options->record,
+                                  "Simulate and keep the motion as a take of this name, in the folder "
+                                  "GROOM.takes beside the groom");
+    auto* exported = job.add_option("--export", options->exported, "Name of the take to export to -o");
+    auto* removed = job.add_option("--delete", options->removed, "Name of the take to delete");
+    auto* renamed = job.add_option("--rename", options->renamed, "Old and new name of a take")->expected(2);
+    auto* compared =
+        job.add_option("--compare", options->compared,
+                       "Names of two takes of the same groom, to measure the distance between their points")
+            ->expected(2);
+    const std::vector<CLI::Option*> ways{record, exported, removed, renamed, compared};
+    for (CLI::Option* one : ways) {
+        for (CLI::Option* other : ways) {
+            if (one != other) one->excludes(other);
+        }
+    }
+    for (CLI::Option* option : addSimulationOptions(job, options->simulation)) option->needs(record);
+    job.add_option("--format", options->format,
+                   "frames is a record of simulate, webp an animated image. The others are formats of "
+                   "export with animation. There is no mp4 and no runtime")
+        ->check(CLI::IsMember(takeFormats()))
+        ->needs(exported);
+    job.add_option("--range", options->range, "FIRST,LAST frame of the take to export (default: all)")
+        ->check(CLI::Range(0, 1'000'000'000))
+        ->delimiter(',')
+        ->needs(exported);
+    job.add_option("--size", options->size, "Image size WxH of webp in pixels")->needs(exported);
+    job.add_option("--camera", options->camera, "Camera position of webp")
+        ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter", "top", "bottom"}))
+        ->needs(exported);
+    job.add_option("-o,--output", options->output, "File to export to")->needs(exported);
+    // An empty name says nothing of what to do.
+    return [options, ways](const std::string&) {
+        for (const CLI::Option* way : ways) {
+            for (const std::string& name : way->results()) {
+                if (auto path = takePath(options->simulation.input, name); !path)
+                    throw WrongUsage(path.error());
+            }
+        }
+        return runTakes(*options);
+    };
+}
+
+}  // namespace
+
+Job takesJob() {
+    return {"takes", "Record what the simulation plays, and list, compare and export it",
+            "hair.hairloom --record nod --motion nod --frames 120", declare};
+}
+
+}  // namespace hairloom::cli
