@@ -43,11 +43,19 @@ class Pages : public QTextBrowser {
 }  // namespace
 
 QString manualSection(const QString& panel) {
-    static const std::map<QString, QString> sections{
-        {"accuracy", "6-simulate"},     {"effects", "6-simulate"}, {"layers", "layers"},
-        {"levels", "levels-of-detail"}, {"look", "7-look"},        {"motion", "6-simulate"},
-        {"operators", "operators"},     {"physics", "6-simulate"}, {"scalp", "2-select-the-scalp"},
-        {"spheres", "5-fit-colliders"}, {"tool", "4-groom"},       {"view", "7-look"}};
+    static const std::map<QString, QString> sections{{"accuracy", "6-simulate"},
+                                                     {"effects", "6-simulate"},
+                                                     {"takes", "6-simulate"},
+                                                     {"layers", "layers"},
+                                                     {"levels", "levels-of-detail"},
+                                                     {"look", "7-look"},
+                                                     {"motion", "6-simulate"},
+                                                     {"operators", "operators"},
+                                                     {"physics", "6-simulate"},
+                                                     {"scalp", "2-select-the-scalp"},
+                                                     {"spheres", "5-fit-colliders"},
+                                                     {"tool", "4-groom"},
+                                                     {"view", "7-look"}};
     const auto found = sections.find(panel);
     return found == sections.end() ? QString() : found->second;
 }

@@ -215,6 +215,10 @@ void Player::setMethod(const PlayedMethod& method) {
     Q_EMIT planPreviewChanged();
 }
 
+void Player::setRecorder(std::shared_ptr<TakeRecorder> recorder) {
+    request([&](WorkerRequests& requests) { requests.recorder = std::move(recorder); });
+}
+
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
     request([&](WorkerRequests& requests) { requests.offset = offset; });
 }

@@ -16,6 +16,7 @@
 #include "core/simulation/simulation.h"
 #include "editor/document/qt_document.h"
 #include "editor/simulation/played_method.h"
+#include "editor/simulation/take_recorder.h"
 #include "editor/viewport/picture_request.h"
 #include "editor/viewport/render_jobs.h"
 
@@ -81,6 +82,9 @@ class Player : public QObject {
 
     /// What would run is looked for, strand by strand, only while somebody watches.
     void setPlanPreviewActive(bool watched);
+
+    /// Gets each frame that is played from now on, whose hair must be on the CPU (setEngine()); null: nobody.
+    void setRecorder(std::shared_ptr<TakeRecorder> recorder);
 
     /// Moves the head on top of its motion: by the hand of a person.
     void setHeadOffset(const Eigen::Isometry3f& offset);

@@ -158,6 +158,7 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         last && last->positions_ws.size() == pose->positions_ws.size()) {
         frame->before = last;
     }
+    if (taken.recorder && stepped && !pose->onDevice) taken.recorder->add(pose->positions_ws, pose->head);
     frame->pose = std::move(pose);
     frame->time = playing.time;
     const double clock =

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Takes panel, by its buttons.
+#include <QComboBox>
+#include <QDir>
+#include <QDockWidget>
+#include <QLabel>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QSlider>
+#include <QTreeWidget>
+
+#include "core/documents/takes.h"
+#include "core/simulation/frame_record.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class TakesTest : public WindowTest {
+  protected:
+    TakesTest() : WindowTest(isDrawn()) {}
+
+    /// Where pictures are asked for the view has all of the sample.
+    static bool isDrawn() { return !qEnvironmentVariableIsEmpty("HAIRLOOM_VIEWPORT"); }
+    void SetUp() override {
+        WindowTest::SetUp();
+        openSampleHair("short");
+        if (!isDrawn()) openFirstStrands(60);
+        drawQuickly();
+        save();
+        window->panel("takes")->raise();
+    }
+    template <class Widget>
+    Widget* get(const char* name) {
+        return window->findChild<Widget*>(name);
+    }
+    void click(const char* name) {
+        auto* button = get<QPushButton>(name);
+        ASSERT_TRUE(button->isEnabled()) << name;
+        button->click();
+    }
+    void save() {
+        const QString path = inFolder("hair.hairloom");
+        ASSERT_TRUE(window->saveTo(path));
+    }
+    std::filesystem::path project() { return inFolder("hair.hairloom").toStdString(); }
+    /// A take of at least so many frames.
+    void record(const char* name, std::uint64_t frames) {
+        get<QLineEdit>("takeName")->setText(name);
+        click("takeRecord");
+        const auto recorded = [this] {
+            return get<QLabel>("takeState")->text().section(' ', 0, 0).toULongLong();
+        };
+        ASSERT_TRUE(QTest::qWaitFor([&] { return recorded() >= frames; }, 30'000));
+        click("takeRecord");
+    }
+    QStringList rows() {
+        QStringList names;
+        auto* list = get<QTreeWidget>("takes");
+        for (int i = 0; i < list->topLevelItemCount(); ++i) names += list->topLevelItem(i)->text(0);
+        return names;
+    }
+    void select(const char* name) {
+        auto* list = get<QTreeWidget>("takes");
+        list->setCurrentItem(list->findItems(name, Qt::MatchExactly).value(0));
+    }
+    std::vector<Vec3f> shown() {
+        return viewport().pose() ? viewport().pose()->positions_ws : std::vector<Vec3f>();
+    }
+    std::vector<Vec3f> frameOf(const char* name, std::uint64_t number) {
+        return readFrame(*takePath(project(), name), groom(), number)->positions_ws;
+    }
+};
+
+TEST_F(TakesTest, WhatPlaysIsRecordedAndScrubbed) {
+    ASSERT_TRUE(parts().player.setMotion("nod"));
+    record("nod", 20);
+    EXPECT_FALSE(parts().player.isPlaying());
+    EXPECT_EQ(rows(), QStringList{"nod"});
+    const auto info = TakeReader::open(*takePath(project(), "nod"))->info();
+    EXPECT_TRUE(info.isFinished);
+    EXPECT_GE(info.frames, 20u);
+    EXPECT_EQ(motionOfNotes(info.notes), "nod");
+    // It is selected and shown; the slider goes anywhere, backwards, too.
+    auto* slider = get<QSlider>("takeFrame");
+    EXPECT_EQ(slider->maximum(), static_cast<int>(info.frames) - 1);
+    for (const int number : {15, 3, 18, 0}) {
+        slider->setValue(number);
+        EXPECT_EQ(shown(), frameOf("nod", static_cast<std::uint64_t>(number))) << number;
+    }
+    EXPECT_NE(frameOf("nod", 0), frameOf("nod", 15));
+    // What was recorded is what the simulation plays.
+    click("takePlay");
+    EXPECT_TRUE(QTest::qWaitFor([&] { return slider->value() > 3; }, 20'000));
+    click("takePlay");
+    parts().player.play();
+    EXPECT_FALSE(get<QPushButton>("takePlay")->isEnabled()) << "the simulation is shown again";
+    parts().player.reset();
+}
+
+TEST_F(TakesTest, ATakeIsRenamedAndDeletedOnceConfirmed) {
+    record("a", 8);
+    record("b", 8);
+    select("a");
+    auto* list = get<QTreeWidget>("takes");
+    list->currentItem()->setText(0, "c/d");
+    QCoreApplication::processEvents();
+    EXPECT_TRUE(window->statusLine().message().contains("cannot name a take"));
+    EXPECT_EQ(rows(), (QStringList{"a", "b"}));
+    select("a");
+    list->currentItem()->setText(0, "c");
+    QCoreApplication::processEvents();
+    EXPECT_EQ(rows(), (QStringList{"b", "c"}));
+    EXPECT_TRUE(std::filesystem::exists(*takePath(project(), "c")));
+    onceAsked<QMessageBox>([](QMessageBox& box) { box.reject(); });
+    click("takeDelete");
+    EXPECT_EQ(rows().size(), 2);
+    onceAsked<QMessageBox>([](QMessageBox& box) { box.findChild<QPushButton*>("takeDeleteYes")->click(); });
+    click("takeDelete");
+    EXPECT_EQ(rows(), QStringList{"b"});
+    EXPECT_FALSE(std::filesystem::exists(*takePath(project(), "c")));
+}
+
+TEST_F(TakesTest, AFrameBecomesTheRestShapeAndIsUndone) {
+    ASSERT_TRUE(parts().player.setMotion("nod"));
+    record("nod", 12);
+    get<QSlider>("takeFrame")->setValue(11);
+    const std::uint64_t before = hash();
+    click("takeShape");
+    EXPECT_NE(hash(), before);
+    EXPECT_EQ(window->statusLine().message(), "Frame 11 is now the rest shape");
+    document().undo();
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(TakesTest, ThoseOfAWindowThatWasKilledAreThereAgain) {
+    {
+        std::filesystem::create_directory(takesFolder(project()));
+        auto writer = TakeWriter::open(*takePath(project(), "lost"), groom(), 60, "{}");
+        ASSERT_TRUE(writer);
+        for (int f = 0; f < 10; ++f) ASSERT_TRUE(writer->add(groom().positions(), {}));
+    }
+    files().open(inFolder("hair.hairloom"));
+    finishWork();
+    EXPECT_EQ(rows(), QStringList{"lost"});
+    select("lost");
+    EXPECT_EQ(get<QSlider>("takeFrame")->maximum(), 7);
+}
+
+TEST_F(TakesTest, DistancesToAnotherTakeAreDrawn) {
+    record("calm", 10);
+    Groom windy = groom();
+    windy.simulation.windSpeed = 20;
+    change("Wind", windy);
+    parts().player.reset();
+    record("windy", 10);
+    auto* other = get<QComboBox>("takeOther");
+    const int calm = other->findData("calm");
+    ASSERT_GT(calm, 0);
+    other->setCurrentIndex(calm);
+    Q_EMIT other->activated(calm);
+    get<QSlider>("takeFrame")->setValue(9);
+    EXPECT_EQ(shown(), frameOf("windy", 9));
+    if (!isDrawn()) return;
+    ASSERT_TRUE(viewport().waitForPicture());
+    QCoreApplication::processEvents();
+    QDir().mkpath(HAIRLOOM_SCREENSHOTS);
+    EXPECT_TRUE(onScreen().save(HAIRLOOM_SCREENSHOTS "/takes.png"));
+}
+
+TEST_F(TakesTest, NothingIsRecordedOfAProjectWithoutAFile) {
+    document().open(groom(), {}, "new");
+    EXPECT_FALSE(get<QPushButton>("takeRecord")->isEnabled());
+    EXPECT_TRUE(get<QLabel>("takeState")->text().contains("Save the project"));
+    EXPECT_TRUE(rows().isEmpty());
+}
+
+}  // namespace
+}  // namespace hairloom::editor
