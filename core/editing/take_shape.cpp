@@ -47,7 +47,7 @@ Result<std::unique_ptr<Command>> takeShape(const Model& model, std::span<const V
         measureSegments(authored.subspan(first, count), lengths);
         restoreLengthsByDirection(std::span(shape).subspan(first, count), lengths);
     }
-    Model next{groom, {}, nullptr};
+    Model next{groom, nullptr};
     next.groom.pointAttributes.set(attribute::kPosition, std::move(shape));
     if (!groom.operators.empty() && groom.strandCount() > 0) {
         if (groom.operators.size() >= kMaxOperators)

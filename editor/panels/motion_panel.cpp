@@ -28,7 +28,8 @@ class MotionPanel : public QWidget {
         layout->setSpacing(8);
         motion_->setObjectName("motion");
         motion_->setToolTip(
-            "Motion of the head: at rest, a nod, a spin, or an animation clip of the character");
+            "Motion of the head: at rest, a nod, a spin, an animation clip of the character, or the "
+            "project's time line");
         layout->addWidget(motion_);
         auto* row = new QHBoxLayout;
         const auto add = [&](const char* name, const char* iconName, const QString& text,
@@ -40,7 +41,7 @@ class MotionPanel : public QWidget {
             return made;
         };
         auto* play = add("motionPlay", "play", "Play", "Play or pause the simulation (Space)");
-        auto* step = add("motionStep", "step", "Step", "Advance by one frame of 1/60 s");
+        auto* step = add("motionStep", "step", "Step", "Advance by one frame: 1/60 s, or of the time line");
         auto* reset = add("motionReset", "reset", "Reset", "Reset the hair to its authored shape");
         layout->addLayout(row);
         state_->setObjectName("motionState");
@@ -71,6 +72,7 @@ class MotionPanel : public QWidget {
         for (const QString& name : player_.motions()) {
             QString label = name.startsWith("clip:") ? QString("Clip: %1").arg(name.mid(5)) : name;
             label[0] = label[0].toUpper();
+            if (name == Player::kTimeLine) label = "Time line";
             motion_->addItem(label, name);
         }
         motion_->setCurrentIndex(std::max(0, motion_->findData(player_.motion())));

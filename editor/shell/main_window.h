@@ -9,6 +9,8 @@
 #include <optional>
 #include <thread>
 
+#include "core/groom/time_line.h"
+
 #include "editor/document/autosave.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/files.h"
@@ -51,6 +53,10 @@ class MainWindow : public QMainWindow {
     /// Writes the steps since the document was opened as a script. False, with a word in the status line,
     /// where one cannot be in it or writing failed.
     bool saveScriptTo(const QString& path);
+    /// Takes the time line of a file, or the keys of head and wind of a keyframe file. False, with a word in
+    /// the status line, where it cannot be read or cannot play on this head.
+    bool openTimeLine(const QString& path);
+    bool saveTimeLine(const QString& path);
     /// The overlays that are chosen, and those that come with the tool in hand.
     void drawOverlays(Marks& marks) const;
     /// What to do about unsaved changes: answers without asking, for tests and scripts.
@@ -72,6 +78,9 @@ class MainWindow : public QMainWindow {
     void addViewActions();
     void addOverlayActions(QMenu& menu);
     void addPlayActions();
+    void addTimeLineActions(QMenu& menu);
+    /// To the document, as a step that can be undone.
+    bool setTimeLine(TimeLine line, const char* name);
     void takeShape();
     void addToolActions();
     void addHelpActions();

@@ -304,6 +304,8 @@ void MainWindow::addPlayActions() {
                  "gravity"),
          {}},
         [this] { takeShape(); });
+    menu->addSeparator();
+    addTimeLineActions(*menu);
     connect(&player_, &Player::stateChanged, this, [this, &toggle] {
         toggle.setIcon(icon(player_.isPlaying() ? "pause" : "play"));
         toggle.setText(player_.isPlaying() ? QString("&Pause") : QString("&Play"));

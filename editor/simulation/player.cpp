@@ -2,10 +2,13 @@
 #include "editor/simulation/player.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/documents/motions.h"
 #include "core/editing/document.h"
 #include "core/simulation/clip_motion.h"
+#include "core/simulation/time_line_motion.h"
+#include "editor/document/words.h"
 #include "editor/simulation/player_requests.h"
 
 namespace hairloom::editor {
@@ -20,6 +23,7 @@ bool isMadeWithSettings(const PlayedMethod& method) {
 
 Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::shared_ptr<const Actor>& actor,
                                              const Groom& groom) {
+    if (name == Player::kTimeLine) return makeTimeLineMotion(timeLineOf(groom), actor, groom);
     if (!name.startsWith(kClip)) return makeRigidMotion(name.toStdString(), groom);
     if (!actor) return fail("this head has no animation clips");
     return makeClipMotion(actor, name.mid(kClip.size()).toStdString(), groom);
@@ -32,7 +36,7 @@ Player::Player(QtDocument& document, QObject* parent)
     connect(&document_, &QtDocument::changed, this, &Player::documentChanged);
     connect(&document_, &QtDocument::replaced, this, [this] {
         actor_.reset();
-        motion_ = "none";
+        chooseMotion();
         reset();
         Q_EMIT motionsChanged();
     });
@@ -45,6 +49,11 @@ Player::Player(QtDocument& document, QObject* parent)
 Player::~Player() {
     request([](WorkerRequests& requests) { requests.stop = true; });
     thread_.join();
+}
+
+void Player::chooseMotion() {
+    hasTimeLine_ = !timeLineOf(document_.groom()).isEmpty();
+    motion_ = hasTimeLine_ ? QString(kTimeLine) : QString("none");
 }
 
 void Player::request(const std::function<void(WorkerRequests&)>& change) {
@@ -60,6 +69,10 @@ void Player::play() {
         Q_EMIT failed("There are no strands to simulate yet");
         return;
     }
+    const TimeLine& line = timeLineOf(document_.groom());
+    // From the end it plays again.
+    if (motion_ == kTimeLine && !line.loop && frame_ && time() >= static_cast<double>(line.end - line.start))
+        reset();
     capture();
     playing_ = true;
     request([](WorkerRequests& requests) { requests.playing = true; });
@@ -74,9 +87,44 @@ void Player::capture() {
     auto made = makeMotion(motion_);
     std::shared_ptr<HeadMotion> motion;
     if (made) motion = std::move(*made);
+    if (!made) Q_EMIT failed(errorText(made.error()));
     request([&](WorkerRequests& requests) {
         requests.groom = std::move(groom);
         requests.motion = std::move(motion);
+        requests.from = from_;
+        setPace(requests);
+    });
+}
+
+void Player::setPace(WorkerRequests& requests) const {
+    requests.pace = {};
+    requests.stopAt = std::numeric_limits<double>::infinity();
+    if (motion_ != kTimeLine) return;
+    const TimeLine& line = timeLineOf(document_.groom());
+    requests.pace = paceOf(line);
+    if (!line.loop) requests.stopAt = static_cast<double>(line.end - line.start);
+}
+
+void Player::takeTimeLine() {
+    const bool had = std::exchange(hasTimeLine_, !timeLineOf(document_.groom()).isEmpty());
+    // What is keyed first plays at once; another motion that somebody chose stays.
+    if (!had && hasTimeLine_ && motion_ != kTimeLine) {
+        if (auto set = setMotion(kTimeLine); !set) Q_EMIT failed(errorText(set.error()));
+        return;
+    }
+    if (had && !hasTimeLine_ && motion_ == kTimeLine) {
+        if (auto set = setMotion("none"); !set) Q_EMIT failed(errorText(set.error()));
+        return;
+    }
+    if (motion_ != kTimeLine || !captured_) return;
+    auto made = makeMotion(motion_);
+    if (!made) {
+        Q_EMIT failed(errorText(made.error()));
+        return;
+    }
+    request([&](WorkerRequests& requests) {
+        requests.motion = std::move(*made);
+        setPace(requests);
     });
 }
 
@@ -95,6 +143,7 @@ void Player::step() {
 
 void Player::reset() {
     playing_ = false;
+    from_ = 0;
     frame_.reset();
     ++epoch_;
     captured_ = false;
@@ -113,6 +162,13 @@ void Player::reset() {
     Q_EMIT frameReady();
     Q_EMIT stateChanged();
     if (planPreviewOutdated_) outdatePlanPreview();
+}
+
+void Player::seek(double seconds) {
+    reset();
+    if (!(seconds > 0)) return;
+    from_ = seconds;
+    step();
 }
 
 Result<std::unique_ptr<HeadMotion>> Player::makeMotion(const QString& name) const {
@@ -139,6 +195,7 @@ QStringList Player::motions() const {
     if (actor_) {
         for (const Clip& clip : actor_->clips()) names.append(kClip + QString::fromStdString(clip.name));
     }
+    if (hasTimeLine_) names.append(kTimeLine);
     return names;
 }
 
@@ -227,7 +284,7 @@ void Player::documentChanged(editing::Part parts) {
     const Groom& groom = document_.groom();
     if (contains(parts, editing::Part::Head)) {
         // Another head, or by undo the one before, has its own skeleton and clips.
-        motion_ = "none";
+        chooseMotion();
         std::shared_ptr<const Actor> actor;
         if (!groom.characterFile.empty()) {
             if (auto loaded = loadActor({}, groom)) actor = std::move(*loaded);
@@ -251,6 +308,7 @@ void Player::documentChanged(editing::Part parts) {
         if (play) this->play();
         return;
     }
+    if (contains(parts, editing::Part::TimeLine)) takeTimeLine();
     // Follow hairs matter where they move with the strands, which is on the device.
     const bool followsOther =
         contains(parts, editing::Part::Interpolation) && engine_ && engine_->kind == EngineKind::gpu;

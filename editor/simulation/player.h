@@ -40,7 +40,7 @@ class Player : public QObject {
 
     void play();
     void pause();
-    /// One frame of 1/60 s.
+    /// One frame: of 1/60 s, or of the time line.
     void step();
     /// Hair at rest, time zero, paused.
     void reset();
@@ -50,7 +50,14 @@ class Player : public QObject {
     /// The last frame; null at rest.
     const std::shared_ptr<const PlayedFrame>& frame() const { return frame_; }
 
-    /// none, spin, nod or clip:NAME. Starts anew. An error leaves the motion as it was.
+    /// Hair at rest on the head as it is `seconds` behind the start of the motion, paused there.
+    void seek(double seconds);
+    /// Seconds behind the start of the motion.
+    double time() const { return frame_ ? frame_->time : from_; }
+
+    /// Of setMotion(): what the document's time line says.
+    static constexpr QLatin1String kTimeLine{"timeline"};
+    /// none, spin, nod, clip:NAME or kTimeLine. Starts anew. An error leaves the motion as it was.
     Status setMotion(const QString& name);
     const QString& motion() const { return motion_; }
     /// One that setMotion() takes, for this document. Errors: no such motion.
@@ -106,6 +113,10 @@ class Player : public QObject {
     /// The engine goes on, or begins; false: nothing can.
     bool prepare(Playing& playing, WorkerRequests& taken);
     void advance(Playing& playing, WorkerRequests& taken);
+    /// Lets hair that begins come to rest on the first pose, as long as the pre-roll says.
+    void settle(Playing& playing, const HeadPose& first);
+    /// All steps of the next frame. Errors: as Transport::step().
+    Status stepFrame(Playing& playing, WorkerRequests& taken, HairPose& pose, Status& refused);
     void setEngineShown(const EngineChoice& choice);
     void refuse(const Error& error);
     /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are
@@ -113,6 +124,11 @@ class Player : public QObject {
     void capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(editing::Part parts);
+    /// The time line is another: its motion goes on from where it is.
+    void takeTimeLine();
+    void setPace(WorkerRequests& requests) const;
+    /// That of a document which has just come: its time line's, else none.
+    void chooseMotion();
     void requestPlanPreview();
     void outdatePlanPreview();
     /// Makes the simulation to see its plan; on the thread.
@@ -123,7 +139,9 @@ class Player : public QObject {
     std::shared_ptr<const Actor> actor_;
     QString motion_ = "none";
     bool playing_ = false;
-    bool captured_ = false;  ///< the thread has the groom as it is now
+    double from_ = 0;           ///< seconds of the motion, where the next start begins
+    bool hasTimeLine_ = false;  ///< the document's is not empty
+    bool captured_ = false;     ///< the thread has the groom as it is now
     std::shared_ptr<const PlayedFrame> frame_;
     std::optional<EngineChoice> engine_;
     PlayedMethod method_;

@@ -2,10 +2,12 @@
 #pragma once
 // Between the two sides of the player: the interface (player.cpp) asks, the thread (player_thread.cpp) takes.
 
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "core/simulation/effect_switch.h"
+#include "core/simulation/time_line_motion.h"
 #include "editor/simulation/player.h"
 
 namespace hairloom::editor {
@@ -28,6 +30,9 @@ struct Player::WorkerRequests {
     std::shared_ptr<const Groom> groom;  ///< as the document has it
     bool changed = false;                ///< settings or spheres of `groom`, or what is left out of them
     std::shared_ptr<HeadMotion> motion;
+    FramePace pace;
+    double from = 0;                                          ///< seconds of the motion, of the next start
+    double stopAt = std::numeric_limits<double>::infinity();  ///< seconds of the motion, where playing ends
     Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
     QStringList leftOut;
     std::shared_ptr<TakeRecorder> recorder;

@@ -2,6 +2,7 @@
 // The thread of the player: it steps the hair, on the engine that was chosen.
 
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -13,7 +14,7 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr float kFrameTime = 1.0f / 60.0f;
+constexpr double kOnTime = 1e-4;  ///< seconds by which a frame may be early
 
 /// The settings without the effects that are left out.
 runtime::SimulationSettings without(runtime::SimulationSettings settings, const QStringList& leftOut) {
@@ -26,21 +27,12 @@ std::vector<CollisionSphere> without(std::vector<CollisionSphere> spheres, const
     return spheres;
 }
 
-/// The groom without the effects that are left out.
-Groom without(Groom groom, const QStringList& leftOut) {
-    groom.simulation = without(groom.simulation, leftOut);
+/// The groom with these settings, without the effects that are left out.
+Groom without(Groom groom, const runtime::SimulationSettings& settings, const QStringList& leftOut) {
+    groom.simulation = without(settings, leftOut);
     groom.spheres = without(std::move(groom.spheres), leftOut);
     if (leavesBodyOut(leftOut)) groom.body.reset();
     return groom;
-}
-
-void apply(const Eigen::Isometry3f& offset, HeadPose& pose) {
-    pose.head_ws = offset * pose.head_ws;
-    for (Vec3f& position : pose.scalpPositions_ws) position = offset * position;
-    for (Vec3f& centre : pose.sphereCentres_ws) centre = offset * centre;
-    for (auto* bones : {&pose.bones_ws, &pose.body_ws}) {
-        for (Eigen::Affine3f& bone : *bones) bone = offset * bone;
-    }
 }
 
 }  // namespace
@@ -53,7 +45,33 @@ struct Player::Playing {
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
     std::shared_ptr<const HairPose> before;
-    double time = 0;
+    FramePace pace;
+    double from = 0;                    ///< seconds of the motion, where frames are counted from
+    std::uint64_t frame = 0;            ///< since there
+    runtime::SimulationSettings given;  ///< that hair has, but for what is left out
+
+    double time(std::uint32_t step) const {
+        return from + static_cast<double>(pace.timeOf(static_cast<float>(frame), step));
+    }
+    double time() const { return time(pace.steps()); }
+    /// Counts from now on by another frame rate.
+    void takePace(const FramePace& taken) {
+        if (taken.framesPerSecond != pace.framesPerSecond) {
+            from = time();
+            frame = 0;
+        }
+        pace = taken;
+    }
+    /// The groom's settings with what is keyed at `time`.
+    runtime::SimulationSettings settingsAt(double time) const {
+        return motion->settingsAt(static_cast<float>(time), groom->simulation).value_or(groom->simulation);
+    }
+    HeadPose poseAt(double time, const WorkerRequests& taken) const {
+        HeadPose pose = motion->poseAt(static_cast<float>(time));
+        moveBy(taken.offset, pose);
+        if (taken.leftOut.contains("wind")) pose.wind_ws.reset();
+        return pose;
+    }
 
     void reset() {
         transport.stop();
@@ -61,7 +79,8 @@ struct Player::Playing {
         motion.reset();
         before.reset();
         deviceFailed = false;
-        time = 0;
+        from = 0;
+        frame = 0;
     }
 };
 
@@ -88,15 +107,18 @@ bool Player::prepare(Playing& playing, WorkerRequests& taken) {
     if (begins) {
         playing.transport.stop();
         playing.before.reset();
-        playing.time = 0;
+        playing.pace = taken.pace;
+        // The frame that is shown first is the one that was sought.
+        playing.from = std::max(0.0, taken.from - 1 / static_cast<double>(taken.pace.framesPerSecond));
+        playing.frame = 0;
     } else {
         start.state = playing.transport.state();
     }
     if (!playing.groom || !playing.motion) return false;
-    const auto tried = std::make_shared<const Groom>(without(*playing.groom, taken.leftOut));
-    start.pose = playing.motion->poseAt(static_cast<float>(playing.time));
-    start.time = playing.time;
-    apply(taken.offset, start.pose);
+    playing.given = playing.settingsAt(playing.time());
+    const auto tried = std::make_shared<const Groom>(without(*playing.groom, playing.given, taken.leftOut));
+    start.pose = playing.poseAt(playing.time(), taken);
+    start.time = playing.time();
     taken.changed = false;  // it begins with what has changed
 
     EngineChoice choice{EngineKind::cpu, "selected in the preferences"};
@@ -126,19 +148,48 @@ bool Player::prepare(Playing& playing, WorkerRequests& taken) {
     }
     playing.choice = choice;
     setEngineShown(choice);
+    if (begins) settle(playing, start.pose);
     return true;
+}
+
+void Player::settle(Playing& playing, const HeadPose& first) {
+    HairPose pose;
+    pose.head = first;
+    Status refused;
+    for (std::uint64_t step = 0; step < playing.pace.preRoll * playing.pace.steps(); ++step) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (requests_->stop || requests_->restart) return;
+        }
+        // What fails here fails in the next frame as well, which says so.
+        if (!playing.transport.step(playing.pace.dt(), nullptr, pose, refused)) return;
+    }
+}
+
+Status Player::stepFrame(Playing& playing, WorkerRequests& taken, HairPose& pose, Status& refused) {
+    const std::uint32_t steps = playing.pace.steps();
+    ++playing.frame;
+    for (std::uint32_t step = 1; step <= steps; ++step) {
+        const double time = playing.time(step);
+        const runtime::SimulationSettings settings = playing.settingsAt(time);
+        std::shared_ptr<const Groom> changed;
+        if (std::exchange(taken.changed, false) || !sameWhereKeyable(settings, playing.given))
+            changed = std::make_shared<const Groom>(without(*playing.groom, settings, taken.leftOut));
+        playing.given = settings;
+        pose.head = playing.poseAt(time, taken);
+        auto stepped = playing.transport.step(playing.pace.dt(), std::move(changed), pose, refused);
+        if (!stepped) return stepped;
+    }
+    return {};
 }
 
 void Player::advance(Playing& playing, WorkerRequests& taken) {
     const auto begin = std::chrono::steady_clock::now();
-    std::shared_ptr<const Groom> changed;
-    if (taken.changed) changed = std::make_shared<const Groom>(without(*playing.groom, taken.leftOut));
-    playing.time += static_cast<double>(kFrameTime);
+    playing.takePace(taken.pace);
+    const double before = playing.time();
     auto pose = std::make_shared<HairPose>();
-    pose->head = playing.motion->poseAt(static_cast<float>(playing.time));
-    apply(taken.offset, pose->head);
     Status refused;
-    auto stepped = playing.transport.step(kFrameTime, std::move(changed), *pose, refused);
+    auto stepped = stepFrame(playing, taken, *pose, refused);
     if (!stepped && playing.choice.kind == EngineKind::gpu) {
         // A device that was lost takes the motion of the hair along, and nothing else.
         playing.deviceFailed = true;
@@ -148,7 +199,7 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         Q_EMIT failed(
             QString("The GPU stopped simulating (%1). The CPU continues").arg(errorText(stepped.error())));
         if (!prepare(playing, again)) return;
-        stepped = playing.transport.step(kFrameTime, nullptr, *pose, refused);
+        stepped = playing.transport.step(playing.pace.dt(), nullptr, *pose, refused);
     }
     if (!stepped) refused = stepped;
     if (!refused) refuse(refused.error());
@@ -160,13 +211,15 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
     }
     if (taken.recorder && stepped && !pose->onDevice) taken.recorder->add(pose->positions_ws, pose->head);
     frame->pose = std::move(pose);
-    frame->time = playing.time;
+    frame->time = playing.time();
     const double clock =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     frame->stats = playing.transport.stats();
     const bool onDevice = frame->pose->onDevice && frame->stats.millisecondsPerFrame > 0;
     frame->milliseconds = onDevice ? frame->stats.millisecondsPerFrame : clock;
     deliver(std::move(frame), taken.epoch);
+    if (taken.playing && before < taken.stopAt - kOnTime && playing.time() >= taken.stopAt - kOnTime)
+        QMetaObject::invokeMethod(this, &Player::pause);
 }
 
 void Player::run() {
@@ -200,7 +253,8 @@ void Player::run() {
             taken = *requests_;
             requests_->restart = requests_->regroomed = requests_->wishChanged = requests_->changed = false;
         }
-        due = std::chrono::steady_clock::now() + std::chrono::microseconds(16'667);
+        due = std::chrono::steady_clock::now() +
+              std::chrono::microseconds(std::llround(1e6f / taken.pace.framesPerSecond));
         playing.groom = taken.groom;
         playing.motion = taken.motion;
         if (prepare(playing, taken)) {
@@ -234,7 +288,7 @@ void Player::deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch) {
 }
 
 void Player::computePlanPreview(const Groom& groom, const QStringList& leftOut) {
-    const Groom tried = without(groom, leftOut);
+    const Groom tried = without(groom, groom.simulation, leftOut);
     const auto motion = makeRigidMotion("none", tried);
     if (!motion) return;
     const auto made = Simulation::make(tried, (*motion)->poseAt(0), {});
