@@ -205,7 +205,8 @@ Result<Report> simulate(const SimulateOptions& options) {
     const auto timeOf = [&](std::uint64_t frame, std::uint32_t step) {
         return pace.timeOf(static_cast<float>(frame) - static_cast<float>(options.handles), step);
     };
-    KeyedSettings keyed(**motion, groom->simulation);
+    const runtime::SimulationSettings authored = groom->simulation;
+    KeyedSettings keyed(**motion, authored, timeOf(0, steps));
     groom->simulation = keyed.first();
     HeadPose pose = (*motion)->poseAt(timeOf(0, steps));
     SimulationOptions methodOptions = methodOf(options);
@@ -281,6 +282,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     }
     reportDepth(depth, report);
     if (!options.output.empty()) {
+        groom->simulation = authored;  // what is keyed is in the time line
         Result<Groom> kept = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
         if (options.take) kept = take(*groom, simulation->positions_ws(), pose, report);
         if (!kept) return tl::unexpected(kept.error());

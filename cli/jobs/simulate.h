@@ -15,8 +15,8 @@ namespace hairloom::cli {
 struct SimulateOptions {
     std::string input;
     std::optional<std::uint64_t> frames, preRoll;  ///< by default 60 and 0, or the time line's
-    std::uint64_t handles = 0;  ///< frames at each end
-    std::optional<float> framesPerSecond;  ///< by default 60, or the time line's
+    std::uint64_t handles = 0;                     ///< frames at each end
+    std::optional<float> framesPerSecond;          ///< by default 60, or the time line's
     std::string engine;
     std::string backend = "cpu";
     std::optional<std::uint32_t> device;

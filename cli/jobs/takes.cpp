@@ -103,13 +103,13 @@ Result<fs::path> takeFor(const TakesOptions& options, const std::string& name, c
 Result<Report> recordTake(TakesOptions& options) {
     const auto path = takePath(options.simulation.input, options.record);
     if (!path) throw WrongUsage(path.error());
-    if (!fs::is_regular_file(options.simulation.input))
+    std::error_code code;
+    if (!fs::is_regular_file(options.simulation.input, code))
         return failIn(options.simulation.input, {}, "is not a file", "expected a project or hair file");
     findTakes(options.simulation.input);  // what was cut off gets its name before another takes it
-    if (fs::exists(*path) && !writeRules().force)
+    if (fs::exists(*path, code) && !writeRules().force)
         return failIn(path->string(), {}, fmt::format("there is a take '{}' already", options.record),
                       "expected another name, or --force");
-    std::error_code code;
     const fs::path folder = takesFolder(options.simulation.input);
     fs::create_directory(folder, code);
     if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
@@ -170,8 +170,11 @@ Result<Report> exportRecord(TakeReader& reader, const Groom& groom,
 Result<Report> exportStrands(TakeReader& reader, const Groom& groom,
                              std::pair<std::uint64_t, std::uint64_t> range, const TakesOptions& options) {
     constexpr double kMost = 4e9;
-    const double bytes = static_cast<double>(range.second - range.first + 1) *
-                         static_cast<double>(reader.info().points * sizeof(Vec3f));
+    // A frame holds the head's vertices and spheres, and bones as matrices.
+    const std::size_t vectors =
+        reader.info().points + (groom.scalp ? groom.scalp->vertexCount() : 0) + groom.spheres.size();
+    const double bytes =
+        static_cast<double>(range.second - range.first + 1) * static_cast<double>(vectors * sizeof(Vec3f));
     if (bytes > kMost)
         return fail(
             fmt::format("frames {} to {} take {:.1f} GB of memory", range.first, range.second, bytes / 1e9),

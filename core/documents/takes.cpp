@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -20,14 +21,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 100;  ///< bytes, so that a temporary name beside it fits
 
-/// A take that was cut off, by a name that none has; one without a whole block goes.
+/// A take that was cut off, by a name that none has; one without a whole block goes. One that cannot be read,
+/// by this version or for now, stays for `clean`.
 void recover(const LeftOver& leftOver, const fs::path& folder, std::vector<std::string>& recovered) {
     if (leftOver.whole || fs::path(leftOver.target).extension() != kTakeSuffix) return;
-    if (const auto reader = TakeReader::open(leftOver.file); !reader || reader->info().frames == 0) {
-        // Where it cannot be removed it stays for `clean`.
-        static_cast<void>(removeLeftOver(leftOver));
-        return;
-    }
+    const auto reader = TakeReader::open(leftOver.file);
+    if (!reader) return;
+    if (reader->info().frames == 0) return static_cast<void>(removeLeftOver(leftOver));
     const std::string stem = fs::path(leftOver.target).stem().string();
     std::string name = stem;
     std::error_code code;
@@ -35,6 +35,16 @@ void recover(const LeftOver& leftOver, const fs::path& folder, std::vector<std::
         name = i == 1 ? stem + " (recovered)" : fmt::format("{} (recovered {})", stem, i);
     fs::rename(leftOver.file, folder / (name + kTakeSuffix), code);
     if (!code) recovered.push_back(name);
+}
+
+/// con, nul, com1 …, whatever stands behind a dot.
+bool isDeviceOfWindows(const std::string& name) {
+    std::string base = name.substr(0, name.find('.'));
+    std::ranges::transform(base, base.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const char* device : {"con", "prn", "aux", "nul"})
+        if (base == device) return true;
+    const bool isPort = base.size() == 4 && (base.starts_with("com") || base.starts_with("lpt"));
+    return isPort && base[3] >= '1' && base[3] <= '9';
 }
 
 Result<TakeReader> openFor(const fs::path& path, const Groom& groom) {
@@ -64,6 +74,7 @@ Result<fs::path> takePath(const fs::path& project, const std::string& name) {
     if (name.front() == '.' || name.front() == '-' || name.front() == ' ' || name.back() == '.' ||
         name.back() == ' ')
         return wrong("it begins with a dot, a dash or a space, or ends with a dot or a space");
+    if (isDeviceOfWindows(name)) return wrong("Windows keeps it for a device");
     return takesFolder(project) / fs::path(name + kTakeSuffix);
 }
 

@@ -76,8 +76,8 @@ void checkHead(const std::vector<HeadKey>& keys, Problems& problems) {
         if (!key.translation.allFinite() || key.translation.cwiseAbs().maxCoeff() > kFarthestKey)
             problems.add(where + "translate", "is too far or not finite",
                          "expected " + rangeText(-kFarthestKey, kFarthestKey, "m"));
-        if (!(key.axis.norm() > 0) || !key.axis.allFinite())
-            problems.add(where + "axis", "has no direction", "expected a vector that is not zero");
+        if (!(key.axis.norm() >= kShortestAxis) || !key.axis.allFinite())
+            problems.add(where + "axis", "has no direction", "expected a vector of at least 1e-6");
         if (!(std::abs(key.degrees) <= kMostKeyedDegrees))
             problems.add(where + "degrees", fmt::format("is {}", key.degrees),
                          "expected " + rangeText(-kLongest, kLongest, "degrees"));

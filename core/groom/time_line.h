@@ -26,11 +26,13 @@ enum class KeyInterpolation : std::uint8_t {
 };
 inline constexpr const char* kKeyInterpolations[] = {"linear", "step", "smooth"};
 
+inline constexpr float kShortestAxis = 1e-6f;
+
 /// Rigid, about the origin of the head's own space: turned first, then moved.
 struct HeadKey {
     float time = 0;
     Vec3d translation = Vec3d::Zero();  ///< metres
-    Vec3f axis = Vec3f::UnitY();        ///< not zero, of any length
+    Vec3f axis = Vec3f::UnitY();        ///< of any length of at least kShortestAxis
     float degrees = 0;
     KeyInterpolation interpolation = KeyInterpolation::linear;
 

@@ -53,7 +53,8 @@ std::vector<Vec3f> headTint(const Groom& groom, const Vec3f& skin) {
         distances.push_back(distanceOfFourth(grid, roots[i * roots.size() / probes], 4 * even, 1));
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
-    const float typical = *middle;
+    // Of hair in tufts, whose strands share their roots, most are at no distance.
+    const float typical = std::max(*middle, 0.1f * even);
     const std::span<const Vec3f> positions = groom.scalp->positions();
     parallelFor(positions.size(), 512, [&](std::size_t first, std::size_t last) {
         for (std::size_t v = first; v < last; ++v) {

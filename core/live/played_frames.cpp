@@ -16,7 +16,7 @@ Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& ran
         return (static_cast<float>(frame) - static_cast<float>(range.handles)) / range.framesPerSecond;
     };
     HeadPose pose = inWorld(motion.poseAt(timeOf(0)));
-    KeyedSettings keyed(motion, groom.simulation);
+    KeyedSettings keyed(motion, groom.simulation, timeOf(0));
     Groom begun = groom;
     begun.simulation = keyed.first();
     auto simulation = Simulation::make(begun, pose);

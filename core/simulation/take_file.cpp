@@ -27,6 +27,7 @@ constexpr std::array<char, 4> kBlockMagic{'B', 'L', 'C', 'K'};
 constexpr std::uint32_t kTakeVersion = 1;
 constexpr std::uint32_t kMostNotes = 1u << 20u;  ///< bytes
 /// In a frame. A block of so many has less than the 4 GiB that zlib counts on every machine.
+constexpr float kSlowest = 0.01f, kFastest = 10'000;  // frames a second
 constexpr std::uint64_t kMostVectors = std::uint64_t{1} << 24u;
 
 struct TakeHead {
@@ -175,6 +176,7 @@ Status TakeWriter::add(std::span<const Vec3f> positions_ws, const HeadPose& pose
     const auto failed = [&](const Error& error) {
         return fail(fmt::format("frame {}: {}", frames(), error.problem), error.expected);
     };
+    if (impl.isFull) return failed({{}, {}, "a block before it could not be written", {}});
     if (positions_ws.size() != impl.header.counts.points)
         return failed({{},
                        {},
@@ -213,7 +215,10 @@ Status TakeWriter::add(std::span<const Vec3f> positions_ws, const HeadPose& pose
 Status TakeWriter::Impl::writeBlock() {
     if (framesInBlock == 0) return {};
     const auto packed = take::packed(block);
-    if (!packed) return tl::unexpected(packed.error());
+    if (!packed) {
+        isFull = true;
+        return tl::unexpected(packed.error());
+    }
     BlockHead head;
     head.frames = framesInBlock;
     head.first = header.frames;
@@ -309,11 +314,12 @@ Status TakeReader::Impl::readHeader() {
     if (!isChecksum(hashWith(header, textBytes(info.notes)), header.hash))
         return failIn(name, Byte{0}, "has a damaged head", "its checksum does not match");
     const bool isFinite = std::isfinite(header.framesPerSecond) && std::isfinite(header.largestError);
-    if (!(header.framesPerSecond > 0) || !isFinite || header.grid != take::kGrid)
+    const bool isRate = header.framesPerSecond >= kSlowest && header.framesPerSecond <= kFastest;
+    if (!isRate || !isFinite || header.grid != take::kGrid)
         return failIn(
             name, Byte{offsetof(TakeHead, framesPerSecond)},
             fmt::format("has {} frames a second on a grid of {} m", header.framesPerSecond, header.grid),
-            fmt::format("expected a positive number, and {} m", take::kGrid));
+            fmt::format("expected {} to {}, and {} m", kSlowest, kFastest, take::kGrid));
     const FrameCounts& counts = header.counts;
     if (counts.points > kMostVectors || counts.vertices > kMostVectors || counts.spheres > kMostVectors ||
         counts.bones > kMostBones)

@@ -3,6 +3,7 @@
 // A time line as the motion of a head, with what it keys beside that.
 
 #include <memory>
+#include <optional>
 
 #include "core/animation/actor.h"
 #include "core/groom/time_line.h"
@@ -33,9 +34,9 @@ FramePace paceOf(const TimeLine& line);
 /// Gives hair the settings that a motion keys, whenever they change.
 class KeyedSettings {
   public:
-    /// `authored`: where nothing is keyed. The motion outlives it.
-    KeyedSettings(const HeadMotion& motion, const runtime::SimulationSettings& authored)
-        : motion_(motion), authored_(authored), given_(motion.settingsAt(0, authored)) {}
+    /// `authored`: where nothing is keyed. The motion outlives it. `begin`: seconds of the motion.
+    KeyedSettings(const HeadMotion& motion, const runtime::SimulationSettings& authored, float begin = 0)
+        : motion_(motion), authored_(authored), given_(motion.settingsAt(begin, authored)) {}
 
     /// What hair begins with.
     const runtime::SimulationSettings& first() const { return given_ ? *given_ : authored_; }

@@ -282,7 +282,8 @@ void ExportDialog::showWhatWillBeWritten() {
         count = guides * perStrand;
     }
     if (points_->value() > 0) points = count * static_cast<std::size_t>(points_->value());
-    const auto frames = static_cast<double>(motion_->samplesOf(std::max(1, frames_->value())));
+    const auto frames =
+        motion_->isVisibleIn(*form_) ? static_cast<double>(motion_->samplesOf(frames_->value())) : 1.0;
     double bytes = static_cast<double>(points) * bytesOfPoint(*choice.writer) * frames;
     const bool hasOperators = !isBaked && usdHasOperators(groom, optionsAsked());
     if (frames_->value() == 0) bytes += bytesBeside(*choice.writer, groom, hasOperators ? points : 0);

@@ -42,8 +42,14 @@ Status TakeView::show(const std::filesystem::path& take) {
         stop();
         return tl::unexpected(opened.error());
     }
+    if (opened->info().frames == 0) {
+        stop();
+        return failIn(take.string(), {}, "has no frames", "expected a take that was recorded");
+    }
     player_.pause();
     take_ = std::move(*opened);
+    frame_.reset();
+    otherFrame_.reset();
     showFrame(0);
     return {};
 }
@@ -78,11 +84,13 @@ void TakeView::stop() {
 }
 
 void TakeView::showFrame(std::uint64_t number) {
-    if (!take_ || take_->info().frames == 0) return;
+    if (!take_) return;
     number_ = std::min(number, take_->info().frames - 1);
     auto frame = take_->frame(number_);
     if (!frame) {
         setPlaying(false);
+        frame_.reset();
+        otherFrame_.reset();
         Q_EMIT failed(errorText(frame.error()));
         return;
     }

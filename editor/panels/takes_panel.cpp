@@ -27,7 +27,6 @@ namespace {
 constexpr int kTakeColumn = 0, kTakeFramesColumn = 1, kTakeSizeColumn = 2, kTakeMotionColumn = 3;
 /// Of points that move; docs/formats/take.md has what was measured.
 constexpr double kTakeBytesPerPoint = 1.5;
-constexpr double kRecordedRate = 60;
 
 QString takeSizeText(double bytes) {
     constexpr double kKilo = 1e3, kMega = 1e6, kGiga = 1e9;
@@ -56,7 +55,9 @@ class TakesPanel : public QWidget {
             fill();
         });
         connect(&document_, &QtDocument::titleChanged, this, [this] {
-            if (document_.path() != filledFor_) fill();
+            if (document_.path() == filledFor_) return;
+            finishRecording();
+            fill();
         });
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
             if (contains(changed, editing::kHairParts | editing::kScalpParts)) showState();
@@ -262,11 +263,20 @@ class TakesPanel : public QWidget {
             return messages_.warn(
                 QString("There is a take “%1” already. Choose another name").arg(name_->text()));
         std::error_code code;
-        std::filesystem::create_directory(path->parent_path(), code);
-        auto writer =
-            TakeWriter::open(*path, document_.groom(), static_cast<float>(kRecordedRate),
-                             takeNotes(player_.motion().toStdString(), document_.groom(), "cpu", 0));
-        if (!writer) return failed(writer.error());
+        const auto folder = path->parent_path();
+        std::filesystem::create_directory(folder, code);
+        if (code)
+            return messages_.warn(
+                QString("%1 cannot be made: %2")
+                    .arg(QString::fromStdString(folder.string()), QString::fromStdString(code.message())));
+        const FramePace pace = player_.pace();
+        auto writer = TakeWriter::open(
+            *path, document_.groom(), pace.framesPerSecond,
+            takeNotes(player_.motion().toStdString(), document_.groom(), "cpu", pace.preRoll));
+        if (!writer) {
+            std::filesystem::remove(folder, code);  // where nothing is in it
+            return failed(writer.error());
+        }
         recorder_ = std::make_shared<TakeRecorder>(std::move(*writer));
         recordedName_ = name_->text();
         view_->stop();
@@ -287,6 +297,14 @@ class TakesPanel : public QWidget {
         const std::uint64_t frames = recorder_->frames();
         recorder_.reset();
         if (!status) messages_.warn(errorText(status.error()));
+        if (status && frames == 0) {
+            // Nothing has played.
+            if (auto removed = removeTake(std::filesystem::path(filledFor_.toStdU16String()),
+                                          recordedName_.toStdString());
+                !removed)
+                messages_.warn(errorText(removed.error()));
+            return fill();
+        }
         if (status) messages_.say(QString("Recorded %1 frames as “%2”").arg(frames).arg(recordedName_));
         fill(recordedName_);
     }
@@ -376,8 +394,8 @@ class TakesPanel : public QWidget {
                                     : "Keep what plays from now on. The CPU simulates while you record");
         name_->setEnabled(!records);
         list_->setEnabled(!records);
-        const double perMinute =
-            kTakeBytesPerPoint * static_cast<double>(document_.groom().pointCount()) * 60 * kRecordedRate;
+        const double perMinute = kTakeBytesPerPoint * static_cast<double>(document_.groom().pointCount()) *
+                                 60 * static_cast<double>(player_.pace().framesPerSecond);
         if (records)
             recordState_->setText(QString("%1 frames, %2")
                                       .arg(recorder_->frames())

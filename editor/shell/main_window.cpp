@@ -245,9 +245,10 @@ void MainWindow::showPage() {
     // Nothing to work on: what would do nothing looks so.
     for (const PanelInfo& info : panels()) panel(info.id)->widget()->setEnabled(!empty);
     for (QAction* tool : toolGroup_->actions()) tool->setEnabled(!empty);
-    for (const char* id : {"file.save", "file.saveAs", "file.saveIncremental", "file.revert",
-                           "file.saveScript", "file.import", "file.export", "file.render", "timeLine.open", "timeLine.save", "timeLine.clear", "play.toggle",
-                           "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
+    for (const char* id :
+         {"file.save", "file.saveAs", "file.saveIncremental", "file.revert", "file.saveScript", "file.import",
+          "file.export", "file.render", "timeLine.open", "timeLine.save", "timeLine.clear", "play.toggle",
+          "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
         actions_->get(id).setEnabled(!empty);
     }
 }

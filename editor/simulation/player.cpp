@@ -96,12 +96,15 @@ void Player::capture() {
     });
 }
 
+FramePace Player::pace() const {
+    return motion_ == kTimeLine ? paceOf(timeLineOf(document_.groom())) : FramePace();
+}
+
 void Player::setPace(WorkerRequests& requests) const {
-    requests.pace = {};
+    requests.pace = pace();
     requests.stopAt = std::numeric_limits<double>::infinity();
     if (motion_ != kTimeLine) return;
     const TimeLine& line = timeLineOf(document_.groom());
-    requests.pace = paceOf(line);
     if (!line.loop) requests.stopAt = static_cast<double>(line.end - line.start);
 }
 

@@ -14,6 +14,7 @@
 #include "core/animation/actor.h"
 #include "core/live/engine_choice.h"
 #include "core/simulation/simulation.h"
+#include "core/simulation/time_line_motion.h"
 #include "editor/document/qt_document.h"
 #include "editor/simulation/played_method.h"
 #include "editor/simulation/take_recorder.h"
@@ -54,6 +55,9 @@ class Player : public QObject {
     void seek(double seconds);
     /// Seconds behind the start of the motion.
     double time() const { return frame_ ? frame_->time : from_; }
+
+    /// Frames of the motion.
+    FramePace pace() const;
 
     /// Of setMotion(): what the document's time line says.
     static constexpr QLatin1String kTimeLine{"timeline"};

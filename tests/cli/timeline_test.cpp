@@ -66,6 +66,16 @@ TEST_F(CliTimeLine, IsSavedListedComparedAndSetAgain) {
     EXPECT_EQ(played["fps"], 24);
 }
 
+TEST_F(CliTimeLine, WhatIsSavedHasTheAuthoredSettingsAndNotTheKeyed) {
+    runJson(createArguments());
+    const Json wind{{"name", "simulation.windSpeed"}, {"keys", {{{"t", 0}, {"value", 7}}}}};
+    ASSERT_EQ(set({{"end", 0.1}, {"settings", Json::array({wind})}}).exitCode, 0);
+    runJson("simulate moving.hairloom --motion timeline -o after.hairloom");
+    const auto differences = runJson("info --diff moving.hairloom after.hairloom")["differences"];
+    EXPECT_FALSE(differences.empty()) << "the hair has moved";
+    EXPECT_EQ(differences.dump().find("windSpeed"), std::string::npos) << differences.dump();
+}
+
 TEST_F(CliTimeLine, AClipAloneMovesHairAsThatClipDoes) {
     runJson(createArguments());
     ASSERT_EQ(set({{"clips", {{{"name", "nod_and_turn"}}}}}).exitCode, 0);

@@ -49,6 +49,13 @@ TEST(HeadTint, DoesNotDependOnTheNumberOfRoots) {
         }
 }
 
+TEST(HeadTint, StrandsThatShareTheirRootsAreNoDivisionByZero) {
+    const Groom groom = smallHead();
+    std::vector<std::uint32_t> tufts;
+    for (std::uint32_t s = 0; s < 40; ++s) tufts.push_back(s / 10);
+    for (const Vec3f& albedo : headTint(strandsOf(groom, tufts), kSkin)) ASSERT_TRUE(albedo.allFinite());
+}
+
 TEST(HeadTint, LeavesTheSkinWhereHairIsTooFewOrFarAway) {
     Groom groom = smallHead();
     const std::vector<Vec3f> bare(groom.scalp->vertexCount(), kSkin);

@@ -7,6 +7,8 @@
 
 #include <fstream>
 
+#include "core/base/output_file.h"
+
 #include "tests/support/temporary_folder.h"
 
 namespace hairloom::test {
@@ -48,13 +50,28 @@ TEST_F(ProjectTakes, NamesThatAreNoneAreRefusedWithWhy) {
     EXPECT_EQ(takesFolder(project), own.path() / "hair.v2.takes");
     EXPECT_EQ(*takePath(project, "nod in wind"), own.path() / "hair.v2.takes/nod in wind.hltake");
     EXPECT_TRUE(takePath(project, "Bö-1_ñ"));
-    for (const char* name : {"a/b", "..", "a\\b", ".hidden", "-x", "a\nb", "a:b", "a.", " a", "a ", "\xff"}) {
+    for (const char* name : {"a/b", "..", "a\\b", ".hidden", "-x", "a\nb", "a:b", "a.", " a", "a ", "\xff",
+                             "nul", "COM1", "aux.1"}) {
         const auto path = takePath(project, name);
         ASSERT_FALSE(path) << name;
         EXPECT_THAT(path.error().message(), HasSubstr("cannot name a take")) << name;
     }
     EXPECT_THAT(takePath(project, "").error().message(), HasSubstr("needs a name"));
     EXPECT_THAT(takePath(project, std::string(101, 'x')).error().message(), HasSubstr("100 bytes"));
+}
+
+TEST_F(ProjectTakes, ARecordingThatCannotBeReadStays) {
+    record("a", 9, 0, false);
+    const auto leftOvers = findLeftOvers(takesFolder(project));
+    ASSERT_EQ(leftOvers.size(), 1u);
+    {
+        // As a newer program might have written it.
+        std::fstream file(leftOvers[0].file, std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(8);
+        file.put('\x63');
+    }
+    EXPECT_TRUE(findTakes(project).recovered.empty());
+    EXPECT_TRUE(fs::exists(leftOvers[0].file));
 }
 
 TEST_F(ProjectTakes, AreListedRenamedAndRemoved) {

@@ -54,6 +54,12 @@ class TakesTest : public WindowTest {
         ASSERT_TRUE(QTest::qWaitFor([&] { return recorded() >= frames; }, 30'000));
         click("takeRecord");
     }
+    /// A recording in which nothing has played.
+    void recordNothing(const char* name) {
+        auto take = TakeWriter::open(*takePath(project(), name), document().groom(), 60, {});
+        ASSERT_TRUE(take);
+        ASSERT_TRUE(take->finish());
+    }
     QStringList rows() {
         QStringList names;
         auto* list = get<QTreeWidget>("takes");
@@ -173,6 +179,17 @@ TEST_F(TakesTest, NothingIsRecordedOfAProjectWithoutAFile) {
     EXPECT_FALSE(get<QPushButton>("takeRecord")->isEnabled());
     EXPECT_TRUE(get<QLabel>("takeState")->text().contains("Save the project"));
     EXPECT_TRUE(rows().isEmpty());
+}
+
+TEST_F(TakesTest, ATakeWithoutFramesIsTold) {
+    std::filesystem::create_directory(takesFolder(project()));
+    recordNothing("nothing");
+    files().open(inFolder("hair.hairloom"));
+    finishWork();
+    select("nothing");
+    EXPECT_TRUE(window->statusLine().message().contains("has no frames"))
+        << window->statusLine().message().toStdString();
+    EXPECT_FALSE(get<QPushButton>("takePlay")->isEnabled());
 }
 
 }  // namespace

@@ -103,6 +103,8 @@ TEST(TimeLine, NumbersThatAreNoneAreFound) {
     EXPECT_THAT(first(line), HasSubstr("head/0/translate"));
     line.head = {{0, Vec3d::Zero(), Vec3f(0, kNaN, 0)}};
     EXPECT_THAT(first(line), HasSubstr("head/0/axis"));
+    line.head = {{0, Vec3d::Zero(), Vec3f(0, 1e-22f, 0)}};
+    EXPECT_THAT(first(line), HasSubstr("head/0/axis")) << "too short to have a direction in single precision";
     line.head = {{0, Vec3d::Zero(), Vec3f::UnitX(), kNaN}};
     EXPECT_THAT(first(line), HasSubstr("head/0/degrees"));
     line = {};
