@@ -19,12 +19,14 @@ struct OutputName {
     const char* option;
     const char* job;  ///< null: of all
 };
-constexpr std::array kOutputNames{OutputName{"--output", nullptr},     OutputName{"--exr", "render"},
-                                  OutputName{"--animation", "render"}, OutputName{"--strip", "render"},
-                                  OutputName{"--record", "simulate"},  OutputName{"--record", "import"},
-                                  OutputName{"--keep", "stack"},       OutputName{"--markdown", "bench"},
-                                  OutputName{"--man", "reference"},    OutputName{"--readme", "reference"},
-                                  OutputName{"--jobs", "reference"},   OutputName{"--openjd", "sweep"}};
+constexpr std::array kOutputNames{
+    OutputName{"--output", nullptr},         OutputName{"--exr", "render"},
+    OutputName{"--animation", "render"},     OutputName{"--strip", "render"},
+    OutputName{"--record", "simulate"},      OutputName{"--record", "import"},
+    OutputName{"--keep", "stack"},           OutputName{"--keep", "timeline"},
+    OutputName{"--keep-motion", "timeline"}, OutputName{"--markdown", "bench"},
+    OutputName{"--man", "reference"},        OutputName{"--readme", "reference"},
+    OutputName{"--jobs", "reference"},       OutputName{"--openjd", "sweep"}};
 
 /// By the path with its token.
 std::map<std::string, unsigned>& taken() {

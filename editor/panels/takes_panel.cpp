@@ -103,10 +103,14 @@ class TakesPanel : public QWidget {
         list_->setHeaderLabels({"Take", "Frames", "Size", "Motion"});
         list_->setRootIsDecorated(false);
         list_->setToolTip("Select a take to show it. Press F2 or double-click to rename it");
-        list_->header()->setStretchLastSection(true);
-        list_->header()->resizeSection(kTakeColumn, 110);
-        list_->header()->resizeSection(kTakeFramesColumn, 60);
-        list_->header()->resizeSection(kTakeSizeColumn, 70);
+        QHeaderView& header = *list_->header();
+        header.setStretchLastSection(false);
+        header.setMinimumSectionSize(30);
+        header.setSectionResizeMode(kTakeColumn, QHeaderView::Stretch);
+        for (const int column : {kTakeFramesColumn, kTakeSizeColumn})
+            header.setSectionResizeMode(column, QHeaderView::ResizeToContents);
+        header.resizeSection(kTakeMotionColumn, 60);
+        list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         list_->setMinimumHeight(120);
         list_->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
         layout.addWidget(list_, 1);

@@ -37,6 +37,9 @@ Result<TimeLine> readLine(const std::string& file, TimeLine now) {
 bool MainWindow::openTimeLine(const QString& path) {
     auto line = readLine(path.toStdString(), timeLineOf(document_.groom()));
     // What cannot play, a clip that the head lacks, is not taken.
+    if (line && !line->clips.empty() && document_.groom().characterFile.empty())
+        line = failIn(path.toStdString(), {}, "has clips, but this head has no animation clips",
+                      "expected keys alone");
     if (line) {
         Groom tried = document_.groom();
         tried.timeLine = std::make_shared<const TimeLine>(*line);

@@ -54,7 +54,9 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
         {"budget x --ms 4 --within-mm 1",
          "error: options exclude each other; expected one of --ms, --within-mm\n"},
         {"groom x", "error: groom, --script and -o are required; see hairloom-cli groom --help\n"},
-        {"simulate x --record", "error: --record has no value; expected a value: File for all frames\n"},
+        {"simulate x --record",
+         "error: --record has no value; expected a value: File for all frames, or a take where it ends in "
+         ".hltake\n"},
     };
     for (const auto& [arguments, message] : wrong) {
         const Outcome outcome = run(arguments);

@@ -58,6 +58,10 @@ constexpr Writes kWrites[] = {
     {"stack", "--output", "g.hairloom --bake -o OUT"},
     {"stack", "--keep", "g.hairloom --keep OUT"},
     {"sweep", "--output", "storms.json -o OUT", true},
+    {"takes", "--output", "g.hairloom --export nod --format frames -o OUT"},
+    {"timeline", "--output", "g.hairloom -o OUT"},
+    {"timeline", "--keep", "g.hairloom --keep OUT"},
+    {"timeline", "--keep-motion", "g.hairloom --keep-motion OUT"},
     {"transfer", "--output", "g.hairloom --to MESH -o OUT"},
 };
 
@@ -113,9 +117,12 @@ TEST_F(Outputs, TheTableHasAllThatJobsWrite) {
             std::istringstream(line) >> word;
             const std::string help = run(word + " --help").output;
             for (const std::string option : {"--output", "--record", "--man", "--exr", "--animation",
-                                             "--strip", "--markdown", "--keep", "--jobs"}) {
-                const bool reads = option == "--record" && (word == "export" || word == "render");
-                if (!reads && help.find(option + " TEXT") != std::string::npos) found.emplace(word, option);
+                                             "--strip", "--markdown", "--keep", "--keep-motion", "--jobs"}) {
+                // A record that is read, and the name of a take.
+                const bool isNoFile =
+                    option == "--record" && (word == "export" || word == "render" || word == "takes");
+                if (!isNoFile && help.find(option + " TEXT") != std::string::npos)
+                    found.emplace(word, option);
             }
         }
         isList = isList || line.starts_with("Subcommands");

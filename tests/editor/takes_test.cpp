@@ -168,7 +168,7 @@ TEST_F(TakesTest, DistancesToAnotherTakeAreDrawn) {
     get<QSlider>("takeFrame")->setValue(9);
     EXPECT_EQ(shown(), frameOf("windy", 9));
     if (!isDrawn()) return;
-    ASSERT_TRUE(viewport().waitForPicture());
+    ASSERT_TRUE(viewport().waitForPicture(120'000));
     QCoreApplication::processEvents();
     QDir().mkpath(HAIRLOOM_SCREENSHOTS);
     EXPECT_TRUE(onScreen().save(HAIRLOOM_SCREENSHOTS "/takes.png"));

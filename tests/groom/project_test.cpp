@@ -284,7 +284,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = kProjectVersion + 2;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 12, but this program reads versions up to 10"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 13, but this program reads versions up to 11"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
