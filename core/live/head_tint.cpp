@@ -14,7 +14,8 @@ constexpr std::size_t kMostRoots = 20'000;  // enough to tell where hair grows
 constexpr std::size_t kProbes = 500;
 constexpr std::size_t kNeighbours = 4;
 constexpr float kDense = 1, kBare = 2.5f;  // distance of the fourth root, in typical ones
-constexpr float kShare = 0.5f;             // of hair's colour in the skin under it
+constexpr float kWidest_m = 0.008f;  // over which it fades: hair of few, thick strands has a hairline, too
+constexpr float kShare = 0.5f;       // of hair's colour in the skin under it
 
 /// Evenly picked from the strands, which are in no order of place that this could meet.
 std::vector<Vec3f> someRoots(const Groom& groom) {
@@ -55,11 +56,12 @@ std::vector<Vec3f> headTint(const Groom& groom, const Vec3f& skin) {
     std::nth_element(distances.begin(), middle, distances.end());
     // Of hair in tufts, whose strands share their roots, most are at no distance.
     const float typical = std::max(*middle, 0.1f * even);
+    const float fade = std::min((kBare - kDense) * typical, kWidest_m), dense = kDense * typical;
     const std::span<const Vec3f> positions = groom.scalp->positions();
     parallelFor(positions.size(), 512, [&](std::size_t first, std::size_t last) {
         for (std::size_t v = first; v < last; ++v) {
-            const float distance = distanceOfFourth(grid, positions[v], kBare * typical, 0);
-            const float bare = std::clamp((distance / typical - kDense) / (kBare - kDense), 0.0f, 1.0f);
+            const float distance = distanceOfFourth(grid, positions[v], dense + fade, 0);
+            const float bare = std::clamp((distance - dense) / fade, 0.0f, 1.0f);
             const float tint = kShare * (1 - bare * bare * (3 - 2 * bare));
             albedo[v] = (1 - tint) * skin + tint * groom.material.rootColour;
         }

@@ -290,7 +290,7 @@ TEST_F(LookPictureTest, TwoLooksStandSideBySideAndTheLineIsDragged) {
     const QImage a = shot();
     find<QPushButton>("compareKeep")->click();
     Groom pale = groom();
-    applyLook(lookPresets().back(), pale.material);
+    applyLook(*findLook("white"), pale.material);
     change("Look", pale);
     const QImage b = shot();
     find<QPushButton>("compareShow")->setChecked(true);
