@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/editing/root_grid.h"
+#include "core/operations/strand_frames.h"
 
 namespace hairloom {
 namespace {
@@ -34,8 +35,8 @@ float areaOf(const Groom& groom) {
 
 /// Distance of the fourth root from a place; more than `radius` where there is none so near.
 float distanceOfFourth(const editing::RootGrid& grid, const Vec3f& place, float radius, std::size_t first) {
-    const auto near = grid.nearest(place, first + kNeighbours, radius);
-    return near.size() < first + kNeighbours ? 2 * radius : near.back().distance;
+    const auto found = grid.nearest(place, first + kNeighbours, radius);
+    return found.size() < first + kNeighbours ? 2 * radius : found.back().distance;
 }
 
 }  // namespace
@@ -58,11 +59,15 @@ std::vector<Vec3f> headTint(const Groom& groom, const Vec3f& skin) {
     const float typical = std::max(*middle, 0.1f * even);
     const float fade = std::min((kBare - kDense) * typical, kWidest_m), dense = kDense * typical;
     const std::span<const Vec3f> positions = groom.scalp->positions();
+    Box3f reached;
+    for (const Vec3f& root : roots) reached.extend(root);
+    reached =
+        Box3f(reached.min() - Vec3f::Constant(dense + fade), reached.max() + Vec3f::Constant(dense + fade));
     parallelFor(positions.size(), 512, [&](std::size_t first, std::size_t last) {
         for (std::size_t v = first; v < last; ++v) {
+            if (!reached.contains(positions[v])) continue;
             const float distance = distanceOfFourth(grid, positions[v], dense + fade, 0);
-            const float bare = std::clamp((distance - dense) / fade, 0.0f, 1.0f);
-            const float tint = kShare * (1 - bare * bare * (3 - 2 * bare));
+            const float tint = kShare * (1 - smoothStep(dense, dense + fade, distance));
             albedo[v] = (1 - tint) * skin + tint * groom.material.rootColour;
         }
     });

@@ -144,18 +144,6 @@ FramePace paceOf(const TimeLine& line) {
     return {line.framesPerSecond, line.preRoll};
 }
 
-bool sameWhereKeyable(const runtime::SimulationSettings& a, const runtime::SimulationSettings& b) {
-    for (const auto& field : fieldsOf(a)) {
-        for (std::uint32_t c = 0; c < field.components(); ++c)
-            if (field.get(a, c) != field.get(b, c)) return false;
-    }
-    return true;
-}
-
-bool KeyedSettings::isGiven(const runtime::SimulationSettings& settings) const {
-    return given_ && sameWhereKeyable(*given_, settings);
-}
-
 Result<std::unique_ptr<HeadMotion>> makeTimeLineMotion(TimeLine line, std::shared_ptr<const Actor> actor,
                                                        const Groom& groom) {
     if (const auto problems = problemsOf(line); !problems.empty())

@@ -44,20 +44,15 @@ class KeyedSettings {
     template <class Hair>
     Status give(Hair& hair, float time) {
         auto now = motion_.settingsAt(time, authored_);
-        if (!now || isGiven(*now)) return {};
+        if (!now || now == given_) return {};
         given_ = *now;
         return hair.setSettings(*now);
     }
 
   private:
-    bool isGiven(const runtime::SimulationSettings& settings) const;
-
     const HeadMotion& motion_;
     runtime::SimulationSettings authored_;
     std::optional<runtime::SimulationSettings> given_;
 };
-
-/// Equal in all that can be keyed.
-bool sameWhereKeyable(const runtime::SimulationSettings& a, const runtime::SimulationSettings& b);
 
 }  // namespace hairloom

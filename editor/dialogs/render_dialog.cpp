@@ -178,10 +178,10 @@ Film RenderDialog::filmAsked() const {
 std::vector<std::string> RenderDialog::linesAsked(const Film& film, const Groom& groom) const {
     std::vector<std::string> lines;
     if (take_->isChecked()) {
-        const bool moves = film.of == FilmOf::Simulation || player_.hasFrame();
-        const QString motion =
-            player_.motion() == "none" && film.of == FilmOf::Simulation ? "nod" : player_.motion();
-        lines.push_back(QString("%1, %2").arg(document_.title(), moves ? motion : "at rest").toStdString());
+        const QString motion = film.of == FilmOf::Simulation ? player_.measuredMotion()
+                               : player_.hasFrame()          ? player_.motion()
+                                                             : QStringLiteral("at rest");
+        lines.push_back(QString("%1, %2").arg(document_.title(), motion).toStdString());
     }
     if (settings_->isChecked()) lines.push_back(settingsText(groom.simulation));
     return lines;

@@ -179,7 +179,7 @@ Result<std::unique_ptr<HeadMotion>> Player::makeMotion(const QString& name) cons
 }
 
 Result<std::unique_ptr<HeadMotion>> Player::makeMeasuredMotion() const {
-    return makeMotion(motion_ == "none" ? QStringLiteral("nod") : motion_);
+    return makeMotion(measuredMotion());
 }
 
 Status Player::setMotion(const QString& name) {

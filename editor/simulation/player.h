@@ -66,7 +66,9 @@ class Player : public QObject {
     const QString& motion() const { return motion_; }
     /// One that setMotion() takes, for this document. Errors: no such motion.
     Result<std::unique_ptr<HeadMotion>> makeMotion(const QString& name) const;
-    /// For measuring: the motion that plays, or a nod where the head is at rest. Errors: no such motion.
+    /// For measuring and films: the motion that plays, or a nod where the head is at rest.
+    QString measuredMotion() const { return motion_ == "none" ? QStringLiteral("nod") : motion_; }
+    /// Errors: no such motion.
     Result<std::unique_ptr<HeadMotion>> makeMeasuredMotion() const;
     /// Names that setMotion() takes for this document.
     QStringList motions() const;

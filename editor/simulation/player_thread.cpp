@@ -173,7 +173,7 @@ Status Player::stepFrame(Playing& playing, WorkerRequests& taken, HairPose& pose
         const double time = playing.time(step);
         const runtime::SimulationSettings settings = playing.settingsAt(time);
         std::shared_ptr<const Groom> changed;
-        if (std::exchange(taken.changed, false) || !sameWhereKeyable(settings, playing.given))
+        if (std::exchange(taken.changed, false) || settings != playing.given)
             changed = std::make_shared<const Groom>(without(*playing.groom, settings, taken.leftOut));
         playing.given = settings;
         pose.head = playing.poseAt(time, taken);
