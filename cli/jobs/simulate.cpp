@@ -52,6 +52,7 @@ Span spanOf(const SimulateOptions& options, const Groom& groom) {
 SimulationOptions methodOf(const SimulateOptions& options) {
     SimulationOptions result;
     if (options.method == "projective") result.method = SimulationMethod::projective;
+    if (options.method == "chain") result.method = SimulationMethod::chain;
     if (options.method == "lattice") result.method = SimulationMethod::lattice;
     if (options.hairHair) result.hairHair.emplace();
     return result;
@@ -331,9 +332,11 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
         "clips and keys of head, wind and settings");
     job.add_option("--character", options.character,
                    "File with skeleton and clips, if other than the scalp's file");
-    job.add_option("--method", options.method,
-                   "Simulation method: the strand engine, projective equations, or a lattice around the head")
-        ->check(CLI::IsMember({"strands", "projective", "lattice"}));
+    job.add_option(
+           "--method", options.method,
+           "Simulation method: the strand engine, projective equations, chains of rigid segments, or a "
+           "lattice around the head")
+        ->check(CLI::IsMember({"strands", "projective", "chain", "lattice"}));
     job.add_flag("--hair-hair", options.hairHair, "Hair-hair collision, through a volume between frames");
     std::vector<CLI::Option*> added = job.get_options();
     added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));

@@ -9,6 +9,7 @@
 #include "core/base/hash.h"
 #include "core/simulation/strand_method.h"
 #include "hairloom/alternatives/projective_equations.h"
+#include "hairloom/alternatives/rigid_chains.h"
 #include "hairloom/wind.h"
 
 namespace hairloom {
@@ -116,10 +117,12 @@ class AlternativeMethod : public StrandMethod {
     double milliseconds_ = 0;
 };
 
-class ProjectiveMethod : public AlternativeMethod {
+/// Strands of rigid segments: projective equations and rigid chains.
+template <class Solver>
+class SegmentMethod : public AlternativeMethod {
   public:
-    ProjectiveMethod(const SceneInput& scene, runtime::ProjectiveEquations solver)
-        : AlternativeMethod(scene, {"projective equations", true,
+    SegmentMethod(const SceneInput& scene, std::string name, Solver solver)
+        : AlternativeMethod(scene, {std::move(name), true,
                                     fmt::format("on, {} substeps", scene.groom().simulation.substeps), 0, 0}),
           solver_(std::move(solver)) {}
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
@@ -137,8 +140,15 @@ class ProjectiveMethod : public AlternativeMethod {
     }
 
   private:
-    runtime::ProjectiveEquations solver_;
+    Solver solver_;
 };
+
+template <class Solver>
+Result<std::unique_ptr<StrandMethod>> makeSegmentMethod(const SceneInput& scene, std::string name) {
+    auto made = Solver::make(scene.strands(), scene.groom().simulation, applicationHost());
+    if (!made.engine) return fail(made.error);
+    return std::make_unique<SegmentMethod<Solver>>(scene, std::move(name), std::move(*made.engine));
+}
 
 class LatticeMethod : public AlternativeMethod {
   public:
@@ -175,10 +185,11 @@ runtime::LatticeSettings latticeSettings(const runtime::SimulationSettings& sett
 }
 
 Result<std::unique_ptr<StrandMethod>> makeProjectiveMethod(const SceneInput& scene) {
-    auto made =
-        runtime::ProjectiveEquations::make(scene.strands(), scene.groom().simulation, applicationHost());
-    if (!made.engine) return fail(made.error);
-    return std::make_unique<ProjectiveMethod>(scene, std::move(*made.engine));
+    return makeSegmentMethod<runtime::ProjectiveEquations>(scene, "projective equations");
+}
+
+Result<std::unique_ptr<StrandMethod>> makeChainMethod(const SceneInput& scene) {
+    return makeSegmentMethod<runtime::RigidChains>(scene, "rigid chains");
 }
 
 Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene) {

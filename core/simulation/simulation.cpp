@@ -21,8 +21,9 @@ Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const 
             "hair-hair collision needs a method with external velocities, which this one does not have",
             "expected the method 'strands'");
     }
-    return options.method == SimulationMethod::projective ? makeProjectiveMethod(scene)
-                                                          : makeLatticeMethod(scene);
+    if (options.method == SimulationMethod::projective) return makeProjectiveMethod(scene);
+    if (options.method == SimulationMethod::chain) return makeChainMethod(scene);
+    return makeLatticeMethod(scene);
 }
 
 }  // namespace

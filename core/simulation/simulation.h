@@ -51,6 +51,7 @@ struct SimulationStats {
 enum class SimulationMethod {
     strands,     ///< the strand engine
     projective,  ///< runtime/alternatives/projective_equations.h
+    chain,       ///< runtime/alternatives/rigid_chains.h
     lattice,     ///< runtime/alternatives/lattice.h: no collision, lengths are not held
 };
 

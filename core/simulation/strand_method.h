@@ -63,6 +63,7 @@ class StrandMethod {
 Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
     const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair);
 Result<std::unique_ptr<StrandMethod>> makeProjectiveMethod(const SceneInput& scene);
+Result<std::unique_ptr<StrandMethod>> makeChainMethod(const SceneInput& scene);
 Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene);
 
 /// Which forces of a groom's settings a lattice can have: gravity, air with the mean wind, damping.

@@ -90,6 +90,7 @@ QWidget* makeMethods(Player& player) {
     const std::pair<QString, SimulationMethod> methods[] = {
         {QString("Strand engine (rods or springs)"), SimulationMethod::strands},
         {QString("Projective equations"), SimulationMethod::projective},
+        {QString("Rigid chains"), SimulationMethod::chain},
         {QString("Lattice, for distant hair"), SimulationMethod::lattice}};
     for (const auto& [name, method] : methods) box->addItem(name, static_cast<int>(method));
     auto* hairs = new QCheckBox("Hair-hair collision");

@@ -16,6 +16,7 @@ struct PlayedMethod {
     /// Why nothing but the CPU can run it; empty where a device can.
     std::string whyCpu() const {
         if (method == SimulationMethod::projective) return "projective equations run there";
+        if (method == SimulationMethod::chain) return "rigid chains run there";
         if (method == SimulationMethod::lattice) return "lattices run there";
         return hairHair ? "hair-hair collision runs there" : "";
     }

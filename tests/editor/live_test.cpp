@@ -108,6 +108,9 @@ TEST_F(LiveTest, OtherMethodsMoveTheHairAndSayWhatTheyCost) {
     document().perform(editing::setPhysics(document().editing().model(), windy.simulation, "wind"));
     EXPECT_TRUE(goesOn());
     method->setCurrentIndex(2);
+    EXPECT_TRUE(costs("rigid chains"));
+    EXPECT_TRUE(goesOn());
+    method->setCurrentIndex(3);
     EXPECT_TRUE(costs("lattice"));
     simulateOn(SimulateOn::Gpu);
     ASSERT_TRUE(played(now() + 0.2));

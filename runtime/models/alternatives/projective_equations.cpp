@@ -2,42 +2,17 @@
 #include "hairloom/alternatives/projective_equations.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "engine/checks.h"
+#include "models/alternatives/surroundings.h"
 
 namespace hairloom::runtime {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kLargestAcceleration = 1e6f;  // m/s², of a root
-constexpr float kFastest = 1e6f;              // m/s
-constexpr float kLongestFrame = 1000.0f;      // seconds
-constexpr double kLongestTime = 1e12;         // seconds; later ones leave gusts no phase
-constexpr float kRigid = 1e12f;               // 1/s²; a stiffer joint does not move
+constexpr float kRigid = 1e12f;  // 1/s²; a stiffer joint does not move
 constexpr std::size_t kStrandsPerJob = 16;
-
-Float3 bounded(Float3 v, float limit) {
-    const float size = length(v);
-    if (size <= limit) return v;
-    return std::isfinite(size) ? v * (limit / size) : Float3{};
-}
-
-Float3 lerp(Float3 a, Float3 b, float t) {
-    return a + (b - a) * t;
-}
-
-Float3 airAt(const Wind& wind, const std::array<float, kWindModes>& phases, Float3 position_ws) {
-    Float3 sum = wind.mean;
-    for (std::size_t m = 0; m < kWindModes; ++m) {
-        const float turns = dot(position_ws, wind.modes[m].waveVector) + phases[m];
-        sum = sum + wind.modes[m].amplitude * std::sin(2.0f * kPi * turns);
-    }
-    return sum;
-}
 
 }  // namespace
 
@@ -123,7 +98,7 @@ void ProjectiveEquations::fillSticks() {
 
 bool ProjectiveEquations::reset(std::span<const RootFrame> roots_ws) {
     if (roots_ws.size() != strandCount()) return false;
-    lastSpheres_.clear();
+    spheres_.forget();
     for (std::uint32_t s = 0; s < strandCount(); ++s) {
         Root& root = roots_[s];
         root.now = roots_ws[s];
@@ -141,25 +116,10 @@ bool ProjectiveEquations::reset(std::span<const RootFrame> roots_ws) {
     return true;
 }
 
-void ProjectiveEquations::takeSpheres(const FrameInput& input) {
-    spheres_.clear();
-    for (std::size_t i = 0; i < input.spheres.size(); ++i) {
-        const Sphere& now = input.spheres[i];
-        if (!isFinite(now.center_ws) || !std::isfinite(now.radius) || !(now.radius > 0.0f)) continue;
-        Float3 motion;
-        if (i < lastSpheres_.size() && isFinite(lastSpheres_[i].center_ws)) {
-            motion = now.center_ws - lastSpheres_[i].center_ws;
-            if (!(length(motion) <= settings_.teleportDistance)) motion = {};
-        }
-        spheres_.push_back({now.center_ws - motion, motion, now.radius});
-    }
-    lastSpheres_.assign(input.spheres.begin(), input.spheres.end());
-}
-
 bool ProjectiveEquations::step(const FrameInput& input) {
     if (input.roots_ws.size() != strandCount()) return false;
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
-    takeSpheres(input);
+    spheres_.take(input.spheres, settings_.teleportDistance);
     const double time = std::abs(input.time) <= kLongestTime ? input.time : 0.0;
     const Frame frame{&input, windPhases(wind_, time - static_cast<double>(input.dt)),
                       windPhases(wind_, time)};
@@ -208,7 +168,7 @@ void ProjectiveEquations::runStrand(std::uint32_t strand, const Frame& frame) {
     for (std::uint32_t i = 0; i < substeps; ++i) {
         const float share = static_cast<float>(i + 1) / count;
         runSubstep(strand, {between(from, to, share), root.velocity, settings_.gravity - acceleration,
-                            lerp(rootFrom, rootTo, share), lerp(tipFrom, tipTo, share), share, h, decay});
+                            mixed(rootFrom, rootTo, share), mixed(tipFrom, tipTo, share), share, h, decay});
     }
 }
 
@@ -248,7 +208,7 @@ StickForces ProjectiveEquations::forcesOn(std::uint32_t point, Quat frame, float
                        substep.h};
     const Polar polar = polarOf(stick, motion);
     const Float3 flow =
-        rotate(toFrame, lerp(substep.airRoot, substep.airTip, along) - velocities_[point - 1]);
+        rotate(toFrame, mixed(substep.airRoot, substep.airTip, along) - velocities_[point - 1]);
     const Float3 turning =
         (polar.acrossMeridian * (motion.thetaRate * std::cos(motion.phi)) + polar.byPhi * motion.phiRate) *
         (0.5f * stick.length);
@@ -265,7 +225,7 @@ void ProjectiveEquations::collide(std::uint32_t point, Quat frame, float along, 
     const float collisionRadius = settings_.collisionRadiusRoot +
                                   (settings_.collisionRadiusTip - settings_.collisionRadiusRoot) * along;
     const Float3 joint_ws = substep.root.position + positions_[point - 1];
-    for (const MovingSphere& sphere : spheres_) {
+    for (const MovingSpheres::Moving& sphere : spheres_.all()) {
         const Float3 centre_ws = sphere.from_ws + sphere.motion * substep.share;
         pushOut(sticks_[point], motions_[point], rotate(conjugate(frame), centre_ws - joint_ws),
                 sphere.radius + collisionRadius);

@@ -102,18 +102,23 @@ void turnStick(const Stick& stick, StickMotion& motion, Quat frame, const StickF
     advance(motion.phi, motion.phiRate, stick.phiAim, lever * dot(forces.force, byPhi), phiTurn);
 }
 
-void pushOut(const Stick& stick, StickMotion& motion, Float3 centre, float reach) {
-    const float l = stick.length, distance = length(centre);
-    if (!(distance < reach + l) || distance < kShortestStick) return;
-    const Float3 direction = polarOf(stick, motion).direction;
-    if (!(length(direction * l - centre) < reach)) return;
+std::optional<Float3> directionOut(Float3 direction, float l, Float3 centre, float reach) {
+    const float distance = length(centre);
+    if (!(distance < reach + l) || distance < kShortestStick) return std::nullopt;
+    if (!(length(direction * l - centre) < reach)) return std::nullopt;
     const Float3 axis = centre * (1.0f / distance);
     Float3 sideways = direction - axis * dot(direction, axis);
     if (length(sideways) < 1e-6f) sideways = anyAcross(axis);
     sideways = sideways * (1.0f / length(sideways));
     const float cosine =
         std::clamp((distance * distance + l * l - reach * reach) / (2.0f * distance * l), -1.0f, 1.0f);
-    const Float3 out = axis * cosine + sideways * std::sqrt(1.0f - cosine * cosine);
+    return axis * cosine + sideways * std::sqrt(1.0f - cosine * cosine);
+}
+
+void pushOut(const Stick& stick, StickMotion& motion, Float3 centre, float reach) {
+    const auto turned = directionOut(polarOf(stick, motion).direction, stick.length, centre, reach);
+    if (!turned) return;
+    const Float3 out = *turned;
 
     // Two pairs of angles name a direction; the nearer one is the way the stick turns.
     const float sine = std::clamp(dot(out, stick.pole), -1.0f, 1.0f);

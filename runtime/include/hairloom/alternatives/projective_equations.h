@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hairloom/alternatives/moving_spheres.h"
 #include "hairloom/alternatives/stick.h"
 #include "hairloom/host.h"
 #include "hairloom/settings.h"
@@ -68,16 +69,11 @@ class ProjectiveEquations {
         RootFrame rest, now;
         Float3 velocity;  ///< over the last frame
     };
-    struct MovingSphere {
-        Float3 from_ws, motion;
-        float radius = 0.0f;
-    };
     struct Frame;
     struct Substep;
     ProjectiveEquations() = default;
 
     void fillSticks();
-    void takeSpheres(const FrameInput& input);
     void runStrand(std::uint32_t strand, const Frame& frame);
     void runSubstep(std::uint32_t strand, const Substep& substep);
     StickForces forcesOn(std::uint32_t point, Quat frame, float along, const Substep& substep) const;
@@ -92,8 +88,7 @@ class ProjectiveEquations {
     std::vector<StickMotion> motions_;  // by point
     std::vector<Float3> positions_;     // by point, from the root, world axes
     std::vector<Float3> velocities_;    // by point, world
-    std::vector<MovingSphere> spheres_;
-    std::vector<Sphere> lastSpheres_;
+    MovingSpheres spheres_;
 };
 
 struct ProjectiveEquations::Result {

@@ -3,6 +3,8 @@
 // One stiff stick in polar coordinates about the frame that its parent carries, as ProjectiveEquations uses
 // it.
 
+#include <optional>
+
 #include "hairloom/math.h"
 
 namespace hairloom::runtime {
@@ -49,6 +51,11 @@ struct StickForces {
 /// Follows the parent's frame from motion.frame to `frame` without turning in the world, then turns by
 /// torque.
 void turnStick(const Stick& stick, StickMotion& motion, Quat frame, const StickForces& forces);
+
+/// Where a stick of that direction (of unit length) and length has to point for its tip to be at `reach` from
+/// `centre`, which is measured from its joint: in the plane of joint, centre and tip. Nothing where the tip
+/// is as far already. A stick whose whole reach lies inside points away from the centre.
+std::optional<Float3> directionOut(Float3 direction, float length, Float3 centre, float reach);
 
 /// Turns a stick whose tip is nearer than `reach` to `centre` (from the joint, in the parent's frame) about
 /// its joint, in the plane of joint, centre and tip, until the tip is at that distance.

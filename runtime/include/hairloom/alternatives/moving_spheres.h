@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Collision spheres of a frame, for methods that step one strand at a time.
+
+#include <span>
+#include <vector>
+
+#include "hairloom/math.h"
+#include "hairloom/strands.h"
+
+namespace hairloom::runtime {
+
+/// Spheres that move evenly within a frame. Those that are no numbers are left out; those that jump do not
+/// move.
+class MovingSpheres {
+  public:
+    struct Moving {
+        Float3 from_ws, motion;  ///< metres
+        float radius = 0.0f;     ///< metres
+    };
+    /// Allocates only for more spheres than ever before.
+    void take(std::span<const Sphere> spheres, float teleportDistance);
+    /// The next spheres do not move.
+    void forget() { last_.clear(); }
+    std::span<const Moving> all() const { return moving_; }
+
+  private:
+    std::vector<Moving> moving_;
+    std::vector<Sphere> last_;
+};
+
+}  // namespace hairloom::runtime
