@@ -56,6 +56,8 @@ CALLS: dict[str, tuple[Callable[[], hairloom.Report], str]] = {
     "stability": (lambda: hairloom.stability(hair, output="stability", storms=1), "certificate"),
     "stack": (lambda: hairloom.stack(hair), "operators"),
     "sweep": (lambda: hairloom.sweep("sweep.json"), "parts"),
+    "takes": (lambda: hairloom.takes(hair, record="walk", motion="nod", frames=2), "takes"),
+    "timeline": (lambda: hairloom.timeline(hair), "time_line"),
     "transfer": (lambda: hairloom.transfer(hair, to=BUST, output="moved.hairloom"), "strands"),
     "validate": (lambda: hairloom.validate(hair), "findings"),
 }

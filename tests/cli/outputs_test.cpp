@@ -11,7 +11,10 @@
 #include <sys/wait.h>
 #endif
 
+#include <nlohmann/json.hpp>
+
 #include "tests/cli/command.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom::test {
 namespace {
@@ -129,6 +132,20 @@ TEST_F(Outputs, TheTableHasAllThatJobsWrite) {
     }
     EXPECT_FALSE(found.empty());
     EXPECT_EQ(found, known);
+}
+
+// The module's own tests run in a lane of their own, which a new job would break unnoticed.
+TEST_F(Outputs, TheTestsOfPythonCallEveryJob) {
+    std::ifstream file(sourceDir() / "python/tests/test_jobs.py");
+    const std::string calls{std::istreambuf_iterator<char>(file), {}};
+    ASSERT_THAT(calls, HasSubstr("CALLS"));
+    ASSERT_EQ(run("reference --jobs jobs.json").exitCode, 0);
+    std::ifstream described(folder / "jobs.json");
+    for (const auto& job : nlohmann::json::parse(described)["jobs"]) {
+        const std::string name = job["name"];
+        EXPECT_THAT(calls,
+                    testing::AnyOf(HasSubstr("\"" + name + "\": ("), HasSubstr("\"" + name + "_\": (")));
+    }
 }
 
 TEST_F(Outputs, AreTriedBeforeTheWork) {
