@@ -37,6 +37,9 @@ if [ -z "$python" ]; then
     fi
     # What venv installs pip from, which this system has another of.
     sed -i "s#sysconfig.get_config_var('WHEEL_PKG_DIR')#'$root/usr/share/python-wheels'#" "$root/usr/lib/python3.13/ensurepip/__init__.py"
+    # Debian's pyconfig.h includes that of its architecture by a path below /usr/include, which is another system's here.
+    mkdir -p "$root/usr/include/python3.13/x86_64-linux-gnu"
+    ln -sfn ../../x86_64-linux-gnu/python3.13 "$root/usr/include/python3.13/x86_64-linux-gnu/python3.13"
     # Its own loader and libraries run it here, beside the compilers and libraries that the wheel is built with.
     mkdir -p "$work/python/bin"
     ln -sfn "$root/usr/lib" "$work/python/lib"
