@@ -1,61 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <limits>
-
 #include "hairloom/alternatives/projective_equations.h"
-#include "tests/runtime/allocations.h"
-#include "tests/runtime/strand_fixture.h"
-#include "tests/runtime/threads.h"
+#include "tests/runtime/segment_methods.h"
 #include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
 
-ProjectiveEquations makeSticks(const Strands& strands, const SimulationSettings& settings, Host host = {}) {
-    ProjectiveEquations::Result made = ProjectiveEquations::make(strands.view(), settings, std::move(host));
-    EXPECT_EQ(made.error, "");
-    return std::move(*made.engine);
-}
-
-std::vector<Float3> positionsOf(const ProjectiveEquations& sticks) {
-    std::vector<Float3> positions(sticks.pointCount());
-    sticks.readPositions(positions);
-    return positions;
-}
-
-void run(ProjectiveEquations& sticks, const Strands& strands, int frames, float dt = 1.0f / 60.0f) {
-    const std::vector<RootFrame> roots = strands.roots();
-    for (int f = 0; f < frames; ++f) sticks.step({dt, static_cast<double>(dt) * (f + 1), roots, {}});
-}
-
-/// Largest |length / rest length − 1|; NaN where a point is none.
-double worstStretch(const Strands& strands, const std::vector<Float3>& now) {
-    double worst = 0.0;
-    for (std::uint32_t s = 0; s < strands.count(); ++s) {
-        for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
-            const double rest = static_cast<double>(length(strands.points[p] - strands.points[p - 1]));
-            const double stretch = std::abs(static_cast<double>(length(now[p] - now[p - 1])) / rest - 1.0);
-            if (!(stretch <= worst)) worst = stretch;
-        }
-    }
-    return worst;
-}
-
-Strands oneStick(Float3 direction, float l) {
-    Strands strands;
-    strands.add({}, direction, l, 2);
-    return strands;
-}
-
 /// Period of a stick of 0.25 m that is let go 0.05 rad from its equilibrium towards `sideways`, in a gravity
 /// that is turned from the stick's rest direction, −y, by `tilt` towards z.
 double measuredPeriod(Float3 sideways, float tilt) {
-    const Strands strands = oneStick({0.0f, -1.0f, 0.0f}, 0.25f);
+    const Strands strands = oneSegment({0.0f, -1.0f, 0.0f}, 0.25f);
     const Float3 down{0.0f, -std::cos(tilt), std::sin(tilt)};
     SimulationSettings s = bare();
     s.substeps = 64;
     s.gravity = sideways * (9.81f * std::sin(0.05f)) + down * (9.81f * std::cos(0.05f));
     s.dampingTime = 0.05f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
+    ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
     run(sticks, strands, 300);
     EXPECT_NEAR(dot(positionsOf(sticks)[1], sideways), 0.25f * std::sin(0.05f), 2e-5f);
     s.gravity = down * 9.81f;
@@ -91,14 +51,14 @@ TEST(Projective, OffTheEquatorThetaIsSlowerByTheStatedCosine) {
 TEST(Projective, SideWindHoldsAStickAtItsClosedFormAngle) {
     // g sinψ = c w cos²ψ: gravity and the wind's pull c w sinα, sinα = cosψ, on the lever's two projections.
     for (const double wind : {1.0, 4.0, 20.0}) {
-        const Strands strands = oneStick({0.0f, -1.0f, 0.0f}, 0.1f);
+        const Strands strands = oneSegment({0.0f, -1.0f, 0.0f}, 0.1f);
         SimulationSettings s = bare();
         s.gravity = {0.0f, -9.81f, 0.0f};
         s.airDrag = 3.0f;
         s.windSpeed = static_cast<float>(wind);
         s.windGustiness = 0.0f;
         s.windDirection = {0.6f, 0.0f, 0.8f};
-        ProjectiveEquations sticks = makeSticks(strands, s);
+        ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
         run(sticks, strands, 1200);
         const double r = 3.0 * wind / 9.81;
         const double sine = (std::sqrt(1.0 + 4.0 * r * r) - 1.0) / (2.0 * r);
@@ -115,28 +75,28 @@ TEST(Projective, ASteadyPullBendsByItsClosedFormAngle) {
     const double slope = 3.0 * stiffness / (0.5 * l * l * l * l);
     double angle = 0.0;
     for (int i = 0; i < 60; ++i) angle = 1.5 / l * 9.81 * std::cos(angle) / slope;
-    const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.02f);
+    const Strands strands = oneSegment({1.0f, 0.0f, 0.0f}, 0.02f);
     SimulationSettings s = bare();
     s.gravity = {0.0f, -9.81f, 0.0f};
     s.angularStiffness = 0.1f;
     s.restGravity = 0.0f;
     s.dampingTime = 0.2f;
-    ProjectiveEquations sagging = makeSticks(strands, s);
+    ProjectiveEquations sagging = makeMethod<ProjectiveEquations>(strands, s);
     run(sagging, strands, 300);
     EXPECT_NEAR(static_cast<double>(positionsOf(sagging)[1].y), -l * std::sin(angle), 1e-6);
     EXPECT_GT(angle, 0.05);
     s.restGravity = 1.0f;
-    ProjectiveEquations hung = makeSticks(strands, s);
+    ProjectiveEquations hung = makeMethod<ProjectiveEquations>(strands, s);
     run(hung, strands, 300);
     EXPECT_NEAR(positionsOf(hung)[1].y, 0.0f, 1e-7f);
 }
 
 TEST(Projective, AnAcceleratingRootIsGravityAtAnAngle) {
-    const Strands strands = oneStick({0.0f, -1.0f, 0.0f}, 0.1f);
+    const Strands strands = oneSegment({0.0f, -1.0f, 0.0f}, 0.1f);
     SimulationSettings s = bare();
     s.gravity = {0.0f, -9.81f, 0.0f};
     s.dampingTime = 0.1f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
+    ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
     for (int f = 1; f <= 180; ++f) {
         const float t = static_cast<float>(f) / 60.0f;
         sticks.step({1.0f / 60.0f, 0.0, strands.roots({2.0f * t * t, 0.0f, 0.0f}), {}});
@@ -150,7 +110,7 @@ TEST(Projective, LengthIsExactThroughViolentMotion) {
     SimulationSettings s = springSettings();
     s.windSpeed = 30.0f;
     s.angularStiffness = 0.05f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
+    ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
     const std::vector<Sphere> spheres{{{0.05f, 0.05f, 0.0f}, 0.06f}};
     for (int f = 1; f <= 200; ++f) {
         const auto roots = strands.roots({0.3f * std::sin(static_cast<float>(f)), 0.0f, 0.0f},
@@ -166,7 +126,7 @@ TEST(Projective, AuthoredShapeComesBackAndTurnsWithTheRoot) {
     s.gravity = {};
     s.airDrag = 0.0f;
     s.dampingTime = 0.1f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
+    ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
     const Quat turn = turnAbout({0.6f, 0.0f, 0.8f}, 1.2f);
     for (int f = 1; f <= 10; ++f) {
         const auto roots = strands.roots({}, turnAbout({0.6f, 0.0f, 0.8f}, 0.12f * static_cast<float>(f)));
@@ -186,8 +146,8 @@ TEST(Projective, AuthoredShapeComesBackAndTurnsWithTheRoot) {
 
 TEST(Projective, WithoutTorqueAStickKeepsItsDirectionWhileItsRootTurns) {
     for (const Float3 axis : {Float3{0, 0, 1}, Float3{0, 1, 0}, Float3{1, 0, 0}, Float3{0, 0.6f, -0.8f}}) {
-        const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.1f);
-        ProjectiveEquations sticks = makeSticks(strands, bare());
+        const Strands strands = oneSegment({1.0f, 0.0f, 0.0f}, 0.1f);
+        ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, bare());
         for (int f = 1; f <= 10; ++f) {
             const auto roots = strands.roots({}, turnAbout(axis, 0.02f * static_cast<float>(f)));
             sticks.step({1.0f / 60.0f, 0.0, roots, {}});
@@ -201,7 +161,7 @@ TEST(Projective, RigidHairMovesAsItsRootDoes) {
     SimulationSettings s = springSettings();
     s.angularStiffness = 1.0f;
     s.angularCurve = {};
-    ProjectiveEquations sticks = makeSticks(strands, s);
+    ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
     for (int f = 1; f <= 5; ++f) {
         const float angle = 0.002f * static_cast<float>(f);
         sticks.step(
@@ -224,11 +184,11 @@ TEST(Projective, RigidHairMovesAsItsRootDoes) {
 
 TEST(Projective, NoStepSizeLiftsAStickAboveWhereItStarted) {
     for (const float dt : {1e-3f, 1.0f / 60.0f, 0.2f, 1.0f, 30.0f}) {
-        const Strands strands = oneStick({0.8f, 0.6f, 0.0f}, 0.03f);
+        const Strands strands = oneSegment({0.8f, 0.6f, 0.0f}, 0.03f);
         SimulationSettings s = bare();
         s.substeps = 1;
         s.gravity = {4.0f, -9.81f, 7.0f};
-        ProjectiveEquations sticks = makeSticks(strands, s);
+        ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
         const auto potential = [&] { return -static_cast<double>(dot(s.gravity, positionsOf(sticks)[1])); };
         const double start = potential();
         for (int f = 0; f < 400; ++f) {
@@ -239,41 +199,6 @@ TEST(Projective, NoStepSizeLiftsAStickAboveWhereItStarted) {
         const double lowest = -static_cast<double>(0.03f * length(s.gravity));
         EXPECT_NEAR(potential(), lowest, dt >= 0.2f ? 1e-5 : 1.0) << dt;
     }
-}
-
-TEST(Projective, TipsLeaveSpheresAndSticksKeepTheirLength) {
-    const Strands strands = tuft(40);
-    SimulationSettings s = springSettings();
-    s.angularStiffness = 0.02f;
-    s.collisionRadiusRoot = s.collisionRadiusTip = 0.002f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
-    const std::vector<Sphere> spheres{{{0.08f, 0.005f, 0.0f}, 0.07f}};
-    const auto deepest = [&] {
-        float maximum = -1.0f;
-        for (const Float3& p : positionsOf(sticks)) {
-            maximum = std::max(maximum, 0.072f - length(p - spheres[0].center_ws));
-        }
-        return maximum;
-    };
-    ASSERT_GT(deepest(), 0.02f) << "the sphere should stand in the hair";
-    for (int f = 0; f < 120; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots(), spheres});
-    EXPECT_LT(deepest(), 1e-5f);
-    EXPECT_LT(worstStretch(strands, positionsOf(sticks)), 2e-5);
-}
-
-TEST(Projective, AStickThatRestedOnASphereStartsFromRest) {
-    const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.1f);
-    SimulationSettings s = bare();
-    s.gravity = {0.0f, -9.81f, 0.0f};
-    s.collisionRadiusTip = 0.0f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
-    const std::vector<Sphere> spheres{{{0.1f, -0.05f, 0.0f}, 0.05f}};
-    for (int f = 0; f < 120; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots(), spheres});
-    EXPECT_NEAR(length(positionsOf(sticks)[1] - spheres[0].center_ws), 0.05f, 1e-5f);
-    const float before = positionsOf(sticks)[1].y;
-    sticks.step({1.0f / 60.0f, 0.0, strands.roots(), {}});
-    // ½ · (3/2) g t² and a little for the steps' sizes: a free fall, not two seconds' speed.
-    EXPECT_NEAR(before - positionsOf(sticks)[1].y, 0.75f * 9.81f / 3600.0f, 4e-4f);
 }
 
 TEST(Projective, PushBeyondThePoleTakesTheShorterArc) {
@@ -291,88 +216,17 @@ TEST(Projective, PushBeyondThePoleTakesTheShorterArc) {
 
 TEST(Projective, AtThePoleAStickStaysSoundAndComesBack) {
     // The pole of hair along x stands on z: wind blows the stick over it and beyond.
-    const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.03f);
+    const Strands strands = oneSegment({1.0f, 0.0f, 0.0f}, 0.03f);
     SimulationSettings s = bare();
     s.gravity = {0.0f, 0.0f, 50.0f};
     s.dampingTime = 0.3f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
+    ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, s);
     run(sticks, strands, 600);
     EXPECT_LT(length(positionsOf(sticks)[1] - Float3{0.0f, 0.0f, 0.03f}), 1e-5f);
     s.gravity = {50.0f, 0.0f, 0.0f};
     ASSERT_EQ(sticks.setSettings(s), "");
     run(sticks, strands, 600);
     EXPECT_LT(length(positionsOf(sticks)[1] - Float3{0.03f, 0.0f, 0.0f}), 1e-5f);
-}
-
-TEST(Projective, SameBitsForAnyNumberOfThreads) {
-    const Strands strands = tuft(80, true);
-    SimulationSettings s = springSettings();
-    s.windSpeed = 8.0f;
-    std::vector<std::vector<Float3>> results;
-    for (const Host& host : {Host{}, hostWithThreads(1), hostWithThreads(5), hostWithThreads(3, true)}) {
-        ProjectiveEquations sticks = makeSticks(strands, s, host);
-        for (int f = 1; f <= 20; ++f) {
-            const auto roots = strands.roots({0.02f * std::sin(static_cast<float>(f)), 0.0f, 0.0f});
-            sticks.step({1.0f / 60.0f, f / 60.0, roots, {}});
-        }
-        results.push_back(positionsOf(sticks));
-    }
-    for (const auto& result : results) EXPECT_TRUE(result == results[0]);
-}
-
-TEST(Projective, AStepAllocatesNothing) {
-    const Strands strands = tuft(50);
-    SimulationSettings s = springSettings();
-    s.windSpeed = 8.0f;
-    ProjectiveEquations sticks = makeSticks(strands, s);
-    const std::vector<Sphere> spheres{{{0.08f, 0.02f, 0.0f}, 0.07f}};
-    const auto roots = strands.roots();
-    sticks.step({1.0f / 60.0f, 0.0, roots, spheres});
-    const std::size_t before = allocationCount();
-    for (int f = 0; f < 10; ++f) sticks.step({1.0f / 60.0f, f / 60.0, roots, spheres});
-    EXPECT_EQ(allocationCount(), before);
-}
-
-TEST(Projective, NonFiniteInputIsRejected) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
-    const Strands strands = tuft(4);
-    SimulationSettings s = springSettings();
-    s.windSpeed = 8.0f;
-    s.angularStiffness = 1.0f;
-    s.angularCurve = Ramp::straight(1.0f, 0.0f);
-    ProjectiveEquations sticks = makeSticks(strands, s);
-    auto roots = strands.roots();
-    roots[0].position.x = nan;
-    roots[1].rotation = {0.0f, 0.0f, 0.0f, 0.0f};
-    roots[2].position.y = huge;
-    const std::vector<Sphere> spheres{{{nan, 0, 0}, 1.0f},
-                                      {{0, 0, 0}, nan},
-                                      {{huge, 0, 0}, 1.0f},
-                                      {{0, 0, 0}, huge},
-                                      {strands.points[0], 0.1f}};
-    const float times[] = {1.0f / 60.0f, 1e-40f, huge, nan, -1.0f, std::numeric_limits<float>::infinity()};
-    const double clocks[] = {std::numeric_limits<double>::quiet_NaN(), 1e308, -1e308};
-    for (int f = 0; f < 60; ++f) {
-        sticks.step({times[f % 6], clocks[f % 3], roots, spheres});
-        ASSERT_LT(worstStretch(strands, positionsOf(sticks)), 2e-5) << f;
-        std::vector<Float3> velocities(sticks.pointCount());
-        sticks.readVelocities(velocities);
-        for (const Float3& v : velocities) ASSERT_TRUE(isFinite(v));
-    }
-}
-
-TEST(Projective, RefusesWhatTheEngineRefuses) {
-    const Strands strands = tuft(2);
-    SimulationSettings s = springSettings();
-    s.airDrag = -1.0f;
-    EXPECT_EQ(ProjectiveEquations::make(strands.view(), s).error, "airDrag is -1 1/s; expected 0 to 1000");
-    Strands torn = tuft(2);
-    torn.points.pop_back();
-    EXPECT_NE(ProjectiveEquations::make(torn.view(), {}).error, "");
-    Strands doubled = oneStick({0.0f, -1.0f, 0.0f}, 0.0f);
-    ProjectiveEquations sticks = makeSticks(doubled, {});
-    run(sticks, doubled, 10);
-    EXPECT_EQ(positionsOf(sticks)[1], Float3{});
 }
 
 }  // namespace

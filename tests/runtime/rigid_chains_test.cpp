@@ -1,50 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hairloom/alternatives/rigid_chains.h"
 
-#include <limits>
-
-#include "tests/runtime/allocations.h"
-#include "tests/runtime/strand_fixture.h"
-#include "tests/runtime/threads.h"
+#include "tests/runtime/segment_methods.h"
 #include "tests/simulation/elastica.h"
 #include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kEarthGravity = 9.81;
 const Float3 kDown{0.0f, -9.81f, 0.0f};
-
-RigidChains makeChains(const Strands& strands, const SimulationSettings& settings, Host host = {}) {
-    RigidChains::Result made = RigidChains::make(strands.view(), settings, std::move(host));
-    EXPECT_EQ(made.error, "");
-    return std::move(*made.engine);
-}
-
-std::vector<Float3> positionsOf(const RigidChains& chains) {
-    std::vector<Float3> positions(chains.pointCount());
-    chains.readPositions(positions);
-    return positions;
-}
-
-void run(RigidChains& chains, const Strands& strands, int frames, float dt = 1.0f / 60.0f,
-         std::span<const Sphere> spheres = {}) {
-    const std::vector<RootFrame> roots = strands.roots();
-    for (int f = 0; f < frames; ++f) chains.step({dt, static_cast<double>(dt) * (f + 1), roots, spheres});
-}
-
-/// Largest |length / rest length − 1|; NaN where a point is none.
-double worstStretch(const Strands& strands, const std::vector<Float3>& now) {
-    double worst = 0.0;
-    for (std::uint32_t s = 0; s < strands.count(); ++s) {
-        for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
-            const double rest = static_cast<double>(length(strands.points[p] - strands.points[p - 1]));
-            const double stretch = std::abs(static_cast<double>(length(now[p] - now[p - 1])) / rest - 1.0);
-            if (!(stretch <= worst)) worst = stretch;
-        }
-    }
-    return worst;
-}
 
 float farthestFrom(const std::vector<Float3>& now, const std::vector<Float3>& expected) {
     float worst = 0.0f;
@@ -53,12 +18,6 @@ float farthestFrom(const std::vector<Float3>& now, const std::vector<Float3>& ex
         if (!(away <= worst)) worst = away;
     }
     return worst;
-}
-
-Strands oneSegment(Float3 direction, float l) {
-    Strands strands;
-    strands.add({}, direction, l, 2);
-    return strands;
 }
 
 TEST(RigidChains, OneSegmentIsThePhysicalPendulumAtAnyAmplitude) {
@@ -70,13 +29,13 @@ TEST(RigidChains, OneSegmentIsThePhysicalPendulumAtAnyAmplitude) {
             b = std::sqrt(a * b);
             a = mean;
         }
-        const double expected = 2.0 * std::numbers::pi * std::sqrt(2.0 * 0.25 / (3.0 * kGravity)) / a;
+        const double expected = 2.0 * std::numbers::pi * std::sqrt(2.0 * 0.25 / (3.0 * kEarthGravity)) / a;
         const float angle = static_cast<float>(start);
         const Strands strands = oneSegment({std::sin(angle), -std::cos(angle), 0.0f}, 0.25f);
         SimulationSettings s = bare();
         s.gravity = kDown;
         s.substeps = 256;
-        RigidChains chains = makeChains(strands, s);
+        RigidChains chains = makeMethod<RigidChains>(strands, s);
         // From rest to the lowest point is a quarter of the first period.
         const float dt = 1.0f / 960.0f;
         float before = angle;
@@ -102,7 +61,7 @@ struct DoublePendulum {
         double a, b, aRate, bRate;
     };
     Rates rates(double at, double bt, double ar, double br) const {
-        const double m1 = first, m2 = second, l1 = first, l2 = second, g = kGravity;
+        const double m1 = first, m2 = second, l1 = first, l2 = second, g = kEarthGravity;
         const double j1 = m1 * l1 * l1 / 3 + m2 * l1 * l1, j2 = m2 * l2 * l2 / 3;
         const double c = 0.5 * m2 * l1 * l2 * std::cos(at - bt), s = 0.5 * m2 * l1 * l2 * std::sin(at - bt);
         const double f1 = -s * br * br - g * std::sin(at) * (0.5 * m1 + m2) * l1;
@@ -133,7 +92,7 @@ double doublePendulumError(std::uint32_t substeps) {
     SimulationSettings s = bare();
     s.gravity = kDown;
     s.substeps = substeps;
-    RigidChains chains = makeChains(strands, s);
+    RigidChains chains = makeMethod<RigidChains>(strands, s);
     DoublePendulum exact{0.1, 0.2, static_cast<double>(1.2f), static_cast<double>(-0.4f)};
     double worst = 0.0;
     for (int f = 0; f < 240; ++f) {
@@ -157,8 +116,8 @@ TEST(RigidChains, TwoSegmentsAreTheDoublePendulumToFirstOrder) {
 TEST(RigidChains, ASaggingChainIsTheHeavyElastica) {
     // 19 segments bend; the first is held. Drops by a third of its length.
     const double l = 0.004, free = 19 * l;
-    const double B = test::elasticaStiffness(0.33, kGravity, free);
-    const test::ElasticaShape exact = test::solveElastica(B, kGravity, free);
+    const double B = test::elasticaStiffness(0.33, kEarthGravity, free);
+    const test::ElasticaShape exact = test::solveElastica(B, kEarthGravity, free);
     Strands strands;
     strands.add({}, {1.0f, 0.0f, 0.0f}, static_cast<float>(l), 21);
     SimulationSettings s = bare();
@@ -168,14 +127,14 @@ TEST(RigidChains, ASaggingChainIsTheHeavyElastica) {
     s.angularCurve = {};
     s.restGravity = 0.0f;
     s.dampingTime = 0.1f;
-    RigidChains chains = makeChains(strands, s);
+    RigidChains chains = makeMethod<RigidChains>(strands, s);
     run(chains, strands, 600);
     const Float3 tip = positionsOf(chains).back();
     EXPECT_NEAR(static_cast<double>(-tip.y), exact.drop, 0.01 * free);
     EXPECT_NEAR(static_cast<double>(tip.x) - l, exact.reach, 0.01 * free);
     // And with its springs turned against its weight it stays as authored.
     s.restGravity = 1.0f;
-    RigidChains held = makeChains(strands, s);
+    RigidChains held = makeMethod<RigidChains>(strands, s);
     run(held, strands, 300);
     EXPECT_LT(farthestFrom(positionsOf(held), strands.points), 1e-5f);
 }
@@ -185,7 +144,7 @@ TEST(RigidChains, AuthoredShapesHangAsTheyAre) {
     SimulationSettings s = springSettings();
     s.angularStiffness = 0.3f;
     s.angularCurve = {};
-    RigidChains chains = makeChains(strands, s);
+    RigidChains chains = makeMethod<RigidChains>(strands, s);
     run(chains, strands, 120);
     EXPECT_LT(farthestFrom(positionsOf(chains), strands.points), 5e-4f);
 }
@@ -195,7 +154,7 @@ TEST(RigidChains, AnAcceleratingRootIsGravityAtAnAngle) {
     SimulationSettings s = bare();
     s.gravity = kDown;
     s.dampingTime = 0.1f;
-    RigidChains chains = makeChains(strands, s);
+    RigidChains chains = makeMethod<RigidChains>(strands, s);
     for (int f = 1; f <= 180; ++f) {
         const float t = static_cast<float>(f) / 60.0f;
         chains.step({1.0f / 60.0f, 0.0, strands.roots({2.0f * t * t, 0.0f, 0.0f}), {}});
@@ -214,9 +173,9 @@ TEST(RigidChains, SideWindHoldsASegmentAtItsClosedFormAngle) {
         s.windSpeed = static_cast<float>(wind);
         s.windGustiness = 0.0f;
         s.windDirection = {0.6f, 0.0f, 0.8f};
-        RigidChains chains = makeChains(strands, s);
+        RigidChains chains = makeMethod<RigidChains>(strands, s);
         run(chains, strands, 1200);
-        const double r = 3.0 * wind / kGravity, sine = (std::sqrt(1.0 + 4.0 * r * r) - 1.0) / (2.0 * r);
+        const double r = 3.0 * wind / kEarthGravity, sine = (std::sqrt(1.0 + 4.0 * r * r) - 1.0) / (2.0 * r);
         const Float3 tip = positionsOf(chains)[1];
         EXPECT_NEAR(static_cast<double>(tip.y), -0.1 * std::sqrt(1.0 - sine * sine), 2e-5) << wind;
         EXPECT_NEAR(static_cast<double>(tip.x), 0.06 * sine, 2e-5) << wind;
@@ -227,7 +186,7 @@ TEST(RigidChains, SideWindHoldsASegmentAtItsClosedFormAngle) {
 TEST(RigidChains, WithoutTorqueAFreeSegmentKeepsItsDirectionWhileItsRootTurns) {
     for (const Float3 axis : {Float3{0, 0, 1}, Float3{0, 1, 0}, Float3{1, 0, 0}, Float3{0, 0.6f, -0.8f}}) {
         const Strands strands = oneSegment({1.0f, 0.0f, 0.0f}, 0.1f);
-        RigidChains chains = makeChains(strands, bare());
+        RigidChains chains = makeMethod<RigidChains>(strands, bare());
         for (int f = 1; f <= 60; ++f) {
             const auto roots = strands.roots({}, turnAbout(axis, 0.1f * static_cast<float>(f)));
             chains.step({1.0f / 60.0f, 0.0, roots, {}});
@@ -261,7 +220,7 @@ TEST(RigidChains, FallingChainsGainNoEnergyAndLoseLessInFinerSteps) {
         SimulationSettings s = bare();
         s.gravity = kDown;
         s.substeps = fine == 1 ? 256 : 16;
-        RigidChains chains = makeChains(strands, s);
+        RigidChains chains = makeMethod<RigidChains>(strands, s);
         const double start = energyOf(chains, strands, s.gravity);
         for (int f = 0; f < 60; ++f) {
             run(chains, strands, 1);
@@ -285,7 +244,7 @@ TEST(RigidChains, LengthIsExactAndNothingBlowsUpInStorms) {
             s.windSpeed = 30.0f;
             s.angularStiffness = stiffness;
             s.substeps = substeps;
-            RigidChains chains = makeChains(strands, s);
+            RigidChains chains = makeMethod<RigidChains>(strands, s);
             const std::vector<Sphere> spheres{{{0.05f, 0.05f, 0.0f}, 0.06f}};
             for (int f = 1; f <= 120; ++f) {
                 const auto roots = strands.roots({0.3f * std::sin(static_cast<float>(f)), 0.0f, 0.0f},
@@ -309,7 +268,7 @@ TEST(RigidChains, RigidHairMovesAsItsRootDoes) {
     SimulationSettings s = springSettings();
     s.angularStiffness = 1.0f;
     s.angularCurve = {};
-    RigidChains chains = makeChains(strands, s);
+    RigidChains chains = makeMethod<RigidChains>(strands, s);
     for (int f = 1; f <= 30; ++f) {
         const float n = static_cast<float>(f);
         chains.step({1.0f / 60.0f,
@@ -326,111 +285,6 @@ TEST(RigidChains, RigidHairMovesAsItsRootDoes) {
         EXPECT_LT(length(now[i] - arm - Float3{1.5f, 0.0f, 0.0f}), 1e-5f) << i;
         EXPECT_LT(length(velocities[i] - Float3{3.0f, 0.0f, 0.0f}), 0.1f) << i;
     }
-}
-
-TEST(RigidChains, TipsLeaveSpheres) {
-    const Strands strands = tuft(40);
-    SimulationSettings s = springSettings();
-    s.angularStiffness = 0.02f;
-    s.collisionRadiusRoot = s.collisionRadiusTip = 0.002f;
-    RigidChains chains = makeChains(strands, s);
-    const std::vector<Sphere> spheres{{{0.08f, 0.005f, 0.0f}, 0.07f}};
-    const auto deepest = [&] {
-        float maximum = -1.0f;
-        for (const Float3& p : positionsOf(chains))
-            maximum = std::max(maximum, 0.072f - length(p - spheres[0].center_ws));
-        return maximum;
-    };
-    ASSERT_GT(deepest(), 0.02f) << "the sphere should stand in the hair";
-    run(chains, strands, 120, 1.0f / 60.0f, spheres);
-    EXPECT_LT(deepest(), 1e-5f);
-    EXPECT_LT(worstStretch(strands, positionsOf(chains)), 2e-5);
-}
-
-TEST(RigidChains, ASegmentThatRestedOnASphereStartsFromRest) {
-    const Strands strands = oneSegment({1.0f, 0.0f, 0.0f}, 0.1f);
-    SimulationSettings s = bare();
-    s.gravity = kDown;
-    s.collisionRadiusTip = 0.0f;
-    RigidChains chains = makeChains(strands, s);
-    const std::vector<Sphere> spheres{{{0.1f, -0.05f, 0.0f}, 0.05f}};
-    run(chains, strands, 120, 1.0f / 60.0f, spheres);
-    EXPECT_NEAR(length(positionsOf(chains)[1] - spheres[0].center_ws), 0.05f, 1e-5f);
-    const float before = positionsOf(chains)[1].y;
-    run(chains, strands, 1);
-    // ½ · (3/2) g t² and a little for the steps' sizes: a free fall, not two seconds' speed.
-    EXPECT_NEAR(before - positionsOf(chains)[1].y, 0.75f * 9.81f / 3600.0f, 4e-4f);
-}
-
-TEST(RigidChains, SameBitsForAnyNumberOfThreads) {
-    const Strands strands = tuft(80, true);
-    SimulationSettings s = springSettings();
-    s.windSpeed = 8.0f;
-    std::vector<std::vector<Float3>> results;
-    for (const Host& host : {Host{}, hostWithThreads(1), hostWithThreads(5), hostWithThreads(3, true)}) {
-        RigidChains chains = makeChains(strands, s, host);
-        for (int f = 1; f <= 20; ++f) {
-            const auto roots = strands.roots({0.02f * std::sin(static_cast<float>(f)), 0.0f, 0.0f});
-            chains.step({1.0f / 60.0f, f / 60.0, roots, {}});
-        }
-        results.push_back(positionsOf(chains));
-    }
-    for (const auto& result : results) EXPECT_TRUE(result == results[0]);
-}
-
-TEST(RigidChains, AStepAllocatesNothing) {
-    const Strands strands = tuft(50);
-    SimulationSettings s = springSettings();
-    s.windSpeed = 8.0f;
-    RigidChains chains = makeChains(strands, s);
-    const std::vector<Sphere> spheres{{{0.08f, 0.02f, 0.0f}, 0.07f}};
-    run(chains, strands, 1, 1.0f / 60.0f, spheres);
-    const auto roots = strands.roots();
-    const std::size_t before = allocationCount();
-    for (int f = 0; f < 10; ++f) chains.step({1.0f / 60.0f, f / 60.0, roots, spheres});
-    EXPECT_EQ(allocationCount(), before);
-}
-
-TEST(RigidChains, NonFiniteInputIsRejected) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
-    const Strands strands = tuft(4);
-    SimulationSettings s = springSettings();
-    s.windSpeed = 8.0f;
-    s.angularStiffness = 1.0f;
-    s.angularCurve = Ramp::straight(1.0f, 0.0f);
-    RigidChains chains = makeChains(strands, s);
-    auto roots = strands.roots();
-    roots[0].position.x = nan;
-    roots[1].rotation = {0.0f, 0.0f, 0.0f, 0.0f};
-    roots[2].position.y = huge;
-    const std::vector<Sphere> spheres{{{nan, 0, 0}, 1.0f},
-                                      {{0, 0, 0}, nan},
-                                      {{huge, 0, 0}, 1.0f},
-                                      {{0, 0, 0}, huge},
-                                      {strands.points[0], 0.1f}};
-    const float times[] = {1.0f / 60.0f, 1e-40f, huge, nan, -1.0f, std::numeric_limits<float>::infinity()};
-    const double clocks[] = {std::numeric_limits<double>::quiet_NaN(), 1e308, -1e308};
-    for (int f = 0; f < 60; ++f) {
-        chains.step({times[f % 6], clocks[f % 3], roots, spheres});
-        ASSERT_LT(worstStretch(strands, positionsOf(chains)), 2e-5) << f;
-        std::vector<Float3> velocities(chains.pointCount());
-        chains.readVelocities(velocities);
-        for (const Float3& v : velocities) ASSERT_TRUE(isFinite(v));
-    }
-}
-
-TEST(RigidChains, RefusesWhatTheEngineRefuses) {
-    const Strands strands = tuft(2);
-    SimulationSettings s = springSettings();
-    s.airDrag = -1.0f;
-    EXPECT_EQ(RigidChains::make(strands.view(), s).error, "airDrag is -1 1/s; expected 0 to 1000");
-    Strands torn = tuft(2);
-    torn.points.pop_back();
-    EXPECT_NE(RigidChains::make(torn.view(), {}).error, "");
-    Strands doubled = oneSegment({0.0f, -1.0f, 0.0f}, 0.0f);
-    RigidChains chains = makeChains(doubled, {});
-    run(chains, doubled, 10);
-    EXPECT_EQ(positionsOf(chains)[1], Float3{});
 }
 
 }  // namespace

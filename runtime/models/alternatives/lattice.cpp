@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "engine/checks.h"
+#include "models/alternatives/surroundings.h"
 
 namespace hairloom::runtime {
 namespace {
 
 constexpr float kThinnest = 1e-3f;  // metres, of a cell: flat hair spans a volume too
-constexpr float kFastest = 1e6f;    // m/s, of the head
 constexpr int kMaxIterations = 24;
 constexpr double kSolved = 1e-10;  // share of the squared residual at which iterations end
 constexpr std::size_t kPointsPerJob = 4096;
@@ -254,13 +253,7 @@ bool Lattice::evaluate(std::span<Float3> positions_ws) const {
                 head_.position + (rotate(head_.rotation, points_[p].rest_ss) + displacementAt(points_[p]));
         }
     };
-    // By reference: a std::function that copied the captures would allocate.
-    const Host::Body body = std::ref(move);
-    if (host_.parallelFor) {
-        host_.parallelFor(points_.size(), kPointsPerJob, body);
-    } else {
-        body(0, points_.size());
-    }
+    inParallel(host_, points_.size(), kPointsPerJob, move);
     return true;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "engine/checks.h"
 #include "models/alternatives/surroundings.h"
@@ -15,12 +14,6 @@ constexpr float kRigid = 1e12f;  // 1/s²; a stiffer joint does not move
 constexpr std::size_t kStrandsPerJob = 16;
 
 }  // namespace
-
-/// What all strands share in one step.
-struct ProjectiveEquations::Frame {
-    const FrameInput* input;
-    std::array<float, kWindModes> windFrom, windTo;
-};
 
 /// What all sticks of a strand share in one substep.
 struct ProjectiveEquations::Substep {
@@ -46,15 +39,11 @@ ProjectiveEquations::Result ProjectiveEquations::make(const StrandsView& strands
     made.motions_.resize(points);
     made.positions_.resize(points);
     made.velocities_.resize(points);
-    made.roots_.resize(strands.offsets.size() - 1);
-    std::vector<RootFrame> roots;
-    for (std::size_t s = 0; s < made.roots_.size(); ++s) {
-        RootFrame& root = made.roots_[s].rest;
-        root.position = strands.restPositions_ss[strands.offsets[s]];
-        if (!strands.rootRotations_ss.empty()) root.rotation = strands.rootRotations_ss[s];
-        normalize(root.rotation);
-        roots.push_back(root);
-        const Quat toRoot = conjugate(root.rotation);
+    const std::vector<RootFrame> roots = rootsAtRest(strands);
+    made.roots_.resize(roots.size());
+    for (std::size_t s = 0; s < roots.size(); ++s) {
+        made.roots_[s].rest = roots[s];
+        const Quat toRoot = conjugate(roots[s].rotation);
         const Float3 up = rotate(toRoot, {0.0f, 1.0f, 0.0f});
         for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
             made.sticks_[p] =
@@ -84,11 +73,9 @@ void ProjectiveEquations::fillSticks() {
             Stick& stick = sticks_[root + j + 1];
             const float l = stick.length;
             const float along = static_cast<float>(j) / static_cast<float>(segments);
-            const float authored = settings_.angularStiffness * settings_.angularCurve.at(along);
             const float inner = j >= settings_.clampedPoints ? sticks_[root + j].length : 0.0f;
-            const double rod =
-                kHairBendingStiffness * static_cast<double>(authored) / (1.0 - static_cast<double>(authored));
-            const double slope = authored > 0.0f ? 3.0 * rod / (0.5 * (l + inner) * std::pow(l, 3.0)) : 0.0;
+            const double rod = rodStiffness(settings_, along);
+            const double slope = rod > 0.0 ? 3.0 * rod / (0.5 * (l + inner) * std::pow(l, 3.0)) : 0.0;
             stick.fixed = j + 1 < settings_.clampedPoints || !(slope < static_cast<double>(kRigid));
             stick.bend = stick.fixed ? 0.0f : static_cast<float>(slope);
             aimAgainst(stick, gravity * settings_.restGravity);
@@ -120,55 +107,35 @@ bool ProjectiveEquations::step(const FrameInput& input) {
     if (input.roots_ws.size() != strandCount()) return false;
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
     spheres_.take(input.spheres, settings_.teleportDistance);
-    const double time = std::abs(input.time) <= kLongestTime ? input.time : 0.0;
-    const Frame frame{&input, windPhases(wind_, time - static_cast<double>(input.dt)),
-                      windPhases(wind_, time)};
+    const WindyFrame frame(wind_, input);
     const auto strands = [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) runStrand(static_cast<std::uint32_t>(s), frame);
     };
-    // By reference: a std::function that copied the captures would allocate.
-    const Host::Body body = std::ref(strands);
-    if (host_.parallelFor) {
-        host_.parallelFor(strandCount(), kStrandsPerJob, body);
-    } else {
-        body(0, strandCount());
-    }
+    inParallel(host_, strandCount(), kStrandsPerJob, strands);
     return true;
 }
 
-void ProjectiveEquations::runStrand(std::uint32_t strand, const Frame& frame) {
+void ProjectiveEquations::runStrand(std::uint32_t strand, const WindyFrame& frame) {
     Root& root = roots_[strand];
-    const float dt = std::min(frame.input->dt, kLongestFrame);
-    RootFrame from = root.now, to = frame.input->roots_ws[strand];
-    if (!usableWithin(to, kFarthest)) to = from;
-    Float3 acceleration;
-    if (length(to.position - from.position) > settings_.teleportDistance) {
-        const Quat turn = to.rotation * conjugate(from.rotation);
+    const float dt = std::min(frame.input.dt, kLongestFrame);
+    const RootPath path(root.now, root.velocity, frame.input.roots_ws[strand], dt,
+                        settings_.teleportDistance);
+    if (path.jumps) {
         for (std::uint32_t p = offsets_[strand]; p < offsets_[strand + 1]; ++p) {
-            motions_[p].frame = turn * motions_[p].frame;
-            positions_[p] = rotate(turn, positions_[p]);
+            motions_[p].frame = path.turn * motions_[p].frame;
+            positions_[p] = rotate(path.turn, positions_[p]);
         }
-        root.velocity = rotate(turn, root.velocity);
-        from = to;
-    } else {
-        const Float3 velocity = bounded((to.position - from.position) * (1.0f / dt), kFastest);
-        acceleration = bounded((velocity - root.velocity) * (1.0f / dt), kLargestAcceleration);
-        root.velocity = velocity;
     }
-    root.now = to;
 
-    const Float3 tip = positions_[offsets_[strand + 1] - 1];
-    const Float3 rootFrom = airAt(wind_, frame.windFrom, from.position);
-    const Float3 rootTo = airAt(wind_, frame.windTo, to.position);
-    const Float3 tipFrom = airAt(wind_, frame.windFrom, from.position + tip);
-    const Float3 tipTo = airAt(wind_, frame.windTo, to.position + tip);
+    const AirPath air(wind_, frame, path, positions_[offsets_[strand + 1] - 1]);
     const std::uint32_t substeps = substepsIn(settings_, dt);
     const float count = static_cast<float>(substeps), h = dt / count;
     const float decay = settings_.dampingTime > 0.0f ? std::exp(-h / settings_.dampingTime) : 1.0f;
     for (std::uint32_t i = 0; i < substeps; ++i) {
         const float share = static_cast<float>(i + 1) / count;
-        runSubstep(strand, {between(from, to, share), root.velocity, settings_.gravity - acceleration,
-                            mixed(rootFrom, rootTo, share), mixed(tipFrom, tipTo, share), share, h, decay});
+        runSubstep(strand,
+                   {between(path.from, path.to, share), root.velocity, settings_.gravity - path.acceleration,
+                    air.atRoot(share), air.atTip(share), share, h, decay});
     }
 }
 

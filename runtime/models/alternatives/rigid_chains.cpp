@@ -2,9 +2,7 @@
 #include "hairloom/alternatives/rigid_chains.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 
 #include "engine/checks.h"
 #include "hairloom/alternatives/stick.h"
@@ -19,13 +17,6 @@ constexpr float kLargestAim = 2.5f;     // radians; the spring's law ends at hal
 constexpr float kChainStiffest = 1e6f;  // m³/s², far beyond any hair
 constexpr std::size_t kChainsPerJob = 16;
 
-Float3 turnVector(Quat q) {
-    if (q.w < 0.0f) q = {-q.x, -q.y, -q.z, -q.w};
-    const Float3 v{q.x, q.y, q.z};
-    const float sine = length(v);
-    return sine > 1e-12f ? v * (2.0f * std::atan2(sine, q.w) / sine) : v * 2.0f;
-}
-
 Quat turnOf(Float3 vector) {
     const float angle = length(vector);
     const Float3 v = vector * (angle > 1e-6f ? std::sin(0.5f * angle) / angle : 0.5f);
@@ -33,12 +24,6 @@ Quat turnOf(Float3 vector) {
 }
 
 }  // namespace
-
-/// What all strands share in one step.
-struct RigidChains::Frame {
-    const FrameInput* input;
-    std::array<float, kWindModes> windFrom, windTo;
-};
 
 /// What all segments of a strand share in one substep.
 struct RigidChains::Substep {
@@ -80,17 +65,13 @@ RigidChains::Result RigidChains::make(const StrandsView& strands, const Simulati
     made.motions_.resize(points);
     made.positions_.resize(points);
     made.velocities_.resize(points);
-    made.roots_.resize(strands.offsets.size() - 1);
-    std::vector<RootFrame> roots;
-    for (std::size_t s = 0; s < made.roots_.size(); ++s) {
-        RootFrame& root = made.roots_[s].rest;
-        root.position = strands.restPositions_ss[strands.offsets[s]];
-        if (!strands.rootRotations_ss.empty()) root.rotation = strands.rootRotations_ss[s];
-        normalize(root.rotation);
-        roots.push_back(root);
+    const std::vector<RootFrame> roots = rootsAtRest(strands);
+    made.roots_.resize(roots.size());
+    for (std::size_t s = 0; s < roots.size(); ++s) {
+        made.roots_[s].rest = roots[s];
         for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
             Segment& segment = made.segments_[p];
-            const Float3 edge = rotate(conjugate(root.rotation),
+            const Float3 edge = rotate(conjugate(roots[s].rotation),
                                        strands.restPositions_ss[p] - strands.restPositions_ss[p - 1]);
             segment.length = length(edge);
             if (segment.length > kShortestStick) segment.along = edge * (1.0f / segment.length);
@@ -118,15 +99,11 @@ void RigidChains::fillSegments() {
             Segment& segment = segments_[root + j + 1];
             segment.fixed = j + 1 < settings_.clampedPoints || !(segment.length > kShortestStick);
             const float along = static_cast<float>(j) / static_cast<float>(count);
-            const float authored = settings_.angularStiffness * settings_.angularCurve.at(along);
             const float inner = j >= settings_.clampedPoints ? segments_[root + j].length : 0.0f;
-            const double rod =
-                kHairBendingStiffness * static_cast<double>(authored) / (1.0 - static_cast<double>(authored));
             const double between = 0.5 * (static_cast<double>(segment.length) + static_cast<double>(inner));
-            segment.stiffness =
-                segment.fixed
-                    ? 0.0f
-                    : static_cast<float>(std::min(rod / between, static_cast<double>(kChainStiffest)));
+            const double held =
+                std::min(rodStiffness(settings_, along) / between, static_cast<double>(kChainStiffest));
+            segment.stiffness = segment.fixed ? 0.0f : static_cast<float>(held);
         }
         aimAgainst(s, rotate(conjugate(roots_[s].rest.rotation), settings_.gravity) * settings_.restGravity);
     }
@@ -173,68 +150,48 @@ bool RigidChains::step(const FrameInput& input) {
     if (input.roots_ws.size() != strandCount()) return false;
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
     spheres_.take(input.spheres, settings_.teleportDistance);
-    const double time = std::abs(input.time) <= kLongestTime ? input.time : 0.0;
-    const Frame frame{&input, windPhases(wind_, time - static_cast<double>(input.dt)),
-                      windPhases(wind_, time)};
+    const WindyFrame frame(wind_, input);
     const auto strands = [&](std::size_t begin, std::size_t end) {
         thread_local std::vector<Body> bodies;
         for (std::size_t s = begin; s < end; ++s) runStrand(static_cast<std::uint32_t>(s), frame, bodies);
     };
-    // By reference: a std::function that copied the captures would allocate.
-    const Host::Body body = std::ref(strands);
-    if (host_.parallelFor) {
-        host_.parallelFor(strandCount(), kChainsPerJob, body);
-    } else {
-        body(0, strandCount());
-    }
+    inParallel(host_, strandCount(), kChainsPerJob, strands);
     return true;
 }
 
-void RigidChains::runStrand(std::uint32_t strand, const Frame& frame, std::vector<Body>& bodies) {
+void RigidChains::runStrand(std::uint32_t strand, const WindyFrame& frame, std::vector<Body>& bodies) {
     Root& root = roots_[strand];
-    const float dt = std::clamp(frame.input->dt, 1e-6f, kLongestFrame);
+    const float dt = std::clamp(frame.input.dt, 1e-6f, kLongestFrame);
     const std::uint32_t first = offsets_[strand], end = offsets_[strand + 1];
     if (bodies.size() < end - first) bodies.resize(end - first);
-    RootFrame from = root.now, to = frame.input->roots_ws[strand];
-    if (!usableWithin(to, kFarthest)) to = from;
-    Float3 acceleration;
-    if (length(to.position - from.position) > settings_.teleportDistance) {
-        const Quat turn = to.rotation * conjugate(from.rotation);
+    const RootPath path(root.now, root.velocity, frame.input.roots_ws[strand], dt,
+                        settings_.teleportDistance);
+    if (path.jumps) {
         for (std::uint32_t p = first; p < end; ++p) {
-            motions_[p] = {turn * motions_[p].rotation, rotate(turn, motions_[p].turning),
-                           rotate(turn, motions_[p].axisBefore)};
-            positions_[p] = rotate(turn, positions_[p]);
-            velocities_[p] = rotate(turn, velocities_[p]);
+            motions_[p] = {path.turn * motions_[p].rotation, rotate(path.turn, motions_[p].turning),
+                           rotate(path.turn, motions_[p].axisBefore)};
+            positions_[p] = rotate(path.turn, positions_[p]);
+            velocities_[p] = rotate(path.turn, velocities_[p]);
         }
-        root.velocity = rotate(turn, root.velocity);
-        root.turning = rotate(turn, root.turning);
-        from = to;
-    } else {
-        const Float3 velocity = bounded((to.position - from.position) * (1.0f / dt), kFastest);
-        acceleration = bounded((velocity - root.velocity) * (1.0f / dt), kLargestAcceleration);
-        root.velocity = velocity;
+        root.turning = rotate(path.turn, root.turning);
     }
-    root.now = to;
 
-    const Float3 tip = positions_[end - 1];
-    const Float3 rootFrom = airAt(wind_, frame.windFrom, from.position);
-    const Float3 rootTo = airAt(wind_, frame.windTo, to.position);
-    const Float3 tipFrom = airAt(wind_, frame.windFrom, from.position + tip);
-    const Float3 tipTo = airAt(wind_, frame.windTo, to.position + tip);
+    const AirPath air(wind_, frame, path, positions_[end - 1]);
     const std::uint32_t substeps = substepsIn(settings_, dt);
     const float count = static_cast<float>(substeps), h = dt / count;
     const float decay = settings_.dampingTime > 0.0f ? std::exp(-h / settings_.dampingTime) : 1.0f;
-    RootFrame before = from;
+    RootFrame before = path.from;
     for (std::uint32_t i = 0; i < substeps; ++i) {
         const float share = static_cast<float>(i + 1) / count;
-        const RootFrame now = between(from, to, share);
-        const Float3 turning = turnVector(now.rotation * conjugate(before.rotation)) * (1.0f / h);
+        const RootFrame now = between(path.from, path.to, share);
+        const Float3 turning = rotationVector(now.rotation * conjugate(before.rotation)) * (1.0f / h);
         const Float3 change = (turning - root.turning) * (1.0f / h);
         root.turning = turning;
-        runSubstep(strand,
-                   {now, before.rotation, root.velocity, turning, change, settings_.gravity - acceleration,
-                    mixed(rootFrom, rootTo, share), mixed(tipFrom, tipTo, share), share, h, 1.0f / dt, decay},
-                   bodies);
+        runSubstep(
+            strand,
+            {now, before.rotation, root.velocity, turning, change, settings_.gravity - path.acceleration,
+             air.atRoot(share), air.atTip(share), share, h, 1.0f / dt, decay},
+            bodies);
         before = now;
     }
 }
@@ -318,7 +275,7 @@ void RigidChains::eliminate(std::uint32_t strand, const Substep& substep, std::s
             const Quat bent = motions_[p].rotation * conjugate(parent * segment.aim);
             const double k = static_cast<double>(segment.stiffness), c = k * damper;
             const double held = h * h * k + h * c;
-            body.joint = wide(turnVector(bent)) * -k - relative * (h * k + c);
+            body.joint = wide(rotationVector(bent)) * -k - relative * (h * k + c);
             body.compliance = inverseOf(symmetric(body.A + diagonal(held)));
             // A − A D⁻¹ A with D = A + held, and the like, without differences of what is nearly alike.
             const Matrix3 passed = diagonal(held) * body.compliance;

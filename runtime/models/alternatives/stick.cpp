@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/alternatives/surroundings.h"
+
 namespace hairloom::runtime {
 namespace {
 
@@ -18,14 +20,6 @@ float wrapped(float angle) {
 Quat turnAbout(Float3 axis, float angle) {
     const Float3 v = axis * std::sin(0.5f * angle);
     return {v.x, v.y, v.z, std::cos(0.5f * angle)};
-}
-
-/// Axis times angle, 0…π, of a rotation.
-Float3 rotationVector(Quat q) {
-    if (q.w < 0.0f) q = {-q.x, -q.y, -q.z, -q.w};
-    const Float3 v{q.x, q.y, q.z};
-    const float sine = length(v);
-    return sine > 1e-12f ? v * (2.0f * std::atan2(sine, q.w) / sine) : v * 2.0f;
 }
 
 /// Across v and the axis of the world that lies least along it.

@@ -3,8 +3,14 @@
 // What acts on strands from outside, for methods that step one strand at a time.
 
 #include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
 
+#include "hairloom/host.h"
 #include "hairloom/math.h"
+#include "hairloom/settings.h"
+#include "hairloom/strands.h"
 #include "hairloom/wind.h"
 
 namespace hairloom::runtime {
@@ -21,7 +27,52 @@ inline Float3 mixed(Float3 a, Float3 b, float t) {
     return a + (b - a) * t;
 }
 
-/// m/s at a place in the world.
-Float3 airAt(const Wind& wind, const std::array<float, kWindModes>& phases, Float3 position_ws);
+/// Axis times angle, 0…π, of a rotation.
+Float3 rotationVector(Quat q);
+
+/// On the host's threads, if it has any.
+template <class Body>
+void inParallel(const Host& host, std::size_t count, std::size_t grain, const Body& body) {
+    if (!host.parallelFor) return body(0, count);
+    // By reference: a std::function that copied the captures would allocate.
+    host.parallelFor(count, grain, std::cref(body));
+}
+
+/// Of all strands; without a rotation where the strands have none.
+std::vector<RootFrame> rootsAtRest(const StrandsView& strands);
+
+/// B of the rod at `along` (0…1) its strand, for hair that weighs 1 per metre: m⁴/s². Infinite at
+/// stiffness 1.
+double rodStiffness(const SimulationSettings& settings, float along);
+
+/// A frame's input, and the gusts at its start and end.
+struct WindyFrame {
+    const FrameInput& input;
+    std::array<float, kWindModes> windFrom, windTo;
+
+    WindyFrame(const Wind& wind, const FrameInput& frameInput);
+};
+
+/// How a root goes through a frame.
+struct RootPath {
+    RootFrame from, to;
+    Float3 acceleration;  ///< m/s²
+    bool jumps = false;   ///< the strand is carried by `turn` to where `from` is now
+    Quat turn;
+
+    /// Takes `now` and `velocity` (m/s, over the frame before) to the frame's end. A root that is no position
+    /// within kFarthest stays; one that goes farther than teleportDistance jumps.
+    RootPath(RootFrame& now, Float3& velocity, const RootFrame& wanted, float dt, float teleportDistance);
+};
+
+/// m/s at the root and the tip of a strand, at the start and the end of a frame.
+struct AirPath {
+    Float3 rootFrom, rootTo, tipFrom, tipTo;
+
+    /// `tip` is measured from the root, world axes.
+    AirPath(const Wind& wind, const WindyFrame& frame, const RootPath& path, Float3 tip);
+    Float3 atRoot(float share) const { return mixed(rootFrom, rootTo, share); }
+    Float3 atTip(float share) const { return mixed(tipFrom, tipTo, share); }
+};
 
 }  // namespace hairloom::runtime

@@ -17,6 +17,8 @@
 
 namespace hairloom::runtime {
 
+struct WindyFrame;
+
 /// Strands as chains of stiff sticks, each with an azimuth θ and an inclination φ about the frame that its
 /// parent carries. Used as Engine is; the model in symbols is in docs/engine.md.
 ///
@@ -69,12 +71,11 @@ class ProjectiveEquations {
         RootFrame rest, now;
         Float3 velocity;  ///< over the last frame
     };
-    struct Frame;
     struct Substep;
     ProjectiveEquations() = default;
 
     void fillSticks();
-    void runStrand(std::uint32_t strand, const Frame& frame);
+    void runStrand(std::uint32_t strand, const WindyFrame& frame);
     void runSubstep(std::uint32_t strand, const Substep& substep);
     StickForces forcesOn(std::uint32_t point, Quat frame, float along, const Substep& substep) const;
     void collide(std::uint32_t point, Quat frame, float along, const Substep& substep);

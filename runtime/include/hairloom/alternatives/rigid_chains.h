@@ -17,6 +17,8 @@
 
 namespace hairloom::runtime {
 
+struct WindyFrame;
+
 /// Each segment is a thin rigid rod that hangs on its parent by a ball joint, with a spring towards the rest
 /// shape and a damper. Used as Engine is; the model in symbols is in docs/engine.md.
 ///
@@ -78,14 +80,13 @@ class RigidChains {
         Float3 turning;     ///< 1/s, world axes
         Float3 axisBefore;  ///< the segment's direction before the last substep, world axes
     };
-    struct Frame;
     struct Substep;
     struct Body;
     RigidChains() = default;
 
     void fillSegments();
     void aimAgainst(std::uint32_t strand, Float3 gravity);
-    void runStrand(std::uint32_t strand, const Frame& frame, std::vector<Body>& bodies);
+    void runStrand(std::uint32_t strand, const WindyFrame& frame, std::vector<Body>& bodies);
     void runSubstep(std::uint32_t strand, const Substep& substep, std::span<Body> bodies);
     void gatherForces(std::uint32_t strand, const Substep& substep, std::span<Body> bodies) const;
     void eliminate(std::uint32_t strand, const Substep& substep, std::span<Body> bodies) const;
