@@ -54,7 +54,6 @@ SimulationOptions methodOf(const SimulateOptions& options) {
     if (options.method == "projective") result.method = SimulationMethod::projective;
     if (options.method == "chain") result.method = SimulationMethod::chain;
     if (options.method == "lattice") result.method = SimulationMethod::lattice;
-    if (options.hairHair) result.hairHair.emplace();
     return result;
 }
 
@@ -70,6 +69,7 @@ Status overrideSettings(Groom& groom, const SimulateOptions& options) {
     if (options.model == "springs") groom.simulation.strandModel = runtime::StrandModel::springs;
     if (groom.simulation.strandModel == runtime::StrandModel::springs && own == runtime::StrandModel::rods)
         groom.simulation.substeps = std::max(groom.simulation.substeps, runtime::kSpringSubsteps);
+    groom.simulation.hairHair = groom.simulation.hairHair || options.hairHair;
     if (options.substeps > 0) groom.simulation.substeps = options.substeps;
     return setWind(groom, options.wind);
 }
@@ -337,7 +337,7 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
            "Simulation method: the strand engine, projective equations, chains of rigid segments, or a "
            "lattice around the head")
         ->check(CLI::IsMember({"strands", "projective", "chain", "lattice"}));
-    job.add_flag("--hair-hair", options.hairHair, "Hair-hair collision, through a volume between frames");
+    job.add_flag("--hair-hair", options.hairHair, "Turns on simulation.hairHair, hair against hair");
     std::vector<CLI::Option*> added = job.get_options();
     added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));
     return added;

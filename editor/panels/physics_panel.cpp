@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the hair moves: presets of measured hair, and all settings of the engine. A change shows in the running
 // simulation at once.
-#include <QCheckBox>
 #include <QComboBox>
 #include <QPushButton>
 #include <QVBoxLayout>
@@ -37,6 +36,10 @@ std::vector<Group> groups() {
          true},
         {QString("Collision"),
          {"collisionRadiusRoot", "collisionRadiusTip", "friction", "restitution"},
+         false},
+        {QString("Hair against hair"),
+         {"hairHair", "hairHairStrength", "hairHairFriction", "hairHairStickSpeed", "hairHairCohesion",
+          "hairHairCell"},
          false},
         {QString("Springs only"),
          {"integrator", "angularMethod", "lengthMethod", "lengthIterations", "maximalExtension",
@@ -93,18 +96,10 @@ QWidget* makeMethods(Player& player) {
         {QString("Rigid chains"), SimulationMethod::chain},
         {QString("Lattice, for distant hair"), SimulationMethod::lattice}};
     for (const auto& [name, method] : methods) box->addItem(name, static_cast<int>(method));
-    auto* hairs = new QCheckBox("Hair-hair collision");
-    hairs->setObjectName("play-hair-hair");
-    hairs->setToolTip("Keeps hair apart with a volume between frames, on the CPU");
-    const auto choose = [&player, box, hairs] {
-        const auto method = static_cast<SimulationMethod>(box->currentData().toInt());
-        const bool takesVelocities = method == SimulationMethod::strands;
-        hairs->setEnabled(takesVelocities);
-        player.setMethod({method, takesVelocities && hairs->isChecked()});
-    };
-    QObject::connect(box, &QComboBox::currentIndexChanged, hairs, choose);
-    QObject::connect(hairs, &QCheckBox::toggled, hairs, choose);
-    return stacked({box, hairs});
+    QObject::connect(box, &QComboBox::currentIndexChanged, box, [&player, box] {
+        player.setMethod({static_cast<SimulationMethod>(box->currentData().toInt())});
+    });
+    return box;
 }
 
 QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices,

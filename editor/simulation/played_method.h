@@ -11,14 +11,13 @@ namespace hairloom::editor {
 /// Of the preview alone: what is exported moves by the strand engine.
 struct PlayedMethod {
     SimulationMethod method = SimulationMethod::strands;
-    bool hairHair = false;  ///< hair pushes hair between frames; of the strand engine
 
     /// Why nothing but the CPU can run it; empty where a device can.
     std::string whyCpu() const {
         if (method == SimulationMethod::projective) return "projective equations run there";
         if (method == SimulationMethod::chain) return "rigid chains run there";
         if (method == SimulationMethod::lattice) return "lattices run there";
-        return hairHair ? "hair-hair collision runs there" : "";
+        return {};
     }
     friend bool operator==(const PlayedMethod&, const PlayedMethod&) = default;
 };

@@ -22,7 +22,6 @@ Status Transport::startHere(const Groom& groom, const MovingStart& start, const 
     stop();
     SimulationOptions options;
     options.method = method.method;
-    if (method.hairHair) options.hairHair.emplace();
     MovingStart from = start;
     if (method.method != SimulationMethod::strands) from.state.reset();
     auto made = MovingHair::onCpu(groom, from, options);

@@ -29,6 +29,10 @@ RootBounds noRoots() {
 float minimum(const float* row) {
     return *std::min_element(row, row + kBlockLanes);
 }
+bool asksForOtherHairGrid(const SimulationSettings& before, const SimulationSettings& now) {
+    return before.hairHair != now.hairHair || before.hairHairCell != now.hairHairCell ||
+           before.strandModel != now.strandModel;
+}
 float maximum(const float* row) {
     return *std::max_element(row, row + kBlockLanes);
 }
@@ -46,6 +50,7 @@ Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& setting
     strands_->takeSettings(*shape_, settings_, nullptr, state_, host_);
     strands_->takeNewState(*shape_, settings_, state_, host_);
     wind_.wind = makeWind(settings);
+    hairGrid_.take(*shape_, settings_, host_);
     reset(shape_->restRoots);
     allocateForPlan();
 }
@@ -68,6 +73,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     });
     state_.spheres.clear();
     state_.body.clear();
+    hairGrid_.forget();
     bodyLost_ = true;
     state_.substep = 0.0f;
     state_.fastest = 0.0f;
@@ -137,6 +143,7 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (other || before.substeps != settings.substeps) allocateForBody();
     strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_, host_);
     strands_->takeState(*shape_, settings_, state_);
+    if (asksForOtherHairGrid(before, settings_)) hairGrid_.take(*shape_, settings_, host_);
     scratch_ = {};
     wind_ = {makeWind(settings), false};
     state_.rests.assign(shape_->blocks.size(), {});
@@ -149,6 +156,7 @@ bool Engine::Impl::setState(const State& state) {
         state.rests.size() != state_.rests.size())
         return false;
     state_ = state;
+    hairGrid_.forget();
     bodyLost_ = true;
     strands_->takeState(*shape_, settings_, state_);
     wind_.given = false;
@@ -169,6 +177,7 @@ void Engine::Impl::plan(std::span<const Sphere> spheres, std::span<const Float3>
                              shape_->longestStrand, shape_->straight,
                              rootsMin_ws,           rootsMax_ws,
                              rootMotion_,           state_.fastest};
+    planInput.hairCell = hairGrid_.cell();
     planInput.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         if (state_.rests[b].asleep) planInput.asleep += shape_->blocks[b].strands;
@@ -355,7 +364,7 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
         frame.windTo = windPhases(wind_.wind, time, *state_.origin_ws);
     }
     frame.context.stepRatio = state_.substep > 0.0f ? h / state_.substep : kFirstStepRatio;
-    frame.context.conservative = !frame.windy;
+    frame.context.conservative = !frame.windy && !hairGrid_.isOn();
     if (frame.windy) {
         frame.context.wind = &wind_.wind;
         const double time = std::isfinite(input.time) ? input.time : 0.0;
@@ -398,6 +407,8 @@ void Engine::Impl::step(const FrameInput& input) {
     }
 
     const Frame frame = makeFrame(input);
+    if (hairGrid_.isOn() && !plan_.stages().empty())
+        hairGrid_.update(*shape_, state_, nextRoots_, settings_, frame.context.h, substeps_, host_);
     runBlocks(frame);
     state_.spheres.assign(spheres_.usable.begin(), spheres_.usable.end());
     state_.substep = frame.context.h;
@@ -444,6 +455,7 @@ BlockView& Engine::Impl::view(std::size_t block, BlockRoom& room) {
         view.clearance = clearances_.data() + shape_->blocks[block].firstPlane;
         view.bodySeen = bodySeen_.data() + kBodyPlanes * shape_->blocks[block].firstPlane;
     }
+    if (hairGrid_.isOn()) hairGrid_.show(shape_->blocks[block], view);
     return view;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "engine/frame_setup.h"
+#include "engine/hair_grid.h"
 #include "engine/moving_body.h"
 #include "engine/scratch.h"
 #include "engine/state.h"
@@ -85,6 +86,7 @@ struct Engine::Impl {
     BodyTable bodyTable_;
     std::vector<std::uint32_t> bodyCarriers_;  // carriersOf()
     OwnedStrands strands_;                     // as their model has them
+    HairGrid hairGrid_;
     EffectPlan plan_;
     FrameWind wind_;
     State state_;

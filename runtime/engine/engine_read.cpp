@@ -124,6 +124,7 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
     if (effect == Effect::wind && plan_.on(effect)) shared = sizeof(Wind);
     if (effect == Effect::collision && plan_.on(effect))
         shared = movingSpheres_.size() * sizeof(MovingSphere);
+    if (effect == Effect::hairHair) shared = hairGrid_.bytes();
     return shared + strands_->effectBytes(effect, state_);
 }
 

@@ -126,6 +126,7 @@ EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& p
         16.0f * planInput.fastest * h + pushed * h + (planInput.rootMotion + sphereDisplacement) / substeps;
     scene.asleep = planInput.asleep;
     scene.restTime = planInput.restTime;
+    scene.hairCell = planInput.hairCell;
     return plan(scene);
 }
 

@@ -48,6 +48,7 @@ struct FramePlanInput {
     float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
     std::uint32_t asleep = 0;         ///< strands
     float restTime = 0.0f;            ///< seconds
+    float hairCell = 0.0f;            ///< metres
 };
 /// The plan of a frame of `frameTime` seconds.
 EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& planInput,

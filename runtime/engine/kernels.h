@@ -66,6 +66,10 @@ struct BlockView {
     /// Of each point, metres from the body at rest; null without one, and where the model meets none.
     const float* clearance = nullptr;
     float* bodySeen = nullptr;  ///< kBodyPlanes of what is known of the body, likewise
+    /// Of each point, in this frame, by the hair around it: an acceleration, m/s², and the rate at which it
+    /// resists motion, 1/s, kHairPlanes in all; null without.
+    ConstPlanes hairPush;
+    const float* hairRate = nullptr;
 };
 
 struct MovingSphere {

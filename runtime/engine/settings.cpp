@@ -56,6 +56,12 @@ constexpr Field<S> kFields[] = {
     field<&S::friction>("friction", "", 0, 1, "friction on the skin: 0 slides freely, 1 sticks"),
     field<&S::restitution>("restitution", "", 0, 1, "restitution: share of the approach speed that is kept after a bounce"),
     field<&S::penaltyFrequency>("penaltyFrequency", "Hz", 1, 10000, "stiffness of penalty springs: higher penetrates less and needs shorter time steps"),
+    boolField<&S::hairHair>("hairHair", "rods resist being pressed closer together than authored, and rub on the hair around them"),
+    field<&S::hairHairStrength>("hairHairStrength", "", 0, 1, "resistance to compression: 0 is off, 1 carries about a metre of hair"),
+    field<&S::hairHairFriction>("hairHairFriction", "m/s²", 0, 100, "deceleration by friction against the hair around"),
+    field<&S::hairHairStickSpeed>("hairHairStickSpeed", "m/s", 0.001, 1, "hair slower than this against the hair around it sticks"),
+    field<&S::hairHairCohesion>("hairHairCohesion", "1/s", 0, 100, "rate at which hair takes on the motion around it: higher moves in wisps"),
+    field<&S::hairHairCell>("hairHairCell", "m", 0, 1, "size of the cells that hair is counted in: 0 chooses it from the hair's spacing"),
 };
 // clang-format on
 

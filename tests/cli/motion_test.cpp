@@ -138,9 +138,11 @@ TEST_F(CliMotion, OtherMethodsReportAndRecordAlike) {
     const Outcome longer = run("simulate hair.hairloom --frames 11 --fps 30 --against strands.frames");
     EXPECT_EQ(longer.exitCode, 1);
     EXPECT_THAT(longer.errors, HasSubstr("strands.frames"));
-    const Outcome volume = run(scene + "--method lattice --hair-hair");
-    EXPECT_EQ(volume.exitCode, 1);
-    EXPECT_THAT(volume.errors, HasSubstr("velocities"));
+    runJson("set hair.hairloom simulation.hairHair=true -o hairs.hairloom");
+    const auto asFlag = runJson(scene + "--hair-hair"),
+               asSetting = runJson("simulate hairs.hairloom --frames 10 --fps 30 --motion nod");
+    EXPECT_EQ(asFlag["state_hash"], asSetting["state_hash"]);
+    EXPECT_NE(asFlag["state_hash"], engine["state_hash"]);
 }
 
 TEST_F(CliMotion, AccuracyMeasuresAGridAndWritesAReport) {

@@ -20,6 +20,7 @@ enum class Effect : std::uint32_t {
     collision,
     collisionRadius,      ///< distance that points keep from spheres
     continuousCollision,  ///< collisions between the positions of two substeps
+    hairHair,             ///< pressure and friction of the hair around
     sleep,                ///< strands at rest are left out
 };
 inline constexpr std::uint32_t kEffectCount = static_cast<std::uint32_t>(Effect::sleep) + 1;
@@ -42,6 +43,7 @@ inline constexpr std::array<EffectInfo, kEffectCount> kEffects{{
     {"collision"},
     {"collisionRadius", "up to # mm", {"collisionRadiusRoot", "collisionRadiusTip"}},
     {"continuousCollision"},
+    {"hairHair", "cells of # mm", {"hairHair"}},
     {"sleep", "", {"sleepSpeed"}},
 }};
 const char* effectName(Effect effect);
@@ -172,6 +174,8 @@ enum class Reason : std::uint32_t {
     fast,
     speedUnknown,
     byForce,
+    notAuthored,
+    ofRodsAlone,
     neverAsleep,
     allAwake,
     someAsleep,
@@ -206,6 +210,8 @@ inline constexpr std::array<const char*, kReasonCount> kReasons{
     "up to # mm in a substep",
     "speeds are not known beforehand",
     "penalty forces act on what is inside",
+    "not asked for",
+    "springs do not meet hair",
     "zero sleep speed",
     "all strands move",
     "# strand(s) at rest",

@@ -153,6 +153,22 @@ struct SimulationSettings {
     /// Hz, 1 … 10000. Stiffness of penalty springs: higher penetrates less and needs shorter time steps.
     float penaltyFrequency = 100.0f;
 
+    // --- Hair against hair ---
+    /// Rods resist being pressed closer together than authored, and rub on the hair around them.
+    bool hairHair = false;
+    /// 0 … 1. Resistance to compression: 0 is off, 1 carries about a metre of hair. A pressure of 40 m²/s² at
+    /// twice the authored density.
+    float hairHairStrength = 0.5f;
+    /// m/s², 0 … 100. Deceleration by friction against the hair around.
+    float hairHairFriction = 1.0f;
+    /// m/s, 0.001 … 1. Hair slower than this against the hair around it sticks. Above it, it slides.
+    float hairHairStickSpeed = 0.05f;
+    /// 1/s, 0 … 100. Rate at which hair takes on the motion around it: higher moves in wisps.
+    float hairHairCohesion = 0.5f;
+    /// m, 0 … 1. Size of the cells that hair is counted in: 0 chooses it from the hair's spacing. Below
+    /// 0.001 as 0.001; larger where the authored hair would take more than 2¹⁴ cells.
+    float hairHairCell = 0.0f;
+
     friend bool operator==(const SimulationSettings&, const SimulationSettings&) = default;
 };
 /// In the order in which a panel shows them; each member stands there once.

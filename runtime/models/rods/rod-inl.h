@@ -288,6 +288,10 @@ class RodStrip {
             rate = rate + drag;
             change = mad3(air, drag * step_, change);
         }
+        if (block_.hairRate) {
+            rate = rate + hn::Load(D(), block_.hairRate + node);
+            change = mad3(load3(block_.hairPush, node), step_, change);
+        }
         const V slowed = mad(rate, step_, all(1.0f));
         point.target = mad3(load3(rod_.displacement, node), blend_, change * (step_ / slowed));
         point.weight = hn::Load(D(), rod_.mass + node) * inverseStep_ * inverseStep_ * slowed;

@@ -26,6 +26,11 @@ Decision rodTorsion(const PlanBuilder& plan) {
     return {};
 }
 
+Decision rodHairHair(const PlanBuilder& plan) {
+    const bool on = plan.settings.hairHair;
+    return {on, on ? Reason::authored : Reason::notAuthored, 1000.0f * plan.scene.hairCell};
+}
+
 constexpr EffectRow kRodRows[] = {
     {Effect::damping, decideDamping},
     {Effect::gravity, decideGravity},
@@ -37,6 +42,7 @@ constexpr EffectRow kRodRows[] = {
     {Effect::collision, decideCollision},
     {Effect::collisionRadius, decideCollisionRadius},
     {Effect::continuousCollision, decideContinuousCollision},
+    {Effect::hairHair, rodHairHair},
 };
 
 void listRodStages(PlanBuilder& plan) {

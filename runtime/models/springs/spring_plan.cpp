@@ -99,6 +99,7 @@ constexpr EffectRow kSpringRows[] = {
     {Effect::collision, decideCollision},
     {Effect::collisionRadius, decideCollisionRadius},
     {Effect::continuousCollision, springSweeps},
+    {Effect::hairHair, [](const PlanBuilder&) { return Decision{false, Reason::ofRodsAlone, 0.0f}; }},
 };
 
 }  // namespace
