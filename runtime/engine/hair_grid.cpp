@@ -21,7 +21,7 @@ constexpr float kHairPressure = 40.0f;  // m²/s², of twice the authored densit
 constexpr float kStiffnessShare = 5.0f;
 /// Places in HairGrid::Field.
 constexpr std::size_t kFieldStiffness = 3, kFieldVelocity = 4, kFieldDensity = 7;
-constexpr std::size_t kBlocksPerPiece = 4;
+constexpr std::size_t kHairBlocksPerPiece = 4;
 
 /// The rows of R(q).
 std::array<Float3, 3> rowsOf(Quat q) {
@@ -196,7 +196,7 @@ void HairGrid::update(const RestShape& shape, const State& state, const Floats& 
     }
     bool same = sleepersCounted_ && before == head_;
     for (std::size_t b = 0; same && b < blocks; ++b) same = (counted_[b] != 0) == state.rests[b].asleep;
-    forEach(host, blocks, kBlocksPerPiece, [&](std::size_t b) {
+    forEach(host, blocks, kHairBlocksPerPiece, [&](std::size_t b) {
         if (!same || !state.rests[b].asleep) locate(shape, state, b);
     });
     const Box box = boxOf(bounds_);
@@ -220,7 +220,7 @@ void HairGrid::update(const RestShape& shape, const State& state, const Floats& 
     }
     sum(state, shape, host);
     resolve(settings, time, host);
-    forEach(host, blocks, kBlocksPerPiece, [&](std::size_t b) {
+    forEach(host, blocks, kHairBlocksPerPiece, [&](std::size_t b) {
         if (!state.rests[b].asleep) press(shape, state, settings, h, b);
     });
 }

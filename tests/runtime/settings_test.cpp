@@ -157,7 +157,7 @@ TEST(Settings, ThePublicHeaderSaysWhatTheDescriptionSays) {
         std::ostringstream described;
         described.precision(10);
         if (*field.unit) described << field.unit << ", ";
-        if (field.kind != FieldKind::Choice && field.kind != FieldKind::Ramp)
+        if (field.kind != FieldKind::Choice && field.kind != FieldKind::Ramp && field.kind != FieldKind::Bool)
             described << field.min << " … " << field.max << ". ";
         std::string meaning = field.meaning;
         meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));

@@ -62,6 +62,17 @@ TEST(StepMemory, NoStepOfAnyIntegratorAsksForAny) {
     }
 }
 
+TEST(StepMemory, HairAgainstHairAsksForNone) {
+    const Strands strands = tuft(100, true);
+    SimulationSettings s;
+    s.hairHair = true;
+    Engine engine = makeEngine(strands, s);
+    Counted counted(strands);
+    counted.steps(engine, 1, kNear);
+    EXPECT_EQ(counted.steps(engine, 20, kNear), 0u);
+    EXPECT_TRUE(engine.plan().on(Effect::hairHair));
+}
+
 TEST(StepMemory, TheCounterCounts) {
     const std::size_t before = allocationCount();
     const std::vector<int> some(3);
