@@ -110,7 +110,7 @@ TEST_F(ToolsTest, TheSkinIsACollider) {
     EXPECT_TRUE(find<QLabel>("bodyNote")->text().contains("Springs pass through"));
     document().goToStep(2);
     EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
-    parts().player.setMethod({SimulationMethod::lattice, false});
+    parts().player.setMethod({SimulationMethod::lattice});
     EXPECT_TRUE(find<QLabel>("bodyNote")->text().contains("strand engine"));
     parts().player.setMethod({});
     EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
