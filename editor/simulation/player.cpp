@@ -325,7 +325,11 @@ void Player::documentChanged(editing::Part parts) {
     request([&](WorkerRequests& requests) {
         // Engines are made with the body.
         const bool sameBody = !requests.groom || requests.groom->body == groom.body;
-        if (!sameBody || followsOther || isMadeWithSettings(method_)) requests.regroomed = true;
+        // Hair against hair runs on the CPU alone.
+        const bool sameEngines =
+            !requests.groom || requests.groom->simulation.hairHair == groom.simulation.hairHair;
+        if (!sameBody || !sameEngines || followsOther || isMadeWithSettings(method_))
+            requests.regroomed = true;
         requests.changed = requests.changed || changed;
         requests.groom = std::make_shared<const Groom>(groom);
         if (motion) requests.motion = motion;
