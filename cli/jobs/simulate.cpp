@@ -32,23 +32,6 @@
 namespace hairloom::cli {
 namespace {
 
-/// How long, how finely: as asked, else by the time line where that plays.
-struct Span {
-    FramePace pace;
-    std::uint64_t frames = 60;
-};
-Span spanOf(const SimulateOptions& options, const Groom& groom) {
-    Span span;
-    if (options.motion == kTimeLineMotion) {
-        TimeLine line = timeLineOf(groom);
-        line.framesPerSecond = options.framesPerSecond.value_or(line.framesPerSecond);
-        span = {paceOf(line), line.frameCount()};
-    }
-    return {{options.framesPerSecond.value_or(span.pace.framesPerSecond),
-             options.preRoll.value_or(span.pace.preRoll)},
-            options.frames.value_or(span.frames)};
-}
-
 SimulationOptions methodOf(const SimulateOptions& options) {
     SimulationOptions result;
     if (options.method == "projective") result.method = SimulationMethod::projective;
@@ -199,7 +182,8 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (options.sag) return sagOf(*groom, options);
     const auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
-    const Span span = spanOf(options, *groom);
+    const MotionSpan span =
+        motionSpanOf(options.motion, *groom, options.framesPerSecond, options.frames, options.preRoll);
     const FramePace& pace = span.pace;
     const std::uint32_t steps = pace.steps();
     const float dt = pace.dt();

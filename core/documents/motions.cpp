@@ -92,4 +92,16 @@ Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const st
     return motion;
 }
 
+MotionSpan motionSpanOf(std::string_view motion, const Groom& groom, std::optional<float> framesPerSecond,
+                        std::optional<std::uint64_t> frames, std::optional<std::uint64_t> preRoll) {
+    MotionSpan span;
+    if (motion == kTimeLineMotion) {
+        TimeLine line = timeLineOf(groom);
+        line.framesPerSecond = framesPerSecond.value_or(line.framesPerSecond);
+        span = {paceOf(line), line.frameCount()};
+    }
+    return {{framesPerSecond.value_or(span.pace.framesPerSecond), preRoll.value_or(span.pace.preRoll)},
+            frames.value_or(span.frames)};
+}
+
 }  // namespace hairloom

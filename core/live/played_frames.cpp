@@ -12,25 +12,28 @@ namespace {
 Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& range,
             const std::function<bool(std::uint32_t)>& before,
             const std::function<Status(std::uint32_t, RecordedFrame)>& take) {
-    const auto timeOf = [&](std::uint32_t frame) {
-        return (static_cast<float>(frame) - static_cast<float>(range.handles)) / range.framesPerSecond;
+    const FramePace pace{range.framesPerSecond, range.preRoll};
+    const std::uint32_t steps = pace.steps();
+    const auto timeOf = [&](std::uint32_t frame, std::uint32_t step) {
+        return pace.timeOf(static_cast<float>(frame) - static_cast<float>(range.handles), step);
     };
-    HeadPose pose = inWorld(motion.poseAt(timeOf(0)));
-    KeyedSettings keyed(motion, groom.simulation, timeOf(0));
+    HeadPose pose = inWorld(motion.poseAt(timeOf(0, steps)));
+    KeyedSettings keyed(motion, groom.simulation, timeOf(0, steps));
     Groom begun = groom;
     begun.simulation = keyed.first();
     auto simulation = Simulation::make(begun, pose);
     if (!simulation) return tl::unexpected(simulation.error());
     for (std::uint32_t frame = 0; frame < range.preRoll; ++frame) {
         if (!before(frame)) return fail("it was cancelled");
-        simulation->step(1 / range.framesPerSecond, pose);
+        for (std::uint32_t step = 1; step <= steps; ++step) simulation->step(pace.dt(), pose);
     }
     for (std::uint32_t frame = 0; frame < range.count; ++frame) {
         if (!before(range.preRoll + frame)) return fail("it was cancelled");
-        if (frame > 0) {
-            if (auto given = keyed.give(*simulation, timeOf(frame)); !given) return given;
-            pose = inWorld(motion.poseAt(timeOf(frame)));
-            simulation->step(1 / range.framesPerSecond, pose);
+        for (std::uint32_t step = 1; frame > 0 && step <= steps; ++step) {
+            const float time = timeOf(frame, step);
+            if (auto given = keyed.give(*simulation, time); !given) return given;
+            pose = inWorld(motion.poseAt(time));
+            simulation->step(pace.dt(), pose);
         }
         const auto positions_ws = simulation->positions_ws();
         auto taken = take(frame, {{positions_ws.begin(), positions_ws.end()}, pose, range.framesPerSecond});

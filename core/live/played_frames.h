@@ -10,7 +10,7 @@ namespace hairloom {
 
 struct PlayedRange {
     std::uint32_t count = 0;     ///< frames, those of the handles among them
-    float framesPerSecond = 60;  ///< at least 10: each frame is a step of the engine
+    float framesPerSecond = 60;  ///< at least 1
     std::uint32_t preRoll = 0;   ///< frames on the first pose that go before and are not among them
     /// Of `count`, how many come before the motion's time 0.
     std::uint32_t handles = 0;

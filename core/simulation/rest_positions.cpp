@@ -25,4 +25,18 @@ std::vector<Vec3f> restPositions(const Groom& groom, std::span<const Vec3f> posi
     return rest;
 }
 
+std::vector<Vec3f> posedPositions(const Groom& groom, const HeadPose& pose) {
+    const HeadPose world = inWorld(pose);
+    const std::vector<SurfacePoint> roots = groom.rootBindings();
+    std::vector<Eigen::Isometry3f> moves(groom.strandCount(), world.head_ws);
+    if (groom.scalp && !roots.empty() && !world.scalpPositions_ws.empty())
+        moves = rootTransforms(*groom.scalp, world.scalpPositions_ws, roots);
+    const auto rest = groom.positions();
+    std::vector<Vec3f> posed(rest.size());
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        for (std::size_t p = groom.offsets[s]; p < groom.offsets[s + 1]; ++p) posed[p] = moves[s] * rest[p];
+    }
+    return posed;
+}
+
 }  // namespace hairloom

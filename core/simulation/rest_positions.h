@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A frame of the simulation, back on the head at rest.
+// Hair without simulation: a frame back on the head at rest, and hair at rest on a head that moves.
 
 #include <vector>
 
@@ -12,5 +12,9 @@ namespace hairloom {
 /// been at its root, which is where it is authored. `positions_ws` and the pose are of one frame.
 std::vector<Vec3f> restPositions(const Groom& groom, std::span<const Vec3f> positions_ws,
                                  const HeadPose& pose);
+
+/// The other way: points of the groom at rest on the head in that pose, each strand moved and turned as the
+/// scalp is at its root. Metres, world space.
+std::vector<Vec3f> posedPositions(const Groom& groom, const HeadPose& pose);
 
 }  // namespace hairloom

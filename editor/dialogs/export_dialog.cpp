@@ -34,7 +34,6 @@ namespace hairloom::editor {
 
 namespace {
 
-constexpr float kFramesPerSecond = 60;
 constexpr int kMostFrames = 10000;
 
 /// Bytes of a point in the formats' files, measured on the samples; text takes what its digits take.
@@ -73,7 +72,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       what_(new QComboBox),
       layers_(new QComboBox),
       frames_(new QSpinBox),
-      motion_(new MotionRows(this)),
+      motion_(new MotionRows(player.pace(), this)),
       note_(new QLabel),
       problem_(new QLabel),
       many_(new QLabel),
@@ -117,7 +116,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     frames_->setRange(0, kMostFrames);
     frames_->setSpecialValueText("at rest");
     frames_->setToolTip(
-        "Number of 1/60 s frames to simulate for the file, with the motion of the viewport or a nod. "
+        "Number of frames to simulate for the file, with the motion of the viewport or a nod. "
         "Formats without animation hold one frame");
     note_->setProperty("role", "dim");
     note_->setWordWrap(true);
@@ -374,8 +373,9 @@ void ExportDialog::exportTo(const QString& path) {
     // One more for the end of the last frame's shutter.
     const bool hasShutter = motion_->isVisibleIn(*form_) && motion_->apply(wanted);
     PlayedRange range{static_cast<std::uint32_t>(frames_->value()) + (hasShutter ? 1u : 0u),
-                      kFramesPerSecond};
+                      player_.pace().framesPerSecond};
     if (motion_->isVisibleIn(*form_)) {
+        range.framesPerSecond = motion_->framesPerSecond();
         range.preRoll = motion_->preRoll();
         range.handles = motion_->handles();
         range.count += 2 * range.handles;

@@ -46,6 +46,7 @@ QString manualSection(const QString& panel) {
     static const std::map<QString, QString> sections{{"accuracy", "6-simulate"},
                                                      {"effects", "6-simulate"},
                                                      {"takes", "6-simulate"},
+                                                     {"time_line", "6-simulate"},
                                                      {"layers", "layers"},
                                                      {"levels", "levels-of-detail"},
                                                      {"look", "7-look"},

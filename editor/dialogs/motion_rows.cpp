@@ -4,11 +4,13 @@
 #include <QHBoxLayout>
 #include <QPointF>
 #include <QVariant>
+#include <algorithm>
 
 namespace hairloom::editor {
 namespace {
 
-constexpr int kMostRunUp = 10000, kFarthestFrame = 1'000'000, kMostHandles = 1000;
+constexpr double kSlowest = 1, kFastest = 240;
+constexpr int kMostRunUp = 100'000, kFarthestFrame = 1'000'000, kMostHandles = 1000;
 
 QWidget* sideBySide(QWidget* left, QWidget* right) {
     auto* row = new QWidget;
@@ -21,20 +23,29 @@ QWidget* sideBySide(QWidget* left, QWidget* right) {
 
 }  // namespace
 
-MotionRows::MotionRows(QObject* parent)
+MotionRows::MotionRows(const FramePace& pace, QObject* parent)
     : QObject(parent),
+      rate_(new NumberSpin),
       preRoll_(new QSpinBox),
       start_(new QSpinBox),
       handles_(new QSpinBox),
       samples_(new QSpinBox),
       shutter_(new QComboBox),
-      settling_(preRoll_),
+      settling_(sideBySide(rate_, preRoll_)),
       range_(sideBySide(start_, handles_)),
       exposure_(sideBySide(shutter_, samples_)) {
+    rate_->setObjectName("frameRate");
+    rate_->setDecimals(3);  // of 23.976
+    rate_->setRange(kSlowest, kFastest);
+    rate_->setValue(static_cast<double>(pace.framesPerSecond));
+    rate_->setSuffix(" frames per second");
+    rate_->setAccessibleName("Frame rate");
+    rate_->setToolTip("Number of frames per second to simulate and to write");
     preRoll_->setObjectName("preRoll");
     preRoll_->setRange(0, kMostRunUp);
-    preRoll_->setSpecialValueText("none");
-    preRoll_->setSuffix(" frames");
+    preRoll_->setValue(static_cast<int>(std::min<std::uint64_t>(pace.preRoll, kMostRunUp)));
+    preRoll_->setSpecialValueText("no run-up");
+    preRoll_->setSuffix(" frames of run-up");
     preRoll_->setAccessibleName("Run-up");
     preRoll_->setToolTip(
         "Number of frames to simulate before the first one, on the motion's first pose, so that the hair "
@@ -73,7 +84,7 @@ MotionRows::MotionRows(QObject* parent)
 }
 
 void MotionRows::addTo(QFormLayout& form) {
-    form.addRow("Run-up", settling_);
+    form.addRow("Frame rate", settling_);
     form.addRow("First frame", range_);
     form.addRow("Shutter", exposure_);
 }

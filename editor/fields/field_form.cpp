@@ -12,6 +12,7 @@
 #include "core/editing/settings_commands.h"
 #include "editor/fields/colour.h"
 #include "editor/fields/formula_edit.h"
+#include "editor/fields/key_this.h"
 #include "editor/fields/number_box.h"
 #include "editor/fields/number_spin.h"
 #include "editor/fields/price_tag.h"
@@ -20,11 +21,12 @@
 namespace hairloom::editor {
 
 FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
-                     const Prices* prices, QWidget* parent)
+                     const Prices* prices, Keying* keying, QWidget* parent)
     : QWidget(parent),
       document_(document),
       preferences_(preferences),
       prices_(prices),
+      keying_(keying),
       fields_(std::move(fields)),
       grid_(new QGridLayout(this)) {
     grid_->setContentsMargins(0, 0, 0, 0);
@@ -39,6 +41,7 @@ FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::
     }
     connect(&document_, &QtDocument::changed, this, &FieldForm::refresh);
     connect(&preferences_, &Preferences::changed, this, [this] { refresh(editing::Part::Everything); });
+    if (keying_) connect(keying_, &Keying::changed, this, [this] { refresh(shown_); });
     refresh(editing::Part::Everything);
 }
 
@@ -91,12 +94,16 @@ void FieldForm::addRow(const Field& field) {
     }
     grid_->addWidget(defaultValue, row, 2);
     if (prices_) grid_->addWidget(new PriceTag(*prices_, preferences_, field.name), row + 1, 1, 1, 2);
+    if (keying_) offerKeys(*keying_, field.name, {label, control});
     refreshers_.push_back([this, &field, label, control, defaultValue] {
-        const QString tip = tooltipOf(field, preferences_.unit());
+        const QString tip =
+            tooltipOf(field, preferences_.unit()) + (keying_ ? keyTip(*keying_, field.name) : QString());
+        QString text = keying_ ? keyMark(*keying_, field.name) + field.label : field.label;
         // Numbers beside each other have no room for their unit.
         const QString unit = shownOf(field).unit;
         if (field.kind == FieldKind::Vector && !unit.isEmpty())
-            label->setText(QStringLiteral("%1 (%2)").arg(field.label, unit));
+            text = QStringLiteral("%1 (%2)").arg(text, unit);
+        if (label->text() != text) label->setText(text);
         label->setToolTip(tip);
         control->setToolTip(tip);
         bool isDefault = true;

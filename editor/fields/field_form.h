@@ -14,13 +14,16 @@
 
 namespace hairloom::editor {
 
+class Keying;
+
 class FieldForm : public QWidget {
     Q_OBJECT
 
   public:
-    /// With `prices`, rows of settings that have some show them.
+    /// With `prices`, rows of settings that have some show them. With `keying`, fields are settings of the
+    /// simulation, which can be keyed.
     FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
-              const Prices* prices = nullptr, QWidget* parent = nullptr);
+              const Prices* prices = nullptr, Keying* keying = nullptr, QWidget* parent = nullptr);
 
     /// The control of a field, for tests and help; null where there is none of that name. Objects are named
     /// after their fields.
@@ -46,6 +49,7 @@ class FieldForm : public QWidget {
     QtDocument& document_;
     const Preferences& preferences_;
     const Prices* prices_;
+    Keying* keying_;
     std::vector<Field> fields_;
     QGridLayout* grid_;
     editing::Part shown_ = editing::Part::None;  ///< parts that the fields are of

@@ -14,6 +14,7 @@
 #include "editor/document/qt_document.h"
 #include "editor/document/tasks.h"
 #include "editor/fields/blocks.h"
+#include "editor/simulation/keying.h"
 #include "editor/simulation/player.h"
 #include "editor/style/actions.h"
 #include "editor/tools/tool_box.h"
@@ -29,6 +30,7 @@ struct PanelParts {
     Tasks& tasks;
     Messages& messages;
     Player& player;
+    Keying& keying;
     Viewport& viewport;
     ToolBox& tools;
     Actions& actions;

@@ -102,15 +102,15 @@ QWidget* makeMethods(Player& player) {
     return box;
 }
 
-QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices,
-                   Player& player) {
+QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices, Player& player,
+                   Keying& keying) {
     const std::vector<Field> fields = simulationFields();
     QWidget* const content = column({makePresets(document), makeHoldButton(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
     QStringList shown;
     for (const Group& group : groups()) {
         shown += group.fields;
-        QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields), &prices);
+        QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields), &prices, &keying);
         if (group.fields.contains("angularStiffness")) form = stacked({new StiffnessCurve(document), form});
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
@@ -121,7 +121,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
         if (!shown.contains(field.name)) others.append(field.name);
     }
     if (!others.isEmpty()) {
-        auto* form = new FieldForm(document, preferences, pick(fields, others), &prices);
+        auto* form = new FieldForm(document, preferences, pick(fields, others), &prices, &keying);
         layout->insertWidget(layout->count() - 1, collapsible("More", form, false));
     }
     return scrolled(content);
@@ -137,7 +137,7 @@ PanelInfo physicsPanel() {
             60,
             true,
             [](const PanelParts& parts) {
-                return makePanel(parts.document, parts.preferences, parts.prices, parts.player);
+                return makePanel(parts.document, parts.preferences, parts.prices, parts.player, parts.keying);
             }};
 }
 

@@ -83,8 +83,7 @@ void RunView::stop() {
     if (preview_) {
         preview_.reset();
         timer_.stop();
-        const auto& frame = player_.frame();
-        viewport_.setPose(frame ? frame->pose : nullptr);
+        viewport_.setPose(player_.pose());
     }
     Q_EMIT stopped();
 }

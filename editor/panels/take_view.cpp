@@ -2,7 +2,11 @@
 #include "editor/panels/take_view.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/documents/motions.h"
+#include "core/documents/takes.h"
+#include "core/groom/time_line.h"
 #include "editor/document/words.h"
 #include "editor/overlays/overlay_mode.h"
 
@@ -33,6 +37,7 @@ TakeView::TakeView(const PanelParts& parts, QObject* parent)
     connect(&player_, &Player::stateChanged, this, [this] {
         if (player_.isPlaying()) stop();
     });
+    connect(&player_, &Player::playHeadMoved, this, &TakeView::followPlayHead);
     viewport_.addMarks([this](Marks& marks) { draw(marks); });
 }
 
@@ -77,8 +82,7 @@ void TakeView::stop() {
     otherFrame_.reset();
     number_ = 0;
     if (!was) return;
-    const auto& frame = player_.frame();
-    viewport_.setPose(frame ? frame->pose : nullptr);
+    viewport_.setPose(player_.pose());
     Q_EMIT playingChanged();
     Q_EMIT stopped();
 }
@@ -107,6 +111,17 @@ void TakeView::showFrame(std::uint64_t number) {
     pose->head = frame_->pose;
     viewport_.setPose(std::move(pose));
     Q_EMIT frameShown(number_);
+}
+
+void TakeView::followPlayHead() {
+    if (!take_ || !player_.isScrubbed() || motionOfNotes(take_->info().notes) != kTimeLineMotion) return;
+    setPlaying(false);
+    const TimeLine& line = timeLineOf(document_.groom());
+    // Its first frame is the one behind the start.
+    const double number = std::round(static_cast<double>(player_.lineTime() - line.start) *
+                                     static_cast<double>(take_->info().framesPerSecond)) -
+                          1;
+    showFrame(static_cast<std::uint64_t>(std::max(number, 0.0)));
 }
 
 void TakeView::startClock() {

@@ -52,6 +52,8 @@ class TakeView : public QObject {
     void advance();
     void draw(Marks& marks) const;
     void startClock();
+    /// The frame at the time line's play head.
+    void followPlayHead();
 
     QtDocument& document_;
     Player& player_;

@@ -285,6 +285,8 @@ class TakesPanel : public QWidget {
         recordedName_ = name_->text();
         view_->stop();
         player_.setEngine(EngineWish::cpu);
+        // Frames of the time line's takes are those of its range.
+        if (player_.motion() == Player::kTimeLine) player_.reset();
         player_.setRecorder(recorder_);
         if (!player_.isPlaying()) player_.play();
         watch_.start();
@@ -395,7 +397,8 @@ class TakesPanel : public QWidget {
         record_->setChecked(records);
         record_->setText(records ? "Stop" : "Record");
         record_->setToolTip(records ? "Stop and keep the take"
-                                    : "Keep what plays from now on. The CPU simulates while you record");
+                                    : "Keep what plays from now on, of a time line from its start. The CPU "
+                                      "simulates while you record");
         name_->setEnabled(!records);
         list_->setEnabled(!records);
         const double perMinute = kTakeBytesPerPoint * static_cast<double>(document_.groom().pointCount()) *

@@ -15,6 +15,7 @@
 #include <algorithm>
 
 #include "core/base/write_rules.h"
+#include "core/groom/time_line.h"
 #include "editor/fields/input_rules.h"
 #include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
@@ -77,6 +78,8 @@ MainWindow::MainWindow()
     setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);
     // Along the side there is room for the whole names of all panels.
     setTabPosition(Qt::RightDockWidgetArea, QTabWidget::East);
+    // All their names need the height of the window.
+    setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
     resize(QSize(1440, 900).boundedTo(screen()->availableSize()));
     // Inputs and what others write are kept as on the command line.
     if (!writeRules().keepInputs) setWriteRules({false, true, "give another name"});
@@ -143,9 +146,12 @@ MainWindow::MainWindow()
     chooseEngine();
     connect(&preferences_, &Preferences::changed, this, chooseEngine);
     connect(&tools_, &ToolBox::activeChanged, viewport_, &Viewport::setTool);
-    connect(&player_, &Player::frameReady, this, [this] {
-        const auto& frame = player_.frame();
-        viewport_->setPose(frame ? frame->pose : nullptr);
+    connect(&player_, &Player::frameReady, this, [this] { viewport_->setPose(player_.pose()); });
+    connect(&keying_, &Keying::changed, this, [this, had = false]() mutable {
+        // What has just been keyed, or comes with the project, is seen.
+        const bool has = !timeLineOf(document_.groom()).isEmpty();
+        if (has && !had) panel("time_line")->show();
+        had = has;
     });
     showTitle();
     fillRecentMenu();
@@ -248,7 +254,7 @@ void MainWindow::showPage() {
     for (const char* id :
          {"file.save", "file.saveAs", "file.saveIncremental", "file.revert", "file.saveScript", "file.import",
           "file.export", "file.render", "timeLine.open", "timeLine.save", "timeLine.clear", "play.toggle",
-          "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
+          "play.step", "play.stepBack", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
         actions_->get(id).setEnabled(!empty);
     }
 }

@@ -30,7 +30,8 @@ class MainWindow : public QMainWindow {
     ~MainWindow() override;
 
     PanelParts parts() {
-        return {document_, preferences_, prices_, tasks_, messages_, player_, *viewport_, tools_, *actions_};
+        return {document_, preferences_, prices_,    tasks_, messages_,
+                player_,   keying_,      *viewport_, tools_, *actions_};
     }
     DocumentFiles& files() { return files_; }
     Actions& actions() { return *actions_; }
@@ -123,6 +124,7 @@ class MainWindow : public QMainWindow {
     Tasks tasks_;
     Messages messages_;
     Player player_{document_};
+    Keying keying_{document_, player_, messages_};
     DocumentFiles files_{document_, player_, preferences_, tasks_, messages_};
     ToolBox tools_;
     Viewport* viewport_;

@@ -291,9 +291,12 @@ void MainWindow::addPlayActions() {
     QAction& toggle = add({"play.toggle", QString("&Play"), "play", QString("Play or pause the simulation"),
                            QKeySequence("Space")},
                           [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
-    add({"play.step", QString("&Step"), "step", QString("Advance the simulation by one frame of 1/60 s"),
-         QKeySequence(".")},
-        [this] { player_.step(); });
+    add({"play.step", QString("&Step"), "step",
+         QString("Advance the simulation by one frame, or the play head if it was moved"), QKeySequence(".")},
+        [this] { player_.isScrubbed() ? player_.scrubFrames(1) : player_.step(); });
+    add({"play.stepBack", QString("Step &back"), "step-back", QString("Move the play head back by one frame"),
+         QKeySequence(",")},
+        [this] { player_.scrubFrames(-1); });
     add({"play.reset", QString("&Reset to rest"), "reset", QString("Reset the hair to its authored shape"),
          QKeySequence("Shift+Space")},
         [this] { player_.reset(); });

@@ -33,6 +33,7 @@ Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::sha
 
 Player::Player(QtDocument& document, QObject* parent)
     : QObject(parent), document_(document), requests_(std::make_unique<WorkerRequests>()) {
+    forgetPlayed();
     connect(&document_, &QtDocument::changed, this, &Player::documentChanged);
     connect(&document_, &QtDocument::replaced, this, [this] {
         actor_.reset();
@@ -73,6 +74,7 @@ void Player::play() {
     // From the end it plays again.
     if (motion_ == kTimeLine && !line.loop && frame_ && time() >= static_cast<double>(line.end - line.start))
         reset();
+    endScrub();
     capture();
     playing_ = true;
     request([](WorkerRequests& requests) { requests.playing = true; });
@@ -140,6 +142,7 @@ void Player::pause() {
 void Player::step() {
     if (playing_) pause();
     if (document_.groom().strandCount() == 0) return;
+    endScrub();
     capture();
     request([](WorkerRequests& requests) { ++requests.steps; });
 }
@@ -148,8 +151,11 @@ void Player::reset() {
     playing_ = false;
     from_ = 0;
     frame_.reset();
+    scrubbed_.reset();
+    offset_.setIdentity();
     ++epoch_;
     captured_ = false;
+    forgetPlayed();
     request([&](WorkerRequests& requests) {
         requests.playing = false;
         requests.steps = 0;
@@ -163,6 +169,8 @@ void Player::reset() {
         requests.delivered.reset();
     });
     Q_EMIT frameReady();
+    Q_EMIT playHeadMoved();
+    Q_EMIT headOffsetChanged();
     Q_EMIT stateChanged();
     if (planPreviewOutdated_) outdatePlanPreview();
 }
@@ -186,9 +194,12 @@ Status Player::setMotion(const QString& name) {
     const auto made = makeMotion(name);
     if (!made) return tl::unexpected(made.error());
     const bool play = playing_;
+    const auto scrubbed = scrubbed_;
     motion_ = name;
     reset();
     if (play) this->play();
+    // Whoever keys the first of all is at the frame that it is for.
+    if (scrubbed) scrub(scrubbed->time);
     Q_EMIT motionsChanged();
     return {};
 }
@@ -210,6 +221,7 @@ void Player::setActor(std::shared_ptr<const Actor> actor) {
 void Player::setLeftOut(const QStringList& effects) {
     const bool sameBody = leavesBodyOut(leftOut_) == leavesBodyOut(effects);
     leftOut_ = effects;
+    forgetPlayed();
     request([&](WorkerRequests& requests) {
         requests.leftOut = effects;
         requests.regroomed = requests.regroomed || !sameBody || isMadeWithSettings(method_);
@@ -267,6 +279,7 @@ void Player::setEngine(EngineWish wish) {
 void Player::setMethod(const PlayedMethod& method) {
     if (method == method_) return;
     method_ = method;
+    forgetPlayed();
     request([&](WorkerRequests& requests) {
         requests.method = method;
         requests.regroomed = true;
@@ -277,10 +290,6 @@ void Player::setMethod(const PlayedMethod& method) {
 
 void Player::setRecorder(std::shared_ptr<TakeRecorder> recorder) {
     request([&](WorkerRequests& requests) { requests.recorder = std::move(recorder); });
-}
-
-void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
-    request([&](WorkerRequests& requests) { requests.offset = offset; });
 }
 
 void Player::documentChanged(editing::Part parts) {
@@ -297,9 +306,14 @@ void Player::documentChanged(editing::Part parts) {
     if (contains(parts, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
         outdatePlanPreview();
     if (contains(parts, editing::kHairParts | editing::kScalpParts)) {
-        if (!captured_) return;
+        if (!captured_) {
+            forgetPlayed();
+            return endScrub();
+        }
+        endScrub();
         const bool sameStrands = std::ranges::equal(groom.offsets.view(), capturedOffsets_);
         if (playing_ && sameStrands && !contains(parts, editing::kScalpParts)) {
+            forgetPlayed();
             request([&](WorkerRequests& requests) {
                 requests.groom = std::make_shared<const Groom>(groom);
                 requests.regroomed = true;
@@ -311,7 +325,11 @@ void Player::documentChanged(editing::Part parts) {
         if (play) this->play();
         return;
     }
-    if (contains(parts, editing::Part::TimeLine)) takeTimeLine();
+    if (contains(parts, editing::Part::TimeLine | editing::Part::Physics | editing::Part::Spheres)) {
+        forgetPlayed();
+        if (contains(parts, editing::Part::TimeLine)) takeTimeLine();
+        if (scrubbed_) scrub(scrubbed_->time);
+    }
     // Follow hairs matter where they move with the strands, which is on the device.
     const bool followsOther =
         contains(parts, editing::Part::Interpolation) && engine_ && engine_->kind == EngineKind::gpu;

@@ -16,6 +16,7 @@
 #include "core/simulation/simulation.h"
 #include "core/simulation/time_line_motion.h"
 #include "editor/document/qt_document.h"
+#include "editor/simulation/played_frames.h"
 #include "editor/simulation/played_method.h"
 #include "editor/simulation/take_recorder.h"
 #include "editor/viewport/picture_request.h"
@@ -59,6 +60,30 @@ class Player : public QObject {
     /// Frames of the motion.
     FramePace pace() const;
 
+    // The play head: any time of the time line is shown at once. What was simulated stays, and play() goes on
+    // from it.
+
+    /// What the view shows.
+    enum class Shown {
+        rest,       ///< hair at rest on the head at rest
+        simulated,  ///< the last frame
+        played,     ///< one that has played before
+        posed,      ///< hair at rest on the head of that time
+    };
+    /// Pauses. Shows the frame that has played there, else hair at rest on the head of that time.
+    void scrub(float lineTime);
+    /// By frames of the time line, from where the play head is.
+    void scrubFrames(std::int64_t frames);
+    bool isScrubbed() const { return scrubbed_.has_value(); }
+    /// Seconds on the time line of what is shown.
+    float lineTime() const;
+    std::int64_t lineFrame() const;
+    Shown shown() const;
+    /// For the view; null: at rest.
+    const std::shared_ptr<const HairPose>& pose() const;
+    /// Frames that scrub() shows as they played.
+    const PlayedFrames& playedFrames() const { return *played_; }
+
     /// Of setMotion(): what the document's time line says.
     static constexpr QLatin1String kTimeLine{"timeline"};
     /// none, spin, nod, clip:NAME or kTimeLine. Starts anew. An error leaves the motion as it was.
@@ -101,12 +126,16 @@ class Player : public QObject {
 
     /// Moves the head on top of its motion: by the hand of a person.
     void setHeadOffset(const Eigen::Isometry3f& offset);
+    const Eigen::Isometry3f& headOffset() const { return offset_; }
 
   Q_SIGNALS:
     void frameReady();
     /// Playing, paused or reset.
     void stateChanged();
     void motionsChanged();
+    /// By scrub(), or because it is where the last frame is again.
+    void playHeadMoved();
+    void headOffsetChanged();
     /// effects() has changed while nothing played.
     void planPreviewChanged();
     void engineChanged();
@@ -140,6 +169,10 @@ class Player : public QObject {
     /// Makes the simulation to see its plan; on the thread.
     void computePlanPreview(const Groom& groom, const QStringList& leftOut);
     void request(const std::function<void(WorkerRequests&)>& change);
+    std::shared_ptr<const HairPose> posedAt(float lineTime);
+    void endScrub();
+    /// What has played is of another groom or motion.
+    void forgetPlayed();
 
     QtDocument& document_;
     std::shared_ptr<const Actor> actor_;
@@ -149,6 +182,14 @@ class Player : public QObject {
     bool hasTimeLine_ = false;  ///< the document's is not empty
     bool captured_ = false;     ///< the thread has the groom as it is now
     std::shared_ptr<const PlayedFrame> frame_;
+    struct Scrubbed {
+        float time;
+        bool played;
+        std::shared_ptr<const HairPose> pose;
+    };
+    std::optional<Scrubbed> scrubbed_;
+    std::shared_ptr<PlayedFrames> played_;
+    Eigen::Isometry3f offset_ = Eigen::Isometry3f::Identity();  ///< by the hand of a person
     std::optional<EngineChoice> engine_;
     PlayedMethod method_;
     std::vector<std::uint32_t> capturedOffsets_;  ///< of the strands that the thread has

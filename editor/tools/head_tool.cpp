@@ -10,9 +10,7 @@ constexpr float kTurnPerPixel = 0.01f;  // radians
 class HeadTool : public Tool {
   public:
     HeadTool(Player& player, Viewport& viewport) : player_(player), viewport_(viewport) {
-        connect(&player_, &Player::stateChanged, this, [this] {
-            if (!player_.hasFrame() && !player_.isPlaying()) offset_.setIdentity();
-        });
+        connect(&player_, &Player::headOffsetChanged, this, [this] { offset_ = player_.headOffset(); });
     }
     const ToolInfo& info() const override { return info_; }
     QString hint() const override { return QString("%1. Hold Shift to rotate it").arg(info_.tip); }
@@ -21,7 +19,8 @@ class HeadTool : public Tool {
         held_ = true;
         from_px_ = pointer.at_px;
         start_ = offset_;
-        if (!player_.isPlaying()) player_.play();
+        // At the play head it is posed, for a key.
+        if (!player_.isPlaying() && !player_.isScrubbed()) player_.play();
     }
 
     void drag(const Pointer& pointer) override {

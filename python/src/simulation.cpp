@@ -29,8 +29,8 @@ struct PySimulation {
     std::unique_ptr<HeadMotion> motion;
     std::optional<KeyedSettings> keyed;
     std::optional<Simulation> simulation;
-    std::uint64_t frames = 0, next = 1;
-    double framesPerSecond = 60;
+    std::uint64_t next = 1;
+    MotionSpan span;
     std::atomic<bool> inUse = false;
 };
 
@@ -49,8 +49,7 @@ Status setWind(Groom& groom, const std::optional<std::array<float, 3>>& wind) {
     return {};
 }
 
-Status begin(PySimulation& run, const std::string& motion, const std::string& character,
-             std::uint32_t preRoll) {
+Status begin(PySimulation& run, const std::string& motion, const std::string& character) {
     auto moving = makeMotion(motion, character, run.groom);
     if (!moving) return tl::unexpected(moving.error());
     run.motion = std::move(*moving);
@@ -60,42 +59,52 @@ Status begin(PySimulation& run, const std::string& motion, const std::string& ch
     auto made = Simulation::make(run.groom, start);
     if (!made) return tl::unexpected(made.error());
     run.simulation.emplace(std::move(*made));
-    for (std::uint32_t i = 0; i < preRoll; ++i)
-        run.simulation->step(static_cast<float>(1 / run.framesPerSecond), start);
+    const FramePace& pace = run.span.pace;
+    for (std::uint64_t i = 0; i < pace.preRoll * pace.steps(); ++i) run.simulation->step(pace.dt(), start);
     return run.simulation->status();
 }
 
-std::unique_ptr<PySimulation> simulate(PyGroom& groom, nb::handle motion, std::int64_t frames, double fps,
-                                       const std::optional<std::array<float, 3>>& wind, std::int64_t preRoll,
-                                       const std::string& character) {
-    if (frames < 1 || frames > 1'000'000)
-        raiseArgument("frames", fmt::format("is {}", frames), "1 to 1000000");
-    if (!(fps >= 10 && fps <= 1000)) raiseArgument("fps", fmt::format("is {}", fps), "10 to 1000");
-    if (preRoll < 0 || preRoll > 100'000)
-        raiseArgument("pre_roll", fmt::format("is {}", preRoll), "0 to 100000");
+std::unique_ptr<PySimulation> simulate(PyGroom& groom, nb::handle motion, std::optional<std::int64_t> frames,
+                                       std::optional<double> fps,
+                                       const std::optional<std::array<float, 3>>& wind,
+                                       std::optional<std::int64_t> preRoll, const std::string& character) {
+    if (frames && (*frames < 1 || *frames > 1'000'000))
+        raiseArgument("frames", fmt::format("is {}", *frames), "1 to 1000000");
+    if (fps && !(*fps >= 1 && *fps <= 1000)) raiseArgument("fps", fmt::format("is {}", *fps), "1 to 1000");
+    if (preRoll && (*preRoll < 0 || *preRoll > 100'000))
+        raiseArgument("pre_roll", fmt::format("is {}", *preRoll), "0 to 100000");
     auto run = std::make_unique<PySimulation>();
     {
         const Use use(groom.inUse, kTheGroom);
         run->groom = groom.groom;
     }
-    run->frames = static_cast<std::uint64_t>(frames);
-    run->framesPerSecond = fps;
     unwrap(setWind(run->groom, wind));
     const MotionFile moves(motion);
-    unwrap(withoutGil(
-        [&] { return begin(*run, moves.name(), character, static_cast<std::uint32_t>(preRoll)); }));
+    const auto asked = [](const auto& number) -> std::optional<std::uint64_t> {
+        if (!number) return std::nullopt;
+        return static_cast<std::uint64_t>(*number);
+    };
+    run->span = motionSpanOf(moves.name(), run->groom,
+                             fps ? std::optional<float>(static_cast<float>(*fps)) : std::nullopt,
+                             asked(frames), asked(preRoll));
+    unwrap(withoutGil([&] { return begin(*run, moves.name(), character); }));
     return run;
 }
 
 PyFrame nextFrame(PySimulation& run) {
     const Use use(run.inUse, kTheSimulation);
-    if (run.next > run.frames) throw nb::stop_iteration();
-    PyFrame frame{run.next, static_cast<double>(run.next) / run.framesPerSecond, {}, {}, {}};
+    if (run.next > run.span.frames) throw nb::stop_iteration();
+    const FramePace& pace = run.span.pace;
+    PyFrame frame{
+        run.next, static_cast<double>(run.next) / static_cast<double>(pace.framesPerSecond), {}, {}, {}};
     unwrap(withoutGil([&]() -> Status {
-        const auto time = static_cast<float>(frame.time);
-        if (auto given = run.keyed->give(*run.simulation, time); !given) return given;
-        const HeadPose pose = run.motion->poseAt(time);
-        run.simulation->step(static_cast<float>(1 / run.framesPerSecond), pose);
+        HeadPose pose;
+        for (std::uint32_t step = 1; step <= pace.steps(); ++step) {
+            const float time = pace.timeOf(static_cast<float>(run.next), step);
+            if (auto given = run.keyed->give(*run.simulation, time); !given) return given;
+            pose = run.motion->poseAt(time);
+            run.simulation->step(pace.dt(), pose);
+        }
         const auto points = run.simulation->positions_ws();
         frame.positions_ws = std::make_shared<const std::vector<Vec3f>>(points.begin(), points.end());
         frame.velocities_ws = std::make_shared<const std::vector<Vec3f>>(run.simulation->velocities_ws());
@@ -147,7 +156,7 @@ void bindSimulation(nb::module_& module) {
             "__iter__", [](nb::handle self) { return nb::borrow(self); },
             nb::sig("def __iter__(self) -> Simulation"))
         .def("__next__", &nextFrame, "The next frame. Raises BusyError while another thread asks for one.")
-        .def("__len__", [](const PySimulation& run) { return run.frames; })
+        .def("__len__", [](const PySimulation& run) { return run.span.frames; })
         .def("stats", &stats, nb::sig("def stats(self) -> dict[str, typing.Any]"),
              "frames, ms_per_frame, max_stretch (share of the length), max_penetration_mm, nan_count, and "
              "state_hash, which is "
@@ -155,21 +164,24 @@ void bindSimulation(nb::module_& module) {
 }
 
 void bindSimulate(nb::class_<PyGroom>& groom) {
-    groom.def("simulate", &simulate, "motion"_a = "none", "frames"_a = 60, "fps"_a = 60.0,
-              "wind"_a.none() = nb::none(), "pre_roll"_a = 0, "character"_a = "",
-              nb::sig("def simulate(self, motion: str | collections.abc.Mapping[str, typing.Any] = 'none', "
-                      "frames: int = 60, fps: float = "
-                      "60.0, wind: tuple[float, float, float] | None = None, pre_roll: int = 0, character: "
-                      "str = '') -> Simulation"),
-              "An iterator of frames, simulated as you ask for them, on the CPU with all cores. The groom "
-              "itself does not change.\n\n"
-              "motion: none, spin, nod, clip:NAME, a keyframe file F.json, or its content as a dict "
-              "(docs/formats/motion.md). frames: "
-              "1 to 1000000. fps: 10 to 1000. wind: m/s, at most 200, in place of the groom's own. pre_roll: "
-              "frames before the first, "
-              "on the first pose. character: file with skeleton and clips, if other than the "
-              "scalp's.\n\nRaises ArgumentError for "
-              "values out of range, and Error for an unknown motion or a damaged file.");
+    groom.def(
+        "simulate", &simulate, "motion"_a = "none", "frames"_a.none() = nb::none(),
+        "fps"_a.none() = nb::none(), "wind"_a.none() = nb::none(), "pre_roll"_a.none() = nb::none(),
+        "character"_a = "",
+        nb::sig("def simulate(self, motion: str | collections.abc.Mapping[str, typing.Any] = 'none', "
+                "frames: int | None = None, fps: float | None = "
+                "None, wind: tuple[float, float, float] | None = None, pre_roll: int | None = None, "
+                "character: str = '') -> Simulation"),
+        "An iterator of frames, simulated as you ask for them, on the CPU with all cores. The groom "
+        "itself does not change.\n\n"
+        "motion: none, spin, nod, clip:NAME, timeline, a keyframe file F.json, or its content as a dict "
+        "(docs/formats/motion.md). frames: "
+        "1 to 1000000, by default 60. fps: 1 to 1000, by default 60. wind: m/s, at most 200, in place of "
+        "the groom's own. pre_roll: frames before the first, on the first pose, by default none. The "
+        "motion timeline has the time line's defaults for these three. character: file with skeleton and "
+        "clips, if other than the "
+        "scalp's.\n\nRaises ArgumentError for "
+        "values out of range, and Error for an unknown motion or a damaged file.");
 }
 
 }  // namespace hairloom::python

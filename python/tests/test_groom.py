@@ -246,7 +246,7 @@ class Motion(InFolder):
             groom.simulate("jump")
         with self.assertRaises(hairloom.Error):
             groom.simulate({"keys": [{"t": -1}]})
-        refused: list[dict[str, Any]] = [{"frames": 0}, {"fps": 1}, {"fps": float("nan")}, {"pre_roll": -1}]
+        refused: list[dict[str, Any]] = [{"frames": 0}, {"fps": 0.5}, {"fps": float("nan")}, {"pre_roll": -1}]
         for wrong in refused:
             with self.assertRaises(hairloom.ArgumentError):
                 groom.simulate("none", **wrong)

@@ -87,6 +87,15 @@ TEST_F(ExportMotionTest, MotionIsAskedForWhereItIsWritten) {
     EXPECT_EQ(manifest["files"][0]["bytes"], usd.size());
     EXPECT_EQ(manifest["groom"]["strands"], 20);
     EXPECT_EQ(manifest["command"], "Export: Houdini");
+    dialog.findChild<QSpinBox*>("handles")->setValue(0);
+    frames->setValue(2);
+    for (const int rate : {1, 24, 240}) {
+        dialog.findChild<QDoubleSpinBox*>("frameRate")->setValue(rate);
+        dialog.exportTo(inFolder("rate.usda"));
+        finishWork();
+        EXPECT_NE(textOf("rate.usda").find("timeCodesPerSecond = " + std::to_string(rate)), std::string::npos)
+            << rate << ": " << window->statusLine().message().toStdString();
+    }
     dialog.findChild<QComboBox*>("target")->setCurrentText("PLY strands");
     EXPECT_EQ(what->count(), 2);
     EXPECT_FALSE(shutter->isVisible());

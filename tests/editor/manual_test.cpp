@@ -9,8 +9,10 @@
 
 #include "core/documents/look_presets.h"
 #include "core/editing/document.h"
+#include "core/groom/time_line_keys.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/fields/number_box.h"
+#include "editor/panels/track_rows.h"
 #include "editor/tools/brush_tool.h"
 #include "tests/editor/window_fixture.h"
 
@@ -161,6 +163,39 @@ TEST_F(ManualTest, Effects) {
     ASSERT_TRUE(QTest::qWaitFor([&] { return frame && frame->time > 1.2; }, kPatience));
     trigger("play.toggle");
     shootWindow("wind");
+}
+
+TEST_F(ManualTest, TimeLine) {
+    openSampleHair("shoulder");
+    Groom fewer = groom();
+    fewer.interpolation.followPerGuide = 5;
+    document().open(fewer, {}, "shoulder");
+    TimeLine line;
+    line.framesPerSecond = 30;
+    line.preRoll = 15;
+    line.end = 2;
+    line.loop = false;
+    for (const auto& [time, turn] : {std::pair{0.0f, 0.0f}, {0.6f, 35.0f}, {1.4f, -25.0f}, {2.0f, 0.0f}}) {
+        HeadKey key;
+        key.time = time;
+        key.degrees = turn;
+        key.interpolation = KeyInterpolation::smooth;
+        keyHead(line, key);
+    }
+    keySetting(line, "simulation.windSpeed", 0.3f, {0, 0, 0});
+    keySetting(line, "simulation.windSpeed", 1, {6, 0, 0});
+    keySetting(line, "simulation.windSpeed", 1.6f, {1, 0, 0});
+    ASSERT_TRUE(parts().keying.change(line, "Time line"));
+    showFromThreeQuarters();
+    raise("physics");
+    trigger("play.toggle");
+    const auto& frame = parts().player.frame();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return frame && frame->time > 1.2; }, kPatience));
+    parts().player.scrub(1);
+    auto& rows = *find<TrackRows>("timeTracks");
+    const KeyTrack wind{KeyTrack::Of::setting, "simulation.windSpeed"};
+    QTest::mouseClick(&rows, Qt::LeftButton, {}, rows.placeOf({wind, 1}));
+    shootWindow("timeline");
 }
 
 TEST_F(ManualTest, Levels) {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/fields/key_this.h"
+
+#include <QContextMenuEvent>
+#include <QMenu>
+
+#include "editor/fields/number_spin.h"
+
+namespace hairloom::editor {
+namespace {
+
+KeyTrack trackOf(const char* setting) {
+    return {KeyTrack::Of::setting, std::string("simulation.") + setting};
+}
+
+class KeyMenu : public QObject {
+  public:
+    KeyMenu(Keying& keying, const char* setting, QObject* parent)
+        : QObject(parent), keying_(keying), track_(trackOf(setting)) {}
+
+    void watch(QWidget& place) {
+        place.installEventFilter(this);
+        for (QWidget* inside : place.findChildren<QWidget*>()) inside->installEventFilter(this);
+    }
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (event->type() != QEvent::ContextMenu) return QObject::eventFilter(watched, event);
+        const auto* at = static_cast<QContextMenuEvent*>(event);
+        QMenu menu;
+        menu.setObjectName("keyThis");
+        menu.setToolTipsVisible(true);
+        menu.addAction(QString("Key this at frame %1").arg(keying_.player().lineFrame()),
+                       [this] { keying_.keySetting(track_.name); });
+        QAction* remove = menu.addAction("Remove keys", [this] { keying_.removeSetting(track_.name); });
+        remove->setEnabled(keying_.keyCount(track_) > 0);
+        menu.exec(at->globalPos());
+        return true;
+    }
+
+  private:
+    Keying& keying_;
+    KeyTrack track_;
+};
+
+}  // namespace
+
+void offerKeys(Keying& keying, const char* setting, std::initializer_list<QWidget*> places) {
+    if (findKeyable(trackOf(setting).name) == nullptr) return;
+    for (QWidget* place : places) (new KeyMenu(keying, setting, place))->watch(*place);
+}
+
+QString keyMark(const Keying& keying, const char* setting) {
+    const KeyTrack track = trackOf(setting);
+    if (keying.keyCount(track) == 0) return {};
+    return keying.hasKeyHere(track) ? QStringLiteral("◆ ") : QStringLiteral("◇ ");
+}
+
+QString keyTip(const Keying& keying, const char* setting) {
+    const std::string name = trackOf(setting).name;
+    for (const SettingTrack& track : keying.line().settings) {
+        const auto* const field = findKeyable(name);
+        if (track.name != name || field == nullptr) continue;
+        const Vec3d value = valueAt(track, keying.player().lineTime());
+        QStringList numbers;
+        for (std::uint32_t c = 0; c < field->components(); ++c)
+            numbers.append(numberLocale().toString(value[c], 'g', 4));
+        return QString("<p>Keyed: %1 %2 at frame %3. The keys count in playback, not this value</p>")
+            .arg(numbers.join(", "), QString::fromUtf8(field->unit).toHtmlEscaped())
+            .arg(keying.player().lineFrame());
+    }
+    return {};
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What has played, frame by frame in memory, so that the play head goes back to it. Safe on any threads.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "core/groom/time_line.h"
+#include "editor/viewport/picture_request.h"
+
+namespace hairloom::editor {
+
+class PlayedFrames {
+  public:
+    /// Frames beyond so many bytes are not kept.
+    static constexpr std::size_t kMostBytes = std::size_t{512} << 20u;
+
+    /// Frames are counted on `line`, of which the range, the loop and the frame rate matter.
+    explicit PlayedFrames(const TimeLine& line);
+
+    /// `seconds` behind the start of the motion; in place of what played there before.
+    void add(double seconds, std::shared_ptr<const HairPose> pose);
+    /// Null where nothing is kept.
+    std::shared_ptr<const HairPose> at(std::int64_t frame) const;
+    std::int64_t frameAt(float lineTime) const;
+    /// First and last frame of those that follow each other.
+    std::vector<std::pair<std::int64_t, std::int64_t>> runs() const;
+
+  private:
+    TimeLine range_;
+    mutable std::mutex mutex_;
+    std::map<std::int64_t, std::shared_ptr<const HairPose>> frames_;
+    std::size_t bytes_ = 0;
+};
+
+}  // namespace hairloom::editor

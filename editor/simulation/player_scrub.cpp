@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The play head of the player: any time of the time line at once.
+
+#include <cmath>
+
+#include "core/simulation/rest_positions.h"
+#include "core/simulation/time_line_motion.h"
+#include "editor/document/words.h"
+#include "editor/simulation/player.h"
+#include "editor/simulation/player_requests.h"
+
+namespace hairloom::editor {
+
+float Player::lineTime() const {
+    const TimeLine& line = timeLineOf(document_.groom());
+    if (scrubbed_) return scrubbed_->time;
+    const auto seconds = static_cast<float>(time());
+    return motion_ == kTimeLine ? line.timeAt(seconds) : line.start + seconds;
+}
+
+std::int64_t Player::lineFrame() const {
+    const auto rate = static_cast<double>(timeLineOf(document_.groom()).framesPerSecond);
+    return std::llround(static_cast<double>(lineTime()) * rate);
+}
+
+Player::Shown Player::shown() const {
+    if (scrubbed_) return scrubbed_->played ? Shown::played : Shown::posed;
+    return frame_ ? Shown::simulated : Shown::rest;
+}
+
+const std::shared_ptr<const HairPose>& Player::pose() const {
+    static const std::shared_ptr<const HairPose> none;
+    if (scrubbed_) return scrubbed_->pose;
+    return frame_ ? frame_->pose : none;
+}
+
+void Player::scrub(float lineTime) {
+    if (playing_) pause();
+    const float time = std::clamp(lineTime, 0.0f, kLatestKey);
+    Scrubbed now{time, false, nullptr};
+    const bool byHand = !offset_.isApprox(Eigen::Isometry3f::Identity());
+    if (auto played = byHand ? nullptr : played_->at(played_->frameAt(time))) {
+        now.played = true;
+        now.pose = std::move(played);
+    } else {
+        now.pose = posedAt(time);
+    }
+    scrubbed_ = std::move(now);
+    Q_EMIT frameReady();
+    Q_EMIT playHeadMoved();
+}
+
+std::shared_ptr<const HairPose> Player::posedAt(float lineTime) {
+    const Groom& groom = document_.groom();
+    const auto motion = makeMotion(motion_);
+    if (!motion) {
+        Q_EMIT failed(errorText(motion.error()));
+        return nullptr;
+    }
+    auto pose = std::make_shared<HairPose>();
+    pose->head = inWorld((*motion)->poseAt(std::max(0.0f, lineTime - timeLineOf(groom).start)));
+    moveBy(offset_, pose->head);
+    pose->positions_ws = posedPositions(groom, pose->head);
+    return pose;
+}
+
+void Player::scrubFrames(std::int64_t frames) {
+    const TimeLine& line = timeLineOf(document_.groom());
+    const auto frame = static_cast<double>(std::max<std::int64_t>(lineFrame() + frames, 0));
+    scrub(static_cast<float>(frame / static_cast<double>(line.framesPerSecond)));
+}
+
+void Player::endScrub() {
+    if (!scrubbed_) return;
+    scrubbed_.reset();
+    Q_EMIT frameReady();
+    Q_EMIT playHeadMoved();
+}
+
+void Player::forgetPlayed() {
+    TimeLine line = timeLineOf(document_.groom());
+    if (motion_ != kTimeLine) {
+        line.framesPerSecond = FramePace().framesPerSecond;
+        line.loop = false;
+    }
+    played_ = std::make_shared<PlayedFrames>(line);
+    request([&](WorkerRequests& requests) { requests.played = played_; });
+}
+
+void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
+    offset_ = offset;
+    request([&](WorkerRequests& requests) { requests.offset = offset; });
+    if (scrubbed_) scrub(scrubbed_->time);
+    Q_EMIT headOffsetChanged();
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The panel of the time line as an animator uses it: key, drag, scrub, undo.
+
+#include <gtest/gtest.h>
+
+#include <QComboBox>
+#include <QContextMenuEvent>
+#include <QLabel>
+#include <QMenu>
+#include <QScrollArea>
+#include <QToolButton>
+
+#include "core/animation/actor.h"
+#include "core/groom/time_line_keys.h"
+#include "editor/fields/number_box.h"
+#include "editor/panels/key_curves.h"
+#include "editor/panels/time_ruler.h"
+#include "editor/panels/track_rows.h"
+#include "tests/editor/nothing_clipped.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+const KeyTrack kSpeed{KeyTrack::Of::setting, "simulation.windSpeed"}, kHead{KeyTrack::Of::head, {}},
+    kClips{KeyTrack::Of::clips, {}};
+
+class TimeLinePanelTest : public WindowTest {
+  protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        window->activateWindow();
+        ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
+        openSampleHair("short");
+        openFirstStrands(20);
+    }
+    const TimeLine& line() { return timeLineOf(groom()); }
+    Player& player() { return parts().player; }
+    TrackRows& rows() { return *find<TrackRows>("timeTracks"); }
+    void set(const TimeLine& line) { ASSERT_TRUE(parts().keying.change(line, "Time line")); }
+    /// Keys of wind speed at 0, 1 and 2 s of 4.
+    TimeLine windy() {
+        TimeLine line;
+        line.framesPerSecond = 30;
+        for (const float time : {0.0f, 1.0f, 2.0f}) keySetting(line, kSpeed.name, time, {2 * time, 0, 0});
+        return line;
+    }
+    /// What a right-click on a control offers, by the words that it begins with.
+    void chooseInMenu(QWidget& control, const QString& words) {
+        bool chosen = false;
+        QTimer timer;
+        QObject::connect(&timer, &QTimer::timeout, [&] {
+            auto* menu = qobject_cast<QMenu*>(QApplication::activePopupWidget());
+            if (!menu) return;
+            for (QAction* action : menu->actions()) {
+                if (!action->text().startsWith(words)) continue;
+                chosen = action->isEnabled();
+                // As a click does: it closes the menu and runs.
+                menu->setActiveAction(action);
+                QTest::keyClick(menu, Qt::Key_Return);
+                return;
+            }
+            menu->close();
+        });
+        timer.start(20);
+        const QPoint middle = control.rect().center();
+        QContextMenuEvent event(QContextMenuEvent::Mouse, middle, control.mapToGlobal(middle));
+        QCoreApplication::sendEvent(&control, &event);
+        EXPECT_TRUE(chosen) << words.toStdString();
+    }
+    /// In three steps, as a hand does.
+    static void dragIn(QWidget& widget, const QPoint& from, const QPoint& to) {
+        QTest::mousePress(&widget, Qt::LeftButton, {}, from);
+        for (const QPoint& at : {(from + to) / 2, to}) {
+            QMouseEvent move(QEvent::MouseMove, at, widget.mapToGlobal(at), Qt::LeftButton, Qt::LeftButton,
+                             Qt::NoModifier);
+            QCoreApplication::sendEvent(&widget, &move);
+        }
+        QTest::mouseRelease(&widget, Qt::LeftButton, {}, to);
+    }
+    /// Pixels of `frames` in the rows.
+    int across(int frames) {
+        const double first = rows().placeOf({kSpeed, 0}).x(), second = rows().placeOf({kSpeed, 1}).x();
+        return static_cast<int>(std::lround((second - first) / 30 * frames));
+    }
+};
+
+TEST_F(TimeLinePanelTest, KeyThisOnAFieldKeysItAtThePlayHead) {
+    QDockWidget* const panel = window->panel("time_line");
+    EXPECT_FALSE(panel->isVisible()) << "there is nothing on it yet";
+    panel->show();
+    QCoreApplication::processEvents();
+    EXPECT_TRUE(find<QLabel>("timeNone")->isVisible());
+    auto* speed = window->panel("physics")->findChild<NumberBox*>("windSpeed");
+    ASSERT_TRUE(speed);
+    const int before = document().doneSteps();
+    chooseInMenu(*speed, "Key this at frame 0");
+    EXPECT_EQ(document().doneSteps(), before + 1) << "one step";
+    EXPECT_EQ(player().motion(), "timeline");
+    player().scrub(1);
+    Groom windier = groom();
+    windier.simulation.windSpeed = 8;
+    change("Wind speed", windier);
+    chooseInMenu(speed->spinBox(), "Key this at frame 60");
+    EXPECT_EQ(player().lineFrame(), 60) << "the play head stays";
+    ASSERT_EQ(keyTimes(line(), kSpeed), (std::vector<float>{0, 1}));
+    EXPECT_EQ(numberOf(line(), {kSpeed, 1}, 0), 8);
+    EXPECT_TRUE(find<TrackRows>("timeTracks")->isVisible());
+    const auto marked = [&](const QString& mark) {
+        for (const auto* label : window->panel("physics")->findChildren<QLabel*>()) {
+            if (label->buddy() == speed) return label->text() == mark + "Wind speed";
+        }
+        return false;
+    };
+    EXPECT_TRUE(marked("◆ "));
+    player().scrubFrames(-20);
+    EXPECT_TRUE(marked("◇ ")) << "keyed, but not here";
+    chooseInMenu(*speed, "Remove keys");
+    EXPECT_TRUE(line().isEmpty());
+    EXPECT_TRUE(marked(""));
+    trigger("edit.undo");
+    EXPECT_EQ(keyTimes(line(), kSpeed).size(), 2u);
+    // A curve over the strand cannot be keyed.
+    EXPECT_EQ(findKeyable("simulation.stiffnessRamp"), nullptr);
+}
+
+TEST_F(TimeLinePanelTest, KeysAreDraggedCopiedEditedAndDeletedEachAsOneStep) {
+    set(windy());
+    EXPECT_TRUE(window->panel("time_line")->isVisible()) << "what is keyed is seen";
+    QCoreApplication::processEvents();
+    int steps = document().doneSteps();
+    const QPoint second = rows().placeOf({kSpeed, 1});
+    EXPECT_TRUE(find<QLabel>("keyNone")->isVisible()) << "what the room beside the keys is for";
+    dragIn(rows(), second, second + QPoint(across(6), 0));
+    EXPECT_EQ(document().doneSteps(), ++steps);
+    EXPECT_NEAR(keyTimes(line(), kSpeed)[1], 1.2, 1e-5);
+    // Double-click: the value is typed with its unit.
+    const QPoint moved = rows().placeOf({kSpeed, 1});
+    QTest::mouseDClick(&rows(), Qt::LeftButton, {}, moved);
+    auto* value = find<QDoubleSpinBox>("keyNumber0");
+    EXPECT_TRUE(value->hasFocus());
+    EXPECT_TRUE(value->text().endsWith("m/s")) << value->text().toStdString();
+    QTest::keyClicks(value, "6,5");
+    QTest::keyClick(value, Qt::Key_Return);
+    EXPECT_EQ(document().doneSteps(), ++steps);
+    EXPECT_EQ(numberOf(line(), {kSpeed, 1}, 0), 6.5);
+    auto* between = find<QComboBox>("keyInterpolation");
+    between->setCurrentIndex(2);
+    Q_EMIT between->activated(2);
+    EXPECT_EQ(interpolationOf(line(), {kSpeed, 1}), KeyInterpolation::smooth);
+    EXPECT_EQ(document().doneSteps(), ++steps);
+    player().scrub(3);
+    rows().setFocus();
+    QTest::keyClick(&rows(), Qt::Key_D, Qt::ControlModifier);
+    EXPECT_EQ(document().doneSteps(), ++steps);
+    ASSERT_EQ(keyTimes(line(), kSpeed).size(), 4u);
+    EXPECT_EQ(keyTimes(line(), kSpeed)[3], 3);
+    QTest::keyClick(&rows(), Qt::Key_Right, Qt::AltModifier);
+    EXPECT_NEAR(keyTimes(line(), kSpeed)[3], 3 + 1.0 / 30, 1e-5);
+    ++steps;
+    QTest::keyClick(&rows(), Qt::Key_Delete);
+    EXPECT_EQ(document().doneSteps(), ++steps);
+    EXPECT_EQ(keyTimes(line(), kSpeed).size(), 3u);
+    EXPECT_EQ(groom().strandCount(), 20u) << "keys, not strands";
+    QTest::keyClick(&rows(), Qt::Key_A, Qt::ControlModifier);
+    QTest::keyClick(&rows(), Qt::Key_Delete);
+    EXPECT_TRUE(line().isEmpty());
+    while (document().doneSteps() > steps - 6) trigger("edit.undo");
+    EXPECT_EQ(line(), windy()) << "undone to where it began";
+}
+
+TEST_F(TimeLinePanelTest, ScrubbingShowsWhatPlayedElseThePosedHead) {
+    TimeLine line = windy();
+    line.end = 0.3f;
+    line.loop = false;
+    keyHead(line, {0});
+    HeadKey turned;
+    turned.time = 0.3f;
+    turned.degrees = 60;
+    keyHead(line, turned);
+    set(line);
+    player().scrub(0.2f);
+    EXPECT_EQ(player().shown(), Player::Shown::posed);
+    EXPECT_TRUE(find<QLabel>("timeState")->text().contains("not simulated"));
+    const auto posed = player().pose();
+    ASSERT_TRUE(posed);
+    const Eigen::AngleAxisf turn(posed->head.head_ws.linear());
+    EXPECT_NEAR(degrees(turn.angle()), 40, 0.01) << "two thirds of the turn";
+    EXPECT_LT((posed->positions_ws[5] - posed->head.head_ws * groom().positions()[5]).norm(), 1e-6f);
+    trigger("play.toggle");
+    EXPECT_FALSE(player().isScrubbed());
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, 120'000));
+    const auto last = player().frame();
+    ASSERT_TRUE(last);
+    EXPECT_EQ(player().playedFrames().runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{1, 9}}));
+    std::vector<Vec3f> before;
+    for (int frame = 8; frame > 0; --frame) {
+        trigger("play.stepBack");
+        EXPECT_EQ(player().lineFrame(), frame);
+        EXPECT_EQ(player().shown(), Player::Shown::played);
+        EXPECT_NE(player().pose()->positions_ws, before);
+        before = player().pose()->positions_ws;
+    }
+    QTest::keyClick(find<TimeRuler>("timeRuler"), Qt::Key_End);
+    EXPECT_EQ(player().pose(), last->pose) << "forward again, the very frame";
+    // What played is of other settings once one changes.
+    Groom heavier = groom();
+    heavier.simulation.gravity = {0, -3, 0};
+    change("Gravity", heavier);
+    EXPECT_EQ(player().shown(), Player::Shown::posed);
+    EXPECT_TRUE(player().playedFrames().runs().empty());
+    trigger("play.reset");
+    EXPECT_EQ(player().shown(), Player::Shown::rest);
+}
+
+TEST_F(TimeLinePanelTest, TheHeadIsKeyedAsTheHandHasMovedIt) {
+    window->panel("time_line")->show();
+    player().scrub(0.5f);
+    player().setHeadOffset(Eigen::Isometry3f(Eigen::Translation3f(0.1f, 0, 0)));
+    EXPECT_FALSE(player().isPlaying()) << "it is posed at the play head";
+    EXPECT_NEAR(player().pose()->head.head_ws.translation().x(), 0.1, 1e-6);
+    parts().keying.keyHead();
+    ASSERT_EQ(line().head.size(), 1u);
+    EXPECT_NEAR(line().head[0].translation.x(), 0.1, 1e-6);
+    EXPECT_TRUE(player().headOffset().isApprox(Eigen::Isometry3f::Identity()));
+    EXPECT_NEAR(player().pose()->head.head_ws.translation().x(), 0.1, 1e-6) << "it stays where it is";
+    const Eigen::Isometry3f turn(Eigen::AngleAxisf(radians(30), Vec3f::UnitY()));
+    player().scrub(1);
+    player().setHeadOffset(turn);
+    parts().keying.keyHead();
+    ASSERT_EQ(line().head.size(), 2u);
+    const Vec3f moved = turn * Vec3f(0.1f, 0, 0);
+    EXPECT_LT((line().head[1].translation.cast<float>() - moved).norm(), 1e-5f);
+    EXPECT_NEAR(line().head[1].degrees, 30, 1e-3);
+    trigger("edit.undo");
+    trigger("edit.undo");
+    EXPECT_TRUE(line().isEmpty());
+}
+
+TEST_F(TimeLinePanelTest, CurvesAreDragged) {
+    set(windy());
+    find<QToolButton>("timeCurves")->click();
+    QCoreApplication::processEvents();
+    auto& curves = *find<KeyCurves>("keyCurves");
+    ASSERT_TRUE(curves.isVisible());
+    const int steps = document().doneSteps();
+    const QPoint from = curves.placeOf({kSpeed, 1}, 0).toPoint();
+    const QPoint to(from.x(), curves.placeOf({kSpeed, 2}, 0).toPoint().y());
+    dragIn(curves, from, to);
+    EXPECT_EQ(document().doneSteps(), steps + 1);
+    EXPECT_NEAR(numberOf(line(), {kSpeed, 1}, 0), 4, 0.1) << "as high as the last";
+    EXPECT_EQ(keyTimes(line(), kSpeed)[1], 1);
+    // What a range forbids is not reached.
+    dragIn(curves, curves.placeOf({kSpeed, 0}, 0).toPoint(), QPoint(from.x() - 200, curves.height() * 20));
+    EXPECT_EQ(numberOf(line(), {kSpeed, 0}, 0), 0);
+}
+
+TEST_F(TimeLinePanelTest, RangeAndRateAreFieldsAndRefuseWhatCannotBe) {
+    set(windy());
+    find<QDoubleSpinBox>("timeEndFrame")->setValue(45);
+    EXPECT_EQ(line().end, 1.5f);
+    find<QDoubleSpinBox>("timeRate")->setValue(24);
+    EXPECT_EQ(line().framesPerSecond, 24);
+    EXPECT_EQ(line().end, 1.5f) << "times stay";
+    EXPECT_EQ(find<QDoubleSpinBox>("timeEndFrame")->value(), 36);
+    find<QDoubleSpinBox>("timePreRoll")->setValue(12);
+    EXPECT_EQ(line().preRoll, 12u);
+    const TimeLine before = line();
+    find<QDoubleSpinBox>("timeStartFrame")->setValue(40);
+    EXPECT_EQ(line(), before) << "a start behind the end";
+    EXPECT_FALSE(window->statusLine().message().isEmpty());
+    EXPECT_EQ(find<QDoubleSpinBox>("timeStartFrame")->value(), 0);
+    find<QDoubleSpinBox>("timeFrame")->setValue(12);
+    EXPECT_EQ(player().lineTime(), 0.5f);
+}
+
+TEST_F(TimeLinePanelTest, ClipsAreAddedMovedTrimmedAndBlended) {
+    openSampleHair("short");
+    ASSERT_TRUE(player().actor());
+    ASSERT_FALSE(player().actor()->clips().empty());
+    const auto& clip = player().actor()->clips()[0];
+    window->panel("time_line")->show();
+    parts().keying.addClip(QString::fromStdString(clip.name));
+    player().scrub(0.5f);
+    ASSERT_TRUE(player().pose());
+    EXPECT_FALSE(player().pose()->head.scalpPositions_ws.empty()) << "the clip moves the scalp";
+    parts().keying.addClip(QString::fromStdString(clip.name));
+    ASSERT_EQ(line().clips.size(), 2u);
+    QCoreApplication::processEvents();
+    const QPoint left = rows().placeOf({kClips, 1});
+    dragIn(rows(), left + QPoint(14, 0), left + QPoint(14 + 40, 0));
+    const float start = line().clips[1].start;
+    EXPECT_GT(start, 0.5f);
+    const QPoint edge = rows().placeOf({kClips, 1});
+    dragIn(rows(), edge + QPoint(1, 0), edge + QPoint(21, 0));
+    EXPECT_GT(line().clips[1].start, start);
+    EXPECT_NEAR(line().clips[1].first, line().clips[1].start - start, 1e-4)
+        << "what plays at other times stays";
+    auto* blend = find<QDoubleSpinBox>("clipBlend");
+    blend->setValue(0.1);
+    EXPECT_NEAR(line().clips[1].blend, 0.1, 1e-6);
+    find<QDoubleSpinBox>("clipSpeed")->setValue(2);
+    EXPECT_EQ(line().clips[1].speed, 2);
+    EXPECT_TRUE(problemsOf(line()).empty());
+}
+
+TEST_F(TimeLinePanelTest, NothingIsClippedWithAKeySelected) {
+    TimeLine line = windy();
+    keyHead(line, {0.5f});
+    line.preRoll = 30;
+    set(line);
+    for (const QSize& size : {QSize(1280, 800), QSize(1024, 700)}) {
+        window->resize(size);
+        QCoreApplication::processEvents();
+        const QPoint key = rows().placeOf({kHead, 0});
+        QTest::mouseClick(&rows(), Qt::LeftButton, {}, key);
+        QCoreApplication::processEvents();
+        EXPECT_EQ(window->size(), size) << "nothing asks for more";
+        ASSERT_TRUE(find<QDoubleSpinBox>("keyNumber6")->isVisibleTo(window.get()));
+        expectNothingClipped(*window->panel("time_line"), "time_line");
+    }
+}
+
+}  // namespace
+}  // namespace hairloom::editor
