@@ -280,8 +280,6 @@ class CaseList {
         }
         vary("transparency: stochastic", [](auto&) {});
         vary("transparency: sorted", [](auto& o) { o.transparency = render::Transparency::sorted; });
-        vary("transparency: alpha to coverage",
-             [](auto& o) { o.transparency = render::Transparency::alphaToCoverage; });
         vary("transparency: weighted", [](auto& o) { o.transparency = render::Transparency::weighted; });
         vary("detail: half a pixel", [](auto& o) { o.detail = 0.5f; });
         for (const std::uint32_t hairs : counts_) {

@@ -50,7 +50,6 @@ const std::map<std::string, render::Transparency> kTransparency{
     {"auto", render::Transparency::automatic},
     {"sorted", render::Transparency::sorted},
     {"stochastic", render::Transparency::stochastic},
-    {"a2c", render::Transparency::alphaToCoverage},
     {"weighted", render::Transparency::weighted}};
 
 std::vector<std::string> shownNames() {
@@ -224,7 +223,7 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     job.add_option(
            "--transparency", options->transparency,
            "Transparency of hair thinner than a sample: sorted blends the nearest of a pixel, stochastic "
-           "covers a random part of the samples, a2c a fixed part, weighted blends in any order. auto uses "
+           "covers a random part of the samples, weighted blends in any order. auto uses "
            "stochastic for averaged frames, sorted for single frames on a GPU, and weighted otherwise")
         ->check(CLI::IsMember(namesOf(kTransparency)));
     job.add_option("--detail", options->detail,

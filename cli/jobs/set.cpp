@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <tuple>
 
 #include "cli/advice_report.h"
 #include "cli/documents.h"
@@ -30,6 +31,8 @@ struct SetOptions {
     std::string from;
     std::string dyeImage;
     std::string dyeAttribute;
+    std::string melaninImage;
+    std::string melaninAttribute;
     std::string character;
     std::string output;
     bool list = false;
@@ -121,14 +124,14 @@ Result<Report> set(const SetOptions& options) {
     if (!applied && isWrongForAnyGroom(assignments)) throw WrongUsage(applied.error());
     if (!applied) return tl::unexpected(inFile(applied.error(), options.input));
     changed += *applied;
-    if (!options.dyeImage.empty()) {
-        if (auto status = dyeFromImage(options.dyeImage, *groom); !status)
-            return tl::unexpected(status.error());
-        ++changed;
-    }
-    if (!options.dyeAttribute.empty()) {
-        if (auto status = dyeFromAttribute(options.dyeAttribute, *groom); !status)
-            return tl::unexpected(status.error());
+    const std::tuple<const std::string&, Status (*)(const std::string&, Groom&)> sources[] = {
+        {options.dyeImage, dyeFromImage},
+        {options.dyeAttribute, dyeFromAttribute},
+        {options.melaninImage, melaninFromImage},
+        {options.melaninAttribute, melaninFromAttribute}};
+    for (const auto& [source, take] : sources) {
+        if (source.empty()) continue;
+        if (auto status = take(source, *groom); !status) return tl::unexpected(status.error());
         ++changed;
     }
     if (!options.character.empty()) {
@@ -198,6 +201,12 @@ JobRun declare(CLI::App& job) {
     job.add_option("--dye-attribute", options->dyeAttribute,
                    "Strand attribute of numbers from 0 to 1 with the strength of the dye")
         ->excludes(image);
+    auto* melanin = job.add_option("--melanin-image", options->melaninImage,
+                                   "PNG at the root UVs. White strands keep the material's melanin, black "
+                                   "ones have none");
+    job.add_option("--melanin-attribute", options->melaninAttribute,
+                   "Strand attribute of numbers from 0 to 8 that multiply the material's melanin")
+        ->excludes(melanin);
     job.add_option("--character", options->character,
                    "Head file with mesh, skeleton and clips, if the project no longer finds it");
     job.add_option("--from", options->from, "JSON file of sections with fields");

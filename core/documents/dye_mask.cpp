@@ -8,17 +8,18 @@
 
 #include "core/documents/mask_image.h"
 #include "core/groom/point_dye.h"
+#include "core/groom/white_strands.h"
 
 namespace hairloom {
 namespace {
 
 template <class T>
-bool take(const AttributeSet& attributes, const std::string& name, std::vector<float>& mask) {
+bool take(const AttributeSet& attributes, const std::string& name, float most, std::vector<float>& mask) {
     const auto values = attributes.view<T>(name);
     if (values.empty()) return false;
     mask.resize(values.size());
     std::ranges::transform(values, mask.begin(),
-                           [](T value) { return std::clamp(static_cast<float>(value), 0.0f, 1.0f); });
+                           [most](T value) { return std::clamp(static_cast<float>(value), 0.0f, most); });
     return true;
 }
 
@@ -28,27 +29,52 @@ void setMask(Groom& groom, std::vector<float> mask) {
     groom.pointAttributes.erase(attribute::kPointDye);
 }
 
+Result<std::vector<float>> fromImage(const std::string& path, const Groom& groom) {
+    const auto image = MaskImage::read(path);
+    if (!image) return tl::unexpected(image.error());
+    return valuesAtRoots(*image, groom);
+}
+
+Result<std::vector<float>> fromAttribute(const std::string& name, float most, const Groom& groom) {
+    std::vector<float> mask;
+    const AttributeSet& attributes = groom.strandAttributes;
+    if (!take<float>(attributes, name, most, mask) && !take<std::uint8_t>(attributes, name, most, mask) &&
+        !take<std::uint32_t>(attributes, name, most, mask) &&
+        !take<std::int32_t>(attributes, name, most, mask)) {
+        return fail(fmt::format("there is no strand attribute '{}' of numbers", name));
+    }
+    if (std::ranges::any_of(mask, [](float value) { return std::isnan(value); }))
+        return fail(fmt::format("strand attribute '{}' has a value that is no number", name));
+    return mask;
+}
+
 }  // namespace
 
 Status dyeFromImage(const std::string& path, Groom& groom) {
-    const auto image = MaskImage::read(path);
-    if (!image) return tl::unexpected(image.error());
-    auto mask = valuesAtRoots(*image, groom);
+    auto mask = fromImage(path, groom);
     if (!mask) return tl::unexpected(mask.error());
     setMask(groom, std::move(*mask));
     return {};
 }
 
 Status dyeFromAttribute(const std::string& name, Groom& groom) {
-    std::vector<float> mask;
-    const AttributeSet& attributes = groom.strandAttributes;
-    if (!take<float>(attributes, name, mask) && !take<std::uint8_t>(attributes, name, mask) &&
-        !take<std::uint32_t>(attributes, name, mask) && !take<std::int32_t>(attributes, name, mask)) {
-        return fail(fmt::format("there is no strand attribute '{}' of numbers", name));
-    }
-    if (std::ranges::any_of(mask, [](float value) { return std::isnan(value); }))
-        return fail(fmt::format("strand attribute '{}' has a value that is no number", name));
-    setMask(groom, std::move(mask));
+    auto mask = fromAttribute(name, 1, groom);
+    if (!mask) return tl::unexpected(mask.error());
+    setMask(groom, std::move(*mask));
+    return {};
+}
+
+Status melaninFromImage(const std::string& path, Groom& groom) {
+    auto shares = fromImage(path, groom);
+    if (!shares) return tl::unexpected(shares.error());
+    groom.strandAttributes.set(attribute::kMelanin, std::move(*shares));
+    return {};
+}
+
+Status melaninFromAttribute(const std::string& name, Groom& groom) {
+    auto values = fromAttribute(name, kMostMelanin, groom);
+    if (!values) return tl::unexpected(values.error());
+    groom.strandAttributes.set(attribute::kMelanin, std::move(*values));
     return {};
 }
 

@@ -30,6 +30,19 @@ constexpr LookPreset kPresets[] = {
     {"platinum", "bleached blond", 0.03f, 0.02f, 0.12f},
     {"grey", "grey hair, with less and less pigment", 0.18f, 0.0f, 0.45f},
     {"white", "hair without pigment", 0.0f, 0.0f, 0.05f},
+    {"salt and pepper", "dark hair, of which half the strands are white", 2.2f, 0.05f, 0.18f, nullptr,
+     R"({"greyShare": 0.5})"},
+    {"grown-out roots", "copper dye, and three centimetres of brown at the root", 1.1f, 0.2f, 0.18f, nullptr,
+     R"({"dyeStrength": 0.92, "dyeColour": [0.42, 0.11, 0.03], "dyeRegrowth": 0.03, "dyeRegrowthSoftness": 0.012})"},
+    {"wet", "wet dark hair: dark, with narrow, strong highlights", 4.5f, 0.15f, 0.05f,
+     R"({"shadingModel": "sadeghi", "rIntensity": 3, "rWidth": 0.55, "trtIntensity": 0.7, "trtWidth": 0.7,
+         "glintIntensity": 0.2})"},
+    {"peach fuzz", "fine, colourless down of skin", 0.02f, 0.02f, 0.1f, nullptr,
+     R"({"rootRadius": 8e-6, "tipScale": 0.25, "tipOpacity": 0.4})"},
+    {"brows", "short, thick hairs that taper", 2.4f, 0.2f, 0.12f, nullptr,
+     R"({"rootRadius": 4e-5, "tipScale": 0.12})"},
+    {"lashes", "dark, thick hairs with fine tips", 6.0f, 0.1f, 0.05f, nullptr,
+     R"({"rootRadius": 5.5e-5, "tipScale": 0.06})"},
     {"glossy", "dark hair with one narrow, strong highlight", 3.0f, 0.1f, 0.08f,
      R"({"shadingModel": "sadeghi", "rIntensity": 2.5, "rWidth": 0.5, "trtIntensity": 0.6, "glintIntensity": 0.4})"},
     {"satin", "brown hair with wide, soft highlights and no glints", 1.2f, 0.25f, 0.12f,
@@ -53,6 +66,11 @@ Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness) {
     return (-absorption.cwiseMax(0.0).array().sqrt() / k).exp().matrix();
 }
 
+void reset(std::string_view name, HairMaterial& material) {
+    const Field<HairMaterial>& field = *runtime::findField<HairMaterial>(name);
+    for (std::uint32_t c = 0; c < field.components(); ++c) field.set(material, defaultValue(field, c), c);
+}
+
 /// The model's and its highlights' fields as by default.
 void resetHighlights(HairMaterial& material) {
     constexpr std::string_view kControls[] = {
@@ -60,9 +78,25 @@ void resetHighlights(HairMaterial& material) {
         "ttWidth",           "trtWidth",         "rShiftDegrees",  "ttShiftDegrees",   "trtShiftDegrees",
         "rColour",           "ttColour",         "trtColour",      "ttAzimuthalWidth", "glintIntensity",
         "glintWidthDegrees", "glintNearDegrees", "glintFarDegrees"};
-    for (const std::string_view name : kControls) {
-        const Field<HairMaterial>& field = *runtime::findField<HairMaterial>(name);
-        for (std::uint32_t c = 0; c < field.components(); ++c) field.set(material, defaultValue(field, c), c);
+    for (const std::string_view name : kControls) reset(name, material);
+}
+
+void setFields(const LookPreset& preset, const char* fields, HairMaterial& material) {
+    const auto document = nlohmann::json::parse(fields);
+    JsonReader reader(document, preset.name);
+    reader.fields(material);
+    assert(reader.ok());
+}
+
+/// What extras of presets have left behind.
+void resetExtras(HairMaterial& material) {
+    for (const LookPreset& preset : kPresets) {
+        if (!preset.extras) continue;
+        HairMaterial with = material;
+        setFields(preset, preset.extras, with);
+        if (toJson(with) != toJson(material)) continue;
+        const auto extras = nlohmann::json::parse(preset.extras);
+        for (const auto& [name, value] : extras.items()) reset(name, material);
     }
 }
 
@@ -79,16 +113,16 @@ const LookPreset* findLook(std::string_view name) {
 }
 
 void applyLook(const LookPreset& preset, HairMaterial& material) {
+    resetExtras(material);
     material.eumelanin = preset.eumelanin;
     material.pheomelanin = preset.pheomelanin;
     material.colourVariation = preset.variation;
     colourByMelanin(material);
-    if (!preset.controls) return;
-    resetHighlights(material);
-    const auto controls = nlohmann::json::parse(preset.controls);
-    JsonReader reader(controls, preset.name);
-    reader.fields(material);
-    assert(reader.ok());
+    if (preset.controls) {
+        resetHighlights(material);
+        setFields(preset, preset.controls, material);
+    }
+    if (preset.extras) setFields(preset, preset.extras, material);
 }
 
 std::vector<std::string> lookNames() {

@@ -13,8 +13,8 @@
 
 namespace hairloom {
 
-/// Natural hair that comes along, from dark to light, then looks that turn Sadeghi's controls (thesis,
-/// Figures 13 and 33).
+/// Natural hair that comes along, from dark to light, hair that has been through something, hair of the face,
+/// then looks that turn Sadeghi's controls (thesis, Figures 13 and 33).
 struct LookPreset {
     const char* name;  ///< "auburn"
     const char* description;
@@ -22,6 +22,8 @@ struct LookPreset {
     float variation;               ///< of colour from strand to strand, 0…1
     /// Other fields of the material as a JSON object, the model among them; null: they stay.
     const char* controls = nullptr;
+    /// Fields beside model and highlights, which stay; null: none.
+    const char* extras = nullptr;
 };
 std::span<const LookPreset> lookPresets();
 /// The preset of that name, or null.
@@ -29,7 +31,8 @@ const LookPreset* findLook(std::string_view name);
 
 /// Sets melanin, the colours that this melanin makes, and their variation. Presets with controls set the
 /// model and all controls of its highlights, of which those that they do not name get their defaults. What
-/// else there is stays, as the shape of the fibre, streaks and dye.
+/// else there is stays, as the shape of the fibre, streaks and dye. Extras that another preset has set and
+/// that are still as it has them get their defaults first.
 void applyLook(const LookPreset& preset, HairMaterial& material);
 
 std::vector<std::string> lookNames();

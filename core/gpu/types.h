@@ -177,7 +177,6 @@ struct GraphicsPipelineDesc {
     RasterDesc raster;
     DepthDesc depth;
     std::vector<BlendDesc> blend;  ///< one per colour target
-    bool alphaToCoverage = false;
     std::vector<Format> colourFormats;
     Format depthFormat = Format::Unknown;
     std::uint32_t samples = 1;

@@ -66,11 +66,17 @@ struct HairMaterial {
     float streakMelanin = 0.3f;
     std::uint64_t streakSeed = 1;
 
+    // White strands among the others, by chance.
+    float greyShare = 0.0f;
+    std::uint64_t greySeed = 1;
+
     // Dye: where the strand attribute `dye` says how much, or everywhere.
     float dyeStrength = 0.0f;
     Vec3f dyeColour = Vec3f(0.35f, 0.02f, 0.08f);
     float dyeStart = 0.0f;
     float dyeEnd = 0.0f;
+    float dyeRegrowth = 0.0f;  ///< metres from the root that have grown since
+    float dyeRegrowthSoftness = 0.005f;
 
     // The highlights one by one, against those that fibres of this roughness and tilt have (thesis, sections
     // 5.2 and 5.3): R is the light's own colour, TT shines through, TRT has the hair's colour. For Marschner

@@ -21,7 +21,7 @@ constexpr std::array<KnownAttribute, 7> kPointTypes = {{{attribute::kPosition, "
                                                         {attribute::kWidthChange, "float"},
                                                         {attribute::kPointColour, "float3"},
                                                         {attribute::kTransparency, "float"}}};
-constexpr std::array<KnownAttribute, 12> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
+constexpr std::array<KnownAttribute, 13> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
                                                           {attribute::kRootBarycentric, "float3"},
                                                           {attribute::kRootUv, "float2"},
                                                           {attribute::kGroup, "uint32"},
@@ -32,6 +32,7 @@ constexpr std::array<KnownAttribute, 12> kStrandTypes = {{{attribute::kRootTrian
                                                           {attribute::kLayer, "uint32"},
                                                           {attribute::kStrandColour, "float3"},
                                                           {attribute::kDye, "float"},
+                                                          {attribute::kMelanin, "float"},
                                                           {attribute::kStrandId, "uint32"}}};
 
 bool findOffsets(const Groom& groom, std::vector<Finding>& findings) {

@@ -6,6 +6,7 @@
 #include "core/groom/findings.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
+#include "core/groom/white_strands.h"
 
 namespace hairloom {
 namespace {
@@ -124,6 +125,16 @@ void findDye(const Groom& groom, std::vector<Finding>& findings) {
     places.report(findings, Severity::Error, "the dye mask is not from 0 to 1", "dye the strands again");
 }
 
+void findMelanin(const Groom& groom, std::vector<Finding>& findings) {
+    const auto melanin = groom.strandAttributes.view<float>(attribute::kMelanin);
+    Places places;
+    for (std::size_t s = 0; s < melanin.size(); ++s) {
+        if (!(melanin[s] >= 0 && melanin[s] <= kMostMelanin)) places.strand(s);
+    }
+    places.report(findings, Severity::Error, "the melanin of strands is not from 0 to 8",
+                  "set the melanin again");
+}
+
 void findTriangleBindings(const Groom& groom, std::span<const SurfacePoint> roots,
                           std::vector<Finding>& findings) {
     std::vector<std::uint8_t> selected(groom.scalp->triangleCount(), groom.scalpSelection.empty() ? 1 : 0);
@@ -168,6 +179,7 @@ void findGeometry(const Groom& groom, std::vector<Finding>& findings) {
     findIds(groom, findings);
     findDensities(groom, findings);
     findDye(groom, findings);
+    findMelanin(groom, findings);
 }
 
 void findBinding(const Groom& groom, std::vector<Finding>& findings) {

@@ -35,9 +35,11 @@ class Painter {
             if (!strands_.streaks.empty()) place.streak = static_cast<double>(strands_.streaks[strand]);
             if (!strands_.dyes.empty()) place.dye = static_cast<double>(strands_.dyes[strand]);
             if (!strands_.pointDyes.empty()) place.dye *= static_cast<double>(strands_.pointDyes[point]);
+            if (!strands_.pigments.empty()) place.pigment = static_cast<double>(strands_.pigments[strand]);
+            if (!strands_.lengths.empty()) place.length = static_cast<double>(strands_.lengths[strand]);
             const Vec3d ownColour = own.cast<double>();
             if (!strands_.colours.empty()) place.ownColour = &ownColour;
-            colour = shading::lookAt(*m.look, place).cast<float>();
+            colour = shading::colourAt(*m.look, place).cast<float>();
         }
         const float bright = 1 + m.variation * static_cast<float>(2 * randomOf(strand, 2) - 1);
         return (bright * colour).cwiseMax(0.0f).cwiseMin(1.0f);

@@ -20,11 +20,12 @@
 namespace hairloom {
 namespace {
 
-/// The same strands are in streaks and dyed, as strands and not the material say.
-bool hasSameStreaksAndDye(const HairMaterial& a, const HairMaterial& b) {
+/// The same strands are in streaks, white and dyed, as strands and not the material say.
+bool hasSameWeights(const HairMaterial& a, const HairMaterial& b) {
     return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
            a.streakSoftness == b.streakSoftness && a.streakSeed == b.streakSeed &&
-           a.dyeStrength == b.dyeStrength;
+           a.dyeStrength == b.dyeStrength && a.greyShare == b.greyShare && a.greySeed == b.greySeed &&
+           (a.dyeRegrowth > 0) == (b.dyeRegrowth > 0);
 }
 
 bool sameFollowHairs(const InterpolationSettings& a, const InterpolationSettings& b) {
@@ -120,6 +121,7 @@ void GroomScene::pose(std::span<const Vec3f> positions_ws, std::span<const Vec3f
 }
 
 bool GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
+    if (!weights_.lengths.empty()) return false;  // they change
     if (bindings_) {
         std::size_t first = 0;
         for (const std::uint32_t strand : strands) {
@@ -136,11 +138,11 @@ bool GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<c
 
 bool GroomScene::setMaterials(const Groom& groom, const ViewFile& view) {
     const HairMaterial &authored = groom.material, &before = rest_.material;
-    if (authored.rootColour != before.rootColour || !hasSameStreaksAndDye(authored, before)) return false;
+    if (authored.rootColour != before.rootColour || !hasSameWeights(authored, before)) return false;
     const bool sameOwners =
         std::ranges::equal(groom.layers, rest_.layers, [](const Layer& a, const Layer& b) {
             return a.material.has_value() == b.material.has_value() &&
-                   (!a.material || hasSameStreaksAndDye(*a.material, *b.material));
+                   (!a.material || hasSameWeights(*a.material, *b.material));
         });
     if (!sameOwners) return false;
     rest_.material = authored;
@@ -232,6 +234,8 @@ render::RenderScene GroomScene::scene() const {
     strands.streaks = weights_.streaks;
     strands.dyes = weights_.dyes;
     strands.pointDyes = weights_.pointDyes;
+    strands.pigments = weights_.pigments;
+    strands.lengths = weights_.lengths;
     scene.strands.push_back(strands);
     return scene;
 }

@@ -24,11 +24,14 @@ struct StrandMaterials {
     bool hasLook() const;
 };
 
-/// What of streaks and dye each strand that is drawn has, 0…1; empty: nothing.
-struct StreakAndDyeWeights {
+/// What of streaks, dye and pigment each strand that is drawn has; empty: none of the first two, 1 of the
+/// last.
+struct LookWeights {
     std::vector<float> streaks;
     std::vector<float> dyes;
     std::vector<float> pointDyes;  ///< one a point, shares of that; empty: nothing was painted
+    std::vector<float> pigments;   ///< as RenderStrands has them, and lengths
+    std::vector<float> lengths;
 };
 
 /// Whether scenes of the two draw the same hairs, one for one, on the same head: points, widths and materials
@@ -100,7 +103,7 @@ class GroomScene {
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;
     StrandMaterials materials_;
-    StreakAndDyeWeights weights_;      ///< of what is drawn, where the material has a look
+    LookWeights weights_;              ///< of what is drawn, where the material has a look
     std::vector<float> widthChanges_;  ///< one a point of what is drawn; empty: none was painted
     std::vector<float> radii_;         ///< of all that is drawn, where there are changes
     render::Clumping clumping_;

@@ -6,10 +6,12 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
+#include "core/geometry/curve.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "core/groom/streaks.h"
+#include "core/groom/white_strands.h"
 
 namespace hairloom {
 namespace {
@@ -131,17 +133,23 @@ void paintLobes(const HairMaterial& authored, double ior, double axisRatio, shad
     s.glintFar = std::min(s.glintFar + caustics.greatest - caustics.round, std::numbers::pi);
 }
 
-bool isEven(const HairMaterial& authored, const shading::StrandLook& look, bool ownColours) {
+bool isEven(const HairMaterial& authored, const shading::StrandLook& look, const OwnOfStrands& own) {
     const bool sameEnds = look.root == look.tip;
-    const bool ownMatter = ownColours && look.quantity == LookQuantity::absorption;
+    const bool ownMatter = own.melanin || (own.colours && look.quantity == LookQuantity::absorption);
     return sameEnds && !ownMatter && authored.streakShare <= 0 && authored.dyeStrength <= 0 &&
-           authored.melaninVariation <= 0 && authored.emission <= 0;
+           authored.greyShare <= 0 && authored.melaninVariation <= 0 && authored.emission <= 0;
 }
 
 void finishLook(const HairMaterial& authored, shading::StrandLook& look) {
     look.gradient =
         shading::LinearStep::between(asDouble(authored.gradientStart), asDouble(authored.gradientEnd));
     look.dyeAlong = shading::LinearStep::between(asDouble(authored.dyeStart), asDouble(authored.dyeEnd));
+    if (authored.dyeRegrowth > 0) {
+        const double half = 0.5 * asDouble(authored.dyeRegrowthSoftness);
+        look.regrowth = shading::LinearStep::between(asDouble(authored.dyeRegrowth) - half,
+                                                     asDouble(authored.dyeRegrowth) + half);
+    }
+    look.streakPigment = authored.streakColourSource == ColourSource::melanin ? 1 : 0;
     look.spread = asDouble(authored.melaninVariation);
     look.emissionRoot = asDouble(authored.emission) * authored.emissionRootColour.cast<double>();
     look.emissionTip = asDouble(authored.emission) * authored.emissionTipColour.cast<double>();
@@ -182,6 +190,13 @@ struct Owners {
     bool hasStreaks() const {
         return std::ranges::any_of(materials, [](const auto* m) { return m->streakShare > 0; });
     }
+    bool hasWhite() const {
+        return std::ranges::any_of(materials, [](const auto* m) { return m->greyShare > 0; });
+    }
+    bool hasGrownOut() const {
+        return std::ranges::any_of(materials,
+                                   [](const auto* m) { return m->dyeStrength > 0 && m->dyeRegrowth > 0; });
+    }
     bool isDyed() const {
         return std::ranges::any_of(materials, [](const auto* m) { return m->dyeStrength > 0; });
     }
@@ -197,6 +212,37 @@ struct Owners {
         return weights;
     }
 };
+
+/// Of the hairs of `rest`, of which `melanin` has one value each or none.
+void takePigments(const Owners& owners, const Groom& rest, std::span<const float> melanin,
+                  LookWeights& weights) {
+    if (!owners.hasWhite() && melanin.empty()) return;
+    weights.pigments.resize(rest.strandCount());
+    for (std::size_t s = 0; s < weights.pigments.size(); ++s) {
+        const float own = melanin.empty() ? 1.0f : std::clamp(melanin[s], 0.0f, kMostMelanin);
+        weights.pigments[s] = isWhite(owners.of(s), rest.strand(s)[0]) ? 0.0f : own;
+    }
+}
+
+void takeLengths(const Owners& owners, const Groom& rest, LookWeights& weights) {
+    if (!owners.hasGrownOut()) return;
+    weights.lengths.resize(rest.strandCount());
+    for (std::size_t s = 0; s < weights.lengths.size(); ++s)
+        weights.lengths[s] = polylineLength(rest.strand(s));
+}
+
+/// Of a value that strands have, at each follow hair: by the guides around it.
+std::vector<float> rootValues(const FollowBindings& bindings, std::span<const float> ofStrands) {
+    if (ofStrands.empty()) return {};
+    std::vector<float> values(bindings.hairCount());
+    for (std::size_t hair = 0; hair < values.size(); ++hair) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t strand = bindings.guideStrands[bindings.guides[hair][k]];
+            values[hair] += bindings.rootWeights[hair][static_cast<int>(k)] * ofStrands[strand];
+        }
+    }
+    return values;
+}
 
 }  // namespace
 
@@ -236,7 +282,8 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
     return fibre;
 }
 
-render::StrandShading strandShading(const HairMaterial& authored, const ViewFile& view, bool ownColours) {
+render::StrandShading strandShading(const HairMaterial& authored, const ViewFile& view,
+                                    const OwnOfStrands& own) {
     render::StrandShading material;
     material.albedo = authored.tipColour;
     material.rootBrightness = material.tipBrightness = 1;
@@ -269,7 +316,7 @@ render::StrandShading strandShading(const HairMaterial& authored, const ViewFile
     }
     shading::StrandLook look =
         isKajiya ? colourLook(authored) : absorptionLook(authored, roughnessOf(authored, view.fibre));
-    if (isEven(authored, look, ownColours)) return material;
+    if (isEven(authored, look, own)) return material;
     finishLook(authored, look);
     material.look = look;
     // The tables hold all absorptions: none has to be baked again when a colour moves.
@@ -290,10 +337,11 @@ bool StrandMaterials::hasLook() const {
 }
 
 StrandMaterials strandMaterials(const Groom& groom, const ViewFile& view) {
-    const bool ownColours = groom.strandAttributes.has(attribute::kStrandColour);
-    StrandMaterials materials{strandShading(groom.material, view, ownColours), {}, {}};
+    const OwnOfStrands own{groom.strandAttributes.has(attribute::kStrandColour),
+                           groom.strandAttributes.has(attribute::kMelanin)};
+    StrandMaterials materials{strandShading(groom.material, view, own), {}, {}};
     for (const Layer& layer : groom.layers) {
-        if (layer.material) materials.others.push_back(strandShading(*layer.material, view, ownColours));
+        if (layer.material) materials.others.push_back(strandShading(*layer.material, view, own));
     }
     return materials;
 }
@@ -326,10 +374,12 @@ std::vector<std::uint32_t> materialsOfFollowHairs(const Groom& groom, const Foll
     return materials;
 }
 
-StreakAndDyeWeights weightsOfStrands(const Groom& groom) {
+LookWeights weightsOfStrands(const Groom& groom) {
     const Owners owners{authoredMaterials(groom), materialsOfStrands(groom)};
-    StreakAndDyeWeights weights;
+    LookWeights weights;
     if (owners.hasStreaks()) weights.streaks = owners.streaks(rootsOf(groom));
+    takePigments(owners, groom, groom.strandAttributes.view<float>(attribute::kMelanin), weights);
+    takeLengths(owners, groom, weights);
     if (!owners.isDyed()) return weights;
     if (isPainted(groom)) weights.pointDyes = pointDyes(groom);
     const auto mask =
@@ -340,13 +390,16 @@ StreakAndDyeWeights weightsOfStrands(const Groom& groom) {
     return weights;
 }
 
-Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+Result<LookWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
     const Owners owners{authoredMaterials(groom), materialsOfFollowHairs(groom, bindings)};
-    StreakAndDyeWeights weights;
-    if (owners.hasStreaks()) {
+    LookWeights weights;
+    const auto melanin = groom.strandAttributes.view<float>(attribute::kMelanin);
+    if (owners.hasStreaks() || owners.hasWhite() || owners.hasGrownOut() || !melanin.empty()) {
         const auto rest = bakeFollowHairs(groom, bindings);
         if (!rest) return tl::unexpected(rest.error());
-        weights.streaks = owners.streaks(rootsOf(*rest));
+        if (owners.hasStreaks()) weights.streaks = owners.streaks(rootsOf(*rest));
+        takePigments(owners, *rest, rootValues(bindings, melanin), weights);
+        takeLengths(owners, *rest, weights);
     }
     if (!owners.isDyed()) return weights;
     if (isPainted(groom)) {
@@ -356,16 +409,10 @@ Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const Follo
             weights.dyes[hair] = owners.of(hair).dyeStrength;
         return weights;
     }
-    const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
+    const std::vector<float> mask = rootValues(bindings, groom.strandAttributes.view<float>(attribute::kDye));
     weights.dyes.resize(bindings.hairCount());
-    for (std::size_t hair = 0; hair < weights.dyes.size(); ++hair) {
-        float sum = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t strand = bindings.guideStrands[bindings.guides[hair][k]];
-            sum += bindings.rootWeights[hair][static_cast<int>(k)] * maskOf(mask, strand);
-        }
-        weights.dyes[hair] = owners.of(hair).dyeStrength * std::clamp(sum, 0.0f, 1.0f);
-    }
+    for (std::size_t hair = 0; hair < weights.dyes.size(); ++hair)
+        weights.dyes[hair] = owners.of(hair).dyeStrength * std::clamp(maskOf(mask, hair), 0.0f, 1.0f);
     return weights;
 }
 

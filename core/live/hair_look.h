@@ -17,11 +17,11 @@ namespace hairloom {
 /// | indexOfRefraction, roughnesses, scaleTiltDegrees, eccentricity, r…, tt…, trt… | `fibre.marschner` |
 /// | caustic…, azimuthalSolver | `fibre.marschner` of Marschner |
 /// | those, tints, ttAzimuthalWidth, glints | `fibre.sadeghi`, from the Marschner fibre of the same hair |
-/// | colours, melanin, gradient, streaks, dye, emission | `look`; even hair has none, but a fibre's
+/// | colours, melanin, gradient, streaks, grey, dye, emission | `look`; even hair has none, but a fibre's
 /// absorption |
 ///
-/// Hair is uneven where it has other colours or pigment at the tip, streaks, dye, strands of their own
-/// colour, random pigment or light of its own.
+/// Hair is uneven where it has other colours or pigment at the tip, streaks, white strands, dye, strands of
+/// their own colour or melanin, random pigment or light of its own.
 ///
 /// `ofStrands` is left empty.
 StrandMaterials strandMaterials(const Groom& groom, const ViewFile& view);
@@ -33,18 +33,24 @@ std::vector<std::uint32_t> materialsOfFollowHairs(const Groom& groom, const Foll
 /// What light in its fibres does, at the root; members of the view come first.
 render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view);
 
-/// What it is drawn by. `ownColours`: strands have colours of their own.
+/// Which attributes strands have in place of, or on top of, what their material says.
+struct OwnOfStrands {
+    bool colours = false;
+    bool melanin = false;
+};
+/// What it is drawn by.
 render::StrandShading strandShading(const HairMaterial& authored, const ViewFile& view,
-                                    bool ownColours = false);
+                                    const OwnOfStrands& own = {});
 
 /// The view's, or else the groom's.
 render::ShadingModel shadingModel(const HairMaterial& authored, const FibreView& view);
 
-/// Of the groom's own strands, by their materials, their roots at rest and the attributes `dye`.
-StreakAndDyeWeights weightsOfStrands(const Groom& groom);
-/// Of follow hairs: by the material of their own guide, their own roots at rest, and the dye of the guides
-/// around them. Errors: hairs that cannot be evaluated.
-Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
+/// Of the groom's own strands, by their materials, their roots at rest and the attributes `dye` and
+/// `melanin`.
+LookWeights weightsOfStrands(const Groom& groom);
+/// Of follow hairs: by the material of their own guide, their own roots at rest, and dye and melanin of
+/// the guides around them. Errors: hairs that cannot be evaluated.
+Result<LookWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 /// The painted dye of the guides around each point of a follow hair; empty where none was painted.
 std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 

@@ -110,7 +110,6 @@ class Candidates {
         choices<Transparency>("transparency", &render::RenderOptions::transparency,
                               {{"automatic", Transparency::automatic},
                                {"weighted", Transparency::weighted},
-                               {"alphaToCoverage", Transparency::alphaToCoverage},
                                {"stochastic", Transparency::stochastic},
                                {"sorted", Transparency::sorted}});
         for (Candidate& candidate : list_) {  // ribbons that can blend so

@@ -51,6 +51,9 @@ std::vector<shaders::StrandHeader> headersOf(const RenderStrands& strands, std::
         header.streak = strands.streaks.empty() ? 0 : strands.streaks[i];
         header.dye = strands.dyes.empty() ? 0 : strands.dyes[i];
         header.hasPointDyes = strands.pointDyes.empty() ? 0 : 1;
+        header.pigment = strands.pigments.empty() ? 1 : strands.pigments[i];
+        header.length = strands.lengths.empty() ? 0 : strands.lengths[i];
+        header.unused0 = header.unused1 = 0;
         headers.push_back(header);
         batch.segmentsBefore.push_back(header.segmentsBefore + header.pointCount - 1);
     }

@@ -38,6 +38,8 @@ std::vector<Vec3d> absorptionsOf(const MaterialOnDevice& material) {
                                          .random = random,
                                          .streak = static_cast<double>(strand.streak),
                                          .dye = static_cast<double>(strand.dye * material.someDyes[s]),
+                                         .pigment = static_cast<double>(strand.pigment),
+                                         .length = static_cast<double>(strand.length),
                                          .ownColour = strand.albedo.w > 0 ? &own : nullptr}));
         }
     }

@@ -122,6 +122,9 @@ shaders::LookConstants lookConstants(const shading::StrandLook& look) {
     c.absorbs = look.quantity == shading::LookQuantity::absorption ? 1 : 0;
     c.ownScale = static_cast<float>(look.ownScale);
     c.spread = static_cast<float>(look.spread);
+    c.streakPigment = static_cast<float>(look.streakPigment);
+    c.regrowthStart = static_cast<float>(look.regrowth.start);
+    c.regrowthScale = static_cast<float>(look.regrowth.scale);
     return c;
 }
 

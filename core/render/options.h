@@ -46,8 +46,7 @@ enum class Transparency {
     automatic,   ///< stochastic for averages; single frames: sorted on a GPU, else weighted
     sorted,      ///< the nearest fragments of a pixel, blended in their order; by kernels
     stochastic,  ///< a random part of the samples (Enderton et al. 2010); averaging frames removes its noise
-    alphaToCoverage,  ///< a fixed part of the samples, the same for all hairs of a pixel
-    weighted,         ///< blended in any order with weights of depth (McGuire and Bavoil 2013)
+    weighted,    ///< blended in any order with weights of depth (McGuire and Bavoil 2013)
 };
 
 enum class PostFilter {

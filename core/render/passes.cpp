@@ -227,7 +227,6 @@ shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& cl
     view.minWidth = 1;
     view.samples = state.samples;
     view.frame = number;
-    view.transparency = static_cast<std::uint32_t>(state.options.transparency);
     view.hairBegins = begin;
     view.hairDepth = depth;
     return view;

@@ -47,9 +47,10 @@ Status checkStrands(const RenderStrands& strands) {
         return fail(fmt::format("strand {} has the material {} of {}", i, strands.materials[i],
                                 strands.others.size() + 1));
     }
-    for (const std::span<const float> shares : {strands.streaks, strands.dyes}) {
+    for (const std::span<const float> shares :
+         {strands.streaks, strands.dyes, strands.pigments, strands.lengths}) {
         if (!shares.empty() && shares.size() != count) {
-            return fail(fmt::format("{} strands with {} shares of streaks or dye", count, shares.size()));
+            return fail(fmt::format("{} strands with {} values of their look", count, shares.size()));
         }
     }
     for (std::size_t i = 0; i < count; ++i) {

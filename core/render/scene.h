@@ -73,6 +73,8 @@ struct RenderStrands {
     std::span<const float> streaks;    ///< 0…1, one a strand, for the look; empty: none is in a streak
     std::span<const float> dyes;       ///< 0…1, one a strand, for the look; empty: none is dyed
     std::span<const float> pointDyes;  ///< 0…1, one a point, shares of that; empty: 1 everywhere
+    std::span<const float> pigments;   ///< 0…8, one a strand, for the look; empty: 1
+    std::span<const float> lengths;    ///< metres, one a strand, for a look whose dye has grown out
     StrandShading material;
     std::vector<StrandShading> others;  ///< what some strands have in its place
     /// One a strand: 0 for `material`, n for the n-th of `others`, kNotDrawn; empty: all have `material`.

@@ -19,6 +19,12 @@ Vec3d ofOwnColour(const StrandLook& look, const Vec3d& colour) {
     return (look.ownScale * colour.cwiseMax(kDarkest).cwiseMin(1.0).array().log()).square().matrix();
 }
 
+/// Of a strand with so much of the pigment.
+Vec3d pigmented(const StrandLook& look, const Vec3d& natural, double pigment) {
+    if (look.quantity == LookQuantity::absorption) return pigment * natural;
+    return pigment == 1 ? natural : colourOfMoreAbsorption(natural, pigment);
+}
+
 }  // namespace
 
 LinearStep LinearStep::between(double start, double end) {
@@ -37,11 +43,21 @@ Vec3d colourOfMoreAbsorption(const Vec3d& colour, double factor) {
 Vec3d lookAt(const StrandLook& look, const StrandPlace& place) {
     const double t = look.gradient(place.along);
     const Vec3d plain = place.ownColour ? ofOwnColour(look, *place.ownColour) : mix(look.root, look.tip, t);
-    const Vec3d streaked = mix(plain, mix(look.streakRoot, look.streakTip, t), place.streak);
-    const Vec3d dyed = mix(streaked, look.dye, place.dye * look.dyeAlong(place.along));
+    const Vec3d streak = pigmented(look, mix(look.streakRoot, look.streakTip, t),
+                                   1 + look.streakPigment * (place.pigment - 1));
+    const Vec3d streaked = mix(pigmented(look, plain, place.pigment), streak, place.streak);
+    const double grown = look.regrowth(place.along * place.length);
+    const double dye = place.dye * look.dyeAlong(place.along) * grown * grown * (3 - 2 * grown);
+    const Vec3d dyed = mix(streaked, look.dye, dye);
     const double factor = 1 + look.spread * (2 * place.random - 1);
     return look.quantity == LookQuantity::absorption ? Vec3d(factor * dyed)
                                                      : colourOfMoreAbsorption(dyed, factor);
+}
+
+Vec3d colourAt(const StrandLook& look, const StrandPlace& place) {
+    const Vec3d there = lookAt(look, place);
+    if (look.quantity == LookQuantity::colour) return there;
+    return (-there.array().max(0.0).sqrt() / look.ownScale).exp().matrix();
 }
 
 }  // namespace hairloom::shading

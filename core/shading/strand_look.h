@@ -29,7 +29,10 @@ struct StrandLook {
     Vec3d streakRoot = Vec3d::Zero(), streakTip = Vec3d::Zero();
     Vec3d dye = Vec3d::Zero();
     LinearStep dyeAlong;
-    double spread = 0;  ///< 0…1, random, of absorption
+    /// By metres from the root: what has grown since the dye has none. Smooth, by 3 t² − 2 t³.
+    LinearStep regrowth{-1, 1e6};
+    double streakPigment = 0;  ///< 1: streaks are bleached, and their pigment goes with the strand's; 0: dyed
+    double spread = 0;         ///< 0…1, random, of absorption
     /// Absorption of a strand's own colour c is (ownScale ln c)² (Chiang et al. 2016, as
     /// absorptionOfColour()).
     double ownScale = 0;
@@ -44,11 +47,16 @@ struct StrandPlace {
     double random = 0;                 ///< 0…1, the strand's
     double streak = 0;                 ///< 0…1, how much the strand is in a streak
     double dye = 0;                    ///< 0…1
+    double pigment = 1;                ///< 0…8, the strand's, times that of the look; 0 is white
+    double length = 0;                 ///< metres, the strand's
     const Vec3d* ownColour = nullptr;  ///< in place of root and tip; linear RGB
 };
 
 /// Colour or absorption there.
 Vec3d lookAt(const StrandLook& look, const StrandPlace& place);
+
+/// The colour that much such hair has there, linear RGB.
+Vec3d colourAt(const StrandLook& look, const StrandPlace& place);
 
 /// What a factor on the absorption makes of a colour: ln c goes with its root (Chiang et al. 2016).
 Vec3d colourOfMoreAbsorption(const Vec3d& colour, double factor);

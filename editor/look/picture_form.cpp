@@ -72,10 +72,8 @@ class PictureForm : public OptionForm {
         addEnum("transparency", "Transparency",
                 "How hair thinner than a sample shows what is behind it. Automatic picks the most "
                 "accurate method for your device. Sorted blends the nearest hairs of a pixel in order. "
-                "Stochastic covers a random part of the samples, Fixed samples a fixed part. Weighted "
-                "blends in any order",
-                {QString("Automatic"), QString("Sorted"), QString("Stochastic"), QString("Fixed samples"),
-                 QString("Weighted")},
+                "Stochastic covers a random part of the samples. Weighted blends in any order",
+                {QString("Automatic"), QString("Sorted"), QString("Stochastic"), QString("Weighted")},
                 &PictureQuality::transparency);
         addEnum("ribbons", "Curves",
                 "How curves become ribbons. Automatic picks the fastest method for your device. "

@@ -11,10 +11,18 @@ struct StrandPlace {
     float random;  // 0 ... 1
     float streak;
     float dye;
+    float pigment;  // times that of the look; 0 is white
+    float length;   // metres, the strand's
     float4 own;  // the strand's own colour; w: 1 where it has one
 };
 
 float gradientAt(float along) { return saturate((along - gLook.gradientStart) * gLook.gradientScale); }
+
+// Of a strand with so much of the pigment.
+float3 pigmented(float3 natural, float pigment) {
+    if (gLook.absorbs > 0) return pigment * natural;
+    return pigment == 1.0 ? natural : pow(max(natural, 1e-6), sqrt(pigment));
+}
 
 // Linear RGB, or absorption a fibre radius.
 float3 lookAt(StrandPlace p) {
@@ -26,8 +34,12 @@ float3 lookAt(StrandPlace p) {
         own = depth * depth;
     }
     const float3 plain = p.own.w > 0.0 ? own : lerp(gLook.root.rgb, gLook.tip.rgb, t);
-    const float3 streaked = lerp(plain, lerp(gLook.streakRoot.rgb, gLook.streakTip.rgb, t), p.streak);
-    const float3 dyed = lerp(streaked, gLook.dye.rgb, p.dye * saturate((p.along - gLook.dyeStart) * gLook.dyeScale));
+    const float3 streak = pigmented(lerp(gLook.streakRoot.rgb, gLook.streakTip.rgb, t),
+                                    1.0 + gLook.streakPigment * (p.pigment - 1.0));
+    const float3 streaked = lerp(pigmented(plain, p.pigment), streak, p.streak);
+    const float grown = saturate((p.along * p.length - gLook.regrowthStart) * gLook.regrowthScale);
+    const float dye = p.dye * saturate((p.along - gLook.dyeStart) * gLook.dyeScale) * (grown * grown * (3.0 - 2.0 * grown));
+    const float3 dyed = lerp(streaked, gLook.dye.rgb, dye);
     const float factor = 1.0 + gLook.spread * (2.0 * p.random - 1.0);
     // Chiang et al. 2016: the logarithm of a colour goes with the root of the absorption.
     return absorbs ? factor * dyed : pow(max(dyed, 1e-6), sqrt(factor));

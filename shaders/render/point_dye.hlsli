@@ -21,6 +21,8 @@ StrandPlace placeOf(StrandHeader strand, float along) {
     p.random = hashUnit(strand.source * 2u + 9u);
     p.streak = strand.streak;
     p.dye = dyeAt(strand, along);
+    p.pigment = strand.pigment;
+    p.length = strand.length;
     p.own = strand.albedo;
     return p;
 }

@@ -22,11 +22,6 @@ namespace hairloom::shaders {
 #define HAIRLOOM_SHADOWS_ABSORPTION 2
 #define HAIRLOOM_SHADOWS_OPACITY_MAPS 3
 
-// render::Transparency
-#define HAIRLOOM_TRANSPARENCY_STOCHASTIC 2
-#define HAIRLOOM_TRANSPARENCY_ALPHA_TO_COVERAGE 3
-#define HAIRLOOM_TRANSPARENCY_WEIGHTED 4
-
 // One strand as it was given: a run of points, and where its finer curve goes.
 struct StrandHeader {
     uint firstPoint;  // in the batch's own arrays
@@ -38,6 +33,9 @@ struct StrandHeader {
     float streak;         // 0...1, how much it is in a streak
     float dye;            // 0...1
     uint hasPointDyes;    // 1 where its points have shares of that
+    float pigment;        // 0...8, times that of the look
+    float length;         // metres, for a dye that has grown out
+    float unused0, unused1;
 };
 
 // One point of the finer curve.
@@ -95,15 +93,15 @@ struct ViewConstants {
     float minWidth;   // pixels
     float fibresForEach;  // of a light: fibres that each of them stands for
     float unused0;
-    uint samples;       // in a pixel
-    uint frame;         // its number
-    uint transparency;  // HAIRLOOM_TRANSPARENCY_*
-    uint shadows;       // HAIRLOOM_SHADOWS_*
-    float4 layers;      // of a light: see LightConstants
-    float depthRange;   // of a light: see LightConstants
-    float nearPlane;    // of a light
-    float hairBegins;   // of a light: see there; of the camera: in metres, or as RibbonCorner::depth has it
-    float hairDepth;    // of the camera: from where hair begins to its end, in the same unit
+    uint samples;  // in a pixel
+    uint frame;    // its number
+    uint unused1;
+    uint shadows;      // HAIRLOOM_SHADOWS_*
+    float4 layers;     // of a light: see LightConstants
+    float depthRange;  // of a light: see LightConstants
+    float nearPlane;   // of a light
+    float hairBegins;  // of a light: see there; of the camera: in metres, or as RibbonCorner::depth has it
+    float hairDepth;   // of the camera: from where hair begins to its end, in the same unit
 };
 
 struct LightConstants {
@@ -214,7 +212,10 @@ struct LookConstants {
     uint absorbs;    // 1 for absorption, 0 for colours
     float ownScale;  // what the logarithm of a strand's own colour is multiplied with
     float spread;    // random, of absorption
-    float unused0;
+    float streakPigment;
+    float regrowthStart;  // metres from the root
+    float regrowthScale;
+    float unused0, unused1;
 };
 
 // Where compute kernels that rasterise put what they find.
@@ -396,13 +397,14 @@ struct FibreCase {
     float4 ground;   // albedo of what lies behind them
     float4 place;    // x: 0 root ... 1 tip, y: streak, z: dye, w: the strand's random number of absorption
     float4 own;      // the strand's own colour; w: 1 where it has one
+    float4 strand;   // x: pigment, y: length in metres
 };
 
 #ifdef __cplusplus
 HAIRLOOM_OFFSET(StrandHeader, random, 12);
 HAIRLOOM_OFFSET(StrandHeader, albedo, 16);
 HAIRLOOM_OFFSET(StrandHeader, source, 32);
-static_assert(sizeof(StrandHeader) == 48);
+static_assert(sizeof(StrandHeader) == 64);
 HAIRLOOM_OFFSET(CurvePoint, tangentXy, 16);
 HAIRLOOM_OFFSET(CurvePoint, along, 20);
 HAIRLOOM_OFFSET(CurvePoint, strand, 24);
@@ -429,7 +431,7 @@ HAIRLOOM_OFFSET(ShadeConstants, count, 352);
 HAIRLOOM_OFFSET(ShadeConstants, lights, 368);
 static_assert(sizeof(ShadeConstants) == 368 + 192 * HAIRLOOM_MAX_LIGHTS);
 HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
-static_assert(sizeof(LookConstants) == 144);
+static_assert(sizeof(LookConstants) == 160);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, samplePositions, 64);
 static_assert(sizeof(RasterConstants) == 128);
@@ -450,7 +452,7 @@ static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(LightAnswer) == 48);
 static_assert(sizeof(KajiyaCase) == 48);
 static_assert(sizeof(FibreConstants) == 80);
-static_assert(sizeof(FibreCase) == 96);
+static_assert(sizeof(FibreCase) == 112);
 }  // namespace hairloom::shaders
 #endif
 #endif

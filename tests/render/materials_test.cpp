@@ -77,8 +77,7 @@ class MaterialsTest : public RenderTest {
 };
 
 TEST_F(MaterialsTest, InOneGroupLookAsInGroupsOfTheirOwn) {
-    for (const Transparency kind : {Transparency::sorted, Transparency::stochastic,
-                                    Transparency::alphaToCoverage, Transparency::weighted})
+    for (const Transparency kind : {Transparency::sorted, Transparency::stochastic, Transparency::weighted})
         EXPECT_EQ(draw(together(), kind), draw(apart(), kind)) << static_cast<int>(kind);
 }
 

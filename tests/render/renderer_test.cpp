@@ -132,8 +132,6 @@ TEST_F(RendererTest, SequenceOfChangesEqualsFreshPictures) {
     options.headAbsorption = 0;
     options.transparency = Transparency::weighted;
     compare("blended hair");
-    options.transparency = Transparency::alphaToCoverage;
-    compare("alpha to coverage");
     options.ribbons = device->info().tessellation ? Ribbons::tessellated : Ribbons::strip;
     options.detail = 0.5f;
     compare("tessellated ribbons, fewer hairs");

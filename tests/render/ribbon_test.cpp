@@ -136,8 +136,7 @@ TEST_F(RibbonTest, EachKindOfTransparencyKeepsTheWidth) {
     scene.camera.eye_ws = {0, 0, 1};
     scene.camera.target_ws = {0, 0, 0};
     const float pixel = 2 * std::tan(radians(scene.camera.verticalFov) / 2) / 64;
-    for (const Transparency kind : {Transparency::sorted, Transparency::stochastic,
-                                    Transparency::alphaToCoverage, Transparency::weighted}) {
+    for (const Transparency kind : {Transparency::sorted, Transparency::stochastic, Transparency::weighted}) {
         for (const float width : {0.15f, 0.6f, 3.0f}) {
             TestStrands strands_;
             strands_.add({Vec3f(-1, 0.013f, 0), Vec3f(1, 0.0131f, 0)}, 0.5f * width * pixel);

@@ -98,6 +98,8 @@ struct FibreCases {
     std::vector<shading::FibreAngles> angles;
 
     explicit FibreCases(std::uint32_t count) {
+        constexpr float pigments[] = {1, 0, 0.4f, 2.5f};
+        constexpr float lengths[] = {0.3f, 0, 0.04f, 0.1f, 0.02f};
         Random random(12);
         while (cases.size() < count) {
             const Vec3d tangent = randomUnit(random), toLight = randomUnit(random),
@@ -106,13 +108,14 @@ struct FibreCases {
             if (std::max(std::abs(here.thetaIn), std::abs(here.thetaOut)) > 1.3) continue;
             const double before = 4 * random.uniformDouble();
             angles.push_back(here);
-            cases.push_back({toFloat4(tangent, random.uniformDouble()),
-                             toFloat4(toLight, before),
-                             toFloat4(toView, before + 4 * random.uniformDouble()),
-                             toFloat4(kGround, 0),
-                             {random.uniform(), random.uniform(), random.uniform(), random.uniform()},
-                             {random.uniform(), random.uniform(), random.uniform(),
-                              cases.size() % 3 == 0 ? 1.0f : 0.0f}});
+            cases.push_back(
+                {toFloat4(tangent, random.uniformDouble()),
+                 toFloat4(toLight, before),
+                 toFloat4(toView, before + 4 * random.uniformDouble()),
+                 toFloat4(kGround, 0),
+                 {random.uniform(), random.uniform(), random.uniform(), random.uniform()},
+                 {random.uniform(), random.uniform(), random.uniform(), cases.size() % 3 == 0 ? 1.0f : 0.0f},
+                 {pigments[cases.size() % 4], lengths[cases.size() % 5], 0, 0}});
         }
     }
 };
@@ -187,6 +190,8 @@ shading::StrandLook variedLook() {
     look.dye = shading::absorptionOfColour(Vec3d(0.5, 0.02, 0.05), 0.3);
     look.dyeAlong = shading::LinearStep::between(0, 0.5);
     look.spread = 0.4;
+    look.streakPigment = 1;
+    look.regrowth = shading::LinearStep::between(0.02, 0.05);
     look.ownScale = shading::absorptionScale(0.3);
     return look;
 }
@@ -197,6 +202,8 @@ Vec3d absorptionOf(const shading::StrandLook& look, const shaders::FibreCase& c)
                                   .random = static_cast<double>(c.place.w),
                                   .streak = static_cast<double>(c.place.y),
                                   .dye = static_cast<double>(c.place.z),
+                                  .pigment = static_cast<double>(c.strand.x),
+                                  .length = static_cast<double>(c.strand.y),
                                   .ownColour = c.own.w > 0 ? &own : nullptr});
 }
 
@@ -269,7 +276,7 @@ TEST_F(ShaderTest, SharedLayoutsAgree) {
     shade.lights[2].hairBegins = 20;
     for (int i = 0; i < 4; ++i) shade.lights[1].clipFromWorld.m[12 + i] = static_cast<float>(21 + i);
     std::vector<shaders::StrandHeader> strands(2);
-    strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}, 37, 0.25f, 0.75f, 0};
+    strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}, 37, 0.25f, 0.75f, 0, 38, 39, 0, 0};
     std::vector<shaders::CurvePoint> curve(2);
     curve[1] = {{1, 1, 1, 1}, 40, 0.25f, 41, 0.5f};
     const auto r = run("layout_echo.comp", 9, 1,
@@ -290,7 +297,7 @@ TEST_F(ShaderTest, SharedLayoutsAgree) {
     expect(5, 21, 22, 23, 24);
     expect(6, 33, 34, 35, 36);
     expect(7, 0.5f, std::bit_cast<float>(32u), 0.25f, std::bit_cast<float>(41u));
-    expect(8, 0.25f, 0.75f, 0.5f, 0);
+    expect(8, 0.25f, 0.75f, 0.5f, 39);
 }
 
 }  // namespace

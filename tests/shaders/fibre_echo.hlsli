@@ -22,6 +22,8 @@ void main(uint3 id : SV_DispatchThreadID) {
     place.streak = c.place.y;
     place.dye = c.place.z;
     place.random = c.place.w;
+    place.pigment = c.strand.x;
+    place.length = c.strand.y;
     place.own = c.own;
     const float3 absorption = lookAt(place);
 #else

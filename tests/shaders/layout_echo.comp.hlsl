@@ -18,5 +18,5 @@ void main() {
     gResults[5] = mul(gShade.lights[1].clipFromWorld, float4(0, 0, 0, 1));
     gResults[6] = gStrands[1].albedo;
     gResults[7] = float4(gStrands[1].random, asfloat(gStrands[1].segmentsBefore), gCurve[1].along, asfloat(gCurve[1].strand));
-    gResults[8] = float4(gStrands[1].streak, gStrands[1].dye, gCurve[1].opacity, 0);
+    gResults[8] = float4(gStrands[1].streak, gStrands[1].dye, gCurve[1].opacity, gStrands[1].length);
 }

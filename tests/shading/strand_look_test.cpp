@@ -38,6 +38,55 @@ TEST(StrandLook, GradientsStreaksAndDyeMixEvenly) {
     EXPECT_EQ(lookAt(look, {.along = 0.4, .dye = 1}), lookAt(look, {.along = 0.4}));
 }
 
+TEST(StrandLook, PigmentOfAStrandIsThatOfItsNaturalHair) {
+    StrandLook look = someLook(LookQuantity::absorption);
+    look.dyeAlong = LinearStep::between(0, 0);
+    EXPECT_EQ(lookAt(look, {.along = 0, .pigment = 0}), Vec3d(Vec3d::Zero())) << "white hair";
+    EXPECT_TRUE(lookAt(look, {.along = 0, .pigment = 2.5}).isApprox(2.5 * look.root));
+    const Vec3d own(0.5, 0.2, 0.1);
+    EXPECT_TRUE(
+        lookAt(look, {.pigment = 0.5, .ownColour = &own}).isApprox(0.5 * absorptionOfColour(own, 0.3)));
+    EXPECT_TRUE(lookAt(look, {.dye = 1, .pigment = 0}).isApprox(look.dye)) << "dye covers white hair";
+    EXPECT_TRUE(lookAt(look, {.streak = 1, .pigment = 0}).isApprox(look.streakRoot)) << "so do dyed streaks";
+    look.streakPigment = 1;
+    EXPECT_TRUE(lookAt(look, {.streak = 1, .pigment = 0.5}).isApprox(0.5 * look.streakRoot))
+        << "bleached ones have pigment";
+    // Colours go as the fit of Chiang et al. has it: −ln c as the root of the absorption.
+    look.quantity = LookQuantity::colour;
+    EXPECT_EQ(lookAt(look, {.along = 0, .pigment = 0}), Vec3d(Vec3d::Ones()));
+    const Vec3d twice = lookAt(look, {.along = 0, .pigment = 4});
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(twice[c], look.root[c] * look.root[c], 1e-12);
+}
+
+TEST(StrandLook, DyeGrowsOutByMetresWithASoftBorder) {
+    StrandLook look = someLook(LookQuantity::absorption);
+    look.dyeAlong = LinearStep::between(0, 0);
+    look.tip = look.root;
+    look.regrowth = LinearStep::between(0.02, 0.04);
+    for (const double length : {0.05, 0.1, 0.4}) {
+        const auto shareAt = [&](double metres) {
+            const Vec3d there = lookAt(look, {.along = metres / length, .dye = 1, .length = length});
+            return (there.x() - look.root.x()) / (look.dye.x() - look.root.x());
+        };
+        EXPECT_EQ(shareAt(0), 0);
+        EXPECT_EQ(shareAt(0.0199), 0);
+        EXPECT_NEAR(shareAt(0.025), 0.15625, 1e-9);  // 3/16 − 2/64
+        EXPECT_NEAR(shareAt(0.03), 0.5, 1e-9);
+        EXPECT_NEAR(shareAt(0.035), 1 - 0.15625, 1e-9);
+        EXPECT_NEAR(shareAt(0.0401), 1, 1e-9);
+    }
+    EXPECT_EQ(lookAt(someLook(LookQuantity::absorption), {.along = 1, .dye = 1}), look.dye)
+        << "none by default";
+}
+
+TEST(StrandLook, ColourIsThatOfMuchSuchHair) {
+    StrandLook look = someLook(LookQuantity::absorption);
+    EXPECT_TRUE(absorptionOfColour(colourAt(look, {.along = 0}), 0.3).isApprox(look.root));
+    EXPECT_EQ(colourAt(look, {.pigment = 0}), Vec3d(Vec3d::Ones()));
+    look.quantity = LookQuantity::colour;
+    EXPECT_EQ(colourAt(look, {.along = 0}), look.root);
+}
+
 TEST(StrandLook, ARampWithoutLengthIsAStep) {
     const LinearStep everywhere = LinearStep::between(0, 0);
     EXPECT_EQ(everywhere(0), 1);

@@ -142,7 +142,6 @@ D3D11_DEPTH_STENCIL_DESC depthDesc(const DepthDesc& depth) {
 
 D3D11_BLEND_DESC blendDesc(const GraphicsPipelineDesc& desc) {
     D3D11_BLEND_DESC info{};
-    info.AlphaToCoverageEnable = desc.alphaToCoverage ? TRUE : FALSE;
     info.IndependentBlendEnable = TRUE;
     for (std::size_t i = 0; i < std::size(info.RenderTarget); ++i) {
         const BlendDesc blend = i < desc.blend.size() ? desc.blend[i] : BlendDesc{};

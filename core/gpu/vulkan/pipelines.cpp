@@ -273,7 +273,6 @@ Result<GraphicsPipelinePtr> createPipeline(const ContextPtr& context, const Grap
     auto samples =
         make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
     samples.rasterizationSamples = static_cast<VkSampleCountFlagBits>(desc.samples);
-    samples.alphaToCoverageEnable = desc.alphaToCoverage ? VK_TRUE : VK_FALSE;
     auto depth = make<VkPipelineDepthStencilStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
     depth.depthTestEnable = desc.depth.test ? VK_TRUE : VK_FALSE;
