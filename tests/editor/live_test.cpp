@@ -110,7 +110,6 @@ TEST_F(LiveTest, OtherMethodsMoveTheHairAndSayWhatTheyCost) {
     ASSERT_TRUE(played(now() + 0.2));
     EXPECT_EQ(engine(), EngineKind::cpu) << "lattices are of the CPU";
     method->setCurrentIndex(0);
-    hairs->setChecked(false);
     ASSERT_TRUE(played(now() + 0.3));
     EXPECT_EQ(engine(), EngineKind::gpu);
     simulateOn(SimulateOn::Cpu);

@@ -93,15 +93,15 @@ double droopOf(const HairPreset& preset, float length, std::uint32_t segments) {
 }
 
 TEST(Presets, DroopTheSameWithAnyNumberOfSegments) {
-    constexpr float kLength = 0.06f;
+    constexpr float kStrandLength = 0.06f;
     for (const HairPreset& preset : presets()) {
         const double right = test::solveElastica(bendingStiffness(preset.diameter, preset.eccentricity), 9.81,
-                                                 static_cast<double>(kLength))
+                                                 static_cast<double>(kStrandLength))
                                  .drop;
-        EXPECT_GT(right, 0.2 * static_cast<double>(kLength)) << "the strand should bend";
-        const double fine = droopOf(preset, kLength, 32);
-        EXPECT_NEAR(droopOf(preset, kLength, 8) / fine, 1.0, 0.02) << preset.name;
-        EXPECT_NEAR(droopOf(preset, kLength, 16) / fine, 1.0, 0.02) << preset.name;
+        EXPECT_GT(right, 0.2 * static_cast<double>(kStrandLength)) << "the strand should bend";
+        const double fine = droopOf(preset, kStrandLength, 32);
+        EXPECT_NEAR(droopOf(preset, kStrandLength, 8) / fine, 1.0, 0.02) << preset.name;
+        EXPECT_NEAR(droopOf(preset, kStrandLength, 16) / fine, 1.0, 0.02) << preset.name;
         // Steps of 1/480 s with damped bending hang 1 to 2 % too low.
         EXPECT_NEAR(fine / right, 1.0, 0.03) << preset.name << " against the heavy elastica";
     }
