@@ -334,7 +334,7 @@ class RodStrip {
         auto near = noLane();
         forEachShape(rootPosition(), node, p, hn::Not(noLane()), [&](const RodTouch& touch, RodMask here) {
             near = either(near, here);
-            press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, point.contact);
+            press(touch, rodHoldsStill(touch, node), node, point.contact);
         });
         touched_ = hn::Max(touched_, point.contact.touching);
         near_ = either(near_, near);
