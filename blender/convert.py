@@ -45,6 +45,7 @@ CURVE_TYPES = {
     "hidden": "BOOLEAN",
     "colour": "FLOAT_VECTOR",
     "dye": "FLOAT",
+    "melanin": "FLOAT",
 }
 UNSIGNED = {"id", "group", "layer"}
 # What the two call differently.

@@ -47,8 +47,8 @@ Result<ShownHair> hairOf(const RenderJobOptions& options) {
         groom = std::move(*opened);
     }
     if (const LookPreset* look = findLook(options.look)) {
-        applyLook(*look, groom.material);
-    } else if (auto status = applyLookOfView(options.view, hair.view.look, groom.material); !status) {
+        applyLook(*look, groom);
+    } else if (auto status = applyLookOfView(options.view, hair.view.look, groom); !status) {
         return tl::unexpected(status.error());
     }
     if (!options.material.empty()) {

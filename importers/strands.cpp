@@ -229,7 +229,8 @@ AttributeData dataOf(RawAttribute& attribute) {
 /// Whether the values are what Hairloom itself means by the name.
 bool isAsMeantHere(const RawAttribute& attribute) {
     const bool isNumber = attribute.type == RawAttribute::Type::Number;
-    if (attribute.name == attribute::kTransparency || attribute.name == attribute::kDye)
+    if (attribute.name == attribute::kTransparency || attribute.name == attribute::kDye ||
+        attribute.name == attribute::kMelanin)
         return isNumber && attribute.components == 1;
     if (attribute.name == attribute::kStrandColour) return isNumber && attribute.components == 3;
     // Groups, guides and ids have been given their types by adoptAttributes(), layers by the one format that
@@ -247,7 +248,8 @@ std::string importedName(const RawAttribute& attribute) {
     constexpr std::array kStrandNames{
         attribute::kRootTriangle, attribute::kRootBarycentric, attribute::kRootUv, attribute::kFrozen,
         attribute::kSelected,     attribute::kHidden,          attribute::kLayer,  attribute::kStrandColour,
-        attribute::kDye,          attribute::kGroup,           attribute::kGuide,  attribute::kStrandId};
+        attribute::kDye,          attribute::kMelanin,         attribute::kGroup,  attribute::kGuide,
+        attribute::kStrandId};
     const auto among = [&](const auto& names) {
         return std::ranges::find(names, attribute.name) != names.end();
     };

@@ -254,8 +254,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     takeShadows(options, groom->shadows, view, *how);
     if (const LookPreset* look = findLook(options.look)) {
-        applyLook(*look, groom->material);
-    } else if (auto status = applyLookOfView(options.view, view.look, groom->material); !status) {
+        applyLook(*look, *groom);
+    } else if (auto status = applyLookOfView(options.view, view.look, *groom); !status) {
         return tl::unexpected(status.error());
     }
     if (!options.material.empty()) {

@@ -106,7 +106,7 @@ Result<Report> set(const SetOptions& options) {
         changed += applyPreset(*preset, *groom);
     if (const LookPreset* look = findLook(options.look)) {
         const nlohmann::ordered_json before = toJson(groom->material);
-        applyLook(*look, groom->material);
+        applyLook(*look, *groom);
         changed += changedFields(before, toJson(groom->material));
     }
     if (!options.from.empty()) {

@@ -30,13 +30,15 @@ constexpr LookPreset kPresets[] = {
     {"platinum", "bleached blond", 0.03f, 0.02f, 0.12f},
     {"grey", "grey hair, with less and less pigment", 0.18f, 0.0f, 0.45f},
     {"white", "hair without pigment", 0.0f, 0.0f, 0.05f},
-    {"salt and pepper", "dark hair, of which half the strands are white", 2.2f, 0.05f, 0.18f, nullptr,
-     R"({"greyShare": 0.5})"},
-    {"grown-out roots", "copper dye, and three centimetres of brown at the root", 1.1f, 0.2f, 0.18f, nullptr,
-     R"({"dyeStrength": 0.92, "dyeColour": [0.42, 0.11, 0.03], "dyeRegrowth": 0.03, "dyeRegrowthSoftness": 0.012})"},
-    {"wet", "wet dark hair: dark, with narrow, strong highlights", 4.5f, 0.15f, 0.05f,
-     R"({"shadingModel": "sadeghi", "rIntensity": 3, "rWidth": 0.55, "trtIntensity": 0.7, "trtWidth": 0.7,
-         "glintIntensity": 0.2})"},
+    {"salt and pepper", "dark hair, of which a third of the strands are white", 2.2f, 0.05f, 0.18f, nullptr,
+     R"({"greyShare": 0.35})"},
+    {"grown-out roots", "bleached blond, and three centimetres of dark brown at the root", 2.4f, 0.15f, 0.18f,
+     nullptr,
+     R"({"dyeStrength": 0.97, "dyeColour": [0.62, 0.47, 0.28], "dyeRegrowth": 0.03, "dyeRegrowthSoftness": 0.018})"},
+    {"wet", "wet hair: dark, with two narrow, strong highlights. The operator Clump sticks it together", 4.5f,
+     0.15f, 0.05f,
+     R"({"shadingModel": "sadeghi", "rIntensity": 4, "rWidth": 0.3, "ttIntensity": 0.5, "trtIntensity": 1.5,
+         "trtWidth": 0.4, "glintIntensity": 0.3})"},
     {"peach fuzz", "fine, colourless down of skin", 0.02f, 0.02f, 0.1f, nullptr,
      R"({"rootRadius": 8e-6, "tipScale": 0.25, "tipOpacity": 0.4})"},
     {"brows", "short, thick hairs that taper", 2.4f, 0.2f, 0.12f, nullptr,
@@ -125,19 +127,25 @@ void applyLook(const LookPreset& preset, HairMaterial& material) {
     if (preset.extras) setFields(preset, preset.extras, material);
 }
 
+void applyLook(const LookPreset& preset, Groom& groom) {
+    applyLook(preset, groom.material);
+    const bool namesThickness = preset.extras && nlohmann::json::parse(preset.extras).contains("rootRadius");
+    if (namesThickness) groom.pointAttributes.erase(attribute::kRadius);
+}
+
 std::vector<std::string> lookNames() {
     std::vector<std::string> names;
     for (const LookPreset& preset : kPresets) names.emplace_back(preset.name);
     return names;
 }
 
-Status applyLookOfView(const std::string& view, const std::string& name, HairMaterial& material) {
+Status applyLookOfView(const std::string& view, const std::string& name, Groom& groom) {
     if (name.empty()) return {};
     const LookPreset* const look = findLook(name);
     if (!look)
         return failIn(view, {}, fmt::format("/look is '{}'", name),
                       fmt::format("one of {}", fmt::join(lookNames(), ", ")));
-    applyLook(*look, material);
+    applyLook(*look, groom);
     return {};
 }
 

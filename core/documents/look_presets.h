@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/groom/material.h"
+#include "core/groom/groom.h"
 
 namespace hairloom {
 
@@ -34,10 +34,12 @@ const LookPreset* findLook(std::string_view name);
 /// else there is stays, as the shape of the fibre, streaks and dye. Extras that another preset has set and
 /// that are still as it has them get their defaults first.
 void applyLook(const LookPreset& preset, HairMaterial& material);
+/// Of the groom's material. Radii that points carry go where the look names the thickness.
+void applyLook(const LookPreset& preset, Groom& groom);
 
 std::vector<std::string> lookNames();
 /// That of a view: `name` as the file `view` has it; nothing where it is empty. Error: no such look.
-Status applyLookOfView(const std::string& view, const std::string& name, HairMaterial& material);
+Status applyLookOfView(const std::string& view, const std::string& name, Groom& groom);
 
 /// Gives the material the root and tip colours that its melanin makes.
 void colourByMelanin(HairMaterial& material);

@@ -10,6 +10,8 @@
 #include "core/editing/delta_command.h"
 #include "core/editing/document.h"
 #include "core/editing/records.h"
+#include "core/editing/settings_commands.h"
+#include "core/groom/white_strands.h"
 #include "core/operations/mask.h"
 
 namespace hairloom::editing {
@@ -154,6 +156,19 @@ std::unique_ptr<Command> setMask(const Model& model, std::uint32_t number, std::
     });
 }
 
+std::unique_ptr<Command> setMelanin(const Model& model, std::span<const float> values) {
+    auto recorded = nlohmann::ordered_json::array();
+    for (const float value : values) recorded.push_back(readableDecimal(value));
+    Groom groom = model.groom;
+    if (values.empty()) {
+        groom.strandAttributes.erase(attribute::kMelanin);
+    } else {
+        groom.strandAttributes.set(attribute::kMelanin, std::vector<float>(values.begin(), values.end()));
+    }
+    return replaceGroom(model, std::move(groom), "Melanin",
+                        recordOf("melanin", {{"values", std::move(recorded)}}));
+}
+
 // --- As operations of a script ---
 
 namespace {
@@ -211,11 +226,22 @@ MakeCommand readMaskValues(JsonReader& reader) {
     };
 }
 
+MakeCommand readMelanin(JsonReader& reader) {
+    std::vector<float> values;
+    for (const double value : reader.numbers("values", 0, kMostMelanin, kMaxNumbers))
+        values.push_back(static_cast<float>(value));
+    return [values](const Document& document) -> CommandResult {
+        const std::size_t strands = document.groom().strandCount();
+        if (!values.empty() && values.size() != strands)
+            return fail(fmt::format("{} values of melanin", values.size()),
+                        fmt::format("one for each of {} strands, or none", strands));
+        return setMelanin(document.model(), values);
+    };
+}
+
 constexpr RecordedOperation kSelectionCommandsRecords[] = {
-    {"strands", readStrands},
-    {"scalp", readScalp},
-    {"density", readDensity},
-    {"mask", readMaskValues},
+    {"strands", readStrands}, {"scalp", readScalp},     {"density", readDensity},
+    {"mask", readMaskValues}, {"melanin", readMelanin},
 };
 
 }  // namespace

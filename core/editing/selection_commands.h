@@ -36,5 +36,7 @@ std::unique_ptr<Command> selectScalp(const Model& model, const FaceSet& faces, C
 std::unique_ptr<Command> setDensity(const Model& model, std::span<const float> density);
 /// One value in [0, 1] for each strand: mask `number` of operators, from 1 to kPaintedMasks.
 std::unique_ptr<Command> setMask(const Model& model, std::uint32_t number, std::span<const float> values);
+/// One value in [0, kMostMelanin] for each strand; empty: strands have the melanin of their material.
+std::unique_ptr<Command> setMelanin(const Model& model, std::span<const float> values);
 
 }  // namespace hairloom::editing

@@ -10,7 +10,8 @@ namespace hairloom {
 
 bool isWhite(const HairMaterial& material, const Vec3f& root_ss) {
     if (!(material.greyShare > 0)) return false;
-    constexpr double kPerMetre = 1e6;  // files that round coordinates keep the strand
+    // Half as wide as a hair: files that round coordinates leave nearly all roots in their cells.
+    constexpr double kPerMetre = 2e4;
     std::uint64_t stream = 0;
     for (int c = 0; c < 3; ++c) {
         const auto place =

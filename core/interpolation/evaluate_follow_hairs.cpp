@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "core/base/parallel.h"
+#include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
@@ -99,6 +100,22 @@ std::vector<float> followHairValues(const Groom& groom, const FollowBindings& bi
     return result;
 }
 
+std::vector<float> followHairRootValues(const FollowBindings& bindings, std::span<const float> ofStrands) {
+    if (ofStrands.empty()) return {};
+    std::vector<float> values(bindings.hairCount());
+    for (std::size_t hair = 0; hair < values.size(); ++hair) {
+        std::array<float, 3> around{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            around[k] = ofStrands[bindings.guideStrands[bindings.guides[hair][k]]];
+            values[hair] += bindings.rootWeights[hair][static_cast<int>(k)] * around[k];
+        }
+        // Weights sum up to 1 but for rounding, and limits are limits.
+        const auto [least, most] = std::ranges::minmax(around);
+        values[hair] = std::clamp(values[hair], least, most);
+    }
+    return values;
+}
+
 Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings) {
     const std::size_t hairs = bindings.hairCount();
     const auto guides = guidePositions(groom, bindings);
@@ -119,6 +136,15 @@ Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings
     if (!bindings.roots.empty()) baked.setRootBindings(bindings.roots);
     if (const auto changes = widthChanges(groom); !changes.empty())
         baked.pointAttributes.set(attribute::kWidthChange, followHairValues(groom, bindings, changes));
+    if (const auto painted = groom.pointAttributes.view<float>(attribute::kPointDye); !painted.empty()) {
+        auto dyes = followHairValues(groom, bindings, painted);
+        for (float& dye : dyes) dye = std::clamp(dye, 0.0f, 1.0f);
+        baked.pointAttributes.set(attribute::kPointDye, std::move(dyes));
+    }
+    for (const std::string_view name : {attribute::kDye, attribute::kMelanin}) {
+        auto values = followHairRootValues(bindings, groom.strandAttributes.view<float>(name));
+        if (!values.empty()) baked.strandAttributes.set(name, std::move(values));
+    }
     baked.layers = groom.layers;
     if (groom.layers.size() > 1) {
         const std::vector<std::uint32_t> ofStrands = layersOfStrands(groom);

@@ -91,6 +91,10 @@ Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& sta
 std::vector<float> followHairValues(const Groom& groom, const FollowBindings& bindings,
                                     std::span<const float> values);
 
+/// The same of values that are one a strand of the groom: one a hair, within those of the guides around it.
+/// Empty where `ofStrands` is.
+std::vector<float> followHairRootValues(const FollowBindings& bindings, std::span<const float> ofStrands);
+
 /// The follow hairs at rest as a groom of its own, bound where the bindings are, with the widths that were
 /// painted. Errors: as above.
 Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings);

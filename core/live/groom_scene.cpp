@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/geometry/curve.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/fields.h"
 #include "core/groom/move_strands.h"
@@ -25,7 +27,14 @@ bool hasSameWeights(const HairMaterial& a, const HairMaterial& b) {
     return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
            a.streakSoftness == b.streakSoftness && a.streakSeed == b.streakSeed &&
            a.dyeStrength == b.dyeStrength && a.greyShare == b.greyShare && a.greySeed == b.greySeed &&
-           (a.dyeRegrowth > 0) == (b.dyeRegrowth > 0);
+           a.dyeRegrowth == b.dyeRegrowth;
+}
+
+/// For a dye that has grown out, which most brushes leave where it is on the strand.
+bool hasSameLength(std::span<const Vec3f> before, std::span<const Vec3f> now) {
+    constexpr float kShare = 0.01f;
+    const float length = polylineLength(before);
+    return std::abs(polylineLength(now) - length) <= kShare * length;
 }
 
 bool sameFollowHairs(const InterpolationSettings& a, const InterpolationSettings& b) {
@@ -121,13 +130,13 @@ void GroomScene::pose(std::span<const Vec3f> positions_ws, std::span<const Vec3f
 }
 
 bool GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
-    if (!weights_.lengths.empty()) return false;  // they change
-    if (bindings_) {
-        std::size_t first = 0;
-        for (const std::uint32_t strand : strands) {
-            if (points_ws[first] != rest_.strand(strand).front()) return false;
-            first += rest_.strand(strand).size();
-        }
+    std::size_t first = 0;
+    for (const std::uint32_t strand : strands) {
+        const std::span<const Vec3f> before = rest_.strand(strand);
+        const auto now = points_ws.subspan(first, before.size());
+        if (bindings_ && now[0] != before[0]) return false;
+        if (!weights_.lengths.empty() && !hasSameLength(before, now)) return false;
+        first += before.size();
     }
     hairloom::moveStrands(posed_, strands, points_ws);
     if (!bindings_) return true;

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
-#include "core/geometry/curve.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
@@ -219,29 +218,34 @@ void takePigments(const Owners& owners, const Groom& rest, std::span<const float
     if (!owners.hasWhite() && melanin.empty()) return;
     weights.pigments.resize(rest.strandCount());
     for (std::size_t s = 0; s < weights.pigments.size(); ++s) {
-        const float own = melanin.empty() ? 1.0f : std::clamp(melanin[s], 0.0f, kMostMelanin);
+        // Projects and hair files may have any number: what is none counts as that of the material.
+        const float own =
+            melanin.empty() || std::isnan(melanin[s]) ? 1.0f : std::clamp(melanin[s], 0.0f, kMostMelanin);
         weights.pigments[s] = isWhite(owners.of(s), rest.strand(s)[0]) ? 0.0f : own;
     }
+}
+
+/// The length that places the border of the dye where `regrowth` metres of the strand are, of points that may
+/// be uneven: places along strands are shares of the number of points. The strand's own where it is shorter.
+float lengthAtBorder(std::span<const Vec3f> points, float regrowth) {
+    float length = 0;
+    for (std::size_t p = 1; p < points.size(); ++p) {
+        const float segment = (points[p] - points[p - 1]).norm();
+        if (regrowth > 0 && length + segment >= regrowth) {
+            const float along = (static_cast<float>(p - 1) + (regrowth - length) / segment) /
+                                static_cast<float>(points.size() - 1);
+            return regrowth / along;
+        }
+        length += segment;
+    }
+    return length;
 }
 
 void takeLengths(const Owners& owners, const Groom& rest, LookWeights& weights) {
     if (!owners.hasGrownOut()) return;
     weights.lengths.resize(rest.strandCount());
     for (std::size_t s = 0; s < weights.lengths.size(); ++s)
-        weights.lengths[s] = polylineLength(rest.strand(s));
-}
-
-/// Of a value that strands have, at each follow hair: by the guides around it.
-std::vector<float> rootValues(const FollowBindings& bindings, std::span<const float> ofStrands) {
-    if (ofStrands.empty()) return {};
-    std::vector<float> values(bindings.hairCount());
-    for (std::size_t hair = 0; hair < values.size(); ++hair) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t strand = bindings.guideStrands[bindings.guides[hair][k]];
-            values[hair] += bindings.rootWeights[hair][static_cast<int>(k)] * ofStrands[strand];
-        }
-    }
-    return values;
+        weights.lengths[s] = lengthAtBorder(rest.strand(s), owners.of(s).dyeRegrowth);
 }
 
 }  // namespace
@@ -398,7 +402,7 @@ Result<LookWeights> weightsOfFollowHairs(const Groom& groom, const FollowBinding
         const auto rest = bakeFollowHairs(groom, bindings);
         if (!rest) return tl::unexpected(rest.error());
         if (owners.hasStreaks()) weights.streaks = owners.streaks(rootsOf(*rest));
-        takePigments(owners, *rest, rootValues(bindings, melanin), weights);
+        takePigments(owners, *rest, followHairRootValues(bindings, melanin), weights);
         takeLengths(owners, *rest, weights);
     }
     if (!owners.isDyed()) return weights;
@@ -409,7 +413,8 @@ Result<LookWeights> weightsOfFollowHairs(const Groom& groom, const FollowBinding
             weights.dyes[hair] = owners.of(hair).dyeStrength;
         return weights;
     }
-    const std::vector<float> mask = rootValues(bindings, groom.strandAttributes.view<float>(attribute::kDye));
+    const std::vector<float> mask =
+        followHairRootValues(bindings, groom.strandAttributes.view<float>(attribute::kDye));
     weights.dyes.resize(bindings.hairCount());
     for (std::size_t hair = 0; hair < weights.dyes.size(); ++hair)
         weights.dyes[hair] = owners.of(hair).dyeStrength * std::clamp(maskOf(mask, hair), 0.0f, 1.0f);

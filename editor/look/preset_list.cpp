@@ -134,10 +134,19 @@ class PresetList : public QWidget {
 
     void apply(QListWidgetItem* item) {
         const Look& look = looks_[static_cast<std::size_t>(list_->row(item))];
-        HairMaterial material = look.preset ? document_.groom().material : look.material;
-        if (look.preset) applyLook(*look.preset, material);
-        document_.perform(editing::setMaterial(document_.editing().model(), material,
-                                               QString("Look %1").arg(item->text()).toStdString()));
+        Groom groom = document_.groom();
+        if (look.preset) {
+            applyLook(*look.preset, groom);
+        } else {
+            groom.material = look.material;
+        }
+        const editing::Model& model = document_.editing().model();
+        const std::string name = QString("Look %1").arg(item->text()).toStdString();
+        // A look of another thickness also takes the radii that points carry.
+        const bool sameRadii = groom.pointAttributes.has(attribute::kRadius) ==
+                               model.groom.pointAttributes.has(attribute::kRadius);
+        document_.perform(sameRadii ? editing::setMaterial(model, groom.material, name)
+                                    : editing::replaceGroom(model, std::move(groom), name));
     }
 
     void save() {

@@ -7,8 +7,10 @@
 
 #include "core/documents/look_presets.h"
 #include "core/editing/document.h"
+#include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "editor/fields/field_form.h"
+#include "editor/fields/image_button.h"
 #include "editor/look/parts.h"
 #include "editor/panels/panel.h"
 
@@ -103,7 +105,7 @@ class LookPanel : public QWidget {
                         false));
         layout_->addWidget(collapsible("Interpolated hairs", form(followHairFields()), false));
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
-            if (contains(changed, editing::Part::Material)) refresh();
+            if (contains(changed, editing::Part::Material | editing::Part::Strands)) refresh();
         });
         refresh();
     }
@@ -117,7 +119,7 @@ class LookPanel : public QWidget {
         const std::vector<Field> fields = materialFields();
         for (const Group& group : groups()) {
             QWidget* rows = form(pick(fields, group.fields));
-            if (QLatin1String(group.title) == QLatin1String("Pigment")) rows = withColourButton(rows);
+            if (QLatin1String(group.title) == QLatin1String("Pigment")) rows = withPigmentButtons(rows);
             QWidget* const section = collapsible(QString(group.title), rows, group.open);
             layout_->addWidget(section);
             shownFor_.emplace_back(section, group.models);
@@ -133,7 +135,7 @@ class LookPanel : public QWidget {
     }
 
     /// For Kajiya-Kay, which knows colours only, and for those who want to go on from a natural colour.
-    QWidget* withColourButton(QWidget* rows) {
+    QWidget* withPigmentButtons(QWidget* rows) {
         auto* widget = new QWidget;
         auto* layout = new QVBoxLayout(widget);
         layout->setContentsMargins(0, 0, 0, 0);
@@ -149,12 +151,31 @@ class LookPanel : public QWidget {
                 editing::setMaterial(document_.editing().model(), material, "Colours from the pigment"));
         });
         layout->addWidget(button);
+        layout->addWidget(imageButton(
+            "melaninImage", "Melanin from image…",
+            "Multiplies the melanin of each strand by a PNG at the root UVs. White keeps the melanin above, "
+            "black has none",
+            [this](const MaskImage& image) { return takeMelanin(image); },
+            [this](const QString& problem) { messages_.warn(problem); }));
+        evenMelanin_->setObjectName("evenMelanin");
+        evenMelanin_->setToolTip("Removes the strands' own melanin, of an image or an attribute");
+        connect(evenMelanin_, &QPushButton::clicked, this,
+                [this] { document_.perform(editing::setMelanin(document_.editing().model(), {})); });
+        layout->addWidget(evenMelanin_);
         return widget;
+    }
+
+    Status takeMelanin(const MaskImage& image) {
+        const auto shares = valuesAtRoots(image, document_.groom());
+        if (!shares) return tl::unexpected(shares.error());
+        document_.perform(editing::setMelanin(document_.editing().model(), *shares));
+        return {};
     }
 
     void refresh() {
         const auto model = static_cast<unsigned>(document_.groom().material.shadingModel);
         for (const auto& [group, models] : shownFor_) group->setVisible((models >> model) & 1u);
+        evenMelanin_->setVisible(document_.groom().strandAttributes.has(attribute::kMelanin));
     }
 
     QtDocument& document_;
@@ -164,6 +185,7 @@ class LookPanel : public QWidget {
     Viewport& viewport_;
     QVBoxLayout* layout_;
     std::vector<std::pair<QWidget*, unsigned>> shownFor_;
+    QPushButton* evenMelanin_ = new QPushButton("Even melanin");
 };
 
 }  // namespace

@@ -25,7 +25,7 @@ Result<render::Image> draw(const Groom& groom, const render::RenderOptions& aske
         view = std::move(*read);
     }
     Groom looks = groom;
-    if (auto status = applyLookOfView(viewFile, view.look, looks.material); !status)
+    if (auto status = applyLookOfView(viewFile, view.look, looks); !status)
         return tl::unexpected(status.error());
     auto shown = GroomScene::make(looks, view, {});
     if (!shown) return tl::unexpected(shown.error());

@@ -9,9 +9,7 @@
 #include <functional>
 
 #include "core/documents/dye_mask.h"
-#include "core/documents/look_presets.h"
 #include "core/documents/sample.h"
-#include "core/groom/file/settings_json.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 #include "core/render/png.h"
@@ -259,108 +257,6 @@ TEST(HairLook, DyeComesFromTheMaskAndFollowHairsShareIt) {
     }
 }
 
-TEST(HairLook, AShareOfStrandsIsWhiteAndKeepsThatInAnyOrder) {
-    auto groom = makeSample(kSamples, "short");
-    ASSERT_TRUE(groom) << groom.error().message();
-    EXPECT_TRUE(weightsOfStrands(*groom).pigments.empty());
-    const auto whiteOf = [](const std::vector<float>& pigments) {
-        return static_cast<double>(std::ranges::count(pigments, 0.0f)) / static_cast<double>(pigments.size());
-    };
-    groom->material.greyShare = 0.3f;
-    const std::vector<float> some = weightsOfStrands(*groom).pigments;
-    ASSERT_EQ(some.size(), groom->strandCount());
-    EXPECT_TRUE(strandMaterials(*groom, kMarschner).material.look);
-    const double deviation = std::sqrt(0.3 * 0.7 / static_cast<double>(some.size()));
-    EXPECT_NEAR(whiteOf(some), 0.3, 4 * deviation);
-    groom->material.greyShare = 0.7f;
-    const std::vector<float> more = weightsOfStrands(*groom).pigments;
-    for (std::size_t s = 0; s < some.size(); ++s) ASSERT_TRUE(some[s] != 0 || more[s] == 0) << s;
-    groom->material.greySeed = 2;
-    EXPECT_NE(weightsOfStrands(*groom).pigments, more);
-    groom->material.greySeed = 1;
-    groom->material.greyShare = 1;
-    EXPECT_EQ(whiteOf(weightsOfStrands(*groom).pigments), 1);
-    groom->material.greyShare = 0.3f;
-    // Every third strand, from the last to the first, as a level with fewer hairs has them.
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<Vec3f> points;
-    std::vector<float> expected;
-    for (std::size_t s = groom->strandCount(); s-- > 0;) {
-        if (s % 3 != 0) continue;
-        points.insert(points.end(), groom->strand(s).begin(), groom->strand(s).end());
-        offsets.push_back(static_cast<std::uint32_t>(points.size()));
-        expected.push_back(some[s]);
-    }
-    Groom fewer = makeGroom(offsets, points);
-    fewer.material = groom->material;
-    EXPECT_EQ(weightsOfStrands(fewer).pigments, expected);
-    groom->interpolation.followPerGuide = 2;
-    const auto bindings = bindFollowHairs(*groom, groom->interpolation);
-    ASSERT_TRUE(bindings);
-    const auto hairs = weightsOfFollowHairs(*groom, *bindings);
-    ASSERT_TRUE(hairs);
-    ASSERT_EQ(hairs->pigments.size(), bindings->hairCount());
-    EXPECT_NEAR(whiteOf(hairs->pigments), 0.3, 4 * deviation) << "each hair for itself, not with its guide";
-}
-
-TEST(HairLook, MelaninOfStrandsComesFromAnAttributeAndIsLimited) {
-    auto groom = makeSample(kSamples, "short");
-    ASSERT_TRUE(groom) << groom.error().message();
-    std::vector<float> values(groom->strandCount(), 0.5f);
-    values[0] = 20;
-    values[1] = -1;
-    groom->strandAttributes.set("depth", values);
-    EXPECT_FALSE(melaninFromAttribute("no_such", *groom));
-    ASSERT_TRUE(melaninFromAttribute("depth", *groom));
-    EXPECT_TRUE(strandMaterials(*groom, kMarschner).material.look);
-    const std::vector<float> pigments = weightsOfStrands(*groom).pigments;
-    EXPECT_EQ(pigments[0], 8);
-    EXPECT_EQ(pigments[1], 0);
-    EXPECT_EQ(pigments[2], 0.5f);
-    groom->interpolation.followPerGuide = 2;
-    const auto bindings = bindFollowHairs(*groom, groom->interpolation);
-    ASSERT_TRUE(bindings);
-    const auto hairs = weightsOfFollowHairs(*groom, *bindings);
-    ASSERT_TRUE(hairs);
-    EXPECT_GT(std::ranges::count_if(hairs->pigments, [](float p) { return std::abs(p - 0.5f) < 1e-5f; }),
-              static_cast<long>(bindings->hairCount()) / 2);
-    values[2] = std::nanf("");
-    groom->strandAttributes.set("depth", values);
-    EXPECT_FALSE(melaninFromAttribute("depth", *groom));
-}
-
-TEST(HairLook, LengthsAreKnownWhereDyeHasGrownOut) {
-    Groom groom = plainGroom();
-    groom.material.dyeRegrowth = 0.02f;
-    EXPECT_TRUE(weightsOfStrands(groom).lengths.empty()) << "there is no dye";
-    groom.material.dyeStrength = 1;
-    EXPECT_EQ(weightsOfStrands(groom).lengths, std::vector<float>(2, 1.0f));
-    const auto look = strandMaterials(groom, kMarschner).material.look;
-    ASSERT_TRUE(look);
-    EXPECT_EQ(look->regrowth(0.01), 0);
-    EXPECT_EQ(look->regrowth(0.03), 1);
-    groom.material.dyeRegrowth = 0;
-    EXPECT_EQ(strandMaterials(groom, kMarschner).material.look->regrowth(0), 1);
-}
-
-TEST(HairLook, APresetTakesAwayWhatAnotherOneAdded) {
-    HairMaterial material;
-    applyLook(*findLook("brown"), material);
-    const HairMaterial brown = material;
-    for (const LookPreset& preset : lookPresets()) {
-        if (!preset.extras) continue;
-        applyLook(preset, material);
-        EXPECT_NE(toJson(material), toJson(brown)) << preset.name;
-        EXPECT_EQ(material.shadingModel, brown.shadingModel) << preset.name;
-        applyLook(*findLook("brown"), material);
-        EXPECT_EQ(toJson(material), toJson(brown)) << preset.name;
-    }
-    applyLook(*findLook("salt and pepper"), material);
-    material.greyShare = 0.2f;
-    applyLook(*findLook("brown"), material);
-    EXPECT_EQ(material.greyShare, 0.2f) << "what a person sets stays";
-}
-
 TEST(HairLook, PaintedDyeIsThatOfThePointsAndAnotherMaskReplacesIt) {
     auto groom = makeSample(kSamples, "short");
     ASSERT_TRUE(groom) << groom.error().message();
@@ -406,6 +302,15 @@ TEST(HairLook, AnImageOverTheRootUvsIsAMask) {
     const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
     EXPECT_NEAR(mask[0], 1.0f, 1e-3f);
     EXPECT_NEAR(mask[1], 128.0f / 255, 2e-3f);
+    groom.strandAttributes.erase(attribute::kDye);
+    ASSERT_TRUE(melaninFromImage(path.string(), groom));
+    EXPECT_NEAR(weightsOfStrands(groom).pigments[1], 128.0f / 255, 2e-3f);
+    EXPECT_FALSE(groom.strandAttributes.has(attribute::kDye));
+    const auto missing = melaninFromImage(path.string() + ".none", groom);
+    ASSERT_FALSE(missing);
+    EXPECT_NE(missing.error().message().find(".none"), std::string::npos);
+    groom.strandAttributes.erase(attribute::kRootUv);
+    EXPECT_FALSE(melaninFromImage(path.string(), groom)) << "no root UVs";
 }
 
 }  // namespace

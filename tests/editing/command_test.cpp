@@ -164,6 +164,12 @@ std::vector<Action> actions() {
                  groom.material.specular = r.uniform();
                  return replaceGroom(m, std::move(groom), "Import");
              }},
+            {"SetMelanin",
+             [](const Model& m, Random& r) {
+                 std::vector<float> values(m.groom.strandCount(), r.uniform());
+                 if (m.groom.strandAttributes.has(attribute::kMelanin) && r.below(2) == 0) values.clear();
+                 return setMelanin(m, values);
+             }},
             {"Place", [](const Model& m, Random& r) -> std::unique_ptr<Command> {
                  PlaceRequest request;
                  if (r.below(2) == 0) {
@@ -322,6 +328,9 @@ TEST(Records, NameWhatIsWrong) {
     EXPECT_THAT(problem(R"({"op": "scalp", "faces": [99999, 1], "expression": ""})"),
                 HasSubstr("face 99999 does not exist"));
     EXPECT_THAT(problem(R"({"op": "density", "values": [1]})"), HasSubstr("1 densities"));
+    EXPECT_THAT(problem(R"({"op": "melanin", "values": [1]})"), HasSubstr("1 values of melanin"));
+    EXPECT_THAT(problem(R"({"op": "melanin", "values": [9]})"), HasSubstr("from 0 to 8"));
+    EXPECT_EQ(problem(R"({"op": "melanin", "values": []})"), "it ran");
     EXPECT_THAT(problem(R"({"op": "layers", "layers": []})"), HasSubstr("0 layers"));
     EXPECT_THAT(problem(R"({"op": "material", "settings": {"specular": 9}})"),
                 HasSubstr("/operations/0/settings/specular is 9"));

@@ -126,6 +126,25 @@ TEST(Place, FillsTheSelectionOfAnEmptyDocument) {
     }
 }
 
+TEST(Place, NewHairHasTheMelaninOfItsNeighboursOrOfTheMaterial) {
+    Groom groom;
+    groom.scalp = sphereScalp(kHeadRadius, 4, kHeadCentre);
+    groom.scalpSelection = selectFaces(*groom.scalp, "cap:80").value();
+    groom.placement = {PlacementMethod::poissonDisk, 200, 0, 0.1f, 8, 3};
+    Document document(groom);
+    document.perform(place(document.groom(), {}, {}).value());
+    for (const auto& [reach, expected] : {std::pair(0.0f, 1.0f), std::pair(0.2f, 0.25f)}) {
+        document.perform(setMelanin(document.model(), std::vector<float>(200, 0.25f)));
+        PlaceRequest request;
+        request.reach = reach;
+        document.perform(place(document.groom(), request, {}).value());
+        const auto melanin = document.groom().strandAttributes.view<float>(attribute::kMelanin);
+        ASSERT_EQ(melanin.size(), document.groom().strandCount());
+        for (const float value : melanin) ASSERT_EQ(value, expected);
+        document.undo();
+    }
+}
+
 TEST(Place, ReplacesOnlyTheRegionAndKeepsItsDistance) {
     Groom groom;
     groom.scalp = sphereScalp(kHeadRadius, 4, kHeadCentre);

@@ -4,6 +4,7 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QImage>
 #include <QListWidget>
 #include <QPushButton>
 #include <algorithm>
@@ -227,6 +228,33 @@ TEST_F(LookTest, ColoursFollowThePigmentWhenAsked) {
     find<QPushButton>("colourByMelanin")->click();
     EXPECT_GT(groom().material.tipColour.minCoeff(), dark.maxCoeff());
     EXPECT_EQ(document().stepCount(), 4);
+}
+
+TEST_F(LookTest, AnImageGivesStrandsTheirMelaninAndOneClickTakesItAway) {
+    QImage image(2, 2, QImage::Format_RGB32);
+    image.fill(qRgb(64, 64, 64));
+    ASSERT_TRUE(image.save(inFolder("pale.png")));
+    auto* even = find<QPushButton>("evenMelanin");
+    const auto isOffered = [&] { return even->isVisibleTo(window->panel("look")->widget()); };
+    EXPECT_FALSE(isOffered());
+    const auto before = hash();
+    onceAskedForAFile(inFolder("no such.png"));
+    find<QPushButton>("melaninImage")->click();
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(window->statusLine().message().contains("no such.png"))
+        << window->statusLine().message().toStdString();
+    onceAskedForAFile(inFolder("pale.png"));
+    find<QPushButton>("melaninImage")->click();
+    const auto melanin = groom().strandAttributes.view<float>(attribute::kMelanin);
+    ASSERT_EQ(melanin.size(), groom().strandCount());
+    EXPECT_NEAR(melanin[0], 64.0f / 255, 2e-3f);
+    EXPECT_TRUE(isOffered());
+    even->click();
+    EXPECT_EQ(hash(), before);
+    EXPECT_FALSE(isOffered());
+    document().undo();
+    EXPECT_TRUE(isOffered());
+    EXPECT_EQ(document().stepCount(), 2);
 }
 
 TEST_F(LookTest, SwappingLooksIsAStep) {
