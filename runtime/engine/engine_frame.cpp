@@ -364,7 +364,7 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
         frame.windTo = windPhases(wind_.wind, time, *state_.origin_ws);
     }
     frame.context.stepRatio = state_.substep > 0.0f ? h / state_.substep : kFirstStepRatio;
-    frame.context.conservative = !frame.windy && !hairGrid_.isOn();
+    frame.context.conservative = !frame.windy;
     if (frame.windy) {
         frame.context.wind = &wind_.wind;
         const double time = std::isfinite(input.time) ? input.time : 0.0;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/hair_kernel.h"
 #include "engine/state.h"
 
 namespace hairloom::runtime {
@@ -35,7 +36,7 @@ class HairGrid {
 
     /// Takes all its memory, and counts the authored hair; none where the settings do not ask for it.
     void take(const RestShape& shape, const SimulationSettings& settings, const Host& host);
-    bool isOn() const { return !points_.empty(); }
+    bool isOn() const { return !share_.empty(); }
     /// Metres: as authored or chosen, larger where the authored hair would take more than 2¹⁴ cells.
     float cell() const { return cell_; }
 
@@ -50,28 +51,7 @@ class HairGrid {
 
   private:
     static constexpr std::size_t kSlots = 8;
-    /// Mass in units of 2⁻¹⁸ of a point's, with the room that it takes, and with its velocity.
-    struct Node {
-        std::int64_t mass, room, x, y, z;
-    };
-    /// What points read: push, m/s²; resistance, 1/s²; velocity, m/s; density, 1 as authored.
-    struct Field {
-        float values[8];
-    };
-    struct Point {
-        std::uint16_t mass, room;  ///< one over the density that it keeps
-    };
-    struct Box {
-        std::array<std::int32_t, 3> low{}, size{};
-        std::size_t nodes() const {
-            return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
-                   static_cast<std::size_t>(size[2]);
-        }
-        friend bool operator==(const Box&, const Box&) = default;
-    };
-    struct Bounds {
-        float low[3], high[3];  ///< cells
-    };
+    using Sums = std::vector<double, CacheLineAllocator<double>>;
     /// Where the head is: from the rest space to the world.
     struct Head {
         Quat rotation;
@@ -80,47 +60,48 @@ class HairGrid {
     };
     struct Motion {
         Float3 velocity, spin;  ///< m/s, 1/s
-        Float3 reference;       ///< m/s, that velocities are counted from
-    };
-    struct Cell {
-        std::size_t node;
-        float share[3];
     };
 
     template <class Body>
     static void forEach(const Host& host, std::size_t count, std::size_t grain, const Body& body);
-    void count(const RestShape& shape, const Host& host);
+    void count(const RestShape& shape, double lengths, const Host& host);
+    void takeNodes(bool any);
+    void scaleShares(double scale);
+    void keepDensity(const RestShape& shape);
     Head headAt(const RestShape& shape, const Floats& roots) const;
-    void locate(const RestShape& shape, const State& state, std::size_t block);
-    Box boxOf(const std::vector<Bounds>& bounds) const;
-    bool findCell(const float* at, std::size_t pitch, Cell& cell) const;
-    void deposit(const RestShape& shape, const State& state, std::size_t block,
-                 std::vector<Node>& nodes) const;
-    void sum(const State& state, const RestShape& shape, const Host& host);
-    void resolve(const SimulationSettings& settings, float time, const Host& host);
-    void press(const RestShape& shape, const State& state, const SimulationSettings& settings, float h,
-               std::size_t block);
+    HairBlock blockOf(const RestShape& shape, const State& state, std::size_t index);
+    void openFrame(const SimulationSettings& settings);
+    void locate(const RestShape& shape, const State& state, bool sleepers, const Host& host);
+    HairBox boxOf() const;
+    HairBox chooseBox(const HairBox& before) const;
+    void sum(const RestShape& shape, const State& state, bool sleepers, const Host& host);
+    bool findCompression(const SimulationSettings& settings, const Host& host);
+    void relax(float stiffness);
+    void setFields(const SimulationSettings& settings, float time, const Host& host);
 
     float cell_ = 0.0f;
-    double massUnit_ = 0.0;  ///< metres of hair
-    float roomUnit_ = 0.0f;  ///< of a node's room: 1 where it is full
-    float pushUnit_ = 0.0f;  ///< of a point's room: 1 at the mean density
-    Box restBox_, box_;
+    float shareUnit_ = 1.0f;  ///< of a node's sum: 1 where it is as dense as authored
+    HairBox restBox_, box_;
     Head head_;
     Motion motion_;
-    std::vector<Point> points_;  ///< as a plane of all blocks
-    Floats places_;              ///< per block: x, y, z in cells
-    Floats felt_;                ///< kHairPlanes per block
-    std::vector<Bounds> bounds_;
-    std::array<std::vector<Node>, kSlots> slots_;
+    HairFrame frame_;
+    Floats share_;    ///< per block: of each point, of the density that it keeps, in whole numbers
+    Floats allowed_;  ///< of each node of `restBox_`: density as authored there, at least 1
+    Floats places_;   ///< per block: x, y, z in cells
+    Floats felt_;     ///< kHairPlanes per block
+    std::vector<HairBounds> bounds_;
+    std::array<Sums, kSlots> slots_;
     std::array<std::atomic<bool>, kSlots> taken_{};
     std::array<bool, kSlots> used_{};
-    std::vector<Node> sleepers_;         ///< of the blocks of `counted_`
+    Sums sleepers_;                      ///< of the blocks of `counted_`
     std::vector<std::uint8_t> counted_;  ///< per block: asleep, and in `sleepers_`
     bool sleepersCounted_ = false;
-    bool anySleep_ = true;
-    std::vector<float> pressure_;
-    std::vector<Field> fields_;
+    bool anySleep_ = false;
+    bool compressed_ = false;
+    /// Of each node: density and then its √, pressure by it alone, and the equation of the pressure
+    /// (relax()).
+    Floats dense_, excess_, bias_, gain_, pressure_, before_;
+    Floats fields_;  ///< kHairFields of each node
 };
 
 }  // namespace hairloom::runtime

@@ -8,8 +8,11 @@
 namespace hairloom::runtime {
 namespace {
 
-constexpr double kMostHairMass = 1 << 28;  // of all points: no sum leaves 62 bits
-constexpr double kMostHairRoom = 32767.0;
+/// Sums stay whole in a double, with any velocity: 2⁵¹ over kMostHairVelocity over kHairVelocityUnit.
+constexpr double kMostHairSum = static_cast<double>(std::uint64_t{1} << 51) *
+                                static_cast<double>(kHairVelocityUnit) /
+                                static_cast<double>(kMostHairVelocity);
+constexpr double kMostHairUnits = 1 << 20;  // of a full node
 /// Single hairs are no volume: none keeps less than this share of the mean density.
 constexpr double kLeastHairDensity = 0.3;
 constexpr std::size_t kSampledRoots = 64;
@@ -19,24 +22,21 @@ constexpr std::size_t kSampledRoots = 64;
 HairGrid& HairGrid::operator=(const HairGrid& other) {
     if (this == &other) return *this;
     cell_ = other.cell_;
-    massUnit_ = other.massUnit_;
-    roomUnit_ = other.roomUnit_;
-    pushUnit_ = other.pushUnit_;
+    shareUnit_ = other.shareUnit_;
     restBox_ = other.restBox_;
     box_ = other.box_;
     head_ = other.head_;
     motion_ = other.motion_;
-    points_ = other.points_;
+    frame_ = other.frame_;
+    share_ = other.share_;
+    allowed_ = other.allowed_;
     places_ = other.places_;
     felt_ = other.felt_;
     bounds_ = other.bounds_;
-    slots_ = other.slots_;
-    used_ = {};
-    sleepers_ = other.sleepers_;
     counted_ = other.counted_;
     sleepersCounted_ = false;
-    pressure_ = other.pressure_;
-    fields_ = other.fields_;
+    anySleep_ = false;
+    takeNodes(!other.fields_.empty());
     return *this;
 }
 
@@ -45,7 +45,7 @@ void HairGrid::take(const RestShape& shape, const SimulationSettings& settings, 
         *this = HairGrid();
         return;
     }
-    points_.assign(shape.planeFloats, {});
+    share_ = zeroFloats(shape.planeFloats, host);
     places_ = zeroFloats(3 * shape.planeFloats, host);
     felt_ = zeroFloats(kHairPlanes * shape.planeFloats, host);
     bounds_.assign(shape.blocks.size(), {});
@@ -77,17 +77,28 @@ void HairGrid::take(const RestShape& shape, const SimulationSettings& settings, 
     cell_ = settings.hairHairCell > 0.0f
                 ? std::max(settings.hairHairCell, 0.001f)
                 : std::clamp(std::max(2.0f * spacing, 1.5f * segment), 0.005f, 0.05f);
-    const double units = std::min(256.0 * static_cast<double>(shape.offsets.back()), kMostHairMass / 256.0);
-    massUnit_ = std::max(lengths, 1e-9) / units;
-    count(shape, host);
+    count(shape, lengths, host);
+}
+
+/// Not touched before it is used.
+void HairGrid::takeNodes(bool any) {
+    const std::size_t nodes = any ? kMostHairNodes : 0;
+    for (Sums& slot : slots_) slot = Sums(nodes * kHairSums);
+    sleepers_ = Sums(nodes * kHairSums);
+    for (Floats* const each : {&dense_, &excess_, &bias_, &gain_, &pressure_, &before_})
+        *each = Floats(nodes);
+    fields_ = Floats(nodes * kHairFields);
 }
 
 /// The authored hair, in the space of the head at rest.
-void HairGrid::count(const RestShape& shape, const Host& host) {
+void HairGrid::count(const RestShape& shape, double lengths, const Host& host) {
     State rest;
     rest.planes = zeroFloats(shape.planeFloats * kStatePlanes, host);
     rest.roots.assign(shape.blocks.size() * kRootRows * kBlockLanes, 0.0f);
     rest.rests.assign(shape.blocks.size(), {});
+    // Of all hair, so that no sum leaves 51 bits.
+    const double unit =
+        std::max(lengths, 1e-9) / std::min(kMostHairSum, 256.0 * static_cast<double>(shape.offsets.back()));
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         const Block& block = shape.blocks[b];
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
@@ -106,55 +117,75 @@ void HairGrid::count(const RestShape& shape, const Host& host) {
                 const std::size_t i = std::size_t{p} * kBlockLanes + lane;
                 const float metres = (p > 0 ? 0.5f * length[i - kBlockLanes] : 0.0f) +
                                      (p + 1 < block.points ? 0.5f * length[i] : 0.0f);
-                const double units = static_cast<double>(metres) / massUnit_;
-                points_[block.firstPlane + i].mass =
-                    static_cast<std::uint16_t>(std::clamp(units + 0.5, 1.0, 65535.0));
+                share_[block.firstPlane + i] = metres;
             }
         }
     }
+    takeNodes(true);
     head_ = headAt(shape, rest.roots);
+    frame_ = {};
     for (;; cell_ *= 1.25f) {
-        for (std::size_t b = 0; b < shape.blocks.size(); ++b) locate(shape, rest, b);
-        restBox_ = {{}, {1 << 20, 1 << 20, 1 << 20}};
-        restBox_ = boxOf(bounds_);
+        openFrame({});
+        locate(shape, rest, true, host);
+        restBox_ = boxOf();
         if (restBox_.nodes() <= kMostRestHairNodes) break;
     }
-    box_ = restBox_;
-    std::vector<Node> nodes(box_.nodes(), Node{});
-    for (std::size_t b = 0; b < shape.blocks.size(); ++b) deposit(shape, rest, b, nodes);
+    frame_.box = box_ = restBox_;
+    scaleShares(1.0 / unit);
+    sum(shape, rest, false, host);
+    keepDensity(shape);
+    sum(shape, rest, false, host);
+    allowed_.resize(box_.nodes());
+    for (std::size_t i = 0; i < allowed_.size(); ++i)
+        allowed_[i] = std::max(static_cast<float>(slots_[0][i * kHairSums]) * shareUnit_, 1.0f);
+    sleepersCounted_ = anySleep_ = false;
+}
+
+void HairGrid::scaleShares(double scale) {
+    for (float& share : share_) share = static_cast<float>(static_cast<double>(share) * scale);
+}
+
+/// Makes each point's length of hair its share of the density that it keeps, which is authored where it is.
+void HairGrid::keepDensity(const RestShape& shape) {
+    const double* const sums = slots_[0].data();
     double squares = 0.0, masses = 0.0;
-    for (const Node& node : nodes) {
-        const auto mass = static_cast<double>(node.mass);
+    for (std::size_t i = 0; i < box_.nodes(); ++i) {
+        const double mass = sums[i * kHairSums];
         squares += mass * mass;
         masses += mass;
     }
     const double mean = squares / std::max(masses, 1.0), least = std::max(kLeastHairDensity * mean, 1.0);
-    roomUnit_ = static_cast<float>(1.0 / (least * kMostHairRoom));
-    pushUnit_ = static_cast<float>(mean / (least * kMostHairRoom));
+    double all = 0.0;
     for (const Block& block : shape.blocks) {
         const float* const places = places_.data() + 3 * block.firstPlane;
         for (std::size_t i = 0; i < std::size_t{block.points} * kBlockLanes; ++i) {
-            // The most of its corners: so no node at rest is denser than those around it keep.
-            double target = least;
-            Cell cell;
-            if (findCell(places + i, planeSize(block), cell)) {
-                const auto row = static_cast<std::size_t>(box_.size[0]),
-                           slice = row * static_cast<std::size_t>(box_.size[1]);
-                for (unsigned corner = 0; corner < 8; ++corner) {
-                    const std::size_t node =
-                        cell.node + (corner & 1u) + (corner >> 1 & 1u) * row + (corner >> 2) * slice;
-                    target = std::max(target, static_cast<double>(nodes[node].mass));
-                }
+            double target = 0.0;
+            bool inside = true;
+            std::size_t corner[3] = {};
+            double part[3] = {};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const float from = places[axis * planeSize(block) + i] - static_cast<float>(box_.low[axis]);
+                inside = inside && from >= 0.0f && from < static_cast<float>(box_.size[axis] - 1);
+                if (!inside) break;
+                corner[axis] = static_cast<std::size_t>(from);
+                part[axis] = static_cast<double>(from) - std::floor(static_cast<double>(from));
             }
-            points_[block.firstPlane + i].room =
-                static_cast<std::uint16_t>(std::max(std::floor(kMostHairRoom * least / target), 1.0));
+            const auto row = static_cast<std::size_t>(box_.size[0]),
+                       slice = row * static_cast<std::size_t>(box_.size[1]);
+            for (std::size_t c = 0; inside && c < 8; ++c) {
+                const std::size_t node =
+                    (corner[0] + (c & 1)) + (corner[1] + (c >> 1 & 1)) * row + (corner[2] + (c >> 2)) * slice;
+                target += sums[node * kHairSums] * ((c & 1) ? part[0] : 1.0 - part[0]) *
+                          ((c >> 1 & 1) ? part[1] : 1.0 - part[1]) * ((c >> 2) ? part[2] : 1.0 - part[2]);
+            }
+            float& share = share_[block.firstPlane + i];
+            share = static_cast<float>(static_cast<double>(share) / std::max(target, least));
+            all += static_cast<double>(share);
         }
     }
-    sleepersCounted_ = false;
-    for (std::vector<Node>& slot : slots_) slot.resize(kMostHairNodes);
-    sleepers_.resize(kMostHairNodes);
-    pressure_.resize(kMostHairNodes);
-    fields_.resize(kMostHairNodes);
+    const double units = std::min(kMostHairUnits, std::floor(kMostHairSum / std::max(all, 1.0)));
+    shareUnit_ = static_cast<float>(1.0 / units);
+    scaleShares(units);
 }
 
 /// The mean turn and place of some of the roots.
@@ -185,11 +216,13 @@ HairGrid::Head HairGrid::headAt(const RestShape& shape, const Floats& roots) con
 }
 
 std::size_t HairGrid::bytes() const {
-    std::size_t nodes = sleepers_.size();
-    for (const std::vector<Node>& slot : slots_) nodes += slot.size();
-    return nodes * sizeof(Node) + pressure_.size() * sizeof(float) + fields_.size() * sizeof(Field) +
-           points_.size() * sizeof(Point) + (places_.size() + felt_.size()) * sizeof(float) +
-           bounds_.size() * sizeof(Bounds) + counted_.size();
+    std::size_t sums = sleepers_.size();
+    for (const Sums& slot : slots_) sums += slot.size();
+    std::size_t floats = share_.size() + allowed_.size() + places_.size() + felt_.size() + fields_.size();
+    for (const Floats* const each : {&dense_, &excess_, &bias_, &gain_, &pressure_, &before_})
+        floats += each->size();
+    return sums * sizeof(double) + floats * sizeof(float) + bounds_.size() * sizeof(HairBounds) +
+           counted_.size();
 }
 
 }  // namespace hairloom::runtime

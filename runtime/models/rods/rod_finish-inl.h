@@ -25,6 +25,7 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
     V turn = hn::Zero(D()), energy = hn::Zero(D()), kinetic = hn::Zero(D()), size = hn::Zero(D()),
       masses = hn::Zero(D());
     V stiffness = hn::Zero(D());
+    V work = hn::Zero(D()), worked = hn::Zero(D());  // by the hair around, and its size
     // The least that the normal part of a contact's force can be of it.
     const V normalShare = all(1.0f / std::sqrt(1.0f + context_.friction * context_.friction));
     // A bounce is no smooth motion: speeds behind it are those of the mean way.
@@ -67,6 +68,13 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
         size = size + (elastic + hn::Abs(weight));
         kinetic = mad(mass * all(0.5f), dot(velocity, velocity), kinetic);
         masses = masses + mass;
+        if (block_.hairRate) {
+            const V3 push =
+                negMad3(velocity, hn::Load(D(), block_.hairRate + node), load3(block_.hairPush, node));
+            const V done = mass * dot(push, moved);
+            work = work + done;
+            worked = worked + hn::Abs(done);
+        }
         if constexpr (kContacts) {
             const V3 force = rodContactForce(point.contact, moved - point.displacement);
             V load = hn::Sqrt(dot(force, force)) * normalShare;
@@ -78,10 +86,10 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
         }
     }
     turn = hn::IfThenElse(bounces, all(kRodNoStep), hn::Sqrt(turn));
-    // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time
-    // scheme add is taken back.
-    const V last = hn::Load(D(), rod_.energy + lane_);
-    V noise = all(30.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * (size + kinetic) +
+    // While nothing moves the root and no air blows, energy rises by no more than the hair around does in
+    // work: what rounding and the time scheme add is taken back.
+    const V last = hn::Load(D(), rod_.energy + lane_) + work;
+    V noise = all(30.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * (size + kinetic + worked) +
               all(4.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * hn::Sqrt((size + size) * stiffness);
     // Where spheres press, what is as slow as this is rounding.
     constexpr float kSlow = static_cast<float>(HAIRLOOM_ROD_CONTACT_SPEED);
