@@ -106,6 +106,13 @@ std::set<std::size_t> indicesOf(std::span<const KeyPlace> keys, const KeyTrack& 
     return indices;
 }
 
+/// Frames stay whole, whatever repeated moves lose in rounding.
+double wholeFrame(double frame) {
+    constexpr double kRounding = 1e-3;
+    const double whole = std::round(frame);
+    return std::abs(frame - whole) < kRounding ? whole : frame;
+}
+
 /// Puts `placed` among the others, which make room.
 template <class Key>
 std::vector<std::size_t> place(std::vector<Key>& keys, std::vector<Key> placed, float frame) {
@@ -141,6 +148,18 @@ std::vector<float> keyTimes(const TimeLine& line, const KeyTrack& track) {
         for (const auto& key : keys) times.push_back(timeOf(key));
     });
     return times;
+}
+
+bool hasKey(const TimeLine& line, const KeyPlace& key) {
+    bool has = false;
+    withKeys(line, key.track, [&](const auto& keys) { has = key.index < keys.size(); });
+    return has;
+}
+
+float keyTime(const TimeLine& line, const KeyPlace& key) {
+    float time = 0;
+    withKeys(line, key.track, [&](const auto& keys) { time = timeOf(keys[key.index]); });
+    return time;
 }
 
 std::optional<std::size_t> findKey(const TimeLine& line, const KeyTrack& track, float time) {
@@ -195,7 +214,7 @@ std::vector<KeyPlace> moveKeys(TimeLine& line, std::span<const KeyPlace> keys, s
     const double rate = static_cast<double>(line.framesPerSecond);
     std::int64_t by = frames;
     for (const KeyPlace& key : keys) {
-        const float time = keyTimes(line, key.track)[key.index];
+        const float time = keyTime(line, key);
         by = std::max<std::int64_t>(by, -std::llround(static_cast<double>(time) * rate));
     }
     std::vector<KeyPlace> moved;
@@ -205,9 +224,8 @@ std::vector<KeyPlace> moveKeys(TimeLine& line, std::span<const KeyPlace> keys, s
             std::vector<Key> taken;
             for (const std::size_t index : which) {
                 Key key = all[index];
-                // From whole frames to whole frames, without what repeated sums would lose.
                 const double at = static_cast<double>(timeOf(key)) * rate + static_cast<double>(by);
-                setTime(key, static_cast<float>(std::max(0.0, at / rate)));
+                setTime(key, static_cast<float>(std::max(0.0, wholeFrame(at) / rate)));
                 taken.push_back(std::move(key));
             }
             for (auto index = which.rbegin(); index != which.rend(); ++index)
@@ -222,7 +240,7 @@ std::vector<KeyPlace> moveKeys(TimeLine& line, std::span<const KeyPlace> keys, s
 std::vector<KeyPlace> copyKeys(TimeLine& line, std::span<const KeyPlace> keys, float time) {
     if (keys.empty()) return {};
     float first = kLatestKey;
-    for (const KeyPlace& key : keys) first = std::min(first, keyTimes(line, key.track)[key.index]);
+    for (const KeyPlace& key : keys) first = std::min(first, keyTime(line, key));
     std::vector<KeyPlace> copies;
     for (const KeyTrack& track : tracksIn(keys)) {
         const std::set<std::size_t> which = indicesOf(keys, track);

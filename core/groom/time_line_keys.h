@@ -33,6 +33,9 @@ struct KeyPlace {
 std::vector<KeyTrack> tracksOf(const TimeLine& line);
 /// Seconds: times of the keys, or starts of the clips. Empty where there is no such track.
 std::vector<float> keyTimes(const TimeLine& line, const KeyTrack& track);
+bool hasKey(const TimeLine& line, const KeyPlace& key);
+/// Of a key that is there.
+float keyTime(const TimeLine& line, const KeyPlace& key);
 /// The key within half a frame of `time`.
 std::optional<std::size_t> findKey(const TimeLine& line, const KeyTrack& track, float time);
 /// Of a key that is there; linear for clips.

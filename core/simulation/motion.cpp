@@ -97,7 +97,7 @@ Result<std::unique_ptr<HeadMotion>> makeRigidMotion(std::string_view name, const
     if (name == "spin") return std::make_unique<TurnMotion>(pivotOf(groom), Vec3f::UnitY(), spinAngle);
     if (name == "nod") return std::make_unique<TurnMotion>(pivotOf(groom), Vec3f::UnitX(), nodAngle);
     return fail(fmt::format("there is no motion '{}'", name),
-                "expected none, spin, nod, clip:NAME or a keyframe file F.json");
+                "expected none, spin, nod, clip:NAME, timeline or a keyframe file F.json");
 }
 
 }  // namespace hairloom

@@ -12,7 +12,6 @@
 #include "core/editing/settings_commands.h"
 #include "editor/fields/colour.h"
 #include "editor/fields/formula_edit.h"
-#include "editor/fields/key_this.h"
 #include "editor/fields/number_box.h"
 #include "editor/fields/number_spin.h"
 #include "editor/fields/price_tag.h"
@@ -21,12 +20,12 @@
 namespace hairloom::editor {
 
 FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
-                     const Prices* prices, Keying* keying, QWidget* parent)
+                     const Prices* prices, FieldKeys* keys, QWidget* parent)
     : QWidget(parent),
       document_(document),
       preferences_(preferences),
       prices_(prices),
-      keying_(keying),
+      keys_(keys),
       fields_(std::move(fields)),
       grid_(new QGridLayout(this)) {
     grid_->setContentsMargins(0, 0, 0, 0);
@@ -41,7 +40,7 @@ FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::
     }
     connect(&document_, &QtDocument::changed, this, &FieldForm::refresh);
     connect(&preferences_, &Preferences::changed, this, [this] { refresh(editing::Part::Everything); });
-    if (keying_) connect(keying_, &Keying::changed, this, [this] { refresh(shown_); });
+    if (keys_) connect(keys_, &FieldKeys::changed, this, [this] { refresh(shown_); });
     refresh(editing::Part::Everything);
 }
 
@@ -94,11 +93,11 @@ void FieldForm::addRow(const Field& field) {
     }
     grid_->addWidget(defaultValue, row, 2);
     if (prices_) grid_->addWidget(new PriceTag(*prices_, preferences_, field.name), row + 1, 1, 1, 2);
-    if (keying_) offerKeys(*keying_, field.name, {label, control});
+    if (keys_) keys_->offer(field.name, {label, control});
     refreshers_.push_back([this, &field, label, control, defaultValue] {
         const QString tip =
-            tooltipOf(field, preferences_.unit()) + (keying_ ? keyTip(*keying_, field.name) : QString());
-        QString text = keying_ ? keyMark(*keying_, field.name) + field.label : field.label;
+            tooltipOf(field, preferences_.unit()) + (keys_ ? keys_->tip(field.name) : QString());
+        QString text = keys_ ? keys_->mark(field.name) + field.label : field.label;
         // Numbers beside each other have no room for their unit.
         const QString unit = shownOf(field).unit;
         if (field.kind == FieldKind::Vector && !unit.isEmpty())

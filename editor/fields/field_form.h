@@ -11,19 +11,17 @@
 #include "editor/document/preferences.h"
 #include "editor/document/prices.h"
 #include "editor/fields/field.h"
+#include "editor/fields/field_keys.h"
 
 namespace hairloom::editor {
-
-class Keying;
 
 class FieldForm : public QWidget {
     Q_OBJECT
 
   public:
-    /// With `prices`, rows of settings that have some show them. With `keying`, fields are settings of the
-    /// simulation, which can be keyed.
+    /// With `prices`, rows of settings that have some show them; with `keys`, those that are keyed.
     FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
-              const Prices* prices = nullptr, Keying* keying = nullptr, QWidget* parent = nullptr);
+              const Prices* prices = nullptr, FieldKeys* keys = nullptr, QWidget* parent = nullptr);
 
     /// The control of a field, for tests and help; null where there is none of that name. Objects are named
     /// after their fields.
@@ -49,7 +47,7 @@ class FieldForm : public QWidget {
     QtDocument& document_;
     const Preferences& preferences_;
     const Prices* prices_;
-    Keying* keying_;
+    FieldKeys* keys_;
     std::vector<Field> fields_;
     QGridLayout* grid_;
     editing::Part shown_ = editing::Part::None;  ///< parts that the fields are of

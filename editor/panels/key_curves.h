@@ -2,13 +2,11 @@
 #pragma once
 // The values of the current row over time, as curves whose keys are dragged.
 
-#include <QWidget>
-
-#include "editor/panels/time_line_view.h"
+#include "editor/panels/time_line_widget.h"
 
 namespace hairloom::editor {
 
-class KeyCurves : public QWidget {
+class KeyCurves : public TimeLineWidget {
     Q_OBJECT
 
   public:
@@ -21,13 +19,12 @@ class KeyCurves : public QWidget {
 
   protected:
     void paintEvent(QPaintEvent* event) override;
-    void mousePressEvent(QMouseEvent* event) override;
-    void mouseMoveEvent(QMouseEvent* event) override;
-    void mouseReleaseEvent(QMouseEvent* event) override;
+    void press(QMouseEvent& event) override;
+    void dragged(QMouseEvent& event) override;
+    void release(QMouseEvent& event) override;
+    void hover(QMouseEvent& event) override;
+    void letGo() override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
-    void wheelEvent(QWheelEvent* event) override;
-    void keyPressEvent(QKeyEvent* event) override;
-    bool event(QEvent* event) override;
 
   private:
     struct Point {
@@ -37,16 +34,24 @@ class KeyCurves : public QWidget {
     struct Range {
         double low, high;
     };
+    /// One of the numbers that have a curve, with its points from first to last key.
+    struct Curve {
+        std::size_t number;
+        KeyNumber info;
+        Range range;
+        QColor colour;
+        std::vector<QPointF> points;
+    };
+    std::vector<Curve> curves() const;
     /// Of all numbers in that unit, with room above and below.
-    Range rangeOf(const std::string& unit) const;
+    Range rangeOf(const KeyTrack& track, std::string_view unit) const;
     double toY_px(double value, const Range& range) const;
     std::optional<Point> pointAt(const QPointF& place) const;
-    void paintCurve(QPainter& painter, const KeyTrack& track, std::size_t number, const KeyNumber& info,
-                    const QColor& colour) const;
+    void paintNames(QPainter& painter, const std::vector<Curve>& curves) const;
+    void paintCurve(QPainter& painter, const KeyTrack& track, const Curve& curve) const;
 
-    TimeLineView& view_;
     std::optional<Point> held_;
-    Range heldRange_{0, 1};  ///< stays while a key is dragged
+    Range heldRange_{0, 1};  ///< of the curves in the held one's unit, while it is dragged
     QPointF from_;
 };
 

@@ -70,17 +70,48 @@ KeyForm::KeyForm(TimeLineView& view, const Preferences& preferences, QWidget* pa
     layout->addWidget(none_);
     layout->addStretch(1);
     connect(&view_, &TimeLineView::changed, this, &KeyForm::refresh);
-    connect(&preferences_, &Preferences::changed, this, [this] {
+    const auto anew = [this] {
         built_.reset();
         refresh();
-    });
+    };
+    connect(&preferences_, &Preferences::changed, this, anew);
+    connect(&view_.player(), &Player::motionsChanged, this, anew);
     refresh();
 }
 
-void KeyForm::edit() {
+void KeyForm::focus() {
     if (!first_) return;
     first_->setFocus(Qt::ShortcutFocusReason);
     if (auto* spin = qobject_cast<QAbstractSpinBox*>(first_)) spin->selectAll();
+}
+
+void KeyForm::edit(const std::function<void(TimeLine&)>& write) {
+    TimeLine to = view_.keying().line();
+    if (view_.isDragging() || view_.selection().empty() || !hasKey(to, key())) return;
+    write(to);
+    if (!view_.keying().change(std::move(to), "Edit key")) refresh();
+}
+
+void KeyForm::addFrame() {
+    auto* frame = new NumberSpin;
+    frame->setObjectName("keyFrame");
+    frame->setDecimals(0);
+    frame->setRange(0, 1e9);
+    frame->setKeyboardTracking(false);
+    frame->setButtonSymbols(QAbstractSpinBox::NoButtons);
+    connect(frame, &QDoubleSpinBox::valueChanged, this, [this](double value) {
+        if (!view_.selection().empty()) view_.moveSelected(std::llround(value) - shownFrame());
+        refresh();
+    });
+    refreshers_.push_back([this, frame] {
+        const QSignalBlocker quiet(frame);
+        frame->setValue(static_cast<double>(shownFrame()));
+    });
+    addRow("Frame", frame, "Frame of the selected key. All selected keys move along with it");
+}
+
+std::int64_t KeyForm::shownFrame() const {
+    return view_.frameOf(static_cast<double>(keyTime(view_.line(), key())));
 }
 
 void KeyForm::refresh() {
@@ -134,16 +165,14 @@ QWidget* KeyForm::number(const QString& name, double min, double max, const QStr
     const Shown shown = shownAs(unit, min, max, preferences_.unit());
     auto* spin = new NumberSpin;
     spin->setObjectName(name);
-    spin->setDecimals(whole ? 0 : shown.decimals);
+    // Of a key's time each frame of 240 a second is another one.
+    spin->setDecimals(whole ? 0 : std::max(shown.decimals, unit == "s" ? 3 : 2));
     spin->setRange(min * shown.factor, max * shown.factor);
     if (!shown.unit.isEmpty()) spin->setSuffix(' ' + shown.unit);
     spin->setKeyboardTracking(false);
     spin->setButtonSymbols(QAbstractSpinBox::NoButtons);
     connect(spin, &QDoubleSpinBox::valueChanged, this, [this, write, shown](double value) {
-        if (view_.selection().empty()) return;
-        TimeLine to = view_.keying().line();
-        write(to, value / shown.factor);
-        if (!view_.keying().change(std::move(to), "Edit key")) refresh();
+        edit([&](TimeLine& to) { write(to, value / shown.factor); });
     });
     refreshers_.push_back([this, spin, read, shown] {
         const QSignalBlocker quiet(spin);
@@ -160,12 +189,8 @@ QWidget* KeyForm::choice(const QString& name, const QStringList& labels,
     box->addItems(labels);
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     box->setMinimumContentsLength(10);
-    connect(box, &QComboBox::activated, this, [this, write](int index) {
-        if (view_.selection().empty()) return;
-        TimeLine to = view_.keying().line();
-        write(to, index);
-        if (!view_.keying().change(std::move(to), "Edit key")) refresh();
-    });
+    connect(box, &QComboBox::activated, this,
+            [this, write](int index) { edit([&](TimeLine& to) { write(to, index); }); });
     refreshers_.push_back([this, box, read] {
         const QSignalBlocker quiet(box);
         box->setCurrentIndex(read(view_.line()));
@@ -174,6 +199,7 @@ QWidget* KeyForm::choice(const QString& name, const QStringList& labels,
 }
 
 void KeyForm::buildKey(const KeyTrack& track) {
+    addFrame();
     const std::vector<KeyNumber> numbers = numbersOf(track);
     for (std::size_t n = 0; n < numbers.size(); ++n) {
         const KeyNumber& one = numbers[n];
@@ -218,6 +244,9 @@ void KeyForm::buildClip() {
         for (const Clip& clip : view_.player().actor()->clips())
             names.append(QString::fromStdString(clip.name));
     }
+    // One that the character no longer has keeps its name until another one is chosen.
+    const QString now = QString::fromStdString(strip(view_.line()).name);
+    if (!names.contains(now)) names.append(now);
     addRow("Clip",
            choice(
                "clipName", names,
@@ -225,6 +254,7 @@ void KeyForm::buildClip() {
                    return static_cast<int>(names.indexOf(QString::fromStdString(strip(line).name)));
                },
                [strip, names](TimeLine& line, int index) {
+                   if (strip(line).name == names[index].toStdString()) return;
                    strip(line).name = names[index].toStdString();
                    strip(line).first = strip(line).last = 0;
                }),

@@ -24,9 +24,13 @@ class KeyForm : public QWidget {
     KeyForm(TimeLineView& view, const Preferences& preferences, QWidget* parent = nullptr);
 
     /// The first number has the focus.
-    void edit();
+    void focus();
 
   private:
+    /// A step that changes the shown key.
+    void edit(const std::function<void(TimeLine&)>& write);
+    void addFrame();
+    std::int64_t shownFrame() const;
     void refresh();
     void rebuild();
     void buildKey(const KeyTrack& track);

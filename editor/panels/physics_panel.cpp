@@ -12,6 +12,7 @@
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/stiffness_curve.h"
+#include "editor/panels/key_this.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
@@ -107,10 +108,11 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
     const std::vector<Field> fields = simulationFields();
     QWidget* const content = column({makePresets(document), makeHoldButton(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
+    auto* keys = new KeyThis(keying, content);
     QStringList shown;
     for (const Group& group : groups()) {
         shown += group.fields;
-        QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields), &prices, &keying);
+        QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields), &prices, keys);
         if (group.fields.contains("angularStiffness")) form = stacked({new StiffnessCurve(document), form});
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
@@ -121,7 +123,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
         if (!shown.contains(field.name)) others.append(field.name);
     }
     if (!others.isEmpty()) {
-        auto* form = new FieldForm(document, preferences, pick(fields, others), &prices, &keying);
+        auto* form = new FieldForm(document, preferences, pick(fields, others), &prices, keys);
         layout->insertWidget(layout->count() - 1, collapsible("More", form, false));
     }
     return scrolled(content);

@@ -9,6 +9,7 @@
 #include <QStackedWidget>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <map>
 
 #include "core/animation/actor.h"
 #include "editor/document/words.h"
@@ -31,13 +32,14 @@ class TimeLinePanel : public QWidget {
     explicit TimeLinePanel(const PanelParts& parts)
         : player_(parts.player),
           keying_(parts.keying),
-          view_(new TimeLineView(parts.keying, this)),
+          viewport_(parts.viewport),
+          view_(new TimeLineView(parts.keying, parts.preferences, this)),
           form_(new KeyForm(*view_, parts.preferences)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(8, 4, 8, 6);
         layout->setSpacing(4);
         addTransport(*layout);
-        addRange(*layout);
+        addRange(*layout, parts.actions);
         auto* across = new QHBoxLayout;
         across->setSpacing(8);
         across->addWidget(makeTracks(), 1);
@@ -52,8 +54,9 @@ class TimeLinePanel : public QWidget {
         across->addWidget(form);
         layout->addLayout(across, 1);
         connect(view_, &TimeLineView::changed, this, &TimeLinePanel::refresh);
-        connect(view_, &TimeLineView::editRequested, this, [this] { form_->edit(); });
+        connect(view_, &TimeLineView::editRequested, this, [this] { form_->focus(); });
         connect(&player_, &Player::motionsChanged, this, &TimeLinePanel::refresh);
+        connect(&viewport_, &Viewport::poseChanged, this, [this] { showState(); });
         refresh();
     }
 
@@ -71,6 +74,17 @@ class TimeLinePanel : public QWidget {
         made->setToolTip(tip);
         made->setFocusPolicy(Qt::StrongFocus);
         connect(made, &QToolButton::clicked, this, [act = std::move(act)] { act(); });
+        return made;
+    }
+
+    QToolButton* menuButton(const char* name, const QString& text, const QString& tip) {
+        auto* made = button(name, "", text + " ▾", tip, [] {});
+        made->setAccessibleName(text);
+        made->setPopupMode(QToolButton::InstantPopup);
+        made->setProperty("role", "menu");
+        auto* menu = new QMenu(made);
+        menu->setObjectName(QString(name) + "Menu");
+        made->setMenu(menu);
         return made;
     }
 
@@ -105,28 +119,24 @@ class TimeLinePanel : public QWidget {
                               [this] { player_.scrub(line().start); }));
         row->addWidget(button("timeBack", "step-back", "Back", "Go back one frame (,)",
                               [this] { player_.scrubFrames(-1); }));
-        play_ = button("timePlay", "play", "Play",
-                       "Play or pause. Hair goes on from the last frame that was simulated. Reset it to play "
-                       "from the start (Space)",
-                       [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
+        play_ =
+            button("timePlay", "play", "Play",
+                   "Play or pause. Hair continues from the last frame that was simulated. Reset it to play "
+                   "from the start (Space)",
+                   [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
         row->addWidget(play_);
-        row->addWidget(button("timeForward", "step", "Forward", "Go forward one frame",
-                              [this] { player_.scrubFrames(1); }));
+        row->addWidget(button("timeForward", "step", "Forward",
+                              "Go forward one frame. From the last frame that was simulated, simulate the "
+                              "next (.)",
+                              [this] { player_.stepForward(); }));
         row->addWidget(button("timeEnd", "jump-end", "To the end", "Go to the end of the range (End)",
                               [this] { player_.scrub(line().end); }));
         frame_ = spin("timeFrame", "Frame", *row, 1e6, 0, "Frame at the play head", [this](double value) {
             player_.scrub(static_cast<float>(value / static_cast<double>(line().framesPerSecond)));
         });
-        auto* key = new QToolButton;
-        key->setObjectName("timeKey");
-        key->setText("Key ▾");
-        key->setAccessibleName("Key");
-        key->setPopupMode(QToolButton::InstantPopup);
-        key->setFocusPolicy(Qt::StrongFocus);
-        key->setToolTip("Key head, wind or a setting at the play head, or add a clip there");
-        auto* menu = new QMenu(key);
-        menu->setObjectName("timeKeyMenu");
-        key->setMenu(menu);
+        auto* key =
+            menuButton("timeKey", "Key", "Key head, wind or a setting at the play head, or add a clip there");
+        QMenu* const menu = key->menu();
         connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillKeyMenu(*menu); });
         row->addWidget(key);
         remove_ = button("timeDelete", "delete", "Delete keys", "Delete the selected keys (Delete)",
@@ -145,7 +155,7 @@ class TimeLinePanel : public QWidget {
         layout.addLayout(row);
     }
 
-    void addRange(QVBoxLayout& layout) {
+    void addRange(QVBoxLayout& layout, Actions& actions) {
         auto* row = new QHBoxLayout;
         row->setSpacing(4);
         const auto time = [this](double frame) {
@@ -174,6 +184,10 @@ class TimeLinePanel : public QWidget {
         row->addWidget(loop_);
         row->addWidget(button("timeFit", "frame", "Show all", "Show the whole range and all keys",
                               [this] { view_->fit(); }));
+        auto* file = menuButton("timeFile", "File", "Open or save a time line, or clear it");
+        for (const char* id : {"timeLine.open", "timeLine.save", "timeLine.saveMotion", "timeLine.clear"})
+            file->menu()->addAction(&actions.get(id));
+        row->addWidget(file);
         row->addStretch(1);
         layout.addLayout(row);
     }
@@ -187,8 +201,7 @@ class TimeLinePanel : public QWidget {
         pages_ = new QStackedWidget;
         auto* empty = new QLabel(
             "Nothing is keyed yet. Right-click a setting in Physics and choose Key this, or press Key for "
-            "the "
-            "head, the wind, a setting or a clip of the character.");
+            "the head, the wind, a setting or a clip of the character.");
         empty->setObjectName("timeNone");
         empty->setWordWrap(true);
         empty->setAlignment(Qt::AlignCenter);
@@ -220,11 +233,13 @@ class TimeLinePanel : public QWidget {
     void fillKeyMenu(QMenu& menu) {
         menu.clear();
         menu.addAction("Head, as it is shown", this, [this] { keying_.keyHead(); });
-        menu.addAction("Wind", this, [this] { keying_.keyWind(); });
+        menu.addAction("Wind, as Physics has it", this, [this] { keying_.keyWind(); });
         QMenu* settings = menu.addMenu("Setting");
+        std::map<QString, std::string> byLabel;
         for (const std::string& name : keyableNames())
-            settings->addAction(labelOf(KeyTrack{KeyTrack::Of::setting, name}), this,
-                                [this, name] { keying_.keySetting(name); });
+            byLabel[labelOf(KeyTrack{KeyTrack::Of::setting, name})] = name;
+        for (const auto& [label, name] : byLabel)
+            settings->addAction(label, this, [this, name = name] { keying_.keySetting(name); });
         QMenu* clips = menu.addMenu("Add clip");
         if (player_.actor()) {
             for (const Clip& clip : player_.actor()->clips()) {
@@ -236,6 +251,7 @@ class TimeLinePanel : public QWidget {
     }
 
     QString stateText() const {
+        if (viewport_.pose() != player_.pose()) return "Another panel shows its frame.";
         switch (player_.shown()) {
             case Player::Shown::rest:
                 return "At rest.";
@@ -271,13 +287,18 @@ class TimeLinePanel : public QWidget {
         formArea_->setVisible(!none);
         curves_->setEnabled(!none);
         pages_->setCurrentIndex(none ? 0 : curves_->isChecked() ? 2 : 1);
+        showState();
+        refreshing_ = false;
+    }
+
+    void showState() {
         const QString text = stateText();
         if (state_->text() != text) state_->setText(text);
-        refreshing_ = false;
     }
 
     Player& player_;
     Keying& keying_;
+    const Viewport& viewport_;
     TimeLineView* view_;
     KeyForm* form_;
     QWidget* formArea_ = nullptr;

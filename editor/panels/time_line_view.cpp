@@ -6,7 +6,17 @@
 
 namespace hairloom::editor {
 
-TimeLineView::TimeLineView(Keying& keying, QObject* parent) : QObject(parent), keying_(keying) {
+TimeLineView::TimeLineView(Keying& keying, const Preferences& preferences, QObject* parent)
+    : QObject(parent), keying_(keying), preferences_(preferences) {
+    connect(&keying_, &Keying::replaced, this, [this] {
+        dragged_.reset();
+        setSelection({});
+        fit();
+    });
+    connect(&keying_, &Keying::lineChanged, this, [this] {
+        cancelDrag();
+        Q_EMIT interrupted();
+    });
     connect(&keying_, &Keying::changed, this, [this] {
         prune();
         const TimeLine& now = keying_.line();
@@ -15,23 +25,11 @@ TimeLineView::TimeLineView(Keying& keying, QObject* parent) : QObject(parent), k
         if (isOther) return fit();
         Q_EMIT changed();
     });
+    connect(&player(), &Player::playHeadMoved, this,
+            [this] { reveal(static_cast<double>(player().lineTime())); });
     connect(&player(), &Player::frameReady, this, &TimeLineView::changed);
+    connect(&preferences_, &Preferences::changed, this, &TimeLineView::changed);
     fit();
-}
-
-double TimeLineView::toX_px(double time, int width) const {
-    const double room = std::max(1, width - kNames_px - kRight_px);
-    return kNames_px + (time - first_) / (last_ - first_) * room;
-}
-
-double TimeLineView::toTime(double x_px, int width) const {
-    const double room = std::max(1, width - kNames_px - kRight_px);
-    return first_ + (x_px - kNames_px) / room * (last_ - first_);
-}
-
-float TimeLineView::toFrameTime(double x_px, int width) const {
-    const double rate = static_cast<double>(line().framesPerSecond);
-    return static_cast<float>(std::max(0.0, std::round(toTime(x_px, width) * rate)) / rate);
 }
 
 std::int64_t TimeLineView::frameOf(double time) const {
@@ -41,17 +39,24 @@ std::int64_t TimeLineView::frameOf(double time) const {
 void TimeLineView::fit() {
     const TimeLine& line = this->line();
     const double preRoll = static_cast<double>(line.preRoll) / static_cast<double>(line.framesPerSecond);
-    double last = static_cast<double>(line.end);
+    last_ = static_cast<double>(line.end);
+    // Of a long pre-roll its end: the range is what people work on.
+    first_ = static_cast<double>(line.start);
+    first_ -= std::min(preRoll, 0.3 * (last_ - first_));
     for (const KeyTrack& track : tracksOf(line)) {
         const std::vector<float> times = keyTimes(line, track);
-        if (!times.empty()) last = std::max(last, static_cast<double>(times.back()));
+        if (times.empty()) continue;
+        first_ = std::min(first_, static_cast<double>(times.front()));
+        last_ = std::max(last_, static_cast<double>(times.back()));
     }
-    first_ = static_cast<double>(line.start) - preRoll;
-    last_ = std::max(last, first_ + 1 / static_cast<double>(line.framesPerSecond));
+    last_ = std::max(last_, first_ + 1 / static_cast<double>(line.framesPerSecond));
     const double margin = 0.02 * (last_ - first_);
     first_ -= margin;
     last_ += margin;
-    fitted_ = line;
+    fitted_.start = line.start;
+    fitted_.end = line.end;
+    fitted_.preRoll = line.preRoll;
+    fitted_.framesPerSecond = line.framesPerSecond;
     Q_EMIT changed();
 }
 
@@ -64,14 +69,41 @@ void TimeLineView::zoom(double factor, double about) {
     Q_EMIT changed();
 }
 
+void TimeLineView::pan(double by) {
+    const double span = last_ - first_;
+    first_ = std::clamp(first_ + by, -span, static_cast<double>(kLatestKey));
+    last_ = first_ + span;
+    Q_EMIT changed();
+}
+
+void TimeLineView::reveal(double time) {
+    const double margin = 0.02 * (last_ - first_);
+    if (time < first_ + margin) pan(std::max(time, 0.0) - margin - first_);
+    if (time > last_ - margin) pan(time + margin - last_);
+}
+
+void TimeLineView::setSelection(std::vector<KeyPlace> keys) {
+    selection_ = std::move(keys);
+    selected_ = {selection_.begin(), selection_.end()};
+}
+
 bool TimeLineView::isSelected(const KeyPlace& key) const {
-    return std::ranges::find(selection_, key) != selection_.end();
+    return selected_.contains(key);
 }
 
 void TimeLineView::select(std::vector<KeyPlace> keys) {
-    selection_ = std::move(keys);
+    setSelection(std::move(keys));
     if (!selection_.empty()) current_ = selection_.back().track;
     Q_EMIT changed();
+}
+
+void TimeLineView::selectAll() {
+    std::vector<KeyPlace> all;
+    for (const KeyTrack& track : tracksOf(line())) {
+        const std::size_t count = keyTimes(line(), track).size();
+        for (std::size_t k = 0; k < count; ++k) all.push_back({track, k});
+    }
+    select(std::move(all));
 }
 
 std::optional<KeyTrack> TimeLineView::current() const {
@@ -86,10 +118,19 @@ void TimeLineView::setCurrent(const KeyTrack& track) {
     Q_EMIT changed();
 }
 
+void TimeLineView::moveRow(int by) {
+    const std::vector<KeyTrack> tracks = tracksOf(line());
+    const auto now = current();
+    if (!now) return;
+    const auto row = std::ranges::find(tracks, *now) - tracks.begin() + by;
+    if (row >= 0 && row < static_cast<std::ptrdiff_t>(tracks.size()))
+        setCurrent(tracks[static_cast<std::size_t>(row)]);
+}
+
 void TimeLineView::drag(TimeLine to, std::vector<KeyPlace> selection) {
     if (!dragged_) selectionBefore_ = selection_;
     dragged_ = std::move(to);
-    selection_ = std::move(selection);
+    setSelection(std::move(selection));
     Q_EMIT changed();
 }
 
@@ -97,7 +138,7 @@ void TimeLineView::drop(const QString& name) {
     if (!dragged_) return;
     TimeLine to = std::move(*dragged_);
     dragged_.reset();
-    if (!keying_.change(std::move(to), name)) selection_ = selectionBefore_;
+    if (!keying_.change(std::move(to), name)) setSelection(selectionBefore_);
     prune();
     Q_EMIT changed();
 }
@@ -105,22 +146,24 @@ void TimeLineView::drop(const QString& name) {
 void TimeLineView::cancelDrag() {
     if (!dragged_) return;
     dragged_.reset();
-    selection_ = selectionBefore_;
+    setSelection(selectionBefore_);
     Q_EMIT changed();
 }
 
 void TimeLineView::prune() {
     if (dragged_) return;
-    std::erase_if(selection_, [&](const KeyPlace& key) {
-        return key.index >= keyTimes(keying_.line(), key.track).size();
-    });
+    std::vector<KeyPlace> left;
+    for (const KeyPlace& key : selection_) {
+        if (hasKey(keying_.line(), key)) left.push_back(key);
+    }
+    if (left.size() != selection_.size()) setSelection(std::move(left));
 }
 
 void TimeLineView::removeSelected() {
     if (selection_.empty()) return;
     TimeLine to = keying_.line();
     removeKeys(to, selection_);
-    selection_.clear();
+    setSelection({});
     keying_.change(std::move(to), "Delete keys");
 }
 
@@ -145,6 +188,11 @@ void TimeLineView::interpolateSelected(KeyInterpolation interpolation) {
     keying_.change(std::move(to), "Interpolation of keys");
 }
 
+void TimeLineView::insertKey(const KeyTrack& track, float time) {
+    keying_.insertKey(track, time);
+    if (const auto index = findKey(line(), track, time)) select({{track, *index}});
+}
+
 void TimeLineView::goToKey(int direction) {
     const auto track = current();
     if (!track) return;
@@ -161,16 +209,6 @@ void TimeLineView::goToKey(int direction) {
     if (!found) return;
     player().scrub(times[*found]);
     select({{*track, *found}});
-}
-
-void TimeLineView::paintPlayHead(QPainter& painter, const QRect& area) const {
-    const double x = toX_px(static_cast<double>(player().lineTime()), area.width());
-    if (x < kNames_px || x > area.width()) return;
-    // Of another colour where nothing was simulated.
-    const QColor colour =
-        player().shown() == Player::Shown::posed ? QColor(0xd9, 0x8a, 0x2b) : QColor(0x4c, 0x8d, 0xff);
-    painter.setPen(QPen(colour, 2));
-    painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
 }
 
 }  // namespace hairloom::editor

@@ -4,11 +4,13 @@
 // dragged.
 
 #include <QObject>
-#include <QPainter>
 #include <optional>
+#include <set>
 #include <vector>
 
+#include "editor/document/preferences.h"
 #include "editor/simulation/keying.h"
+#include "editor/style/theme.h"
 
 namespace hairloom::editor {
 
@@ -16,33 +18,35 @@ class TimeLineView : public QObject {
     Q_OBJECT
 
   public:
-    static constexpr int kNames_px = 132;  ///< of the column of names, left of the keys
-    static constexpr int kRight_px = 14;   ///< free, so that the last key is whole
-
-    explicit TimeLineView(Keying& keying, QObject* parent = nullptr);
+    TimeLineView(Keying& keying, const Preferences& preferences, QObject* parent = nullptr);
 
     Keying& keying() const { return keying_; }
     Player& player() const { return keying_.player(); }
+    ThemeColours colours() const { return themeColours(preferences_.theme()); }
     /// With what is being dragged.
     const TimeLine& line() const { return dragged_ ? *dragged_ : keying_.line(); }
-
-    // Seconds across a widget of that width.
-    double toX_px(double time, int width) const;
-    double toTime(double x_px, int width) const;
-    /// Of the nearest frame.
-    float toFrameTime(double x_px, int width) const;
     std::int64_t frameOf(double time) const;
+
+    // Seconds that are shown.
+    double first() const { return first_; }
+    double last() const { return last_; }
     /// All of the range, the pre-roll and the keys.
     void fit();
     /// By a factor, about that time.
     void zoom(double factor, double about);
+    /// By seconds.
+    void pan(double by);
 
     const std::vector<KeyPlace>& selection() const { return selection_; }
     bool isSelected(const KeyPlace& key) const;
+    /// The last of them is the one whose values are shown.
     void select(std::vector<KeyPlace> keys);
+    void selectAll();
     /// The row that keys of the keyboard and the curves are about; empty where there are no rows.
     std::optional<KeyTrack> current() const;
     void setCurrent(const KeyTrack& track);
+    /// The one that is so many rows below.
+    void moveRow(int by);
 
     /// Shows another time line until drop() makes it a step of that name, or cancelDrag() forgets it.
     void drag(TimeLine to, std::vector<KeyPlace> selection);
@@ -56,25 +60,31 @@ class TimeLineView : public QObject {
     void copySelectedHere();
     void moveSelected(std::int64_t frames);
     void interpolateSelected(KeyInterpolation interpolation);
+    /// Where there is none, with the value that the row has there; a clip cannot be. It is selected.
+    void insertKey(const KeyTrack& track, float time);
     /// The play head to the next key of the current row, or with -1 to the one before, which is selected.
     void goToKey(int direction);
 
-    /// A line where the play head is.
-    void paintPlayHead(QPainter& painter, const QRect& area) const;
-
   Q_SIGNALS:
     void changed();
+    /// What is being dragged is no longer there.
+    void interrupted();
     /// Someone wants to type the value of the selected key.
     void editRequested();
 
   private:
     void prune();
+    void setSelection(std::vector<KeyPlace> keys);
+    /// Where the play head is moved to is seen.
+    void reveal(double time);
 
     Keying& keying_;
-    double first_ = 0, last_ = 4;  ///< seconds that are shown
-    TimeLine fitted_;              ///< that fit() has seen
+    const Preferences& preferences_;
+    double first_ = 0, last_ = 4;
+    TimeLine fitted_;  ///< its range is the one that fit() has seen
     std::optional<TimeLine> dragged_;
     std::vector<KeyPlace> selection_, selectionBefore_;
+    std::set<KeyPlace> selected_;  ///< the same
     KeyTrack current_;
 };
 

@@ -2,13 +2,11 @@
 #pragma once
 // The rows of the time line: a diamond for each key, a bar for each clip.
 
-#include <QWidget>
-
-#include "editor/panels/time_line_view.h"
+#include "editor/panels/time_line_widget.h"
 
 namespace hairloom::editor {
 
-class TrackRows : public QWidget {
+class TrackRows : public TimeLineWidget {
     Q_OBJECT
 
   public:
@@ -21,14 +19,13 @@ class TrackRows : public QWidget {
 
   protected:
     void paintEvent(QPaintEvent* event) override;
-    void mousePressEvent(QMouseEvent* event) override;
-    void mouseMoveEvent(QMouseEvent* event) override;
-    void mouseReleaseEvent(QMouseEvent* event) override;
+    void press(QMouseEvent& event) override;
+    void dragged(QMouseEvent& event) override;
+    void release(QMouseEvent& event) override;
+    void hover(QMouseEvent& event) override;
+    void letGo() override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
     void contextMenuEvent(QContextMenuEvent* event) override;
-    void wheelEvent(QWheelEvent* event) override;
-    void keyPressEvent(QKeyEvent* event) override;
-    bool event(QEvent* event) override;
 
   private:
     enum class Part { body, leftEdge, rightEdge };
@@ -42,14 +39,14 @@ class TrackRows : public QWidget {
     void choose(const KeyPlace& key, Qt::KeyboardModifiers modifiers);
     void dragTo(const QPointF& place);
     void selectInBand();
-    void moveRow(int by);
     void refit();
+    void paintRow(QPainter& painter, const KeyTrack& track, const QRectF& area) const;
+    void paintClip(QPainter& painter, std::size_t clip, double top) const;
 
-    TimeLineView& view_;
     std::optional<Hit> held_;
     std::vector<KeyPlace> heldKeys_;  ///< selected when the drag began
-    QPointF from_;
-    std::optional<QRectF> band_;  ///< drawn about keys to select
+    std::optional<QPointF> from_;     ///< where the button went down
+    std::optional<QRectF> band_;      ///< drawn about keys to select
 };
 
 }  // namespace hairloom::editor

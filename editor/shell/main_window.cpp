@@ -253,8 +253,9 @@ void MainWindow::showPage() {
     for (QAction* tool : toolGroup_->actions()) tool->setEnabled(!empty);
     for (const char* id :
          {"file.save", "file.saveAs", "file.saveIncremental", "file.revert", "file.saveScript", "file.import",
-          "file.export", "file.render", "timeLine.open", "timeLine.save", "timeLine.clear", "play.toggle",
-          "play.step", "play.stepBack", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
+          "file.export", "file.render", "timeLine.open", "timeLine.save", "timeLine.saveMotion",
+          "timeLine.clear", "play.toggle", "play.step", "play.stepBack", "play.reset", "view.frame",
+          "view.turntable", "view.orthographic"}) {
         actions_->get(id).setEnabled(!empty);
     }
 }

@@ -58,6 +58,8 @@ class MainWindow : public QMainWindow {
     /// the status line, where it cannot be read or cannot play on this head.
     bool openTimeLine(const QString& path);
     bool saveTimeLine(const QString& path);
+    /// Keys of head and wind alone.
+    bool saveMotion(const QString& path);
     /// The overlays that are chosen, and those that come with the tool in hand.
     void drawOverlays(Marks& marks) const;
     /// What to do about unsaved changes: answers without asking, for tests and scripts.

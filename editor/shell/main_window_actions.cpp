@@ -293,7 +293,7 @@ void MainWindow::addPlayActions() {
                           [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
     add({"play.step", QString("&Step"), "step",
          QString("Advance the simulation by one frame, or the play head if it was moved"), QKeySequence(".")},
-        [this] { player_.isScrubbed() ? player_.scrubFrames(1) : player_.step(); });
+        [this] { player_.stepForward(); });
     add({"play.stepBack", QString("Step &back"), "step-back", QString("Move the play head back by one frame"),
          QKeySequence(",")},
         [this] { player_.scrubFrames(-1); });

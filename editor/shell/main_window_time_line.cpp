@@ -73,6 +73,18 @@ bool MainWindow::saveTimeLine(const QString& path) {
     return true;
 }
 
+bool MainWindow::saveMotion(const QString& path) {
+    const TimeLine& line = timeLineOf(document_.groom());
+    if (auto written = saveMotionKeys(path.toStdString(), line); !written) {
+        messages_.warn(errorText(written.error()));
+        return false;
+    }
+    const bool isAll = line.clips.empty() && line.settings.empty();
+    messages_.say(
+        QString(isAll ? "%1 saved" : "%1 saved, without clips and settings").arg(QFileInfo(path).fileName()));
+    return true;
+}
+
 void MainWindow::addTimeLineActions(QMenu& menu) {
     const auto add = [&](const char* id, const QString& text, const QString& tip, std::function<void()> run) {
         menu.addAction(&actions_->add({id, text, "", tip, {}}, std::move(run)));
@@ -88,6 +100,13 @@ void MainWindow::addTimeLineActions(QMenu& menu) {
             const QString name = QFileInfo(document_.title()).completeBaseName() + "-timeline.json";
             const QString path = QFileDialog::getSaveFileName(this, "Save time line", name, kFilter);
             if (!path.isEmpty()) saveTimeLine(path);
+        });
+    add("timeLine.saveMotion", "Save &keyframe file…", "Keys of head and wind as a motion for hairloom-cli",
+        [this] {
+            const QString name = QFileInfo(document_.title()).completeBaseName() + "-motion.json";
+            const QString path =
+                QFileDialog::getSaveFileName(this, "Save keyframe file", name, "Keyframe files (*.json)");
+            if (!path.isEmpty()) saveMotion(path);
         });
     add("timeLine.clear", "&Clear time line", "Remove all clips and keys from the time line",
         [this] { setTimeLine({}, "Clear time line"); });

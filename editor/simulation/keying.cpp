@@ -25,11 +25,35 @@ Eigen::Isometry3d headAt(const TimeLine& line, float time, const Groom& groom) {
     return Eigen::Translation3d(pose.origin_ws) * pose.head_ws.cast<double>();
 }
 
-Vec3f windAt(const TimeLine& line, float time, const runtime::SimulationSettings& settings) {
-    if (line.wind.empty()) {
-        const Vec3f direction(settings.windDirection.x, settings.windDirection.y, settings.windDirection.z);
-        return direction.norm() > 0 ? Vec3f(direction.normalized() * settings.windSpeed) : Vec3f::Zero();
-    }
+HeadKey keyOf(const Eigen::Isometry3d& head, float time) {
+    const Eigen::AngleAxisd turn(head.linear());
+    HeadKey key;
+    key.time = time;
+    key.translation = head.translation();
+    key.axis = turn.axis().cast<float>();
+    key.degrees = degrees(static_cast<float>(turn.angle()));
+    return key;
+}
+
+/// With all the turns of keys about one axis.
+HeadKey headKeyAt(const TimeLine& line, float time, const Groom& groom) {
+    HeadKey key = keyOf(headAt(line, time, groom), time);
+    const auto [from, share] = betweenKeys(line.head, time);
+    const HeadKey& before = line.head[from];
+    const HeadKey& after = share > 0 ? line.head[from + 1] : before;
+    if (before.axis.normalized() != after.axis.normalized()) return key;
+    key.axis = before.axis;
+    key.degrees = before.degrees + share * (after.degrees - before.degrees);
+    return key;
+}
+
+Vec3f meanWind(const runtime::SimulationSettings& settings) {
+    const Vec3f direction(settings.windDirection.x, settings.windDirection.y, settings.windDirection.z);
+    return direction.norm() > 0 ? Vec3f(direction.normalized() * settings.windSpeed) : Vec3f::Zero();
+}
+
+/// Of its keys, which are there.
+Vec3f windAt(const TimeLine& line, float time) {
     const auto [w, share] = betweenKeys(line.wind, time);
     const Vec3f& from = line.wind[w].velocity;
     return share > 0 ? Vec3f(from + (line.wind[w + 1].velocity - from) * share) : from;
@@ -55,9 +79,14 @@ QString labelOf(const KeyTrack& track) {
 Keying::Keying(QtDocument& document, Player& player, Messages& messages, QObject* parent)
     : QObject(parent), document_(document), player_(player), messages_(messages) {
     connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
-        if (contains(parts, editing::Part::TimeLine)) Q_EMIT changed();
+        if (!contains(parts, editing::Part::TimeLine)) return;
+        Q_EMIT lineChanged();
+        Q_EMIT changed();
     });
-    connect(&document_, &QtDocument::replaced, this, &Keying::changed);
+    connect(&document_, &QtDocument::replaced, this, [this] {
+        Q_EMIT replaced();
+        Q_EMIT changed();
+    });
     connect(&player_, &Player::playHeadMoved, this, &Keying::changed);
     connect(&player_, &Player::stateChanged, this, &Keying::changed);
 }
@@ -93,25 +122,20 @@ void Keying::removeSetting(const std::string& name) {
 }
 
 void Keying::keyHead() {
-    const float time = player_.lineTime();
-    const Eigen::Isometry3d head =
-        player_.headOffset().cast<double>() * headAt(line(), time, document_.groom());
-    const Eigen::AngleAxisd turn(head.linear());
-    HeadKey key;
-    key.time = time;
-    key.translation = head.translation();
-    key.axis = turn.axis().cast<float>();
-    key.degrees = degrees(static_cast<float>(turn.angle()));
     TimeLine to = line();
-    hairloom::keyHead(to, key);
+    const float time = player_.lineTime();
+    const Eigen::Isometry3d byHand = player_.headOffset().cast<double>();
+    if (byHand.isApprox(Eigen::Isometry3d::Identity()) && !to.head.empty())
+        hairloom::keyHead(to, headKeyAt(line(), time, document_.groom()));
+    else
+        hairloom::keyHead(to, keyOf(byHand * headAt(line(), time, document_.groom()), time));
     // What the hand did is in the key now.
     if (change(std::move(to), "Key head")) player_.setHeadOffset(Eigen::Isometry3f::Identity());
 }
 
 void Keying::keyWind() {
     TimeLine to = line();
-    const float time = player_.lineTime();
-    hairloom::keyWind(to, time, windAt(line(), time, document_.groom().simulation));
+    hairloom::keyWind(to, player_.lineTime(), meanWind(document_.groom().simulation));
     change(std::move(to), "Key wind");
 }
 
@@ -122,6 +146,27 @@ void Keying::addClip(const QString& clip) {
     strip.start = player_.lineTime();
     hairloom::addClip(to, std::move(strip));
     change(std::move(to), "Add clip");
+}
+
+void Keying::insertKey(const KeyTrack& track, float time) {
+    TimeLine to = line();
+    if (findKey(to, track, time)) return;
+    switch (track.of) {
+        case Of::clips:
+            return;
+        case Of::head:
+            hairloom::keyHead(to, headKeyAt(line(), time, document_.groom()));
+            break;
+        case Of::wind:
+            hairloom::keyWind(to, time, windAt(line(), time));
+            break;
+        case Of::setting:
+            for (const SettingTrack& keyed : line().settings) {
+                if (keyed.name == track.name)
+                    hairloom::keySetting(to, track.name, time, valueAt(keyed, time));
+            }
+    }
+    change(std::move(to), "Insert key");
 }
 
 bool Keying::hasKeyHere(const KeyTrack& track) const {

@@ -33,10 +33,13 @@ class Keying : public QObject {
     void removeSetting(const std::string& name);
     /// As it is shown, and moved by hand.
     void keyHead();
-    /// The velocity of the keys that are there, else that of the settings' mean wind.
+    /// The settings' mean wind, as the wind tool sets it.
     void keyWind();
     /// A clip of the character, from the play head on.
     void addClip(const QString& clip);
+
+    /// With the value that the track has at that time. Nothing for clips, and where a key is.
+    void insertKey(const KeyTrack& track, float time);
 
     /// A key is within half a frame of the play head.
     bool hasKeyHere(const KeyTrack& track) const;
@@ -46,6 +49,10 @@ class Keying : public QObject {
   Q_SIGNALS:
     /// The time line or the play head is another.
     void changed();
+    /// The time line is, and before changed().
+    void lineChanged();
+    /// Another document has come, with its time line.
+    void replaced();
 
   private:
     QtDocument& document_;

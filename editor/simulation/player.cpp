@@ -33,7 +33,7 @@ Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::sha
 
 Player::Player(QtDocument& document, QObject* parent)
     : QObject(parent), document_(document), requests_(std::make_unique<WorkerRequests>()) {
-    forgetPlayed();
+    clearCache();
     connect(&document_, &QtDocument::changed, this, &Player::documentChanged);
     connect(&document_, &QtDocument::replaced, this, [this] {
         actor_.reset();
@@ -74,28 +74,30 @@ void Player::play() {
     // From the end it plays again.
     if (motion_ == kTimeLine && !line.loop && frame_ && time() >= static_cast<double>(line.end - line.start))
         reset();
+    if (!capture()) return;
     endScrub();
-    capture();
     playing_ = true;
     request([](WorkerRequests& requests) { requests.playing = true; });
     Q_EMIT stateChanged();
 }
 
-void Player::capture() {
-    if (captured_) return;
+bool Player::capture() {
+    if (captured_) return true;
+    auto made = makeMotion(motion_);
+    if (!made) {
+        Q_EMIT failed(errorText(made.error()));
+        return false;
+    }
     captured_ = true;
     auto groom = std::make_shared<const Groom>(document_.groom());
     capturedOffsets_.assign(groom->offsets.view().begin(), groom->offsets.view().end());
-    auto made = makeMotion(motion_);
-    std::shared_ptr<HeadMotion> motion;
-    if (made) motion = std::move(*made);
-    if (!made) Q_EMIT failed(errorText(made.error()));
-    request([&](WorkerRequests& requests) {
+    request([&, motion = std::shared_ptr<HeadMotion>(std::move(*made))](WorkerRequests& requests) {
         requests.groom = std::move(groom);
-        requests.motion = std::move(motion);
+        requests.motion = motion;
         requests.from = from_;
         setPace(requests);
     });
+    return true;
 }
 
 FramePace Player::pace() const {
@@ -112,15 +114,12 @@ void Player::setPace(WorkerRequests& requests) const {
 
 void Player::takeTimeLine() {
     const bool had = std::exchange(hasTimeLine_, !timeLineOf(document_.groom()).isEmpty());
-    // What is keyed first plays at once; another motion that somebody chose stays.
+    // What is keyed first plays at once, or says why it cannot; another motion that somebody chose stays.
     if (!had && hasTimeLine_ && motion_ != kTimeLine) {
-        if (auto set = setMotion(kTimeLine); !set) Q_EMIT failed(errorText(set.error()));
-        return;
+        if (auto made = makeMotion(kTimeLine); !made) Q_EMIT failed(errorText(made.error()));
+        return begin(kTimeLine);
     }
-    if (had && !hasTimeLine_ && motion_ == kTimeLine) {
-        if (auto set = setMotion("none"); !set) Q_EMIT failed(errorText(set.error()));
-        return;
-    }
+    if (had && !hasTimeLine_ && motion_ == kTimeLine) return begin("none");
     if (motion_ != kTimeLine || !captured_) return;
     auto made = makeMotion(motion_);
     if (!made) {
@@ -142,8 +141,8 @@ void Player::pause() {
 void Player::step() {
     if (playing_) pause();
     if (document_.groom().strandCount() == 0) return;
+    if (!capture()) return;
     endScrub();
-    capture();
     request([](WorkerRequests& requests) { ++requests.steps; });
 }
 
@@ -155,7 +154,7 @@ void Player::reset() {
     offset_.setIdentity();
     ++epoch_;
     captured_ = false;
-    forgetPlayed();
+    clearCache();
     request([&](WorkerRequests& requests) {
         requests.playing = false;
         requests.steps = 0;
@@ -193,15 +192,19 @@ Result<std::unique_ptr<HeadMotion>> Player::makeMeasuredMotion() const {
 Status Player::setMotion(const QString& name) {
     const auto made = makeMotion(name);
     if (!made) return tl::unexpected(made.error());
+    begin(name);
+    return {};
+}
+
+void Player::begin(const QString& motion) {
     const bool play = playing_;
     const auto scrubbed = scrubbed_;
-    motion_ = name;
+    motion_ = motion;
     reset();
     if (play) this->play();
     // Whoever keys the first of all is at the frame that it is for.
     if (scrubbed) scrub(scrubbed->time);
     Q_EMIT motionsChanged();
-    return {};
 }
 
 QStringList Player::motions() const {
@@ -221,7 +224,7 @@ void Player::setActor(std::shared_ptr<const Actor> actor) {
 void Player::setLeftOut(const QStringList& effects) {
     const bool sameBody = leavesBodyOut(leftOut_) == leavesBodyOut(effects);
     leftOut_ = effects;
-    forgetPlayed();
+    clearCache();
     request([&](WorkerRequests& requests) {
         requests.leftOut = effects;
         requests.regroomed = requests.regroomed || !sameBody || isMadeWithSettings(method_);
@@ -279,7 +282,7 @@ void Player::setEngine(EngineWish wish) {
 void Player::setMethod(const PlayedMethod& method) {
     if (method == method_) return;
     method_ = method;
-    forgetPlayed();
+    clearCache();
     request([&](WorkerRequests& requests) {
         requests.method = method;
         requests.regroomed = true;
@@ -307,13 +310,13 @@ void Player::documentChanged(editing::Part parts) {
         outdatePlanPreview();
     if (contains(parts, editing::kHairParts | editing::kScalpParts)) {
         if (!captured_) {
-            forgetPlayed();
+            clearCache();
             return endScrub();
         }
         endScrub();
         const bool sameStrands = std::ranges::equal(groom.offsets.view(), capturedOffsets_);
         if (playing_ && sameStrands && !contains(parts, editing::kScalpParts)) {
-            forgetPlayed();
+            clearCache();
             request([&](WorkerRequests& requests) {
                 requests.groom = std::make_shared<const Groom>(groom);
                 requests.regroomed = true;
@@ -326,7 +329,7 @@ void Player::documentChanged(editing::Part parts) {
         return;
     }
     if (contains(parts, editing::Part::TimeLine | editing::Part::Physics | editing::Part::Spheres)) {
-        forgetPlayed();
+        clearCache();
         if (contains(parts, editing::Part::TimeLine)) takeTimeLine();
         if (scrubbed_) scrub(scrubbed_->time);
     }

@@ -16,7 +16,7 @@
 #include "core/simulation/simulation.h"
 #include "core/simulation/time_line_motion.h"
 #include "editor/document/qt_document.h"
-#include "editor/simulation/played_frames.h"
+#include "editor/simulation/frame_cache.h"
 #include "editor/simulation/played_method.h"
 #include "editor/simulation/take_recorder.h"
 #include "editor/viewport/picture_request.h"
@@ -70,10 +70,13 @@ class Player : public QObject {
         played,     ///< one that has played before
         posed,      ///< hair at rest on the head of that time
     };
-    /// Pauses. Shows the frame that has played there, else hair at rest on the head of that time.
+    /// Pauses. Shows the frame that was simulated or has played there, else hair at rest on the head of that
+    /// time.
     void scrub(float lineTime);
     /// By frames of the time line, from where the play head is.
     void scrubFrames(std::int64_t frames);
+    /// The play head by one frame where it is moved away from the last frame, else step().
+    void stepForward();
     bool isScrubbed() const { return scrubbed_.has_value(); }
     /// Seconds on the time line of what is shown.
     float lineTime() const;
@@ -82,7 +85,7 @@ class Player : public QObject {
     /// For the view; null: at rest.
     const std::shared_ptr<const HairPose>& pose() const;
     /// Frames that scrub() shows as they played.
-    const PlayedFrames& playedFrames() const { return *played_; }
+    const FrameCache& frameCache() const { return *cache_; }
 
     /// Of setMotion(): what the document's time line says.
     static constexpr QLatin1String kTimeLine{"timeline"};
@@ -156,9 +159,12 @@ class Player : public QObject {
     void refuse(const Error& error);
     /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are
     /// held.
-    void capture();
+    /// Errors, which are told: its motion cannot play.
+    bool capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(editing::Part parts);
+    /// That motion from its start, and goes on playing.
+    void begin(const QString& motion);
     /// The time line is another: its motion goes on from where it is.
     void takeTimeLine();
     void setPace(WorkerRequests& requests) const;
@@ -171,8 +177,11 @@ class Player : public QObject {
     void request(const std::function<void(WorkerRequests&)>& change);
     std::shared_ptr<const HairPose> posedAt(float lineTime);
     void endScrub();
+    float lineTimeOf(double seconds) const;
+    /// The last frame was simulated for that time.
+    bool isAtLastFrame(float lineTime) const;
     /// What has played is of another groom or motion.
-    void forgetPlayed();
+    void clearCache();
 
     QtDocument& document_;
     std::shared_ptr<const Actor> actor_;
@@ -184,11 +193,11 @@ class Player : public QObject {
     std::shared_ptr<const PlayedFrame> frame_;
     struct Scrubbed {
         float time;
-        bool played;
+        Shown shown;
         std::shared_ptr<const HairPose> pose;
     };
     std::optional<Scrubbed> scrubbed_;
-    std::shared_ptr<PlayedFrames> played_;
+    std::shared_ptr<FrameCache> cache_;
     Eigen::Isometry3f offset_ = Eigen::Isometry3f::Identity();  ///< by the hand of a person
     std::optional<EngineChoice> engine_;
     PlayedMethod method_;

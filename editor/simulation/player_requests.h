@@ -36,7 +36,7 @@ struct Player::WorkerRequests {
     Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
     QStringList leftOut;
     std::shared_ptr<TakeRecorder> recorder;
-    std::shared_ptr<PlayedFrames> played;
+    std::shared_ptr<FrameCache> cache;
     std::shared_ptr<const Groom> planPreview;  ///< whose plan is asked for
     quint64 epoch = 0;
     std::shared_ptr<const PlayedFrame> delivered;  ///< waits for the interface

@@ -11,11 +11,14 @@
 
 namespace hairloom::editor {
 
-float Player::lineTime() const {
+float Player::lineTimeOf(double seconds) const {
     const TimeLine& line = timeLineOf(document_.groom());
-    if (scrubbed_) return scrubbed_->time;
-    const auto seconds = static_cast<float>(time());
-    return motion_ == kTimeLine ? line.timeAt(seconds) : line.start + seconds;
+    const auto behind = static_cast<float>(seconds);
+    return motion_ == kTimeLine ? line.timeAt(behind) : line.start + behind;
+}
+
+float Player::lineTime() const {
+    return scrubbed_ ? scrubbed_->time : lineTimeOf(time());
 }
 
 std::int64_t Player::lineFrame() const {
@@ -24,7 +27,7 @@ std::int64_t Player::lineFrame() const {
 }
 
 Player::Shown Player::shown() const {
-    if (scrubbed_) return scrubbed_->played ? Shown::played : Shown::posed;
+    if (scrubbed_) return scrubbed_->shown;
     return frame_ ? Shown::simulated : Shown::rest;
 }
 
@@ -34,13 +37,22 @@ const std::shared_ptr<const HairPose>& Player::pose() const {
     return frame_ ? frame_->pose : none;
 }
 
+bool Player::isAtLastFrame(float lineTime) const {
+    if (!frame_) return false;
+    return cache_->frameAt(lineTime) == cache_->frameAt(lineTimeOf(frame_->time));
+}
+
 void Player::scrub(float lineTime) {
     if (playing_) pause();
     const float time = std::clamp(lineTime, 0.0f, kLatestKey);
-    Scrubbed now{time, false, nullptr};
+    Scrubbed now{time, Shown::posed, nullptr};
+    // Whoever moved the head by hand is about to key it.
     const bool byHand = !offset_.isApprox(Eigen::Isometry3f::Identity());
-    if (auto played = byHand ? nullptr : played_->at(played_->frameAt(time))) {
-        now.played = true;
+    if (!byHand && isAtLastFrame(time)) {
+        now.shown = Shown::simulated;
+        now.pose = frame_->pose;
+    } else if (auto played = byHand ? nullptr : cache_->at(cache_->frameAt(time))) {
+        now.shown = Shown::played;
         now.pose = std::move(played);
     } else {
         now.pose = posedAt(time);
@@ -48,6 +60,10 @@ void Player::scrub(float lineTime) {
     scrubbed_ = std::move(now);
     Q_EMIT frameReady();
     Q_EMIT playHeadMoved();
+}
+
+void Player::stepForward() {
+    scrubbed_ && scrubbed_->shown != Shown::simulated ? scrubFrames(1) : step();
 }
 
 std::shared_ptr<const HairPose> Player::posedAt(float lineTime) {
@@ -77,14 +93,14 @@ void Player::endScrub() {
     Q_EMIT playHeadMoved();
 }
 
-void Player::forgetPlayed() {
+void Player::clearCache() {
     TimeLine line = timeLineOf(document_.groom());
     if (motion_ != kTimeLine) {
         line.framesPerSecond = FramePace().framesPerSecond;
         line.loop = false;
     }
-    played_ = std::make_shared<PlayedFrames>(line);
-    request([&](WorkerRequests& requests) { requests.played = played_; });
+    cache_ = std::make_shared<FrameCache>(line);
+    request([&](WorkerRequests& requests) { requests.cache = cache_; });
 }
 
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {

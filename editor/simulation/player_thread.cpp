@@ -210,8 +210,8 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         frame->before = last;
     }
     if (taken.recorder && stepped && !pose->onDevice) taken.recorder->add(pose->positions_ws, pose->head);
-    if (taken.played && stepped && !pose->onDevice && taken.offset.isApprox(Eigen::Isometry3f::Identity()))
-        taken.played->add(playing.time(), pose);
+    if (taken.cache && stepped && !pose->onDevice && taken.offset.isApprox(Eigen::Isometry3f::Identity()))
+        taken.cache->add(playing.time(), pose);
     frame->pose = std::move(pose);
     frame->time = playing.time();
     const double clock =

@@ -229,6 +229,7 @@ void Viewport::setTool(Tool* tool) {
 void Viewport::setPose(std::shared_ptr<const HairPose> pose) {
     pose_ = std::move(pose);
     redraw(pose_ != nullptr);
+    Q_EMIT poseChanged();
 }
 void Viewport::setHairShown(bool on) {
     showHair_ = on;

@@ -122,6 +122,7 @@ class Viewport : public QWidget {
     void deviceReady(const QString& name, const QString& note);
     void drawn(const hairloom::editor::PictureReport& report);
     void failed(const QString& problem);
+    void poseChanged();
     /// Quality or comparison.
     void lookChanged();
     void lightTurned(float degrees);

@@ -311,7 +311,8 @@ TEST_F(Outputs, NumbersInListsAreWrongUsageWhereTheyAreNone) {
 
 TEST_F(Outputs, OptionsThatDoNotGoWithTheOthersAreWrongUsage) {
     const std::pair<const char*, const char*> wrong[] = {
-        {"simulate g.hairloom --frames 2 --motion hop", "there is no motion 'hop'; expected none, spin, nod"},
+        {"simulate g.hairloom --frames 2 --motion hop",
+         "there is no motion 'hop'; expected none, spin, nod, clip:NAME, timeline or a keyframe file"},
         {"simulate g.hairloom --sag --frames 9", "exclude each other"},
         {"simulate g.hairloom --pre-roll 9 --sag", "exclude each other"},
         {"simulate g.hairloom --sag --take -o f.hairloom", "exclude each other"},

@@ -9,6 +9,7 @@
 #include <QMenu>
 #include <QScrollArea>
 #include <QToolButton>
+#include <ctime>
 
 #include "core/animation/actor.h"
 #include "core/groom/time_line_keys.h"
@@ -192,7 +193,7 @@ TEST_F(TimeLinePanelTest, ScrubbingShowsWhatPlayedElseThePosedHead) {
     ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, 120'000));
     const auto last = player().frame();
     ASSERT_TRUE(last);
-    EXPECT_EQ(player().playedFrames().runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{1, 9}}));
+    EXPECT_EQ(player().frameCache().runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{1, 9}}));
     std::vector<Vec3f> before;
     for (int frame = 8; frame > 0; --frame) {
         trigger("play.stepBack");
@@ -203,14 +204,59 @@ TEST_F(TimeLinePanelTest, ScrubbingShowsWhatPlayedElseThePosedHead) {
     }
     QTest::keyClick(find<TimeRuler>("timeRuler"), Qt::Key_End);
     EXPECT_EQ(player().pose(), last->pose) << "forward again, the very frame";
+    EXPECT_EQ(player().shown(), Player::Shown::simulated);
     // What played is of other settings once one changes.
+    player().scrub(0.2f);
+    EXPECT_EQ(player().shown(), Player::Shown::played);
     Groom heavier = groom();
     heavier.simulation.gravity = {0, -3, 0};
     change("Gravity", heavier);
     EXPECT_EQ(player().shown(), Player::Shown::posed);
-    EXPECT_TRUE(player().playedFrames().runs().empty());
+    EXPECT_TRUE(player().frameCache().runs().empty());
     trigger("play.reset");
     EXPECT_EQ(player().shown(), Player::Shown::rest);
+    // Forward from the last frame that was simulated simulates, elsewhere it moves the play head.
+    const auto forward = [&](double seconds) {
+        trigger("play.step");
+        return QTest::qWaitFor([&] { return player().frame() && player().frame()->time > seconds; }, 120'000);
+    };
+    ASSERT_TRUE(forward(0.02));
+    ASSERT_TRUE(forward(0.05));
+    trigger("play.stepBack");
+    EXPECT_EQ(player().shown(), Player::Shown::played);
+    trigger("play.step");
+    EXPECT_EQ(player().lineFrame(), 2);
+    EXPECT_EQ(player().shown(), Player::Shown::simulated);
+    ASSERT_TRUE(forward(0.09));
+    EXPECT_EQ(player().lineFrame(), 3);
+    player().scrub(0.3f);
+    trigger("play.step");
+    EXPECT_EQ(player().lineFrame(), 10);
+    EXPECT_EQ(player().shown(), Player::Shown::posed);
+}
+
+TEST_F(TimeLinePanelTest, TheCacheLetsTheFirstFramesGo) {
+    TimeLine line;
+    line.framesPerSecond = 10;
+    line.loop = false;
+    const auto frame = [] {
+        auto pose = std::make_shared<HairPose>();
+        pose->positions_ws.resize(100);
+        return pose;
+    };
+    FrameCache cache(line, 10 * 100 * sizeof(Vec3f));
+    for (int f = 1; f <= 25; ++f) cache.add(f / 10.0, frame());
+    EXPECT_EQ(cache.runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{16, 25}}));
+    const auto again = frame();
+    cache.add(2, again);
+    EXPECT_EQ(cache.at(20), again) << "in place of what was there";
+    for (int f = 1; f <= 9; ++f) cache.add(f / 10.0, frame());
+    EXPECT_EQ(cache.runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{1, 9}, {20, 20}}))
+        << "the oldest, wherever they are";
+    auto large = frame();
+    large->positions_ws.resize(10'000);
+    cache.add(1, large);
+    EXPECT_TRUE(cache.runs().empty());
 }
 
 TEST_F(TimeLinePanelTest, TheHeadIsKeyedAsTheHandHasMovedIt) {
@@ -235,6 +281,23 @@ TEST_F(TimeLinePanelTest, TheHeadIsKeyedAsTheHandHasMovedIt) {
     trigger("edit.undo");
     trigger("edit.undo");
     EXPECT_TRUE(line().isEmpty());
+}
+
+TEST_F(TimeLinePanelTest, TheWindIsKeyedAsItIsSet) {
+    for (const float speed : {4.0f, 10.0f}) {
+        Groom windy = groom();
+        windy.simulation.windDirection = {0, 0, 2};
+        windy.simulation.windSpeed = speed;
+        change("Wind", windy);
+        player().scrub(speed / 10);
+        parts().keying.keyWind();
+    }
+    ASSERT_EQ(line().wind.size(), 2u);
+    EXPECT_EQ(line().wind[0].velocity, Vec3f(0, 0, 4));
+    EXPECT_EQ(line().wind[1].velocity, Vec3f(0, 0, 10)) << "as set, whatever the keys say there";
+    parts().keying.insertKey({KeyTrack::Of::wind, {}}, 0.7f);
+    ASSERT_EQ(line().wind.size(), 3u);
+    EXPECT_NEAR(line().wind[1].velocity.z(), 7, 1e-5) << "as the keys say there";
 }
 
 TEST_F(TimeLinePanelTest, CurvesAreDragged) {
@@ -302,6 +365,100 @@ TEST_F(TimeLinePanelTest, ClipsAreAddedMovedTrimmedAndBlended) {
     find<QDoubleSpinBox>("clipSpeed")->setValue(2);
     EXPECT_EQ(line().clips[1].speed, 2);
     EXPECT_TRUE(problemsOf(line()).empty());
+}
+
+TEST_F(TimeLinePanelTest, ADoubleClickOnARowAddsAKeyThatChangesNothing) {
+    TimeLine line = windy();
+    keyHead(line, {0});
+    HeadKey spun;
+    spun.time = 2;
+    spun.degrees = 720;
+    keyHead(line, spun);
+    set(line);
+    QCoreApplication::processEvents();
+    const QPoint between = (rows().placeOf({kSpeed, 1}) + rows().placeOf({kSpeed, 2})) / 2;
+    const int steps = document().doneSteps();
+    QTest::mouseDClick(&rows(), Qt::LeftButton, {}, between);
+    EXPECT_EQ(document().doneSteps(), steps + 1);
+    ASSERT_EQ(keyTimes(this->line(), kSpeed).size(), 4u);
+    EXPECT_NEAR(numberOf(this->line(), {kSpeed, 2}, 0), 3, 0.1) << "half way from 2 to 4 m/s";
+    const QPoint turning((rows().placeOf({kHead, 0}) + rows().placeOf({kHead, 1})) / 2);
+    QTest::mouseDClick(&rows(), Qt::LeftButton, {}, turning);
+    ASSERT_EQ(this->line().head.size(), 3u);
+    EXPECT_NEAR(this->line().head[1].degrees, 360, 15) << "all of its turns";
+    // A frame is typed as well as dragged.
+    QTest::mouseClick(&rows(), Qt::LeftButton, {}, rows().placeOf({kSpeed, 2}));
+    find<QDoubleSpinBox>("keyFrame")->setValue(40);
+    EXPECT_NEAR(keyTimes(this->line(), kSpeed)[2], 40 / 30.0, 1e-5);
+}
+
+TEST_F(TimeLinePanelTest, UndoingAmidADragEndsIt) {
+    set(windy());
+    QCoreApplication::processEvents();
+    const QPoint second = rows().placeOf({kSpeed, 1});
+    QTest::mousePress(&rows(), Qt::LeftButton, {}, second);
+    const auto moveTo = [&](const QPoint& at) {
+        QMouseEvent move(QEvent::MouseMove, at, rows().mapToGlobal(at), Qt::LeftButton, Qt::LeftButton,
+                         Qt::NoModifier);
+        QCoreApplication::sendEvent(&rows(), &move);
+    };
+    moveTo(second + QPoint(20, 0));
+    trigger("edit.undo");
+    EXPECT_TRUE(line().isEmpty());
+    moveTo(second + QPoint(40, 0));
+    QTest::mouseRelease(&rows(), Qt::LeftButton, {}, second + QPoint(40, 0));
+    EXPECT_TRUE(line().isEmpty());
+    trigger("edit.redo");
+    EXPECT_EQ(line(), windy());
+}
+
+TEST_F(TimeLinePanelTest, AClipThatIsGoneIsToldAndKept) {
+    openSampleHair("short");
+    TimeLine line = windy();
+    line.clips = {{"somersault"}};
+    set(line);
+    EXPECT_TRUE(window->statusLine().message().contains("somersault"))
+        << window->statusLine().message().toStdString();
+    trigger("play.toggle");
+    EXPECT_FALSE(player().isPlaying());
+    ASSERT_TRUE(window->saveTo(inFolder("gone.hairloom")));
+    trigger("file.new");
+    finishWork();
+    window->open(inFolder("gone.hairloom"));
+    finishWork();
+    EXPECT_TRUE(window->statusLine().message().contains("somersault"))
+        << window->statusLine().message().toStdString();
+    EXPECT_EQ(this->line(), line) << "nothing is lost";
+    QCoreApplication::processEvents();
+    QTest::mouseClick(&rows(), Qt::LeftButton, {}, rows().placeOf({kClips, 0}) + QPoint(20, 0));
+    EXPECT_EQ(find<QComboBox>("clipName")->currentText(), "somersault");
+    find<QComboBox>("clipName")->setCurrentIndex(0);
+    Q_EMIT find<QComboBox>("clipName")->activated(0);
+    trigger("play.toggle");
+    EXPECT_TRUE(player().isPlaying());
+}
+
+TEST_F(TimeLinePanelTest, TenThousandKeysAreDrawnWithinASecond) {
+    TimeLine line;
+    line.end = 200;
+    for (int k = 0; k < 10'000; ++k) {
+        HeadKey key;
+        key.time = static_cast<float>(k) / 60;
+        key.degrees = static_cast<float>(k % 90);
+        line.head.push_back(key);
+    }
+    set(line);
+    QCoreApplication::processEvents();
+    rows().setFocus();
+    QTest::keyClick(&rows(), Qt::Key_A, Qt::ControlModifier);
+    for (const bool curves : {false, true}) {
+        find<QToolButton>("timeCurves")->setChecked(curves);
+        QCoreApplication::processEvents();
+        QWidget* const shown = curves ? static_cast<QWidget*>(find<KeyCurves>("keyCurves")) : &rows();
+        const std::clock_t before = std::clock();
+        shown->grab();
+        EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC, 1) << curves;
+    }
 }
 
 TEST_F(TimeLinePanelTest, NothingIsClippedWithAKeySelected) {

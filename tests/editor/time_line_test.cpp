@@ -6,6 +6,7 @@
 #include <QComboBox>
 #include <fstream>
 
+#include "core/documents/keyed_motion.h"
 #include "core/groom/file/time_line_json.h"
 #include "core/groom/time_line.h"
 #include "editor/simulation/player.h"
@@ -88,6 +89,13 @@ TEST_F(TimeLineTest, IsSavedAndOpenedAgainAndTakesKeyframeFiles) {
     EXPECT_EQ(now.wind, other.wind);
     EXPECT_NE(now.head, line().head) << "a keyframe file says all of head and wind";
     EXPECT_EQ(now.settings, line().settings) << "and nothing of settings";
+    ASSERT_TRUE(window->saveMotion(inFolder("kept-keys.json")));
+    EXPECT_TRUE(window->statusLine().message().contains("without clips and settings"));
+    const auto kept = loadMotionKeys(inFolder("kept-keys.json").toStdString());
+    ASSERT_TRUE(kept) << kept.error().message();
+    EXPECT_EQ(kept->wind, now.wind);
+    trigger("timeLine.clear");
+    EXPECT_FALSE(window->saveMotion(inFolder("none.json"))) << "there are no keys";
 }
 
 TEST_F(TimeLineTest, WhatCannotPlayIsNotTaken) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An animator's walk: a character with a clip, keyed wind, a take that is recorded, scrubbed backwards and
-// exported, and all of it again after the project is opened anew.
+// exported, the same hair from the command line, and all of it again after the project is opened anew.
 
 #include <gtest/gtest.h>
 
 #include <QComboBox>
 #include <QLineEdit>
 #include <QMenu>
+#include <QProcess>
 #include <QPushButton>
 #include <QSpinBox>
 
@@ -121,6 +122,20 @@ TEST_F(TimeLineWalkTest, KeyRecordScrubBackAndExport) {
     // All of it is in the project.
     const TimeLine authored = line();
     ASSERT_TRUE(window->saveTo(inFolder("walk.hairloom")));
+    // The command line plays the very hair that the window played.
+    QProcess command;
+    command.start(HAIRLOOM_CLI, {"simulate", inFolder("walk.hairloom"), "--motion", "timeline", "--record",
+                                 inFolder("walk.frames")});
+    ASSERT_TRUE(command.waitForFinished(240'000));
+    ASSERT_EQ(command.exitCode(), 0) << command.readAllStandardError().toStdString();
+    for (std::int64_t frame = 1; frame <= 12; ++frame) {
+        const auto played = player().frameCache().at(frame);
+        ASSERT_TRUE(played) << frame;
+        const auto simulated =
+            readFrame(inFolder("walk.frames").toStdString(), groom(), static_cast<std::uint64_t>(frame - 1));
+        ASSERT_TRUE(simulated) << simulated.error().message();
+        EXPECT_EQ(played->positions_ws, simulated->positions_ws) << "bit for bit, frame " << frame;
+    }
     trigger("file.new");
     finishWork();
     window->open(inFolder("walk.hairloom"));

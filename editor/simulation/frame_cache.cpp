@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/simulation/played_frames.h"
+#include "editor/simulation/frame_cache.h"
 
 #include <cmath>
 
@@ -13,38 +13,45 @@ std::size_t bytesOf(const HairPose& pose) {
 
 }  // namespace
 
-PlayedFrames::PlayedFrames(const TimeLine& line) {
+FrameCache::FrameCache(const TimeLine& line, std::size_t mostBytes) : mostBytes_(mostBytes) {
     range_.framesPerSecond = line.framesPerSecond;
     range_.start = line.start;
     range_.end = line.end;
     range_.loop = line.loop;
 }
 
-std::int64_t PlayedFrames::frameAt(float lineTime) const {
+std::int64_t FrameCache::frameAt(float lineTime) const {
     return std::llround(static_cast<double>(lineTime) * static_cast<double>(range_.framesPerSecond));
 }
 
-void PlayedFrames::add(double seconds, std::shared_ptr<const HairPose> pose) {
+void FrameCache::remove(Frames::iterator frame) {
+    bytes_ -= bytesOf(*frame->second.pose);
+    byAge_.erase(frame->second.age);
+    frames_.erase(frame);
+}
+
+void FrameCache::add(double seconds, std::shared_ptr<const HairPose> pose) {
     const std::int64_t frame = frameAt(range_.timeAt(static_cast<float>(seconds)));
     const std::size_t more = bytesOf(*pose);
     const std::lock_guard lock(mutex_);
-    const auto there = frames_.find(frame);
-    const std::size_t less = there == frames_.end() ? 0 : bytesOf(*there->second);
-    if (bytes_ - less + more > kMostBytes) return;
-    bytes_ += more - less;
-    frames_[frame] = std::move(pose);
+    if (const auto there = frames_.find(frame); there != frames_.end()) remove(there);
+    while (bytes_ + more > mostBytes_ && !frames_.empty()) remove(frames_.find(byAge_.begin()->second));
+    if (more > mostBytes_) return;
+    bytes_ += more;
+    frames_[frame] = {std::move(pose), ++added_};
+    byAge_[added_] = frame;
 }
 
-std::shared_ptr<const HairPose> PlayedFrames::at(std::int64_t frame) const {
+std::shared_ptr<const HairPose> FrameCache::at(std::int64_t frame) const {
     const std::lock_guard lock(mutex_);
     const auto found = frames_.find(frame);
-    return found == frames_.end() ? nullptr : found->second;
+    return found == frames_.end() ? nullptr : found->second.pose;
 }
 
-std::vector<std::pair<std::int64_t, std::int64_t>> PlayedFrames::runs() const {
+std::vector<std::pair<std::int64_t, std::int64_t>> FrameCache::runs() const {
     const std::lock_guard lock(mutex_);
     std::vector<std::pair<std::int64_t, std::int64_t>> runs;
-    for (const auto& [frame, pose] : frames_) {
+    for (const auto& [frame, kept] : frames_) {
         if (!runs.empty() && runs.back().second + 1 == frame)
             runs.back().second = frame;
         else

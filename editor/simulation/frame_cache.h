@@ -14,27 +14,38 @@
 
 namespace hairloom::editor {
 
-class PlayedFrames {
+class FrameCache {
   public:
-    /// Frames beyond so many bytes are not kept.
+    /// Beyond so many bytes the frames that were added first go.
     static constexpr std::size_t kMostBytes = std::size_t{512} << 20u;
 
     /// Frames are counted on `line`, of which the range, the loop and the frame rate matter.
-    explicit PlayedFrames(const TimeLine& line);
+    explicit FrameCache(const TimeLine& line, std::size_t mostBytes = kMostBytes);
 
     /// `seconds` behind the start of the motion; in place of what played there before.
     void add(double seconds, std::shared_ptr<const HairPose> pose);
     /// Null where nothing is kept.
     std::shared_ptr<const HairPose> at(std::int64_t frame) const;
     std::int64_t frameAt(float lineTime) const;
+    float framesPerSecond() const { return range_.framesPerSecond; }
     /// First and last frame of those that follow each other.
     std::vector<std::pair<std::int64_t, std::int64_t>> runs() const;
 
   private:
+    struct Kept {
+        std::shared_ptr<const HairPose> pose;
+        std::uint64_t age = 0;  ///< number of the call that added it
+    };
+    using Frames = std::map<std::int64_t, Kept>;
+    void remove(Frames::iterator frame);
+
     TimeLine range_;
+    std::size_t mostBytes_;
     mutable std::mutex mutex_;
-    std::map<std::int64_t, std::shared_ptr<const HairPose>> frames_;
+    Frames frames_;
+    std::map<std::uint64_t, std::int64_t> byAge_;
     std::size_t bytes_ = 0;
+    std::uint64_t added_ = 0;
 };
 
 }  // namespace hairloom::editor

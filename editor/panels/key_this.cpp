@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/fields/key_this.h"
+#include "editor/panels/key_this.h"
 
 #include <QContextMenuEvent>
+#include <QLineEdit>
 #include <QMenu>
+#include <memory>
 
 #include "editor/fields/number_spin.h"
 
@@ -34,6 +36,15 @@ class KeyMenu : public QObject {
                        [this] { keying_.keySetting(track_.name); });
         QAction* remove = menu.addAction("Remove keys", [this] { keying_.removeSetting(track_.name); });
         remove->setEnabled(keying_.keyCount(track_) > 0);
+        // What a right-click on a number or a text offers elsewhere.
+        auto* edit = qobject_cast<QLineEdit*>(watched);
+        if (!edit) edit = watched->findChild<QLineEdit*>();
+        std::unique_ptr<QMenu> usual;
+        if (edit) {
+            usual.reset(edit->createStandardContextMenu());
+            menu.addSeparator();
+            menu.addActions(usual->actions());
+        }
         menu.exec(at->globalPos());
         return true;
     }
@@ -45,29 +56,33 @@ class KeyMenu : public QObject {
 
 }  // namespace
 
-void offerKeys(Keying& keying, const char* setting, std::initializer_list<QWidget*> places) {
+KeyThis::KeyThis(Keying& keying, QObject* parent) : FieldKeys(parent), keying_(keying) {
+    connect(&keying_, &Keying::changed, this, &FieldKeys::changed);
+}
+
+void KeyThis::offer(const char* setting, std::initializer_list<QWidget*> places) {
     if (findKeyable(trackOf(setting).name) == nullptr) return;
-    for (QWidget* place : places) (new KeyMenu(keying, setting, place))->watch(*place);
+    for (QWidget* place : places) (new KeyMenu(keying_, setting, place))->watch(*place);
 }
 
-QString keyMark(const Keying& keying, const char* setting) {
+QString KeyThis::mark(const char* setting) const {
     const KeyTrack track = trackOf(setting);
-    if (keying.keyCount(track) == 0) return {};
-    return keying.hasKeyHere(track) ? QStringLiteral("◆ ") : QStringLiteral("◇ ");
+    if (keying_.keyCount(track) == 0) return {};
+    return keying_.hasKeyHere(track) ? QStringLiteral("◆ ") : QStringLiteral("◇ ");
 }
 
-QString keyTip(const Keying& keying, const char* setting) {
+QString KeyThis::tip(const char* setting) const {
     const std::string name = trackOf(setting).name;
-    for (const SettingTrack& track : keying.line().settings) {
+    for (const SettingTrack& track : keying_.line().settings) {
         const auto* const field = findKeyable(name);
         if (track.name != name || field == nullptr) continue;
-        const Vec3d value = valueAt(track, keying.player().lineTime());
+        const Vec3d value = valueAt(track, keying_.player().lineTime());
         QStringList numbers;
         for (std::uint32_t c = 0; c < field->components(); ++c)
             numbers.append(numberLocale().toString(value[c], 'g', 4));
         return QString("<p>Keyed: %1 %2 at frame %3. The keys count in playback, not this value</p>")
             .arg(numbers.join(", "), QString::fromUtf8(field->unit).toHtmlEscaped())
-            .arg(keying.player().lineFrame());
+            .arg(keying_.player().lineFrame());
     }
     return {};
 }
