@@ -4,6 +4,7 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QFile>
 #include <QImage>
 #include <QListWidget>
 #include <QPushButton>
@@ -237,11 +238,14 @@ TEST_F(LookTest, AnImageGivesStrandsTheirMelaninAndOneClickTakesItAway) {
     auto* even = find<QPushButton>("evenMelanin");
     const auto isOffered = [&] { return even->isVisibleTo(window->panel("look")->widget()); };
     EXPECT_FALSE(isOffered());
+    QFile broken(inFolder("broken.png"));
+    ASSERT_TRUE(broken.open(QIODevice::WriteOnly) && broken.write("no picture") > 0);
+    broken.close();
     const auto before = hash();
-    onceAskedForAFile(inFolder("no such.png"));
+    onceAskedForAFile(inFolder("broken.png"));
     find<QPushButton>("melaninImage")->click();
     EXPECT_EQ(hash(), before);
-    EXPECT_TRUE(window->statusLine().message().contains("no such.png"))
+    EXPECT_TRUE(window->statusLine().message().contains("broken.png"))
         << window->statusLine().message().toStdString();
     onceAskedForAFile(inFolder("pale.png"));
     find<QPushButton>("melaninImage")->click();
