@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/fields/field.h"
 #include "editor/fields/number_spin.h"
 
 namespace hairloom::editor {
@@ -159,17 +160,20 @@ void KeyCurves::paintNames(QPainter& painter, const std::vector<Curve>& curves) 
         top += line;
     };
     say(track ? labelOf(*track) : QString(), colours().text);
-    const auto number = [](double value) { return numberLocale().toString(value, 'g', 3); };
     for (const Curve& curve : curves) {
-        double low = 0, high = 0;
-        for (std::size_t k = 0; k < curve.points.size(); ++k) {
-            const double value = numberOf(view().line(), {*track, k}, curve.number);
-            low = k == 0 ? value : std::min(low, value);
-            high = k == 0 ? value : std::max(high, value);
+        const KeyNumber& info = curve.info;
+        const Shown shown = shownAs(QString::fromUtf8(info.unit), info.min, info.max, view().lengths());
+        const auto number = [&](std::size_t k) {
+            return numberOf(view().line(), {*track, k}, curve.number) * shown.factor;
+        };
+        double low = number(0), high = low;
+        for (std::size_t k = 1; k < curve.points.size(); ++k) {
+            low = std::min(low, number(k));
+            high = std::max(high, number(k));
         }
-        const QString span = low == high ? number(low) : QString("%1 … %2").arg(number(low), number(high));
-        say(QString("%1  %2 %3").arg(curve.info.label, span, QString::fromUtf8(curve.info.unit)),
-            curve.colour);
+        QString span = numberLocale().toString(low, 'g', 3);
+        if (low != high) span += QString("…%1").arg(numberLocale().toString(high, 'g', 3));
+        say(QString("%1  %2 %3").arg(info.label, span, shown.unit), curve.colour);
     }
 }
 

@@ -22,6 +22,7 @@ class TimeLineView : public QObject {
 
     Keying& keying() const { return keying_; }
     Player& player() const { return keying_.player(); }
+    DisplayUnit lengths() const { return preferences_.unit(); }
     ThemeColours colours() const { return themeColours(preferences_.theme()); }
     /// With what is being dragged.
     const TimeLine& line() const { return dragged_ ? *dragged_ : keying_.line(); }

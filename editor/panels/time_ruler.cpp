@@ -46,10 +46,10 @@ void TimeRuler::paintFrames(QPainter& painter) const {
     painter.setPen(colours().dimText);
     for (double frame = std::ceil(first / step) * step; frame <= last; frame += step) {
         const double x = toX_px(frame / rate);
-        painter.drawLine(QPointF(x, kTick_px), QPointF(x, kTick_px + 6));
         const QString number = QString::number(std::llround(frame));
-        if (x + fontMetrics().horizontalAdvance(number) / 2.0 < width())
-            painter.drawText(QRectF(x - 40, 1, 80, kTick_px - 1), Qt::AlignCenter, number);
+        if (x + fontMetrics().horizontalAdvance(number) / 2.0 > width()) break;
+        painter.drawLine(QPointF(x, kTick_px), QPointF(x, kTick_px + 6));
+        painter.drawText(QRectF(x - 40, 1, 80, kTick_px - 1), Qt::AlignCenter, number);
     }
 }
 

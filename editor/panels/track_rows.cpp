@@ -215,6 +215,7 @@ void TrackRows::paintClip(QPainter& painter, std::size_t clip, double top) const
     painter.drawRoundedRect(bar, 3, 3);
     if (strip.blend > 0) {
         const double blended = static_cast<double>(strip.start + strip.blend);
+        painter.setPen(colours().text);
         painter.drawLine(bar.bottomLeft(), QPointF(toX_px(blended), bar.top()));
     }
     painter.setPen(colours().text);

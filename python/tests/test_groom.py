@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import threading
 import time
 import unittest
@@ -239,6 +240,20 @@ class Motion(InFolder):
         keys = {"keys": [{"t": 0, "translate": [0, 0, 0]}, {"t": 1, "translate": np.array([0.5, 0, 0])}]}
         *_, last = groom.simulate(keys, frames=60)
         self.assertAlmostEqual(float(last.positions[0, 0] - groom.positions[0, 0]), 0.5, places=3)
+
+    def test_the_time_line_says_rate_range_and_pre_roll(self) -> None:
+        self.create()
+        keys = [{"t": 0}, {"t": 0.25, "degrees": 30}]
+        with open("line.json", "w") as file:
+            json.dump({"time_line": {"framesPerSecond": 24, "end": 0.25, "preRoll": 2, "head": keys}}, file)
+        hairloom.timeline("hair.hairloom", from_="line.json", output="moving.hairloom")
+        groom = hairloom.Groom.open("moving.hairloom")
+        simulation = groom.simulate("timeline")
+        self.assertEqual([frame.number for frame in simulation], [1, 2, 3, 4, 5, 6])
+        report = hairloom.simulate("moving.hairloom", motion="timeline")
+        self.assertEqual(simulation.stats()["state_hash"], report.state_hash)
+        slow = list(groom.simulate("timeline", fps=4, frames=1, pre_roll=0))
+        self.assertEqual([frame.time for frame in slow], [0.25])
 
     def test_wrong_motions(self) -> None:
         groom = self.create()
