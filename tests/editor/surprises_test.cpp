@@ -100,6 +100,7 @@ class SurprisesTest : public WindowTest {
     }
     void inEachPanel(const std::function<void(QDockWidget&, const QString&)>& look) {
         for (const PanelInfo& info : panels()) {
+            window->panel(info.id)->show();
             window->panel(info.id)->raise();
             QCoreApplication::processEvents();
             look(*window->panel(info.id), info.id);
