@@ -321,7 +321,7 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
            "Simulation method: the strand engine, projective equations, chains of rigid segments, or a "
            "lattice around the head")
         ->check(CLI::IsMember({"strands", "projective", "chain", "lattice"}));
-    job.add_flag("--hair-hair", options.hairHair, "Turns on simulation.hairHair, hair against hair");
+    job.add_flag("--hair-hair", options.hairHair, "Turns on simulation.hairHair, hair-hair collision");
     std::vector<CLI::Option*> added = job.get_options();
     added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));
     return added;

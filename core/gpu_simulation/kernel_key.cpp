@@ -62,7 +62,7 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
 
 std::string kernelError(const runtime::SimulationSettings& settings) {
     if (settings.hairHair && settings.strandModel == runtime::StrandModel::rods)
-        return "hair against hair runs on the CPU alone. Set hairHair to 0 to use the GPU";
+        return "hair-hair collision runs on the CPU alone. Set hairHair to 0 to use the GPU";
     return gpuModelOf(settings.strandModel).error(settings);
 }
 

@@ -38,7 +38,7 @@ std::vector<Group> groups() {
         {QString("Collision"),
          {"collisionRadiusRoot", "collisionRadiusTip", "friction", "restitution"},
          false},
-        {QString("Hair against hair"),
+        {QString("Hair-hair collision"),
          {"hairHair", "hairHairStrength", "hairHairFriction", "hairHairStickSpeed", "hairHairCohesion",
           "hairHairCell"},
          false},

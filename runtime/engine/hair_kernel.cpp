@@ -17,14 +17,14 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-constexpr std::size_t kCellCorners = 8;
+constexpr std::size_t kNodeCorners = 8;
 constexpr float kNoHairPlace = 1e5f;  // cells
 
 /// Where the points of one row of a block are: the least of their eight nodes, or −1 outside of the grid, and
 /// their weights there.
 struct alignas(64) HairRow {
     std::int32_t node[kBlockLanes];
-    float weights[kCellCorners][kBlockLanes];
+    float weights[kNodeCorners][kBlockLanes];
 };
 
 HWY_INLINE void findRow(const HairBlock& block, const HairFrame& frame, std::size_t row, HairRow& to) {
@@ -51,7 +51,7 @@ HWY_INLINE void findRow(const HairBlock& block, const HairFrame& frame, std::siz
                   to.node + lane);
         const V one = all(1.0f);
         const V x[] = {one - part.x, part.x}, y[] = {one - part.y, part.y}, z[] = {one - part.z, part.z};
-        for (std::size_t corners = 0; corners < kCellCorners; ++corners)
+        for (std::size_t corners = 0; corners < kNodeCorners; ++corners)
             hn::Store(x[corners & 1] * y[corners >> 1 & 1] * z[corners >> 2], D(),
                       to.weights[corners] + lane);
     }
@@ -61,10 +61,10 @@ struct HairCorners {
     explicit HairCorners(const HairBox& box) {
         const auto row = static_cast<std::size_t>(box.size[0]),
                    slice = row * static_cast<std::size_t>(box.size[1]);
-        for (std::size_t corner = 0; corner < kCellCorners; ++corner)
+        for (std::size_t corner = 0; corner < kNodeCorners; ++corner)
             offsets[corner] = (corner & 1) + (corner >> 1 & 1) * row + (corner >> 2) * slice;
     }
-    std::size_t offsets[kCellCorners];
+    std::size_t offsets[kNodeCorners];
 };
 
 void locateHair(const HairBlock& block, const HairFrame& frame, HairBounds& bounds) {
@@ -136,7 +136,7 @@ void depositHair(const HairBlock& block, const HairFrame& frame, double* sums) {
             for (std::size_t part = 0; part < kHairSums; part += kStep) {
                 const auto each =
                     hn::PromoteTo(Doubles(), hn::LoadU(Floats4(), moving + lane * kHairSums + part));
-                for (std::size_t corner = 0; corner < kCellCorners; ++corner) {
+                for (std::size_t corner = 0; corner < kNodeCorners; ++corner) {
                     double* const at = node + corners.offsets[corner] * kHairSums + part;
                     const auto weight = hn::Set(Doubles(), static_cast<double>(row.weights[corner][lane]));
                     hn::StoreU(hn::MulAdd(weight, each, hn::LoadU(Doubles(), at)), Doubles(), at);
@@ -164,7 +164,7 @@ void pressHair(const HairBlock& block, const HairFrame& frame, const float* fiel
                                           : fields + static_cast<std::size_t>(row.node[lane]) * kHairFields;
             for (std::size_t part = 0; part < 4; part += kStep) {
                 auto a = hn::Zero(Four()), b = a;
-                for (std::size_t corner = 0; node && corner < kCellCorners; ++corner) {
+                for (std::size_t corner = 0; node && corner < kNodeCorners; ++corner) {
                     const float* const at = node + corners.offsets[corner] * kHairFields + part;
                     const auto weight = hn::Set(Four(), row.weights[corner][lane]);
                     a = hn::MulAdd(weight, hn::LoadU(Four(), at), a);
