@@ -13,7 +13,7 @@ constexpr float kFarCells = 1e5f;
 constexpr std::int32_t kBoxMargin = 2;
 /// Hair may be so much denser than authored before it is pressed apart: what a cell sees of hair changes by
 /// less as its grid goes with the head.
-constexpr float kDensitySlack = 0.03f;
+constexpr float kDensitySlack = 0.1f;
 constexpr float kHairPressure = 40.0f;  // m²/s², of twice the authored density at full strength
 /// Pressure is no potential of all points, since it is held for a frame and read between nodes: without a
 /// loss, compressed hair never rests. Hair compressed by so much has all of it.
