@@ -54,7 +54,7 @@ TEST_F(LiveTest, EnginesChangeWhileItPlays) {
         const double before = now();
         simulateOn(where);
         ASSERT_TRUE(played(before + 0.3)) << "it goes on from where it was";
-        EXPECT_EQ(engine(), kind);
+        EXPECT_EQ(engine(), kind) << parts().player.engine()->why;
         EXPECT_EQ(parts().player.frame()->pose->onDevice, kind == EngineKind::gpu);
         auto* label = window->findChild<QLabel*>("engine");
         ASSERT_TRUE(label);
