@@ -94,13 +94,9 @@ void Player::endScrub() {
 }
 
 void Player::clearCache() {
-    TimeLine line = timeLineOf(document_.groom());
-    if (motion_ != kTimeLine) {
-        line.framesPerSecond = FramePace().framesPerSecond;
-        line.loop = false;
-    }
-    cache_ = std::make_shared<FrameCache>(line);
-    request([&](WorkerRequests& requests) { requests.cache = cache_; });
+    cache_ = std::make_shared<FrameCache>(timeLineOf(document_.groom()));
+    // Other motions have no end, and neither would the memory of their frames.
+    request([&](WorkerRequests& requests) { requests.cache = motion_ == kTimeLine ? cache_ : nullptr; });
 }
 
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {

@@ -29,9 +29,6 @@
 /// Metres outside a shape within which a node stays in contact that was pressed in the last substep: how deep
 /// it is there, weight over stiffness, can be less than rounding.
 #define HAIRLOOM_ROD_CONTACT_REACH 5e-6
-/// Share of what a contact's force would move a free node by in a substep, by which such a node stays in contact
-/// that starts the substep at the surface: the rest of the strand holds it back as well.
-#define HAIRLOOM_ROD_CONTACT_BACK 0.05
 /// Metres inside a shape from which on a node is held at the surface where it comes out.
 #define HAIRLOOM_ROD_CONTACT_DEEP 1e-4
 /// Metres by which a step may take a node nearer to a shape than was predicted for the shape to be looked at.

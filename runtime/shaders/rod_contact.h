@@ -59,30 +59,15 @@ ROD_FUNCTION RodMask rodHolds(RodTouch touch, Real slack) {
     return either(touch.depth > ROD_NUMBER(0.0) - slack,
                   touch.before > ROD_NUMBER(HAIRLOOM_ROD_CONTACT_DEEP));
 }
-/// As rodHolds(), of a prediction. What was pressed in the last substep is held while the prediction lifts it
-/// off by a little, and where it was at the surface by what the force would take it back by.
-ROD_FUNCTION RodMask rodHoldsStill(RodTouch touch, RodNode node) {
-    const Real none = ROD_NUMBER(0.0), reach = ROD_NUMBER(HAIRLOOM_ROD_CONTACT_REACH);
-    const Real force = absolute(node.load);
-    const Real back = minimum(force * ROD_NUMBER(HAIRLOOM_ROD_CONTACT_BACK) / node.weight,
-                              ROD_NUMBER(HAIRLOOM_ROD_CONTACT_NEAR));
-    const RodMask wasThere = touch.before > none - ROD_NUMBER(HAIRLOOM_ROD_CONTACT_DEEP);
-    const Real slack = choose(wasThere, maximum(back, reach), reach);
-    return rodHolds(touch, choose(force > none, slack, none));
+/// What was pressed in the last substep is held while a prediction lifts it off by a little.
+ROD_FUNCTION Real rodSlackAfter(Real load) {
+    return choose(absolute(load) > ROD_NUMBER(0.0), ROD_NUMBER(HAIRLOOM_ROD_CONTACT_REACH), ROD_NUMBER(0.0));
 }
 /// What a step presses it has led along a plane, off a surface that curves away. `x`: beyond the guess.
 ROD_FUNCTION Real rodSlackOf(RodContact c, Real3 x) {
     const RodMask pressed = dot(rodContactForce(c, x), c.normal) > ROD_NUMBER(0.0);
     const Real along = root(dot(x, x)) * ROD_NUMBER(HAIRLOOM_ROD_CONTACT_CURVED);
     return choose(pressed, maximum(along, ROD_NUMBER(HAIRLOOM_ROD_CONTACT_REACH)), ROD_NUMBER(0.0));
-}
-
-/// Whether a node of a strand that touches a shape goes back and forth in slow substeps. Where a surface has an
-/// edge it can do so for ever: what one substep presses it against, the next does not meet.
-ROD_FUNCTION RodMask rodGoesBack(Real3 moved, Real3 last, Real h) {
-    const Real slow = h * ROD_NUMBER(HAIRLOOM_ROD_CONTACT_SLOW);
-    const Real most = maximum(dot(moved, moved), dot(last, last));
-    return both(slow * slow > most, most * ROD_NUMBER(-0.5) > dot(moved, last));
 }
 
 /// Adds what a shape that holds the node does to it: ½ k (depth − n·x)², which keeps it out, and

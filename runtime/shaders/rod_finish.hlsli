@@ -22,17 +22,12 @@ void finishRodStep() {
     // A bounce is no smooth motion: speeds behind it are those of the mean way.
     const bool bounces = touched > 2.0;
     const float blend = bounces ? 0.0 : gBlend, inverseStep = bounces ? 1.0 / gFrame.h : gInverseTimeStep;
-    // What goes back and forth where it touches is as fast as it gets on.
-    const bool settles = touched > 0.0 && !(gFrame.substep.restitution > 0.0);
     OWN_SEGMENTS(j) {
         const uint node = j + 1;
         const float4 rest = restTangentAndBend(j), relative = newRelative(j);
         at = mad3(rodRotate(rotation(j), rest.xyz), segmentLength(j), at);
-        const float3 moved = newDisplacement(j), lastMoved = displacement(node);
-        float3 now = negMad3(lastMoved, blend, moved) * inverseStep;
-#if HAIR_SPHERES
-        if (settles && rodGoesBack(moved, lastMoved, gFrame.h)) now = (moved + lastMoved) * (0.5 / gFrame.h);
-#endif
+        const float3 moved = newDisplacement(j);
+        const float3 now = negMad3(displacement(node), blend, moved) * inverseStep;
         setVelocityBefore(node, velocity(node));
         setVelocity(node, now);
         setDisplacement(node, moved);

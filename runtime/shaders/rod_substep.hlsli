@@ -104,7 +104,7 @@ RodContact meet(uint j, RodNode node) {
         RodTouch touch;
         if (touchSphere(k, rootAtEnd(), node, touch)) {
             near = true;
-            press(touch, rodHoldsStill(touch, node), node, found);
+            press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, found);
         }
     }
     gTouched = max(gTouched, found.touching);

@@ -64,7 +64,7 @@ TEST_F(RenderJob, EachWayOfDrawingGivesItsOwnPicture) {
         "--shadow opacity",
         "--aa fxaa",
         "--aa none",
-        "--transparency sorted",
+        "--transparency weighted",
         "--detail 5",
         view("point.json",
              R"({"lights": [{"type": "point", "position": [0, 2.2, 1], "intensity": [3, 3, 3]}]})"),

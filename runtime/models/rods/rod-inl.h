@@ -334,7 +334,8 @@ class RodStrip {
         auto near = noLane();
         forEachShape(rootPosition(), node, p, hn::Not(noLane()), [&](const RodTouch& touch, RodMask here) {
             near = either(near, here);
-            press(touch, rodHoldsStill(touch, node), node, point.contact);
+            const V slack = context_.body ? bodySlackAfter(touch, node) : rodSlackAfter(node.load);
+            press(touch, rodHolds(touch, slack), node, point.contact);
         });
         touched_ = hn::Max(touched_, point.contact.touching);
         near_ = either(near_, near);

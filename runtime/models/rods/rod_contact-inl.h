@@ -63,6 +63,29 @@ constexpr float kBodyPush = 8e-3f;
 constexpr int kBodyLooks = 10;
 constexpr float kBodyDeep = 1e-3f;
 
+/// Share of what a contact's force would move a free node by in a substep, by which such a node stays in
+/// contact that starts the substep at the surface: the rest of the strand holds it back as well.
+constexpr float kBodyBack = 0.05f;
+
+/// Metres by which a prediction may lift a node off what pressed it in the last substep. Skin has folds and
+/// edges: what one substep presses a node against, the next may not meet, and the node falls back by more
+/// than it was lifted.
+HWY_INLINE V bodySlackAfter(const RodTouch& touch, const RodNode& node) {
+    const V slack = rodSlackAfter(node.load);
+    const V back = hn::Min(hn::Abs(node.load) * all(kBodyBack) / node.weight,
+                           all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR)));
+    const auto wasThere = touch.before > all(-static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP));
+    return choose(wasThere, hn::Max(slack, back), slack);
+}
+
+/// Whether a node goes back and forth in slow substeps of h seconds. Across an edge of skin it could do so
+/// for ever.
+HWY_INLINE RodMask goesBack(V3 moved, V3 last, float h) {
+    const V slow = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_SLOW) * h);
+    const V most = hn::Max(dot(moved, moved), dot(last, last));
+    return both(most < slow * slow, dot(moved, last) < all(-0.5f) * most);
+}
+
 /// The same for a body, by the plane that BodySearch has found. A node keeps its radius from it, but no more
 /// than its clearance.
 template <class Visit>

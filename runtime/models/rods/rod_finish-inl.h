@@ -32,18 +32,18 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
     const auto bounces = touched_ > all(2.0f);
     const V blend = hn::IfThenZeroElse(bounces, blend_);
     const V inverseStep = hn::IfThenElse(bounces, all(1.0f / context_.h), inverseStep_);
-    // What goes back and forth where it touches is as fast as it gets on.
-    const auto settles = context_.restitution > 0.0f ? noLane() : touched_ > hn::Zero(D());
+    // What goes back and forth on skin is as fast as it gets on.
+    const auto settles = context_.body && context_.restitution <= 0.0f ? touched_ > hn::Zero(D()) : noLane();
     for (std::uint32_t j = first_; j < segments_; ++j) {
         const RodPoint& point = points_[j];
         const std::size_t i = at(j), node = at(j + 1);
         position = mad3(rodRotate(loadRotation(rod_.rotation, i), restTangent(j)), lengthOf(j), position);
         const V3 moved = point.newDisplacement;
-        const V3 last = load3(rod_.displacement, node);
-        V3 velocity = negMad3(last, blend, moved) * inverseStep;
+        const V3 before = load3(rod_.displacement, node);
+        V3 velocity = negMad3(before, blend, moved) * inverseStep;
         if constexpr (kContacts) {
-            const auto goesBack = both(settles, rodGoesBack(moved, last, all(context_.h)));
-            velocity = select(goesBack, (moved + last) * all(0.5f / context_.h), velocity);
+            const auto mean = both(settles, goesBack(moved, before, context_.h));
+            velocity = select(mean, (moved + before) * all(0.5f / context_.h), velocity);
         }
         store3(load3(rod_.velocity, node), rod_.velocityBefore, node);
         store3(velocity, rod_.velocity, node);
