@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -176,8 +178,10 @@ const TimeLine& timeLineOf(const Groom& groom) {
 const SettingField* findKeyable(std::string_view name) {
     if (!name.starts_with(kSection)) return nullptr;
     const SettingField* const field = runtime::findField<SimulationSettings>(name.substr(kSection.size()));
+    // These choose the engine, or have it count all of the hair anew.
+    constexpr std::array<std::string_view, 3> kChosenBefore{"strandModel", "hairHair", "hairHairCell"};
     const bool cannot = field == nullptr || field->kind == FieldKind::Ramp ||
-                        field->kind == FieldKind::Seed || std::string_view(field->name) == "strandModel";
+                        field->kind == FieldKind::Seed || std::ranges::count(kChosenBefore, field->name) > 0;
     return cannot ? nullptr : field;
 }
 

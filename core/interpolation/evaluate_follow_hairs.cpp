@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/groom/point_dye.h"
@@ -109,6 +110,8 @@ std::vector<float> followHairRootValues(const FollowBindings& bindings, std::spa
             around[k] = ofStrands[bindings.guideStrands[bindings.guides[hair][k]]];
             values[hair] += bindings.rootWeights[hair][static_cast<int>(k)] * around[k];
         }
+        // NaN is a strand without a value, and has no mean.
+        if (std::isnan(values[hair])) continue;
         // Weights sum up to 1 but for rounding, and limits are limits.
         const auto [least, most] = std::ranges::minmax(around);
         values[hair] = std::clamp(values[hair], least, most);

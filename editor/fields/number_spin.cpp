@@ -38,4 +38,12 @@ double NumberSpin::valueFromText(const QString& text) const {
     return QDoubleSpinBox::valueFromText(decimals() > 0 ? withDecimalPoint(text) : text);
 }
 
+void NumberSpin::follow(double value) {
+    QString typed = text();
+    int position = 0;
+    const bool isTyping = hasFocus() && (validate(typed, position) != QValidator::Acceptable ||
+                                         valueFromText(typed) != this->value());
+    if (!isTyping) setValue(value);
+}
+
 }  // namespace hairloom::editor

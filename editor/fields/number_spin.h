@@ -24,6 +24,8 @@ class NumberSpin : public QDoubleSpinBox {
 
     QValidator::State validate(QString& text, int& position) const override;
     double valueFromText(const QString& text) const override;
+    /// As setValue(), but leaves alone what somebody types.
+    void follow(double value);
 };
 
 }  // namespace hairloom::editor

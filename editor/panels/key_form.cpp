@@ -105,7 +105,7 @@ void KeyForm::addFrame() {
     });
     refreshers_.push_back([this, frame] {
         const QSignalBlocker quiet(frame);
-        frame->setValue(static_cast<double>(shownFrame()));
+        frame->follow(static_cast<double>(shownFrame()));
     });
     addRow("Frame", frame, "Frame of the selected key. All selected keys move along with it");
 }
@@ -176,7 +176,7 @@ QWidget* KeyForm::number(const QString& name, double min, double max, const QStr
     });
     refreshers_.push_back([this, spin, read, shown] {
         const QSignalBlocker quiet(spin);
-        spin->setValue(read(view_.line()) * shown.factor);
+        spin->follow(read(view_.line()) * shown.factor);
     });
     return spin;
 }

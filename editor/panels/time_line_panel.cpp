@@ -273,11 +273,11 @@ class TimeLinePanel : public QWidget {
         const auto frame = [&](float time) {
             return static_cast<double>(view_->frameOf(static_cast<double>(time)));
         };
-        frame_->setValue(static_cast<double>(player_.lineFrame()));
-        start_->setValue(frame(shown.start));
-        end_->setValue(frame(shown.end));
-        rate_->setValue(static_cast<double>(shown.framesPerSecond));
-        preRoll_->setValue(shown.preRoll);
+        frame_->follow(static_cast<double>(player_.lineFrame()));
+        start_->follow(frame(shown.start));
+        end_->follow(frame(shown.end));
+        rate_->follow(static_cast<double>(shown.framesPerSecond));
+        preRoll_->follow(shown.preRoll);
         loop_->setChecked(shown.loop);
         const char* const sign = player_.isPlaying() ? "pause" : "play";
         if (playSign_ != sign) play_->setIcon(icon(sign));

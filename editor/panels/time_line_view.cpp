@@ -23,12 +23,12 @@ TimeLineView::TimeLineView(Keying& keying, const Preferences& preferences, QObje
         const bool isOther = now.start != fitted_.start || now.end != fitted_.end ||
                              now.preRoll != fitted_.preRoll || now.framesPerSecond != fitted_.framesPerSecond;
         if (isOther) return fit();
-        Q_EMIT changed();
+        announce();
     });
     connect(&player(), &Player::playHeadMoved, this,
             [this] { reveal(static_cast<double>(player().lineTime())); });
-    connect(&player(), &Player::frameReady, this, &TimeLineView::changed);
-    connect(&preferences_, &Preferences::changed, this, &TimeLineView::changed);
+    connect(&player(), &Player::frameReady, this, &TimeLineView::announce);
+    connect(&preferences_, &Preferences::changed, this, &TimeLineView::announce);
     fit();
 }
 
@@ -57,7 +57,7 @@ void TimeLineView::fit() {
     fitted_.end = line.end;
     fitted_.preRoll = line.preRoll;
     fitted_.framesPerSecond = line.framesPerSecond;
-    Q_EMIT changed();
+    announce();
 }
 
 void TimeLineView::zoom(double factor, double about) {
@@ -66,14 +66,14 @@ void TimeLineView::zoom(double factor, double about) {
     const double share = (about - first_) / (last_ - first_);
     first_ = about - share * span;
     last_ = first_ + span;
-    Q_EMIT changed();
+    announce();
 }
 
 void TimeLineView::pan(double by) {
     const double span = last_ - first_;
     first_ = std::clamp(first_ + by, -span, static_cast<double>(kLatestKey));
     last_ = first_ + span;
-    Q_EMIT changed();
+    announce();
 }
 
 void TimeLineView::reveal(double time) {
@@ -94,7 +94,7 @@ bool TimeLineView::isSelected(const KeyPlace& key) const {
 void TimeLineView::select(std::vector<KeyPlace> keys) {
     setSelection(std::move(keys));
     if (!selection_.empty()) current_ = selection_.back().track;
-    Q_EMIT changed();
+    announce();
 }
 
 void TimeLineView::selectAll() {
@@ -115,7 +115,7 @@ std::optional<KeyTrack> TimeLineView::current() const {
 
 void TimeLineView::setCurrent(const KeyTrack& track) {
     current_ = track;
-    Q_EMIT changed();
+    announce();
 }
 
 void TimeLineView::moveRow(int by) {
@@ -131,7 +131,7 @@ void TimeLineView::drag(TimeLine to, std::vector<KeyPlace> selection) {
     if (!dragged_) selectionBefore_ = selection_;
     dragged_ = std::move(to);
     setSelection(std::move(selection));
-    Q_EMIT changed();
+    announce();
 }
 
 void TimeLineView::drop(const QString& name) {
@@ -140,13 +140,19 @@ void TimeLineView::drop(const QString& name) {
     dragged_.reset();
     if (!keying_.change(std::move(to), name)) setSelection(selectionBefore_);
     prune();
-    Q_EMIT changed();
+    announce();
 }
 
 void TimeLineView::cancelDrag() {
     if (!dragged_) return;
     dragged_.reset();
     setSelection(selectionBefore_);
+    announce();
+}
+
+void TimeLineView::announce() {
+    // The player may speak of a new time line before Keying does.
+    prune();
     Q_EMIT changed();
 }
 

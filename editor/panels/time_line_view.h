@@ -74,6 +74,8 @@ class TimeLineView : public QObject {
     void editRequested();
 
   private:
+    /// That it has changed, without selected keys that are gone.
+    void announce();
     void prune();
     void setSelection(std::vector<KeyPlace> keys);
     /// Where the play head is moved to is seen.

@@ -117,7 +117,12 @@ void Player::takeTimeLine() {
     // What is keyed first plays at once, or says why it cannot; another motion that somebody chose stays.
     if (!had && hasTimeLine_ && motion_ != kTimeLine) {
         if (auto made = makeMotion(kTimeLine); !made) Q_EMIT failed(errorText(made.error()));
-        return begin(kTimeLine);
+        const bool isShown = !playing_ && (frame_ || scrubbed_);
+        const float shown = lineTime();
+        begin(kTimeLine);
+        // Whoever keys the first of all is at the frame that it is for.
+        if (isShown) scrub(shown);
+        return;
     }
     if (had && !hasTimeLine_ && motion_ == kTimeLine) return begin("none");
     if (motion_ != kTimeLine || !captured_) return;
@@ -154,7 +159,6 @@ void Player::reset() {
     offset_.setIdentity();
     ++epoch_;
     captured_ = false;
-    clearCache();
     request([&](WorkerRequests& requests) {
         requests.playing = false;
         requests.steps = 0;
@@ -167,6 +171,7 @@ void Player::reset() {
         requests.epoch = epoch_;
         requests.delivered.reset();
     });
+    clearCache();
     Q_EMIT frameReady();
     Q_EMIT playHeadMoved();
     Q_EMIT headOffsetChanged();
@@ -224,12 +229,12 @@ void Player::setActor(std::shared_ptr<const Actor> actor) {
 void Player::setLeftOut(const QStringList& effects) {
     const bool sameBody = leavesBodyOut(leftOut_) == leavesBodyOut(effects);
     leftOut_ = effects;
-    clearCache();
     request([&](WorkerRequests& requests) {
         requests.leftOut = effects;
         requests.regroomed = requests.regroomed || !sameBody || isMadeWithSettings(method_);
         requests.changed = true;
     });
+    clearCache();
     outdatePlanPreview();
     Q_EMIT planPreviewChanged();
 }
@@ -282,11 +287,11 @@ void Player::setEngine(EngineWish wish) {
 void Player::setMethod(const PlayedMethod& method) {
     if (method == method_) return;
     method_ = method;
-    clearCache();
     request([&](WorkerRequests& requests) {
         requests.method = method;
         requests.regroomed = true;
     });
+    clearCache();
     outdatePlanPreview();
     Q_EMIT planPreviewChanged();
 }
@@ -316,11 +321,11 @@ void Player::documentChanged(editing::Part parts) {
         endScrub();
         const bool sameStrands = std::ranges::equal(groom.offsets.view(), capturedOffsets_);
         if (playing_ && sameStrands && !contains(parts, editing::kScalpParts)) {
-            clearCache();
             request([&](WorkerRequests& requests) {
                 requests.groom = std::make_shared<const Groom>(groom);
                 requests.regroomed = true;
             });
+            clearCache();
             return;
         }
         const bool play = playing_ && groom.strandCount() > 0;

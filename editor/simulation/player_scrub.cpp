@@ -95,7 +95,8 @@ void Player::endScrub() {
 
 void Player::clearCache() {
     cache_ = std::make_shared<FrameCache>(timeLineOf(document_.groom()));
-    // Other motions have no end, and neither would the memory of their frames.
+    // After what is asked of the worker: it adds no frame of before. Other motions have no end, and neither
+    // would the memory of their frames.
     request([&](WorkerRequests& requests) { requests.cache = motion_ == kTimeLine ? cache_ : nullptr; });
 }
 

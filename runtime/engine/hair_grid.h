@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Hair against hair: how dense the hair is and how it moves, on a grid that goes with the head, and what each
-// point feels of it in a frame (docs/engine.md, "Hair against hair"). After Petrovic, Henne, Anderson 2005,
-// "Volumetric methods for simulation and rendering of hair"; the density that hair keeps is the authored one.
+// Hair-hair collision: how dense the hair is and how it moves, on a grid that goes with the head, and what
+// each point feels of it in a frame (docs/engine.md, "Hair-hair collision"). After Petrovic, Henne, Anderson
+// 2005, "Volumetric methods for simulation and rendering of hair"; the density that hair keeps is the
+// authored one.
 
 #include <array>
 #include <atomic>

@@ -50,6 +50,7 @@ void HairGrid::take(const RestShape& shape, const SimulationSettings& settings, 
     felt_ = zeroFloats(kHairPlanes * shape.planeFloats, host);
     bounds_.assign(shape.blocks.size(), {});
     counted_.assign(shape.blocks.size(), 0);
+    sleepersCounted_ = anySleep_ = compressed_ = false;
     // A cell holds several strands at their roots, and no segment reaches over the next one.
     Float3 low{1e30f, 1e30f, 1e30f}, high = low * -1.0f;
     for (const RootFrame& root : shape.restRoots) {
@@ -138,7 +139,6 @@ void HairGrid::count(const RestShape& shape, double lengths, const Host& host) {
     allowed_.resize(box_.nodes());
     for (std::size_t i = 0; i < allowed_.size(); ++i)
         allowed_[i] = std::max(static_cast<float>(slots_[0][i * kHairSums]) * shareUnit_, 1.0f);
-    sleepersCounted_ = anySleep_ = false;
 }
 
 void HairGrid::scaleShares(double scale) {

@@ -14,6 +14,7 @@
 #include "core/animation/actor.h"
 #include "core/groom/time_line_keys.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/number_spin.h"
 #include "editor/panels/key_curves.h"
 #include "editor/panels/time_ruler.h"
 #include "editor/panels/track_rows.h"
@@ -241,10 +242,11 @@ TEST_F(TimeLinePanelTest, TheCacheLetsTheFirstFramesGo) {
     line.loop = false;
     const auto frame = [] {
         auto pose = std::make_shared<HairPose>();
-        pose->positions_ws.resize(100);
+        pose->positions_ws.resize(10'000);
         return pose;
     };
-    FrameCache cache(line, 10 * 100 * sizeof(Vec3f));
+    // Ten, with what each takes beside its points.
+    FrameCache cache(line, 105'000 * sizeof(Vec3f));
     for (int f = 1; f <= 25; ++f) cache.add(f / 10.0, frame());
     EXPECT_EQ(cache.runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{16, 25}}));
     const auto again = frame();
@@ -254,7 +256,7 @@ TEST_F(TimeLinePanelTest, TheCacheLetsTheFirstFramesGo) {
     EXPECT_EQ(cache.runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{1, 9}, {20, 20}}))
         << "the oldest, wherever they are";
     auto large = frame();
-    large->positions_ws.resize(10'000);
+    large->positions_ws.resize(200'000);
     cache.add(1, large);
     EXPECT_TRUE(cache.runs().empty());
 }
@@ -298,6 +300,43 @@ TEST_F(TimeLinePanelTest, TheWindIsKeyedAsItIsSet) {
     parts().keying.insertKey({KeyTrack::Of::wind, {}}, 0.7f);
     ASSERT_EQ(line().wind.size(), 3u);
     EXPECT_NEAR(line().wind[1].velocity.z(), 7, 1e-5) << "as the keys say there";
+}
+
+TEST_F(TimeLinePanelTest, UndoingASelectedKeyOfWindLeavesItsFields) {
+    window->panel("time_line")->show();
+    const KeyTrack wind{KeyTrack::Of::wind, {}};
+    // The first undo leaves a key before the selected one, the second none.
+    for (const float time : {0.0f, 1.0f}) {
+        player().scrub(time);
+        parts().keying.keyWind();
+    }
+    QCoreApplication::processEvents();
+    for (const std::size_t last : {std::size_t{1}, std::size_t{0}}) {
+        QTest::mouseClick(&rows(), Qt::LeftButton, {}, rows().placeOf({wind, last}));
+        QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
+        QCoreApplication::processEvents();
+        ASSERT_TRUE(find<NumberSpin>("keyFrame")->isVisible());
+        EXPECT_EQ(find<NumberSpin>("keyFrame")->value(), last == 1 ? 60 : 0);
+        trigger("edit.undo");
+        EXPECT_EQ(line().wind.size(), last);
+        EXPECT_TRUE(find<QLabel>("keyNone")->isVisible() || last == 0);
+    }
+}
+
+TEST_F(TimeLinePanelTest, WhatIsTypedStaysWhileHairPlays) {
+    set(windy());
+    window->panel("time_line")->show();
+    auto* end = find<NumberSpin>("timeEndFrame");
+    ASSERT_TRUE(end);
+    const double before = end->value();
+    end->setFocus();
+    end->selectAll();
+    QTest::keyClicks(end, "77");
+    Q_EMIT player().frameReady();
+    EXPECT_TRUE(end->text().startsWith("77")) << end->text().toStdString();
+    EXPECT_EQ(end->value(), before);
+    QTest::keyClick(end, Qt::Key_Return);
+    EXPECT_EQ(end->value(), 77);
 }
 
 TEST_F(TimeLinePanelTest, CurvesAreDragged) {

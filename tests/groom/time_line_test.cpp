@@ -53,6 +53,12 @@ TEST(TimeLine, ALoopBeginsAnewAtItsEnd) {
     EXPECT_EQ(line.frameCount(), 48u);
 }
 
+TEST(TimeLine, WhatChoosesTheEngineHasNoKeys) {
+    for (const char* const name : {"strandModel", "hairHair", "hairHairCell"})
+        EXPECT_EQ(findKeyable(std::string("simulation.") + name), nullptr) << name;
+    EXPECT_NE(findKeyable("simulation.hairHairStrength"), nullptr);
+}
+
 TEST(TimeLine, EveryKeyableSettingCanBeKeyedAndRead) {
     EXPECT_THAT(keyableNames(), testing::Contains("simulation.windSpeed"));
     EXPECT_THAT(keyableNames(), testing::Not(testing::Contains("simulation.angularCurve")));

@@ -127,6 +127,24 @@ TEST(HairHair, AStyleThatCarriesItsWeightSleepsAsWithout) {
     for (std::size_t i = 0; i < ends[0].size(); ++i) EXPECT_LT(length(ends[0][i] - ends[1][i]), 1e-4f) << i;
 }
 
+TEST(HairHair, OtherCellsLeaveSleepersWhereTheyAre) {
+    const Ball ball(900);
+    SimulationSettings s;
+    s.hairHair = true;
+    Engine engine = ball.engine(s);
+    ball.run(engine, 1, 60);
+    ASSERT_EQ(engine.asleep(), 900u);
+    const auto before = positionsOf(engine);
+    for (const float cell : {0.03f, 0.011f, 0.0f}) {
+        s.hairHairCell = cell;
+        ASSERT_EQ(engine.setSettings(s), "");
+        ball.run(engine, 61, 120);
+        EXPECT_EQ(engine.asleep(), 900u) << cell;
+        const auto after = positionsOf(engine);
+        for (std::size_t i = 0; i < before.size(); ++i) EXPECT_LT(length(after[i] - before[i]), 1e-4f) << i;
+    }
+}
+
 TEST(HairHair, AStyleAtRestFeelsNoneOfItAndSleeps) {
     const Ball ball(300);
     SimulationSettings s;
