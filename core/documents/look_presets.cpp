@@ -34,7 +34,7 @@ constexpr LookPreset kPresets[] = {
      R"({"greyShare": 0.35})"},
     {"grown-out roots", "bleached blond, and three centimetres of dark brown at the root", 2.4f, 0.15f, 0.18f,
      nullptr,
-     R"({"dyeStrength": 0.97, "dyeColour": [0.6, 0.38, 0.16], "dyeRegrowth": 0.03, "dyeRegrowthSoftness": 0.018})"},
+     R"({"dyeStrength": 0.97, "dyeColour": [0.78, 0.64, 0.44], "dyeRegrowth": 0.03, "dyeRegrowthSoftness": 0.018})"},
     {"wet", "wet hair: dark, with two narrow, strong highlights. The operator Clump sticks it together", 4.5f,
      0.15f, 0.05f,
      R"({"shadingModel": "sadeghi", "rIntensity": 4, "rWidth": 0.3, "ttIntensity": 0.5, "trtIntensity": 1.5,

@@ -94,8 +94,8 @@ class Candidates {
     template <class T>
     void choices(const char* setting, T render::RenderOptions::*member,
                  const std::vector<std::pair<const char*, T>>& values) {
-        for (const auto& [name, value] : values)
-            add(setting, name, [&](Settings& s) { s.picture.*member = value; });
+        for (const auto& choice : values)
+            add(setting, choice.first, [&](Settings& s) { s.picture.*member = choice.second; });
     }
     void numbers(const char* setting, std::vector<std::uint32_t> values,
                  std::uint32_t render::RenderOptions::*member) {
