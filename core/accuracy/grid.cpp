@@ -30,7 +30,7 @@ const OwnAxis* findOwn(std::string_view field) {
     static const std::vector<OwnAxis> all{{kPointsAxis, kFewestPoints, double{runtime::kMaxPoints}},
                                           {kThreadsAxis, 0, kMaxThreads},
                                           {kEngineAxis, 0, 1, {"cpu", "gpu"}},
-                                          {kHairHairAxis, 0, 1},
+                                          {kHairVolumeAxis, 0, 1},
                                           {kSpheresAxis, 0, kMaxSpheres},
                                           {kGuidesAxis, 1, kMaxGuides},
                                           {kHairsPerGuideAxis, 0, kMaxHairsPerGuide}};
@@ -48,7 +48,7 @@ Status checkValue(const GridAxis& axis, double value) {
     if (!field || field->components() != 1) {
         return fail(fmt::format("there is no setting '{}' of one number", axis.field),
                     fmt::format("expected {}, {}, {}, {}, {}, {}, {} or a field of the simulation",
-                                kPointsAxis, kThreadsAxis, kEngineAxis, kHairHairAxis, kSpheresAxis,
+                                kPointsAxis, kThreadsAxis, kEngineAxis, kHairVolumeAxis, kSpheresAxis,
                                 kGuidesAxis, kHairsPerGuideAxis));
     }
     runtime::SimulationSettings settings;

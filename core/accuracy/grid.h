@@ -26,8 +26,8 @@ inline constexpr std::string_view kThreadsAxis = "threads";
 
 /// What moves the strands: "cpu" or "gpu", by its index.
 inline constexpr std::string_view kEngineAxis = "engine";
-/// Hair against hair: 0 or 1.
-inline constexpr std::string_view kHairHairAxis = "hairVolume";
+/// Hair-hair collision through a volume between frames: 0 or 1.
+inline constexpr std::string_view kHairVolumeAxis = "hairVolume";
 /// Collision spheres that stay, the first of the groom's.
 inline constexpr std::string_view kSpheresAxis = "spheres";
 /// Strands that are simulated, found by clustering; each other one goes as its guide does, from its own root.

@@ -39,7 +39,7 @@ GridHair::GridHair(SceneHair authored, const std::vector<GridAxis>& axes, const 
       points_(findAxis(axes, kPointsAxis)),
       threads_(findAxis(axes, kThreadsAxis)),
       engine_(findAxis(axes, kEngineAxis)),
-      hairHair_(findAxis(axes, kHairHairAxis)),
+      hairVolume_(findAxis(axes, kHairVolumeAxis)),
       spheres_(findAxis(axes, kSpheresAxis)),
       guides_(findAxis(axes, kGuidesAxis)),
       hairsPerGuide_(findAxis(axes, kHairsPerGuideAxis)),
@@ -108,7 +108,7 @@ SceneHair GridHair::at(const std::vector<double>& values, std::uint32_t points) 
 SimulationOptions GridHair::optionsAt(const std::vector<double>& values) const {
     SimulationOptions options;
     if (engine_ && values[*engine_] > 0) options.backend = *gpuEngine_;
-    if (meetsHair(values)) options.hairHair = runtime::HairVolumeSettings();
+    if (meetsHair(values)) options.hairVolume = runtime::HairVolumeSettings();
     return options;
 }
 

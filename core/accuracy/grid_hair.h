@@ -62,12 +62,14 @@ class GridHair {
     const Guides* guidesAt(const std::vector<double>& values) const {
         return guides_ ? &byGuides_.at(values[*guides_]) : nullptr;
     }
-    bool meetsHair(const std::vector<double>& values) const { return hairHair_ && values[*hairHair_] > 0; }
+    bool meetsHair(const std::vector<double>& values) const {
+        return hairVolume_ && values[*hairVolume_] > 0;
+    }
     SceneHair withSettings(SceneHair hair, const std::vector<double>& values) const;
 
     const std::vector<GridAxis>* axes_;
     const MethodMaker* gpuEngine_;
-    std::optional<std::size_t> points_, threads_, engine_, hairHair_, spheres_, guides_, hairsPerGuide_;
+    std::optional<std::size_t> points_, threads_, engine_, hairVolume_, spheres_, guides_, hairsPerGuide_;
     SceneHair authored_;
     std::map<double, SceneHair> byPoints_;
     std::map<double, Guides> byGuides_;

@@ -250,7 +250,7 @@ std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axisIndex
     const GridAxis& axis = axes[axisIndex];
     const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
     const bool ofNumbers = !isEnumeration(axis.field) && axis.field != kThreadsAxis &&
-                           axis.field != kHairHairAxis && axis.field != kHairsPerGuideAxis;
+                           axis.field != kHairVolumeAxis && axis.field != kHairsPerGuideAxis;
     if (!ofNumbers || !varies(axes, axisIndex)) return std::nullopt;
 
     const auto coloured = colouredAxis(axes);

@@ -10,6 +10,7 @@
 
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
+#include "core/base/smooth_step.h"
 #include "core/geometry/curve.h"
 #include "core/groom/strand_subset.h"
 #include "core/operations/collide.h"
@@ -242,8 +243,7 @@ class Cleaner {
                 for (Vec3f& point : strand) {
                     along += (point - before).norm();
                     before = point;
-                    const float t = std::min(along / fade, 1.0f);
-                    point += (1 - t * t * (3 - 2 * t)) * by;
+                    point += (1 - smoothStep(std::min(along / fade, 1.0f))) * by;
                 }
             }
         });

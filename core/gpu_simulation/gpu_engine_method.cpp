@@ -89,12 +89,12 @@ std::vector<EffectReport> effectReports(const StrandEngine& engine) {
 }
 
 MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels) {
-    return [&device, kernels = std::move(kernels)](const SceneInput& scene,
-                                                   const std::optional<runtime::HairVolumeSettings>& hairHair)
+    return [&device, kernels = std::move(kernels)](
+               const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume)
                -> Result<std::unique_ptr<StrandMethod>> {
         EngineOptions options;
         options.layout = layoutFor(device.info().type);
-        options.hairHair = hairHair;
+        options.hairVolume = hairVolume;
         auto engine = StrandEngine::make(device, kernels, scene.strands(), scene.groom().simulation, options);
         if (!engine) return tl::unexpected(engine.error());
         return std::make_unique<GpuEngineMethod>(std::move(*engine));

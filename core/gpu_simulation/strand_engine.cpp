@@ -43,8 +43,8 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     impl->placed.roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (auto taken = impl->takeModel(settings); !taken) return tl::unexpected(taken.error());
-    if (options.hairHair) {
-        auto volume = GpuHairVolume::make(device, *options.hairHair);
+    if (options.hairVolume) {
+        auto volume = GpuHairVolume::make(device, *options.hairVolume);
         if (!volume) return tl::unexpected(volume.error());
         impl->volume.emplace(std::move(*volume));
     }

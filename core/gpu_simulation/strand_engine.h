@@ -29,7 +29,7 @@ struct EngineOptions {
     /// ready, with the settings that it was made from.
     bool waitForKernels = true;
     /// Hair against hair between frames.
-    std::optional<runtime::HairVolumeSettings> hairHair = {};
+    std::optional<runtime::HairVolumeSettings> hairVolume = {};
 };
 
 /// What the last frame took and met.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/base/cell_stream.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 
@@ -22,9 +23,7 @@ struct Seed {
 
 /// The point of a cube of the lattice, and whether its cell is a streak.
 Seed seedOf(const HairMaterial& material, const Cell& cube) {
-    std::uint64_t stream = 0;
-    for (const std::int64_t c : cube) stream = stream << 21u ^ (static_cast<std::uint64_t>(c) & 0x1fffffu);
-    Random random(material.streakSeed, stream);
+    Random random(material.streakSeed, streamOf(cube));
     Seed seed;
     for (int c = 0; c < 3; ++c) {
         seed.place[c] = static_cast<double>(cube[static_cast<std::size_t>(c)]) + random.uniformDouble();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/math.h"
+#include "core/base/smooth_step.h"
 #include "hairloom/field.h"
 #include "hairloom/settings.h"
 
@@ -133,7 +134,7 @@ BetweenKeys betweenKeys(const std::vector<Key>& keys, float time) {
     if (next == keys.end() || keys[from].interpolation == KeyInterpolation::step) return {from, 0.0f};
     const float share = (time - keys[from].time) / (next->time - keys[from].time);
     if (keys[from].interpolation == KeyInterpolation::linear) return {from, share};
-    return {from, share * share * (3 - 2 * share)};
+    return {from, smoothStep(share)};
 }
 
 /// What does not hold.

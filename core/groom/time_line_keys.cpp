@@ -106,6 +106,12 @@ std::set<std::size_t> indicesOf(std::span<const KeyPlace> keys, const KeyTrack& 
     return indices;
 }
 
+template <class Key>
+void erase(std::vector<Key>& keys, const std::set<std::size_t>& indices) {
+    for (auto index = indices.rbegin(); index != indices.rend(); ++index)
+        keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(*index));
+}
+
 /// Frames stay whole, whatever repeated moves lose in rounding.
 double wholeFrame(double frame) {
     constexpr double kRounding = 1e-3;
@@ -127,6 +133,28 @@ std::vector<std::size_t> place(std::vector<Key>& keys, std::vector<Key> placed, 
         const auto same = std::ranges::find_if(
             placed, [&](const Key& key) { return std::abs(timeOf(key) - timeOf(keys[k])) < frame / 4; });
         if (same != placed.end()) at.push_back(k);
+    }
+    return at;
+}
+
+/// Puts keys at the times that `timeOfCopy` gives for theirs, as copies or in place of themselves. Returns
+/// where they are then.
+template <class Time>
+std::vector<KeyPlace> put(TimeLine& line, std::span<const KeyPlace> keys, bool asCopies,
+                          const Time& timeOfCopy) {
+    std::vector<KeyPlace> at;
+    for (const KeyTrack& track : tracksIn(keys)) {
+        const std::set<std::size_t> which = indicesOf(keys, track);
+        withKeys(line, track, [&]<class Key>(std::vector<Key>& all) {
+            std::vector<Key> taken;
+            for (const std::size_t index : which) {
+                taken.push_back(all[index]);
+                setTime(taken.back(), timeOfCopy(timeOf(all[index])));
+            }
+            if (!asCopies) erase(all, which);
+            for (const std::size_t index : place(all, std::move(taken), frameOf(line)))
+                at.push_back({track, index});
+        });
     }
     return at;
 }
@@ -202,8 +230,7 @@ void removeKeys(TimeLine& line, std::span<const KeyPlace> keys) {
     for (const KeyTrack& track : tracksIn(keys)) {
         const std::set<std::size_t> gone = indicesOf(keys, track);
         withKeys(line, track, [&](auto& all) {
-            for (auto index = gone.rbegin(); index != gone.rend(); ++index)
-                all.erase(all.begin() + static_cast<std::ptrdiff_t>(*index));
+            erase(all, gone);
             tidy(all, frameOf(line));
         });
     }
@@ -217,45 +244,17 @@ std::vector<KeyPlace> moveKeys(TimeLine& line, std::span<const KeyPlace> keys, s
         const float time = keyTime(line, key);
         by = std::max<std::int64_t>(by, -std::llround(static_cast<double>(time) * rate));
     }
-    std::vector<KeyPlace> moved;
-    for (const KeyTrack& track : tracksIn(keys)) {
-        const std::set<std::size_t> which = indicesOf(keys, track);
-        withKeys(line, track, [&]<class Key>(std::vector<Key>& all) {
-            std::vector<Key> taken;
-            for (const std::size_t index : which) {
-                Key key = all[index];
-                const double at = static_cast<double>(timeOf(key)) * rate + static_cast<double>(by);
-                setTime(key, static_cast<float>(std::max(0.0, wholeFrame(at) / rate)));
-                taken.push_back(std::move(key));
-            }
-            for (auto index = which.rbegin(); index != which.rend(); ++index)
-                all.erase(all.begin() + static_cast<std::ptrdiff_t>(*index));
-            for (const std::size_t index : place(all, std::move(taken), frameOf(line)))
-                moved.push_back({track, index});
-        });
-    }
-    return moved;
+    return put(line, keys, false, [&](float time) {
+        const double at = static_cast<double>(time) * rate + static_cast<double>(by);
+        return static_cast<float>(std::max(0.0, wholeFrame(at) / rate));
+    });
 }
 
 std::vector<KeyPlace> copyKeys(TimeLine& line, std::span<const KeyPlace> keys, float time) {
     if (keys.empty()) return {};
     float first = kLatestKey;
     for (const KeyPlace& key : keys) first = std::min(first, keyTime(line, key));
-    std::vector<KeyPlace> copies;
-    for (const KeyTrack& track : tracksIn(keys)) {
-        const std::set<std::size_t> which = indicesOf(keys, track);
-        withKeys(line, track, [&]<class Key>(std::vector<Key>& all) {
-            std::vector<Key> taken;
-            for (const std::size_t index : which) {
-                Key key = all[index];
-                setTime(key, timeOf(key) - first + time);
-                taken.push_back(std::move(key));
-            }
-            for (const std::size_t index : place(all, std::move(taken), frameOf(line)))
-                copies.push_back({track, index});
-        });
-    }
-    return copies;
+    return put(line, keys, true, [&](float was) { return was - first + time; });
 }
 
 void setInterpolation(TimeLine& line, std::span<const KeyPlace> keys, KeyInterpolation interpolation) {

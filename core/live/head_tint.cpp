@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/base/smooth_step.h"
 #include "core/editing/root_grid.h"
-#include "core/operations/strand_frames.h"
 
 namespace hairloom {
 namespace {

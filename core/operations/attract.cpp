@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/smooth_step.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"
 #include "core/operations/strand_frames.h"

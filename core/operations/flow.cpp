@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/smooth_step.h"
 #include "core/operations/head_places.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/base/random.h"
+#include "core/base/smooth_step.h"
 
 namespace hairloom {
 
@@ -313,10 +314,8 @@ float Formula::three(Op op, float a, float b, float c) {
             return std::min(std::max(a, b), c);
         case Op::mix:
             return a + c * (b - a);
-        case Op::smoothstep: {
-            const float t = std::min(std::max((c - a) / (b - a), 0.0f), 1.0f);
-            return t * t * (3 - 2 * t);
-        }
+        case Op::smoothstep:
+            return smoothStep(std::min(std::max((c - a) / (b - a), 0.0f), 1.0f));
         case Op::choose:
             return a != 0 ? b : c;
         default:

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/base/smooth_step.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"
 #include "core/operations/strand_frames.h"

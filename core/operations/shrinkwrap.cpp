@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/base/smooth_step.h"
 #include "core/operations/lay_along.h"
 #include "core/operations/operation.h"
 #include "core/operations/strand_frames.h"

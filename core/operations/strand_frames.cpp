@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "core/base/smooth_step.h"
 #include "core/geometry/curve.h"
 
 namespace hairloom {
@@ -57,8 +58,7 @@ Vec3f waveAt(std::uint64_t stream, float x) {
         const float b = random.uniform(-1, 1);
         return Vec3f(a, b, random.uniform(-1, 1));
     };
-    const float t = x - cell;
-    const float smooth = t * t * (3 - 2 * t);
+    const float smooth = smoothStep(x - cell);
     return corner(cell) * (1 - smooth) + corner(cell + 1) * smooth;
 }
 

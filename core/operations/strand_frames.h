@@ -24,10 +24,6 @@ std::vector<StrandFrame> strandFrames(std::span<const Vec3f> points, const Vec3f
 /// Smooth random waves: value noise with a smooth step between the integers; each component in [−1, 1].
 Vec3f waveAt(std::uint64_t stream, float x);
 
-inline float smoothStep(float low, float high, float x) {
-    const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3 - 2 * t);
-}
 inline Vec3f unitOr(const Vec3f& v, const Vec3f& fallback) {
     constexpr float kTiny = 1e-6f;
     const float norm = v.norm();

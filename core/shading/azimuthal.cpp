@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/smooth_step.h"
 #include "core/shading/cubic.h"
 
 namespace hairloom::shading {
@@ -138,8 +139,7 @@ struct EllipticIors {
 };
 
 double smoothstep(double low, double high, double x) {
-    const double t = std::clamp((x - low) / std::max(high - low, 1e-6), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
+    return smoothStep(std::clamp((x - low) / std::max(high - low, 1e-6), 0.0, 1.0));
 }
 
 }  // namespace

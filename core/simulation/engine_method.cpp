@@ -119,17 +119,17 @@ runtime::Host applicationHost() {
 }
 
 Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
-    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair) {
+    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume) {
     auto made = runtime::Engine::make(scene.strands(), scene.groom().simulation, applicationHost());
     if (!made.engine) return fail(made.error);
     std::optional<runtime::HairVolume> volume;
-    if (hairHair) {
+    if (hairVolume) {
         if (!TakesVelocities<runtime::Engine>) {
             return fail(
                 "the strand engine does not take external velocities, which hair-hair collision needs",
                 "expected a run without it");
         }
-        auto grid = runtime::HairVolume::make(*hairHair, applicationHost());
+        auto grid = runtime::HairVolume::make(*hairVolume, applicationHost());
         if (!grid.volume) return fail(grid.error);
         volume.emplace(std::move(*grid.volume));
     }

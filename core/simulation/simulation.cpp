@@ -12,11 +12,11 @@ namespace {
 
 Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const SimulationOptions& options) {
     if (options.backend) {
-        if (options.method == SimulationMethod::strands) return options.backend(scene, options.hairHair);
+        if (options.method == SimulationMethod::strands) return options.backend(scene, options.hairVolume);
         return fail("only the strand engine runs on the device", "expected the method 'strands'");
     }
-    if (options.method == SimulationMethod::strands) return makeEngineMethod(scene, options.hairHair);
-    if (options.hairHair) {
+    if (options.method == SimulationMethod::strands) return makeEngineMethod(scene, options.hairVolume);
+    if (options.hairVolume) {
         return fail(
             "hair-hair collision needs a method with external velocities, which this one does not have",
             "expected the method 'strands'");

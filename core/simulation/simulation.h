@@ -59,12 +59,12 @@ class SceneInput;
 class StrandMethod;
 /// Makes what moves the strands of a scene (core/simulation/strand_method.h).
 using MethodMaker = std::function<Result<std::unique_ptr<StrandMethod>>(
-    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair)>;
+    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume)>;
 
 struct SimulationOptions {
     SimulationMethod method = SimulationMethod::strands;
     /// Hair against hair between frames; for methods that take velocities.
-    std::optional<runtime::HairVolumeSettings> hairHair = {};
+    std::optional<runtime::HairVolumeSettings> hairVolume = {};
     /// What runs the strand engine, in place of the CPU; empty: the CPU.
     MethodMaker backend = {};
 };

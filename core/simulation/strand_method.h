@@ -61,7 +61,7 @@ class StrandMethod {
 
 /// The strand engine.
 Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
-    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair);
+    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume);
 Result<std::unique_ptr<StrandMethod>> makeProjectiveMethod(const SceneInput& scene);
 Result<std::unique_ptr<StrandMethod>> makeChainMethod(const SceneInput& scene);
 Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene);

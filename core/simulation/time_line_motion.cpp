@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/smooth_step.h"
 #include "core/simulation/clip_motion.h"
 
 namespace hairloom {
@@ -105,7 +106,7 @@ class TimeLineMotion : public HeadMotion {
         // As keys that are smooth: it leaves and arrives without a jolt.
         const float share = since / played.strip.blend;
         return character_->pose(
-            character_->actor().poseBetween(clips_[now - 1].at(time), at, share * share * (3 - 2 * share)));
+            character_->actor().poseBetween(clips_[now - 1].at(time), at, smoothStep(share)));
     }
 
     TimeLine line_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/smooth_step.h"
 #include "editor/fields/field.h"
 #include "editor/fields/number_spin.h"
 
@@ -194,7 +195,7 @@ void KeyCurves::paintCurve(QPainter& painter, const KeyTrack& track, const Curve
         if (between != KeyInterpolation::smooth) continue;
         for (int piece = 1; piece < kPieces; ++piece) {
             const double share = static_cast<double>(piece) / kPieces;
-            const double eased = share * share * (3 - 2 * share);
+            const double eased = smoothStep(share);
             drawn << QPointF(here.x() + share * (next.x() - here.x()),
                              here.y() + eased * (next.y() - here.y()));
         }

@@ -97,7 +97,6 @@ void KeyForm::addFrame() {
     frame->setObjectName("keyFrame");
     frame->setDecimals(0);
     frame->setRange(0, 1e9);
-    frame->setKeyboardTracking(false);
     frame->setButtonSymbols(QAbstractSpinBox::NoButtons);
     connect(frame, &QDoubleSpinBox::valueChanged, this, [this](double value) {
         if (!view_.selection().empty()) view_.moveSelected(std::llround(value) - shownFrame());
@@ -169,7 +168,6 @@ QWidget* KeyForm::number(const QString& name, double min, double max, const QStr
     spin->setDecimals(whole ? 0 : std::max(shown.decimals, unit == "s" ? 3 : 2));
     spin->setRange(min * shown.factor, max * shown.factor);
     if (!shown.unit.isEmpty()) spin->setSuffix(' ' + shown.unit);
-    spin->setKeyboardTracking(false);
     spin->setButtonSymbols(QAbstractSpinBox::NoButtons);
     connect(spin, &QDoubleSpinBox::valueChanged, this, [this, write, shown](double value) {
         edit([&](TimeLine& to) { write(to, value / shown.factor); });

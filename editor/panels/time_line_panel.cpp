@@ -96,7 +96,6 @@ class TimeLinePanel : public QWidget {
         made->setObjectName(name);
         made->setDecimals(decimals);
         made->setRange(0, max);
-        made->setKeyboardTracking(false);
         made->setButtonSymbols(QAbstractSpinBox::NoButtons);
         made->setFixedWidth(64);
         made->setToolTip(tip);

@@ -117,14 +117,11 @@ void Player::takeTimeLine() {
     // What is keyed first plays at once, or says why it cannot; another motion that somebody chose stays.
     if (!had && hasTimeLine_ && motion_ != kTimeLine) {
         if (auto made = makeMotion(kTimeLine); !made) Q_EMIT failed(errorText(made.error()));
-        const bool isShown = !playing_ && (frame_ || scrubbed_);
-        const float shown = lineTime();
-        begin(kTimeLine);
         // Whoever keys the first of all is at the frame that it is for.
-        if (isShown) scrub(shown);
-        return;
+        const bool isShown = !playing_ && (frame_ || scrubbed_);
+        return begin(kTimeLine, isShown ? std::optional(lineTime()) : std::nullopt);
     }
-    if (had && !hasTimeLine_ && motion_ == kTimeLine) return begin("none");
+    if (had && !hasTimeLine_ && motion_ == kTimeLine) return begin("none", playHead());
     if (motion_ != kTimeLine || !captured_) return;
     auto made = makeMotion(motion_);
     if (!made) {
@@ -197,18 +194,16 @@ Result<std::unique_ptr<HeadMotion>> Player::makeMeasuredMotion() const {
 Status Player::setMotion(const QString& name) {
     const auto made = makeMotion(name);
     if (!made) return tl::unexpected(made.error());
-    begin(name);
+    begin(name, playHead());
     return {};
 }
 
-void Player::begin(const QString& motion) {
+void Player::begin(const QString& motion, std::optional<float> playHead) {
     const bool play = playing_;
-    const auto scrubbed = scrubbed_;
     motion_ = motion;
     reset();
     if (play) this->play();
-    // Whoever keys the first of all is at the frame that it is for.
-    if (scrubbed) scrub(scrubbed->time);
+    if (playHead) scrub(*playHead);
     Q_EMIT motionsChanged();
 }
 
@@ -351,7 +346,7 @@ void Player::documentChanged(editing::Part parts) {
     request([&](WorkerRequests& requests) {
         // Engines are made with the body.
         const bool sameBody = !requests.groom || requests.groom->body == groom.body;
-        // Hair against hair runs on the CPU alone.
+        // Hair-hair collision runs on the CPU alone.
         const bool sameEngines =
             !requests.groom || requests.groom->simulation.hairHair == groom.simulation.hairHair;
         if (!sameBody || !sameEngines || followsOther || isMadeWithSettings(method_))

@@ -163,8 +163,12 @@ class Player : public QObject {
     bool capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(editing::Part parts);
-    /// That motion from its start, and goes on playing.
-    void begin(const QString& motion);
+    /// That motion from its start, and goes on playing; the play head is at that time of the line, if any.
+    void begin(const QString& motion, std::optional<float> playHead);
+    /// Where somebody has moved it.
+    std::optional<float> playHead() const {
+        return scrubbed_ ? std::optional(scrubbed_->time) : std::nullopt;
+    }
     /// The time line is another: its motion goes on from where it is.
     void takeTimeLine();
     void setPace(WorkerRequests& requests) const;

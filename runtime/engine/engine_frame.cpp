@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <utility>
 
 #include "engine/checks.h"
 #include "engine/engine_impl.h"
+#include "engine/in_parallel.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -96,8 +96,7 @@ void Engine::Impl::forBlocks(const std::function<void(std::size_t)>& each) {
     const auto run = [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) each(b);
     };
-    host_.parallelFor ? host_.parallelFor(shape_->blocks.size(), kBlocksPerJob, run)
-                      : run(0, shape_->blocks.size());
+    inParallel(host_, shape_->blocks.size(), kBlocksPerJob, run);
 }
 
 void Engine::Impl::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
@@ -418,19 +417,12 @@ void Engine::Impl::step(const FrameInput& input) {
 }
 
 void Engine::Impl::runBlocks(const Frame& frame) {
-    const std::size_t blocks = shape_->blocks.size();
     const auto run = [&](std::size_t first, std::size_t end) {
         Scratch::Piece& piece = scratch_.take();
         for (std::size_t b = first; b < end; ++b) runBlock(b, piece.lanes, frame);
         piece.taken.store(false, std::memory_order_release);
     };
-    if (host_.parallelFor) {
-        // By reference: a std::function that copied the captures could allocate.
-        const Host::Body body = std::ref(run);
-        host_.parallelFor(blocks, kBlocksPerJob, body);
-    } else {
-        run(0, blocks);
-    }
+    inParallel(host_, shape_->blocks.size(), kBlocksPerJob, run);
 }
 
 void Engine::Impl::sumReports() {

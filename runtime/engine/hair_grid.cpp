@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
+
+#include "engine/in_parallel.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -55,9 +56,7 @@ void HairGrid::forEach(const Host& host, std::size_t count, std::size_t grain, c
     const auto run = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) body(i);
     };
-    // By reference: a std::function that copied the captures would allocate.
-    const Host::Body all = std::ref(run);
-    host.parallelFor ? host.parallelFor(count, grain, all) : all(0, count);
+    inParallel(host, count, grain, run);
 }
 
 HairBlock HairGrid::blockOf(const RestShape& shape, const State& state, std::size_t index) {
@@ -168,7 +167,7 @@ void HairGrid::update(const RestShape& shape, const State& state, const Floats& 
                            at[2 * block.pitch] - at[5 * block.pitch]};
         if (isFinite(moved)) frame_.reference = moved * frame_.rate;
     }
-    bool same = sleepersCounted_ && before == head_;
+    bool same = work_.sleepersCounted && before == head_;
     for (std::size_t b = 0; same && b < blocks; ++b) same = (counted_[b] != 0) == state.rests[b].asleep;
     locate(shape, state, !same, host);
     const HairBox box = chooseBox(box_);
@@ -176,28 +175,28 @@ void HairGrid::update(const RestShape& shape, const State& state, const Floats& 
     frame_.box = box_ = box;
     if (box_.nodes() == 0) {
         std::fill(felt_.begin(), felt_.end(), 0.0f);
-        sleepersCounted_ = false;
+        work_.sleepersCounted = false;
         return;
     }
     if (!same) {
-        anySleep_ = false;
+        work_.anySleep = false;
         for (std::size_t b = 0; b < blocks; ++b) {
             counted_[b] = state.rests[b].asleep ? 1 : 0;
-            anySleep_ = anySleep_ || state.rests[b].asleep;
+            work_.anySleep = work_.anySleep || state.rests[b].asleep;
         }
-        if (anySleep_) {
+        if (work_.anySleep) {
             sum(shape, state, true, host);
-            std::swap(sleepers_, slots_[0]);
+            std::swap(work_.sleepers, work_.slots[0]);
         }
-        sleepersCounted_ = true;
+        work_.sleepersCounted = true;
     }
     sum(shape, state, false, host);
-    compressed_ = findCompression(settings, host);
-    if (compressed_) relax(kHairPressure * settings.hairHairStrength * time * time / (cell_ * cell_));
+    work_.compressed = findCompression(settings, host);
+    if (work_.compressed) relax(kHairPressure * settings.hairHairStrength * time * time / (cell_ * cell_));
     setFields(settings, time, host);
     const auto& press = hairKernels().press;
     forEach(host, blocks, kHairBlocksPerPiece, [&](std::size_t b) {
-        if (!state.rests[b].asleep) press(blockOf(shape, state, b), frame_, fields_.data());
+        if (!state.rests[b].asleep) press(blockOf(shape, state, b), frame_, work_.fields.data());
     });
 }
 
@@ -206,43 +205,43 @@ void HairGrid::update(const RestShape& shape, const State& state, const Floats& 
 void HairGrid::sum(const RestShape& shape, const State& state, bool sleepers, const Host& host) {
     const std::size_t blocks = shape.blocks.size(), sums = box_.nodes() * kHairSums;
     const auto& deposit = hairKernels().deposit;
-    used_ = {};
+    work_.used = {};
     forEach(host, kSlots, 1, [&](std::size_t piece) {
         const std::size_t begin = blocks * piece / kSlots, end = blocks * (piece + 1) / kSlots;
         if (begin == end) return;
         std::size_t slot = 0;
-        while (taken_[slot].exchange(true, std::memory_order_acquire)) slot = (slot + 1) % kSlots;
-        if (!used_[slot]) std::fill_n(slots_[slot].begin(), sums, 0.0);
-        used_[slot] = true;
+        while (work_.taken[slot].exchange(true, std::memory_order_acquire)) slot = (slot + 1) % kSlots;
+        if (!work_.used[slot]) std::fill_n(work_.slots[slot].begin(), sums, 0.0);
+        work_.used[slot] = true;
         for (std::size_t b = begin; b < end; ++b) {
             if (state.rests[b].asleep == sleepers)
-                deposit(blockOf(shape, state, b), frame_, slots_[slot].data());
+                deposit(blockOf(shape, state, b), frame_, work_.slots[slot].data());
         }
-        taken_[slot].store(false, std::memory_order_release);
+        work_.taken[slot].store(false, std::memory_order_release);
     });
     std::array<const double*, kSlots + 1> others{};
     std::size_t count = 0;
     for (std::size_t s = 1; s < kSlots; ++s) {
-        if (used_[s]) others[count++] = slots_[s].data();
+        if (work_.used[s]) others[count++] = work_.slots[s].data();
     }
-    if (!sleepers && anySleep_) others[count++] = sleepers_.data();
-    if (!used_[0]) std::fill_n(slots_[0].begin(), sums, 0.0);
+    if (!sleepers && work_.anySleep) others[count++] = work_.sleepers.data();
+    if (!work_.used[0]) std::fill_n(work_.slots[0].begin(), sums, 0.0);
     if (count == 0) return;
     const auto slices = static_cast<std::size_t>(box_.size[2]), slice = sums / slices;
     forEach(host, slices, 2, [&](std::size_t z) {
-        double* const to = slots_[0].data();
+        double* const to = work_.slots[0].data();
         for (std::size_t s = 0; s < count; ++s) {
             for (std::size_t i = z * slice; i < (z + 1) * slice; ++i) to[i] += others[s][i];
         }
     });
 }
 
-/// How much denser than authored the hair will be: `excess_`, pressure by that alone. False where it is
+/// How much denser than authored the hair will be: `Work::excess`, pressure by that alone. False where it is
 /// nowhere.
 bool HairGrid::findCompression(const SimulationSettings& settings, const Host& host) {
     const auto row = static_cast<std::size_t>(box_.size[0]), rows = static_cast<std::size_t>(box_.size[1]),
                slices = static_cast<std::size_t>(box_.size[2]);
-    const double* const sums = slots_[0].data();
+    const double* const sums = work_.slots[0].data();
     const float most = kHairPressure * settings.hairHairStrength;
     std::atomic<bool> any = false;
     forEach(host, slices * rows, 2 * rows, [&](std::size_t line) {
@@ -252,13 +251,13 @@ bool HairGrid::findCompression(const SimulationSettings& settings, const Host& h
         const auto first = static_cast<std::ptrdiff_t>((z * restBox_.size[1] + y) * restBox_.size[0]);
         bool found = false;
         for (std::size_t i = line * row; i < (line + 1) * row; ++i) {
-            dense_[i] = static_cast<float>(sums[i * kHairSums]) * shareUnit_;
+            work_.dense[i] = static_cast<float>(sums[i * kHairSums]) * shareUnit_;
             const auto x = static_cast<std::int32_t>(i - line * row) + box_.low[0] - restBox_.low[0];
             const float allowed = authored && x >= 0 && x < restBox_.size[0]
                                       ? allowed_[static_cast<std::size_t>(first + x)]
                                       : 1.0f;
-            excess_[i] = most * std::max(dense_[i] - allowed * (1.0f + kDensitySlack), 0.0f);
-            found = found || excess_[i] > 0.0f;
+            work_.excess[i] = most * std::max(work_.dense[i] - allowed * (1.0f + kDensitySlack), 0.0f);
+            found = found || work_.excess[i] > 0.0f;
         }
         if (found) any.store(true, std::memory_order_relaxed);
     });
@@ -269,23 +268,25 @@ bool HairGrid::findCompression(const SimulationSettings& settings, const Host& h
 /// `stiffness` over cells. By Jacobi's iteration with Chebyshev's weights, whose first steps are stable, too:
 /// what is left over is softer. Of p √ρ, so that the equation is symmetric and needs one array.
 void HairGrid::relax(float stiffness) {
+    Floats &dense = work_.dense, &bias = work_.bias, &gain = work_.gain, &pressure = work_.pressure,
+           &before = work_.before;
     const auto row = static_cast<std::size_t>(box_.size[0]),
                slice = row * static_cast<std::size_t>(box_.size[1]);
     const std::size_t nodes = box_.nodes();
-    for (std::size_t i = 0; i < nodes; ++i) dense_[i] = std::min(std::sqrt(dense_[i]), kMostDense);
-    std::fill_n(gain_.begin(), nodes, 0.0f);
-    std::fill_n(pressure_.begin(), nodes, 0.0f);
-    std::fill_n(before_.begin(), nodes, 0.0f);
+    for (std::size_t i = 0; i < nodes; ++i) dense[i] = std::min(std::sqrt(dense[i]), kMostDense);
+    std::fill_n(gain.begin(), nodes, 0.0f);
+    std::fill_n(pressure.begin(), nodes, 0.0f);
+    std::fill_n(before.begin(), nodes, 0.0f);
     float most = 0.0f;
-    std::fill_n(bias_.begin(), nodes, 0.0f);
+    std::fill_n(bias.begin(), nodes, 0.0f);
     for (std::size_t z = 0; z < static_cast<std::size_t>(box_.size[2]); ++z) {
         forInner(box_, z, [&](std::size_t i) {
-            const float s = dense_[i];
-            const float around = dense_[i - 1] + dense_[i + 1] + dense_[i - row] + dense_[i + row] +
-                                 dense_[i - slice] + dense_[i + slice];
+            const float s = dense[i];
+            const float around = dense[i - 1] + dense[i + 1] + dense[i - row] + dense[i + row] +
+                                 dense[i - slice] + dense[i + slice];
             const float coupled = stiffness * s * around, inverse = 1.0f / (1.0f + coupled);
-            gain_[i] = stiffness * s * s * inverse;
-            bias_[i] = excess_[i] * s * inverse;
+            gain[i] = stiffness * s * s * inverse;
+            bias[i] = work_.excess[i] * s * inverse;
             most = std::max(most, coupled * inverse);
         });
     }
@@ -298,12 +299,12 @@ void HairGrid::relax(float stiffness) {
     for (int k = 0; k < steps; ++k) {
         if (k == 1) speed = 2.0f / (2.0f - most * most);
         if (k > 1) speed = 4.0f / (4.0f - most * most * speed);
-        relaxNodes({bias_.data(), gain_.data(), pressure_.data(), before_.data(), slice, nodes - slice, row,
+        relaxNodes({bias.data(), gain.data(), pressure.data(), before.data(), slice, nodes - slice, row,
                     slice, speed});
-        std::swap(pressure_, before_);
+        std::swap(pressure, before);
     }
     for (std::size_t i = 0; i < nodes; ++i)
-        pressure_[i] = dense_[i] > 0.0f ? std::max(pressure_[i], 0.0f) / dense_[i] : 0.0f;
+        pressure[i] = dense[i] > 0.0f ? std::max(pressure[i], 0.0f) / dense[i] : 0.0f;
 }
 
 /// What points read.
@@ -311,14 +312,14 @@ void HairGrid::setFields(const SimulationSettings& settings, float time, const H
     const auto row = static_cast<std::size_t>(box_.size[0]),
                slice = row * static_cast<std::size_t>(box_.size[1]),
                slices = static_cast<std::size_t>(box_.size[2]);
-    const double* const sums = slots_[0].data();
+    const double* const sums = work_.slots[0].data();
     const std::array<Float3, 3> outward = rowsOf(head_.rotation);
     const float limit = kMostPush * cell_ / (time * time);
     const float firm = 1.0f / std::max(kHairPressure * settings.hairHairStrength * kFirmCompression, 1e-6f);
     const std::size_t steps[] = {1, row, slice};
     forEach(host, slices, 2, [&](std::size_t z) {
         for (std::size_t i = z * slice; i < (z + 1) * slice; ++i) {
-            float* const field = fields_.data() + i * kHairFields;
+            float* const field = work_.fields.data() + i * kHairFields;
             std::fill_n(field, kHairFields, 0.0f);
             const double* const sum = sums + i * kHairSums;
             if (!(sum[0] > 0.0)) continue;
@@ -327,17 +328,18 @@ void HairGrid::setFields(const SimulationSettings& settings, float time, const H
             for (std::size_t axis = 0; axis < 3; ++axis)
                 field[kFieldVelocity + axis] = static_cast<float>(sum[1 + axis] * speed);
         }
-        if (!compressed_) return;
+        if (!work_.compressed) return;
         forInner(box_, z, [&](std::size_t i) {
-            float* const field = fields_.data() + i * kHairFields;
+            float* const field = work_.fields.data() + i * kHairFields;
             if (!(field[kFieldDensity] > 0.0f)) return;
             float push[3];
             for (std::size_t axis = 0; axis < 3; ++axis)
-                push[axis] = (pressure_[i - steps[axis]] - pressure_[i + steps[axis]]) * (0.5f / cell_);
+                push[axis] =
+                    (work_.pressure[i - steps[axis]] - work_.pressure[i + steps[axis]]) * (0.5f / cell_);
             Float3 own = times(outward, {push[0], push[1], push[2]});
             const float size = length(own);
             if (size > limit) own = own * (limit / size);
-            const float slows = kSlowing * std::min(pressure_[i] * firm, 1.0f);
+            const float slows = kSlowing * std::min(work_.pressure[i] * firm, 1.0f);
             const std::size_t y = i % slice / row, x = i % row;
             const Float3 place{static_cast<float>(x) + static_cast<float>(box_.low[0]),
                                static_cast<float>(y) + static_cast<float>(box_.low[1]),

@@ -31,10 +31,6 @@ inline Float3 hairRootAt(const Floats& rows, std::size_t block, std::uint32_t la
 /// go on with the same bits. Sums are of whole numbers: their order does not matter.
 class HairGrid {
   public:
-    HairGrid() = default;
-    HairGrid(const HairGrid& other) { *this = other; }
-    HairGrid& operator=(const HairGrid& other);
-
     /// Takes all its memory, and counts the authored hair; none where the settings do not ask for it.
     void take(const RestShape& shape, const SimulationSettings& settings, const Host& host);
     bool isOn() const { return !share_.empty(); }
@@ -46,7 +42,7 @@ class HairGrid {
     void update(const RestShape& shape, const State& state, const Floats& nextRoots,
                 const SimulationSettings& settings, float h, std::uint32_t count, const Host& host);
     /// Sleepers have moved, or are others.
-    void forget() { sleepersCounted_ = false; }
+    void forget() { work_.sleepersCounted = false; }
     void show(const Block& block, BlockView& view) const;
     std::size_t bytes() const;
 
@@ -63,10 +59,32 @@ class HairGrid {
         Float3 velocity, spin;  ///< m/s, 1/s
     };
 
+    /// What each frame fills anew: a copy has as much of it, with nothing in it.
+    struct Work {
+        Work() = default;
+        Work(const Work& other) { take(other.nodes()); }
+        Work& operator=(const Work& other);
+        /// Not touched before it is used.
+        void take(std::size_t nodes);
+        std::size_t nodes() const { return fields.size() / kHairFields; }
+        std::size_t bytes() const;
+
+        std::array<Sums, kSlots> slots;
+        std::array<std::atomic<bool>, kSlots> taken{};
+        std::array<bool, kSlots> used{};
+        Sums sleepers;  ///< of the blocks of `counted_`
+        bool sleepersCounted = false;
+        bool anySleep = false;
+        bool compressed = false;
+        /// Of each node: density and then its √, pressure by it alone, and the equation of the pressure
+        /// (relax()).
+        Floats dense, excess, bias, gain, pressure, before;
+        Floats fields;  ///< kHairFields of each node
+    };
+
     template <class Body>
     static void forEach(const Host& host, std::size_t count, std::size_t grain, const Body& body);
     void count(const RestShape& shape, double lengths, const Host& host);
-    void takeNodes(bool any);
     void scaleShares(double scale);
     void keepDensity(const RestShape& shape);
     Head headAt(const RestShape& shape, const Floats& roots) const;
@@ -91,18 +109,8 @@ class HairGrid {
     Floats places_;   ///< per block: x, y, z in cells
     Floats felt_;     ///< kHairPlanes per block
     std::vector<HairBounds> bounds_;
-    std::array<Sums, kSlots> slots_;
-    std::array<std::atomic<bool>, kSlots> taken_{};
-    std::array<bool, kSlots> used_{};
-    Sums sleepers_;                      ///< of the blocks of `counted_`
-    std::vector<std::uint8_t> counted_;  ///< per block: asleep, and in `sleepers_`
-    bool sleepersCounted_ = false;
-    bool anySleep_ = false;
-    bool compressed_ = false;
-    /// Of each node: density and then its √, pressure by it alone, and the equation of the pressure
-    /// (relax()).
-    Floats dense_, excess_, bias_, gain_, pressure_, before_;
-    Floats fields_;  ///< kHairFields of each node
+    std::vector<std::uint8_t> counted_;  ///< per block: asleep, and in `Work::sleepers`
+    Work work_;
 };
 
 }  // namespace hairloom::runtime

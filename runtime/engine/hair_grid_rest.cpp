@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the grid of hair against hair knows of the authored hair.
+// What the grid of hair-hair collision knows of the authored hair.
 #include <algorithm>
 #include <cmath>
 
@@ -19,25 +19,22 @@ constexpr std::size_t kSampledRoots = 64;
 
 }  // namespace
 
-HairGrid& HairGrid::operator=(const HairGrid& other) {
-    if (this == &other) return *this;
-    cell_ = other.cell_;
-    shareUnit_ = other.shareUnit_;
-    restBox_ = other.restBox_;
-    box_ = other.box_;
-    head_ = other.head_;
-    motion_ = other.motion_;
-    frame_ = other.frame_;
-    share_ = other.share_;
-    allowed_ = other.allowed_;
-    places_ = other.places_;
-    felt_ = other.felt_;
-    bounds_ = other.bounds_;
-    counted_ = other.counted_;
-    sleepersCounted_ = false;
-    anySleep_ = false;
-    takeNodes(!other.fields_.empty());
+HairGrid::Work& HairGrid::Work::operator=(const Work& other) {
+    if (this != &other) take(other.nodes());
     return *this;
+}
+
+void HairGrid::Work::take(std::size_t nodes) {
+    for (Sums& slot : slots) slot = Sums(nodes * kHairSums);
+    sleepers = Sums(nodes * kHairSums);
+    for (Floats* const each : {&dense, &excess, &bias, &gain, &pressure, &before}) *each = Floats(nodes);
+    fields = Floats(nodes * kHairFields);
+    sleepersCounted = anySleep = compressed = false;
+}
+
+std::size_t HairGrid::Work::bytes() const {
+    const std::size_t sums = (kSlots + 1) * sleepers.size(), floats = 6 * dense.size() + fields.size();
+    return sums * sizeof(double) + floats * sizeof(float);
 }
 
 void HairGrid::take(const RestShape& shape, const SimulationSettings& settings, const Host& host) {
@@ -50,7 +47,6 @@ void HairGrid::take(const RestShape& shape, const SimulationSettings& settings, 
     felt_ = zeroFloats(kHairPlanes * shape.planeFloats, host);
     bounds_.assign(shape.blocks.size(), {});
     counted_.assign(shape.blocks.size(), 0);
-    sleepersCounted_ = anySleep_ = compressed_ = false;
     // A cell holds several strands at their roots, and no segment reaches over the next one.
     Float3 low{1e30f, 1e30f, 1e30f}, high = low * -1.0f;
     for (const RootFrame& root : shape.restRoots) {
@@ -79,16 +75,6 @@ void HairGrid::take(const RestShape& shape, const SimulationSettings& settings, 
                 ? std::max(settings.hairHairCell, 0.001f)
                 : std::clamp(std::max(2.0f * spacing, 1.5f * segment), 0.005f, 0.05f);
     count(shape, lengths, host);
-}
-
-/// Not touched before it is used.
-void HairGrid::takeNodes(bool any) {
-    const std::size_t nodes = any ? kMostHairNodes : 0;
-    for (Sums& slot : slots_) slot = Sums(nodes * kHairSums);
-    sleepers_ = Sums(nodes * kHairSums);
-    for (Floats* const each : {&dense_, &excess_, &bias_, &gain_, &pressure_, &before_})
-        *each = Floats(nodes);
-    fields_ = Floats(nodes * kHairFields);
 }
 
 /// The authored hair, in the space of the head at rest.
@@ -122,7 +108,7 @@ void HairGrid::count(const RestShape& shape, double lengths, const Host& host) {
             }
         }
     }
-    takeNodes(true);
+    work_.take(kMostHairNodes);
     head_ = headAt(shape, rest.roots);
     frame_ = {};
     for (;; cell_ *= 1.25f) {
@@ -138,7 +124,7 @@ void HairGrid::count(const RestShape& shape, double lengths, const Host& host) {
     sum(shape, rest, false, host);
     allowed_.resize(box_.nodes());
     for (std::size_t i = 0; i < allowed_.size(); ++i)
-        allowed_[i] = std::max(static_cast<float>(slots_[0][i * kHairSums]) * shareUnit_, 1.0f);
+        allowed_[i] = std::max(static_cast<float>(work_.slots[0][i * kHairSums]) * shareUnit_, 1.0f);
 }
 
 void HairGrid::scaleShares(double scale) {
@@ -147,7 +133,7 @@ void HairGrid::scaleShares(double scale) {
 
 /// Makes each point's length of hair its share of the density that it keeps, which is authored where it is.
 void HairGrid::keepDensity(const RestShape& shape) {
-    const double* const sums = slots_[0].data();
+    const double* const sums = work_.slots[0].data();
     double squares = 0.0, masses = 0.0;
     for (std::size_t i = 0; i < box_.nodes(); ++i) {
         const double mass = sums[i * kHairSums];
@@ -216,13 +202,8 @@ HairGrid::Head HairGrid::headAt(const RestShape& shape, const Floats& roots) con
 }
 
 std::size_t HairGrid::bytes() const {
-    std::size_t sums = sleepers_.size();
-    for (const Sums& slot : slots_) sums += slot.size();
-    std::size_t floats = share_.size() + allowed_.size() + places_.size() + felt_.size() + fields_.size();
-    for (const Floats* const each : {&dense_, &excess_, &bias_, &gain_, &pressure_, &before_})
-        floats += each->size();
-    return sums * sizeof(double) + floats * sizeof(float) + bounds_.size() * sizeof(HairBounds) +
-           counted_.size();
+    const std::size_t floats = share_.size() + allowed_.size() + places_.size() + felt_.size();
+    return work_.bytes() + floats * sizeof(float) + bounds_.size() * sizeof(HairBounds) + counted_.size();
 }
 
 }  // namespace hairloom::runtime

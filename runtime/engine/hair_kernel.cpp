@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Inner loops of hair against hair, compiled once for each instruction set.
+// Inner loops of hair-hair collision, compiled once for each instruction set.
 #include "engine/hair_kernel.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The inner loops of hair against hair (engine/hair_grid.h), compiled once for each instruction set.
+// The inner loops of hair-hair collision (engine/hair_grid.h), compiled once for each instruction set.
 
 #include <cstddef>
 #include <cstdint>

@@ -7,8 +7,12 @@
 #include <numeric>
 #include <span>
 
+#include "engine/in_parallel.h"
+
 namespace hairloom::runtime {
 namespace {
+
+constexpr std::size_t kStrandsPerPiece = 256;
 
 /// The most lanes of a vector or block that a part of `count` strands can fill.
 std::size_t unitOf(std::size_t count) {
@@ -64,12 +68,6 @@ bool bends(std::span<const Float3> points) {
     return false;
 }
 
-/// On the host's threads, if it has any.
-void inPieces(const Host& host, std::size_t count, const Host::Body& body) {
-    constexpr std::size_t kPiece = 256;
-    host.parallelFor ? host.parallelFor(count, kPiece, body) : body(0, count);
-}
-
 /// In blocks of equal point counts; straight strands and others apart, so that each block pays for what it
 /// needs.
 std::vector<Block> groupStrands(const StrandsView& strands, const Host& host, bool& straight) {
@@ -78,7 +76,7 @@ std::vector<Block> groupStrands(const StrandsView& strands, const Host& host, bo
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     std::vector<std::uint32_t> kind(count);  // twice the points, and one more where the strand bends
-    inPieces(host, count, [&](std::size_t begin, std::size_t end) {
+    inParallel(host, count, kStrandsPerPiece, [&](std::size_t begin, std::size_t end) {
         for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s) {
             const bool curved = bends(strands.restPositions_ss.subspan(strands.offsets[s], pointsOf(s)));
             kind[s] = 2 * pointsOf(s) + (curved ? 1 : 0);
@@ -210,7 +208,7 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const
     shape->planeFloats = shape->blocks.back().firstPlane + planeSize(shape->blocks.back());
     shape->planes = zeroFloats(shape->planeFloats * kRestPlanes, host);
     std::vector<float> longest(shape->blocks.size());
-    inPieces(host, longest.size(), [&](std::size_t begin, std::size_t end) {
+    inParallel(host, longest.size(), kStrandsPerPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
             longest[b] = fillRestPlanes(strands, shape->blocks[b], *shape);
     });

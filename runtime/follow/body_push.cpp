@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 
 #include "engine/body_free.h"
+#include "engine/in_parallel.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -193,11 +193,7 @@ void BodyPush::apply(std::span<const BonePose> pose, std::span<Float3> points_ws
         }
     };
     const std::size_t hairs = offsets_.empty() ? 0 : offsets_.size() - 1;
-    if (host.parallelFor) {
-        host.parallelFor(hairs, kPushedPerJob, std::cref(push));
-    } else {
-        push(0, hairs);
-    }
+    inParallel(host, hairs, kPushedPerJob, push);
 }
 
 }  // namespace hairloom::runtime

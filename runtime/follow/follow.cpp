@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <utility>
 #include <vector>
 
+#include "engine/in_parallel.h"
 #include "engine/state.h"
 #include "follow/follow_kernels.h"
 
@@ -156,16 +156,6 @@ void storePlane(const RootPlane& plane, Quat turn, float* frame) {
     for (std::size_t axis = 0; axis < 3; ++axis) std::memcpy(frame + 4 * axis, &axes[axis], sizeof(Float3));
 }
 
-template <class Body>
-void forPieces(const Host& host, std::size_t count, std::size_t grain, const Body& body) {
-    // A reference fits into std::function without allocation.
-    if (host.parallelFor) {
-        host.parallelFor(count, grain, std::cref(body));
-    } else {
-        body(std::size_t{0}, count);
-    }
-}
-
 /// As evaluateSome() takes them.
 bool areGroups(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> taken,
                std::size_t hairs) {
@@ -186,11 +176,11 @@ template <class Body>
 void forTaken(const Host& host, std::span<const std::uint32_t> groups, std::span<const std::uint32_t> taken,
               const Body& body) {
     if (taken.back() == groups.back()) {
-        forPieces(host, groups.back(), kHairsPerJob,
-                  [&](std::size_t begin, std::size_t end) { body(begin, begin, end - begin); });
+        inParallel(host, groups.back(), kHairsPerJob,
+                   [&](std::size_t begin, std::size_t end) { body(begin, begin, end - begin); });
         return;
     }
-    forPieces(host, groups.size() - 1, kGuidesPerJob, [&](std::size_t begin, std::size_t end) {
+    inParallel(host, groups.size() - 1, kGuidesPerJob, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) body(groups[g], taken[g], taken[g + 1] - taken[g]);
     });
 }
@@ -299,8 +289,8 @@ bool FollowHairs::Impl::takes(const GuideMotion& guides, std::span<const std::ui
 GuideRows FollowHairs::Impl::placeGuides(const GuideMotion& guides, const Host& host) {
     const GuideRows rows{points,           rowFloats,    radii.data(), guides.wispSpread,
                          positions.data(), wisps.data(), frames.data()};
-    forPieces(host, guideCount(), kGuidesPerJob,
-              [&](std::size_t begin, std::size_t end) { fillGuides(guides, rows, begin, end); });
+    inParallel(host, guideCount(), kGuidesPerJob,
+               [&](std::size_t begin, std::size_t end) { fillGuides(guides, rows, begin, end); });
     return rows;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/in_parallel.h"
 #include "hairloom/random.h"
 
 namespace hairloom::runtime {
@@ -137,10 +138,7 @@ DrawnHairs drawFollowHairs(const FollowRecipe& recipe, const Host& host) {
                          hairs);
         }
     };
-    if (host.parallelFor)
-        host.parallelFor(guides, kGuidesPerPiece, draw);
-    else
-        draw(0, guides);
+    inParallel(host, guides, kGuidesPerPiece, draw);
     return hairs;
 }
 

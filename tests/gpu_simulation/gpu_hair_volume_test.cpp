@@ -30,7 +30,7 @@ class Volume : public GpuSimulationTest {
                                 const std::optional<runtime::HairVolumeSettings>& volume,
                                 StrandStorage storage = StrandStorage::threads) {
         EngineOptions with = options({storage, false});
-        with.hairHair = volume;
+        with.hairVolume = volume;
         StrandEngine engine = engineOf(scene.view(), scene.settings, with);
         EXPECT_TRUE(engine.writeState(scene.state));
         const auto stepped = engine.step(scene.input());
@@ -81,8 +81,8 @@ TEST_F(Volume, SumsDoNotDependOnTheOrder) {
 
 TEST_F(Volume, IsRefusedInWordsOutsideItsRange) {
     EngineOptions with = options();
-    with.hairHair.emplace();
-    with.hairHair->cellSize = 0.0f;
+    with.hairVolume.emplace();
+    with.hairVolume->cellSize = 0.0f;
     const test::Scene hair = scene();
     const auto made = StrandEngine::make(*device(), library(), hair.view(), hair.settings, with);
     ASSERT_FALSE(made);

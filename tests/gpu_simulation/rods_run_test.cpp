@@ -298,12 +298,12 @@ TEST_F(RodRun, TheModelMayChange) {
 TEST_F(RodRun, PushesBetweenFrames) {
     const StrandSet strands = curls(40, 12);
     EngineOptions with = options();
-    with.hairHair.emplace();
-    with.hairHair->targetDensity = 1e4f;
-    with.hairHair->repulsion = 2.0f;
-    with.hairHair->friction = 40.0f;
+    with.hairVolume.emplace();
+    with.hairVolume->targetDensity = 1e4f;
+    with.hairVolume->repulsion = 2.0f;
+    with.hairVolume->friction = 40.0f;
     Both both(strands, rods(), with);
-    auto volume = runtime::HairVolume::make(*with.hairHair);
+    auto volume = runtime::HairVolume::make(*with.hairVolume);
     ASSERT_TRUE(volume.volume);
     std::vector<Float3> positions(both.cpu.pointCount()), before(positions), after(positions);
     for (int f = 0; f < 10; ++f) {

@@ -6,8 +6,8 @@
 // Stack: at most kStackBytes in any call, of the thread that makes it and of those that Host::parallelFor
 // lends.
 //
-// docs/engine.md has the model in symbols. Does not do: hair against hair (alternatives/hair_volume.h does,
-// between frames), twist of a strand about itself, collision between points.
+// docs/engine.md has the model in symbols. Hair meets hair on a grid alone, and only rods do
+// (SimulationSettings::hairHair): single strands pass through each other.
 
 #include <array>
 #include <cstdint>
@@ -108,7 +108,7 @@ class Engine {
     /// strand.
     bool step(const FrameInput& input);
 
-    /// Changes velocities between frames, as hair against hair does (alternatives/hair_volume.h): one change
+    /// Changes velocities between frames, as a HairVolume does (alternatives/hair_volume.h): one change
     /// in m/s per point, in the order of make(). Those of clamped points and those that are not finite are
     /// left out. Strands that are changed wake up. Before the first step it does nothing.
     bool addVelocities(std::span<const Float3> changes_ws);

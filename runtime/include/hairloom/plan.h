@@ -29,7 +29,7 @@ struct PlanInput {
                                ///< infinite where nobody knows
     std::uint32_t asleep = 0;  ///< strands at rest
     float restTime = 0.0f;     ///< seconds for which all strands have been at rest
-    float hairCell = 0.0f;     ///< metres, of the cells of hair against hair; 0 where nobody counts hair
+    float hairCell = 0.0f;     ///< metres, of the cells of hair-hair collision; 0 without
 };
 
 struct Decision {

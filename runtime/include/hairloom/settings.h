@@ -153,10 +153,10 @@ struct SimulationSettings {
     /// Hz, 1 … 10000. Stiffness of penalty springs: higher penetrates less and needs shorter time steps.
     float penaltyFrequency = 100.0f;
 
-    // --- Hair against hair ---
+    // --- Hair-hair collision ---
     /// Rods resist being pressed closer together than authored, and rub on the hair around them.
     bool hairHair = false;
-    /// 0 … 1. Resistance to compression: 0 is off, 1 carries about a metre of hair. A pressure of 40 m²/s² at
+    /// 0 … 1. Resistance to compression: 0 is off, 1 carries about a metre of hair. A pressure of 36 m²/s² at
     /// twice the authored density.
     float hairHairStrength = 0.5f;
     /// m/s², 0 … 100. Deceleration by friction against the hair around.

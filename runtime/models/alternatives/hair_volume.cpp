@@ -5,9 +5,9 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <functional>
 
 #include "engine/checks.h"
+#include "engine/in_parallel.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -79,13 +79,7 @@ void HairVolume::forChunks(std::size_t count, const Body& body) {
             body(c, count * c / kChunks, count * (c + 1) / kChunks);
         }
     };
-    // By reference: a std::function that copied the captures would allocate.
-    const Host::Body all = std::ref(chunks);
-    if (host_.parallelFor) {
-        host_.parallelFor(kChunks, 1, all);
-    } else {
-        all(0, kChunks);
-    }
+    inParallel(host_, kChunks, 1, chunks);
 }
 
 HairVolume::Report HairVolume::apply(std::span<const Float3> positions_ws, std::span<Float3> velocities_ws,

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/checks.h"
+#include "engine/in_parallel.h"
 #include "models/alternatives/surroundings.h"
 
 namespace hairloom::runtime {

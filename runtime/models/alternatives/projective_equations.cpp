@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/checks.h"
+#include "engine/in_parallel.h"
 #include "models/alternatives/surroundings.h"
 
 namespace hairloom::runtime {

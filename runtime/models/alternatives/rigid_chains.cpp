@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/checks.h"
+#include "engine/in_parallel.h"
 #include "hairloom/alternatives/stick.h"
 #include "models/alternatives/matrix3.h"
 #include "models/alternatives/surroundings.h"

@@ -4,10 +4,8 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
-#include "hairloom/host.h"
 #include "hairloom/math.h"
 #include "hairloom/settings.h"
 #include "hairloom/strands.h"
@@ -29,14 +27,6 @@ inline Float3 mixed(Float3 a, Float3 b, float t) {
 
 /// Axis times angle, 0…π, of a rotation.
 Float3 rotationVector(Quat q);
-
-/// On the host's threads, if it has any.
-template <class Body>
-void inParallel(const Host& host, std::size_t count, std::size_t grain, const Body& body) {
-    if (!host.parallelFor) return body(0, count);
-    // By reference: a std::function that copied the captures would allocate.
-    host.parallelFor(count, grain, std::cref(body));
-}
 
 /// Of all strands; without a rotation where the strands have none.
 std::vector<RootFrame> rootsAtRest(const StrandsView& strands);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rods at rest, compiled once for each instruction set.
+#include "engine/in_parallel.h"
 #include "models/rods/rods.h"
 
 // Vector types stand in structs, which scalable vectors cannot.
@@ -50,10 +51,7 @@ RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings, 
     const auto lay = HWY_DYNAMIC_DISPATCH(layRods);
     const auto fill = [&](std::size_t begin, std::size_t end) { lay(shape, settings, begin, end, rest); };
     constexpr std::size_t kBlocksPerPiece = 4;
-    if (host.parallelFor)
-        host.parallelFor(shape.blocks.size(), kBlocksPerPiece, fill);
-    else
-        fill(0, shape.blocks.size());
+    inParallel(host, shape.blocks.size(), kBlocksPerPiece, fill);
     return rest;
 }
 
