@@ -66,7 +66,8 @@ TEST(AccuracyEngine, WhatIsLeftOutOfTheSceneIsAnError) {
     EXPECT_EQ(spheres->runs[2].stateHash, spheres->runs[3].stateHash) << "there are no more than two";
     groom.spheres.clear();
     const auto hairHair = measureWorkPrecision(
-        groom, *motion, few({{std::string(kHairHairAxis), {0, 1}}, {"substeps", {16}}}), EngineConverged(32));
+        groom, *motion, few({{std::string(kHairVolumeAxis), {0, 1}}, {"substeps", {16}}}),
+        EngineConverged(32));
     ASSERT_TRUE(hairHair) << hairHair.error().message();
     EXPECT_GT(hairHair->runs[1].error.rmsMm, hairHair->runs[0].error.rmsMm);
 }
