@@ -38,7 +38,7 @@ TEST_F(Hairstyle, BudgetIsSharedByCharactersAndTimedAgain) {
     EXPECT_GT(budget["ms_again"].get<double>(), 0);
     EXPECT_GE(budget["spread_share"].get<double>(), 0);
     const auto exact =
-        runJson("budget hair.hairloom --within-mm 1000 --frames 4 --repeat 1 --truth engine --busy");
+        runJson("budget hair.hairloom --within-mm 1000 --frames 4 --repeat 9 --truth engine --busy");
     EXPECT_EQ(exact["settings"]["substeps"], 1);
     EXPECT_EQ(run("budget hair.hairloom --frames 4").exitCode, 2) << "neither time nor error";
     EXPECT_EQ(run("budget hair.hairloom --ms 1 --within-mm 1").exitCode, 2);
