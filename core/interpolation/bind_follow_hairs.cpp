@@ -159,10 +159,17 @@ class Binder {
         }
         for (const auto& [a, b, c] : bindings_.triangles)
             bindings_.areas.push_back((roots_[b] - roots_[a]).cross(roots_[c] - roots_[a]).norm());
-        std::vector<runtime::Float3> roots, tips;
+        const auto layersOfStrands = groom_.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+        std::vector<std::uint32_t> layers;
+        std::vector<runtime::Float3> along, roots, quarters, tips;
         for (std::uint32_t guide = 0; guide < bindings_.guideCount(); ++guide) {
-            roots.push_back(toFloat3(roots_[guide]));
-            tips.push_back(toFloat3(points(guide).back()));
+            const std::uint32_t strand = bindings_.guideStrands[guide];
+            layers.push_back(strand < layersOfStrands.size() ? layersOfStrands[strand] : 0);
+            along.clear();
+            for (const Vec3f& point : points(guide)) along.push_back(toFloat3(point));
+            roots.push_back(along.front());
+            quarters.push_back(runtime::pointAtShare(along, runtime::FollowRecipe::kQuarter));
+            tips.push_back(along.back());
         }
         runtime::Host host;
         host.parallelFor = parallelFor;
@@ -172,7 +179,9 @@ class Binder {
              settings_.blend,
              {parting_.beginAngleDegrees, parting_.endAngleDegrees, parting_.beginSpread, parting_.endSpread},
              bindings_.ids,
+             layers,
              roots,
+             quarters,
              tips,
              lengths_,
              bindings_.triangles,

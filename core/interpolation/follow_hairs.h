@@ -16,12 +16,13 @@ namespace hairloom {
 
 /// Keeps a parting open. Where two guides diverge, hairs between them follow the nearer one alone, from the
 /// root that they would have had. The share of the farther guide fades between the two limits of either
-/// criterion.
+/// criterion. Guides of two layers always diverge.
 struct PartingSettings {
     float beginAngleDegrees = 45;  ///< 0 … 180; between the guides' directions from root to tip
     float endAngleDegrees = 75;    ///< > begin
-    float beginSpread = 0.7f;  ///< ≥ 0; how much farther apart the tips are than the roots, in strand lengths
-    float endSpread = 1.1f;    ///< > begin
+    float beginSpread = 0.7f;  ///< ≥ 0; how much farther apart two guides are than their roots, at their tips
+                               ///< or at a quarter of their length, in lengths up to there
+    float endSpread = 1.1f;  ///< > begin
 };
 
 /// Which guides each follow hair takes part of, and how. Arrays per hair are guide after guide. `guides`

@@ -174,8 +174,8 @@ std::vector<std::size_t> Asset::bonesOf(const BodyField& field) const {
 
 DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
     const Recipe& r = recipe[0];
-    std::vector<std::uint32_t> ids;
-    std::vector<Float3> rootsOfGuides, tips;
+    std::vector<std::uint32_t> ids, layersOfGuides;
+    std::vector<Float3> rootsOfGuides, quarters, tips;
     std::vector<float> lengths;
     for (const Guide& guide : guides) {
         const auto points = std::span(rest.positions_ss)
@@ -185,6 +185,9 @@ DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
         rootsOfGuides.push_back(points.front());
         tips.push_back(points.back());
         lengths.push_back(lengthOf(points));
+        if (minor() < kMinorOfPartedRoots) continue;
+        layersOfGuides.push_back(layerOf(guide.strand));
+        quarters.push_back(pointAtShare(points, FollowRecipe::kQuarter));
     }
     std::vector<std::uint32_t> hairs(guides.size());
     for (std::size_t guide = 0; guide < hairs.size(); ++guide) hairs[guide] = hairsOf(guide);
@@ -199,7 +202,9 @@ DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
                                         r.blend,
                                         {r.beginAngle, r.endAngle, r.beginSpread, r.endSpread},
                                         ids,
+                                        layersOfGuides,
                                         rootsOfGuides,
+                                        quarters,
                                         tips,
                                         lengths,
                                         triangles,

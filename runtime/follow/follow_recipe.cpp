@@ -72,18 +72,27 @@ float fade(float value, float begin, float end) {
     return t * t * (3.0f - 2.0f * t);
 }
 
-/// 0 for guides that lie together, 1 for guides on two sides of a parting.
+/// How much farther apart two guides are at places of theirs than at their roots, in lengths up to there.
+float spread(const FollowRecipe& recipe, std::span<const Float3> places_ss, float share, std::uint32_t a,
+             std::uint32_t b) {
+    const float apart = length(places_ss[a] - places_ss[b]) - length(recipe.roots_ss[a] - recipe.roots_ss[b]);
+    const float mean = 0.5f * share * (recipe.lengths[a] + recipe.lengths[b]);
+    return mean > 0 ? apart / mean : 0.0f;
+}
+
+/// 0 for guides that lie together, 1 for guides on two sides of a parting, which may come together again
+/// below, and for those of two layers.
 float divergence(const FollowRecipe& recipe, std::uint32_t a, std::uint32_t b) {
+    if (!recipe.layers.empty() && recipe.layers[a] != recipe.layers[b]) return 1;
     const Float3 chordA = recipe.tips_ss[a] - recipe.roots_ss[a];
     const Float3 chordB = recipe.tips_ss[b] - recipe.roots_ss[b];
     const float angle = std::atan2(length(cross(chordA, chordB)), dot(chordA, chordB)) * (180.0f / kPi);
-    const float apart =
-        length(recipe.tips_ss[a] - recipe.tips_ss[b]) - length(recipe.roots_ss[a] - recipe.roots_ss[b]);
-    const float mean = 0.5f * (recipe.lengths[a] + recipe.lengths[b]);
-    const float spread = mean > 0 ? apart / mean : 0.0f;
+    float widest = spread(recipe, recipe.tips_ss, 1, a, b);
+    if (!recipe.quarters_ss.empty())
+        widest = std::max(widest, spread(recipe, recipe.quarters_ss, FollowRecipe::kQuarter, a, b));
     const PartingLimits& limits = recipe.parting;
     return std::max(fade(angle, limits.beginAngleDegrees, limits.endAngleDegrees),
-                    fade(spread, limits.beginSpread, limits.endSpread));
+                    fade(widest, limits.beginSpread, limits.endSpread));
 }
 
 /// Gives the share of guides that diverge from the first to the first.
@@ -151,6 +160,19 @@ Float3 shiftDirection(std::span<const RootPlane> planes_ss, const std::array<std
     if (!(size > 0.1f)) return {0, 0, 1};
     const Float3 unit = mean * (1 / size);
     return {dot(unit, own.x), dot(unit, own.y), dot(unit, own.normal)};
+}
+
+Float3 pointAtShare(std::span<const Float3> points, float share) {
+    float whole = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) whole += length(points[i] - points[i - 1]);
+    float left = share * whole;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const Float3 segment = points[i] - points[i - 1];
+        const float size = length(segment);
+        if (left < size) return points[i - 1] + segment * (left / size);
+        left -= size;
+    }
+    return points.back();
 }
 
 std::vector<float> wispRadii(float root, float tip, std::uint32_t points) {

@@ -221,6 +221,55 @@ TEST(FollowHairs, APartingStaysOpen) {
     EXPECT_GT(acrossTriangles, 100u);
 }
 
+TEST(FollowHairs, APartingWhoseSidesHangTogetherBelowStaysOpen) {
+    // Strands leave a parting between columns 1 and 2 along the skin and then hang down side by side, as long
+    // hair does: the chords from root to tip are 25° apart, and the tips by 0.4 of the length.
+    Groom groom = field(16, straight);
+    std::vector<Vec3f> parted(groom.positions().begin(), groom.positions().end());
+    for (std::uint32_t s = 0; s < groom.strandCount(); ++s) {
+        const float side = s % kSide < 2 ? -1.0f : 1.0f;
+        for (std::uint32_t p = 0; p < 16; ++p) {
+            const float along = 0.3f * static_cast<float>(p) / 15;
+            const float out = std::min(along, 0.06f);
+            parted[16 * s + p] = parted[16 * s] + Vec3f{side * out, 0, along - out};
+        }
+    }
+    groom.pointAttributes.set(attribute::kPosition, parted);
+    const auto bindings = bindFollowHairs(groom, settingsWith(1.0f, 200));
+    ASSERT_TRUE(bindings);
+    const auto positions = evaluateAtRest(groom, *bindings);
+    for (std::size_t h = 0; h < bindings->hairCount(); ++h) {
+        const bool left = bindings->guides[h][0] % kSide < 2;
+        const auto follow = hair(*bindings, positions, h);
+        ASSERT_NEAR(follow.back().x() - follow[0].x(), left ? -0.06f : 0.06f, 1e-4f)
+            << "hair " << h << " stands in the parting";
+    }
+}
+
+TEST(FollowHairs, NoHairTakesTheShapeOfAnotherLayer) {
+    Groom groom = field(8, [](std::uint32_t s) { return s % kSide < 2 ? 0.0f : 0.03f; });
+    groom.layers.resize(2);
+    std::vector<std::uint32_t> layers;
+    for (std::uint32_t s = 0; s < groom.strandCount(); ++s) layers.push_back(s % kSide < 2 ? 0 : 1);
+    const auto mixed = bindFollowHairs(groom, settingsWith(1.0f, 200));
+    groom.strandAttributes.set(attribute::kLayer, layers);
+    const auto apart = bindFollowHairs(groom, settingsWith(1.0f, 200));
+    ASSERT_TRUE(mixed && apart);
+    const auto between = [&](const FollowBindings& bindings) {
+        const auto positions = evaluateAtRest(groom, bindings);
+        std::size_t count = 0;
+        for (std::size_t h = 0; h < bindings.hairCount(); ++h) {
+            const auto follow = hair(bindings, positions, h);
+            const float lean = follow.back().x() - follow[0].x();
+            count += lean > 0.001f && lean < 0.029f;
+        }
+        return count;
+    };
+    EXPECT_GT(between(*mixed), 100u);
+    EXPECT_EQ(between(*apart), 0u);
+    EXPECT_EQ(apart->rootWeights, mixed->rootWeights) << "roots lie as before";
+}
+
 TEST(FollowHairs, ParallelGuidesShareFully) {
     const Groom groom = field(8, straight);
     const auto bindings = bindFollowHairs(groom, settingsWith(1.0f));

@@ -17,7 +17,9 @@ static_assert(std::endian::native == std::endian::little, "assets are used in pl
 /// As PNG's: a copy that changed line ends or lost the eighth bit is found out.
 inline constexpr std::array<char, 8> kMagic{'\x89', 'H', 'R', 'T', '\r', '\n', '\x1a', '\n'};
 /// A reader refuses another major version, and takes any minor one.
-inline constexpr std::uint16_t kMajor = 1, kMinor = 1;
+inline constexpr std::uint16_t kMajor = 1, kMinor = 2;
+/// From this minor version on, follow hairs cross neither partings near their roots nor borders of layers.
+inline constexpr std::uint16_t kMinorOfPartedRoots = 2;
 /// Sections begin at multiples of it, and so does the memory that the file lies in.
 inline constexpr std::size_t kAlignment = 16;
 inline constexpr std::uint32_t kMaxSections = 4096;
