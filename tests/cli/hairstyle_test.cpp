@@ -37,9 +37,11 @@ TEST_F(Hairstyle, BudgetIsSharedByCharactersAndTimedAgain) {
     EXPECT_LE(budget["ms"].get<double>(), 1000);
     EXPECT_GT(budget["ms_again"].get<double>(), 0);
     EXPECT_GE(budget["spread_share"].get<double>(), 0);
-    const auto exact =
-        runJson("budget hair.hairloom --within-mm 1000 --frames 4 --repeat 9 --truth engine --busy");
-    EXPECT_EQ(exact["settings"]["substeps"], 1);
+    // Which one is cheapest is up to the machine (accuracy/choice_test has it for known times).
+    const auto within =
+        runJson("budget hair.hairloom --within-mm 1000 --frames 4 --repeat 1 --truth engine --busy");
+    EXPECT_LE(within["error_mm"].get<double>(), 1000);
+    EXPECT_FALSE(within["given_up"].empty()) << "anything is exact enough";
     EXPECT_EQ(run("budget hair.hairloom --frames 4").exitCode, 2) << "neither time nor error";
     EXPECT_EQ(run("budget hair.hairloom --ms 1 --within-mm 1").exitCode, 2);
     EXPECT_EQ(run("budget hair.hairloom --ms 1 --size 64x64").exitCode, 2) << "nothing is drawn";
