@@ -6,6 +6,7 @@
 
 #include "core/groom/file/fields.h"
 #include "core/groom/findings.h"
+#include "core/groom/time_line.h"
 
 namespace hairloom {
 namespace {
