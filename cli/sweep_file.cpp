@@ -59,9 +59,15 @@ std::vector<json> steps(JsonReader& axis) {
                       fmt::format("expected at most {} values", kMaxParts));
         return {};
     }
+    // As people write them: 0.3, not the 0.30000000000000004 of a sum. 13 digits of the largest number are
+    // kept.
+    const double largest = std::max({std::abs(from), std::abs(to), std::abs(step)});
+    const int decimals = std::clamp(13 - static_cast<int>(std::ceil(std::log10(largest))), 0, 300);
     std::vector<json> values;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(count); ++i) {
-        const double value = from + step * static_cast<double>(i);
+        const std::string text = fmt::format("{:.{}f}", from + step * static_cast<double>(i), decimals);
+        double value = 0;
+        std::from_chars(text.data(), text.data() + text.size(), value);
         // Whole numbers stay so: options that count take no "5.0".
         if (value == std::floor(value))
             values.emplace_back(static_cast<std::int64_t>(value));
@@ -145,7 +151,11 @@ Result<std::string> filledIn(const std::string& text, const SweepPart& part) {
         if (value == nullptr || value->is_object())
             return fail(fmt::format("nothing is named {{{}}}", name),
                         "expected out, part, the name of an axis, or AXIS.MEMBER");
-        filled += fmt::format("{:0>{}}", textOf(*value), width);
+        std::string shown = textOf(*value);
+        // A sign stays before the zeros.
+        const std::size_t digits = value->is_number() && shown.starts_with('-') ? 1 : 0;
+        if (shown.size() < width) shown.insert(digits, width - shown.size(), '0');
+        filled += shown;
     }
     return filled + text.substr(at);
 }
@@ -169,14 +179,15 @@ Result<json> filledIn(const json& value, const SweepPart& part) {
 /// The words of one option, as the Python module writes them.
 Result<std::vector<std::string>> wordsOf(const Report& option, const json& value, const SweepPart& part) {
     const auto name = option["name"].get<std::string>();
-    if (option["type"] == "FLAG") {
-        if (!value.is_boolean())
-            return fail(fmt::format("/arguments/{} is {}", name, value.dump()), "expected true or false");
-        if (!value.get<bool>()) return std::vector<std::string>();
-        return std::vector<std::string>{option["argument"].get<std::string>()};
-    }
     const auto filled = filledIn(value, part);
     if (!filled) return tl::unexpected(filled.error());
+    if (option["type"] == "FLAG") {
+        const std::string shown = textOf(*filled);
+        if (shown != "true" && shown != "false")
+            return fail(fmt::format("/arguments/{} is {}", name, filled->dump()), "expected true or false");
+        if (shown == "false") return std::vector<std::string>();
+        return std::vector<std::string>{option["argument"].get<std::string>()};
+    }
     const bool several = option["many"].get<bool>() && filled->is_array();
     std::vector<std::string> words;
     for (const json& item : several ? *filled : json::array({*filled})) {

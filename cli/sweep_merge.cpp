@@ -14,6 +14,7 @@
 #include "cli/certificate_report.h"
 #include "cli/sweep_run.h"
 #include "core/base/file.h"
+#include "core/base/output_file.h"
 #include "core/charts/html_report.h"
 #include "core/groom/file/manifest.h"
 
@@ -237,6 +238,9 @@ SweepOutcome statusOf(const SweepFolder& folder) {
 }
 
 Result<SweepOutcome> mergeSweep(const SweepFolder& folder) {
+    // One at a time: another that has seen fewer parts done would take away what this one joins.
+    const auto turn = OutputFile::open(folder.path() / "state" / "merge", {}, Replacing::Anything);
+    if (!turn) return tl::unexpected(turn.error());
     const Parts parts = partsOf(folder);
     SweepOutcome outcome = outcomeOf(folder, parts);
     const auto write = [&](const std::string& name, const std::string& text) {

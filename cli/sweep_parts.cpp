@@ -149,6 +149,15 @@ Result<SweepFolder> SweepFolder::open(const Sweep& sweep, fs::path folder) {
     if (!code) fs::create_directories(folder / "state", code);
     if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
     const Report content{{"sweep_of", sweep.name}, {"job", sweep.job}, {"parts", sweep.parts.size()}};
+    // The results of another one would be replaced part by part.
+    if (const Report there = contentOf(mark); there.contains("sweep_of")) {
+        const auto saysOther = [&](const char* key) { return there.value(key, Report()) != content[key]; };
+        if (saysOther("sweep_of") || saysOther("job"))
+            return failIn(folder.string(), {},
+                          fmt::format("is the folder of the sweep {} ({})", there["sweep_of"].dump(),
+                                      there.value("job", Report()).dump()),
+                          "expected a new name after -o");
+    }
     // Many tasks of an array open it at once.
     if (contentOf(mark) != content) {
         if (auto status = writeReport(mark, content); !status && contentOf(mark) != content) {
@@ -169,20 +178,24 @@ fs::path SweepFolder::failedFile(const SweepPart& part) const {
 
 std::string SweepFolder::inputHash(const SweepPart& part, KnownHashes& known) const {
     std::string all = "hairloom " HAIRLOOM_VERSION "\n" + sweep_->job;
+    const auto isNoted = [&](const std::string& name) {
+        const fs::path path = sweep_->folder / name;
+        std::error_code code;
+        if (name.empty() || !fs::is_regular_file(path, code)) return false;
+        const auto [hash, isNew] = known.try_emplace(path);
+        if (isNew) hash->second = hashText(path);
+        all += "\n " + hash->second;
+        return true;
+    };
     for (const std::string& word : part.words) {
         all += '\n' + word;
-        // A value may be a file, or several with commas between.
-        std::string value =
+        const std::string value =
             word.starts_with("--") ? word.substr(std::min(word.find('='), word.size() - 1) + 1) : word;
+        // A value may be a file, or several with commas between.
+        if (isNoted(value)) continue;
         for (std::size_t at = 0; at <= value.size();) {
             const auto comma = std::min(value.find(',', at), value.size());
-            const fs::path path = sweep_->folder / value.substr(at, comma - at);
-            std::error_code code;
-            if (comma > at && fs::is_regular_file(path, code)) {
-                const auto [hash, isNew] = known.try_emplace(path);
-                if (isNew) hash->second = hashText(path);
-                all += "\n " + hash->second;
-            }
+            isNoted(value.substr(at, comma - at));
             at = comma + 1;
         }
     }

@@ -164,6 +164,60 @@ TEST_F(Sweep, BadFilesAreErrorsBeforeAnythingRuns) {
     EXPECT_EQ(readText(folder / "mine/letter.txt"), "hello");
 }
 
+TEST_F(Sweep, NumbersOfAnAxisReadAsPeopleWriteThem) {
+    json sweep = caches();
+    sweep["arguments"] = {{"groom", "hair.hairloom"},
+                          {"frames", 1},
+                          {"wind", "{wind},0,0"},
+                          {"record", "{out}/{wind:05}.frames"}};
+    sweep["over"] = {{{"name", "wind"}, {"from", -0.3}, {"to", 0.3}, {"step", 0.1}}};
+    write("wind.json", sweep);
+    EXPECT_EQ(runJson("sweep wind.json -o out")["done"], 7);
+    std::vector<std::string> names;
+    for (const auto& file : fs::directory_iterator(folder / "out/files"))
+        names.push_back(file.path().filename().string());
+    EXPECT_THAT(names,
+                testing::UnorderedElementsAre("-00.3.frames", "-00.2.frames", "-00.1.frames", "00000.frames",
+                                              "000.1.frames", "000.2.frames", "000.3.frames"));
+}
+
+TEST_F(Sweep, AFlagMayBeWhatChanges) {
+    json sweep = caches();
+    sweep["gather"] = false;
+    sweep["arguments"] = {{"groom", "hair.hairloom"}, {"frames", 1}, {"hair-hair", "{on}"}};
+    sweep["over"] = {{{"name", "on"}, {"values", {true, false}}}};
+    write("flag.json", sweep);
+    EXPECT_EQ(runJson("sweep flag.json -o out")["done"], 2);
+    const json merged = json::parse(readText(folder / "out/merged.json"));
+    EXPECT_EQ(merged["parts"][1]["values"]["on"], false);
+    EXPECT_NE(merged["parts"][0]["report"], merged["parts"][1]["report"]);
+    sweep["over"] = {{{"name", "on"}, {"values", {"perhaps"}}}};
+    EXPECT_THAT(errorOf(sweep), HasSubstr("/arguments/hair-hair is \"perhaps\"; expected true or false"));
+}
+
+TEST_F(Sweep, ChangesOfAFileWithACommaInItsNameAreSeen) {
+    fs::rename(folder / "hair.hairloom", folder / "long, dark.hairloom");
+    json sweep = caches();
+    sweep["arguments"]["groom"] = "long, dark.hairloom";
+    write("caches.json", sweep);
+    EXPECT_EQ(runJson("sweep caches.json -o out")["done"], 2);
+    runJson(createArguments("", 8, 6));
+    fs::rename(folder / "hair.hairloom", folder / "long, dark.hairloom");
+    EXPECT_EQ(runJson("sweep caches.json -o out --status")["done"], 0);
+}
+
+TEST_F(Sweep, AFolderOfAnotherSweepIsLeftAlone) {
+    write("caches.json", caches());
+    write("storms.json", storms());
+    runJson("sweep caches.json -o out");
+    const std::string merged = readText(folder / "out/merged.json");
+    const Outcome outcome = run("sweep storms.json -o out");
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.errors, HasSubstr("out: is the folder of the sweep \"caches\" (\"simulate\")"));
+    EXPECT_EQ(readText(folder / "out/merged.json"), merged);
+    EXPECT_EQ(runJson("sweep caches.json -o out")["kept"], 2);
+}
+
 TEST_F(Sweep, ListsOfPartsAreThoseOfQueues) {
     write("storms.json", storms());
     EXPECT_EQ(runJson("sweep storms.json -o out --parts 5-5")["parts"], 1);
