@@ -38,6 +38,29 @@ struct PyAttributes {
     std::size_t count() const { return ofPoints ? of.groom.pointCount() : of.groom.strandCount(); }
 };
 
+/// What `read` gives of a groom that no other thread is changing.
+template <class Read>
+auto whileFree(PyGroom& groom, const Read& read) {
+    const Use use(groom.inUse, kTheGroom);
+    return read(groom.groom);
+}
+
+std::size_t strandCount(PyGroom& groom) {
+    return whileFree(groom, [](const Groom& of) { return of.strandCount(); });
+}
+std::size_t pointCount(PyGroom& groom) {
+    return whileFree(groom, [](const Groom& of) { return of.pointCount(); });
+}
+std::size_t guideCount(PyGroom& groom) {
+    return whileFree(groom, [](const Groom& of) { return of.guideCount(); });
+}
+
+std::string described(PyGroom& groom) {
+    // A debugger asks at any time.
+    if (groom.inUse) return "<hairloom.Groom: in use by another thread>";
+    return fmt::format("<hairloom.Groom: {} strands, {} points>", strandCount(groom), pointCount(groom));
+}
+
 nb::object viewOfData(const AttributeData& data) {
     return std::visit(
         [](const auto& array) -> nb::object {
@@ -233,9 +256,16 @@ void bindGroom(nb::module_& module) {
                 attributes.set().erase(name);
             },
             "name"_a, "Raises KeyError where there is no attribute of this name.")
-        .def("__contains__", [](const PyAttributes& attributes,
-                                const std::string& name) { return attributes.set().has(name); })
-        .def("__len__", [](const PyAttributes& attributes) { return attributes.set().all().size(); })
+        .def("__contains__",
+             [](const PyAttributes& attributes, const std::string& name) {
+                 const Use use(attributes.of.inUse, kTheGroom);
+                 return attributes.set().has(name);
+             })
+        .def("__len__",
+             [](const PyAttributes& attributes) {
+                 const Use use(attributes.of.inUse, kTheGroom);
+                 return attributes.set().all().size();
+             })
         .def(
             "__iter__",
             [](const PyAttributes& attributes) { return nb::iter(nb::cast(namesOf(attributes))); },
@@ -277,14 +307,9 @@ void bindGroom(nb::module_& module) {
                 return std::make_unique<PyGroom>(groom.groom);
             },
             "A groom of its own. The two share arrays until one of them changes.")
-        .def_prop_ro(
-            "strand_count", [](PyGroom& groom) { return groom.groom.strandCount(); }, "Number of strands.")
-        .def_prop_ro(
-            "point_count", [](PyGroom& groom) { return groom.groom.pointCount(); },
-            "Number of points of all strands.")
-        .def_prop_ro(
-            "guide_count", [](PyGroom& groom) { return groom.groom.guideCount(); },
-            "Number of strands that are simulated.")
+        .def_prop_ro("strand_count", &strandCount, "Number of strands.")
+        .def_prop_ro("point_count", &pointCount, "Number of points of all strands.")
+        .def_prop_ro("guide_count", &guideCount, "Number of strands that are simulated.")
         .def_prop_rw("positions", &positions, &setPositions,
                      nb::for_getter(nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float32]")),
                      nb::for_setter(nb::sig("def positions(self, values: object) -> None")),
@@ -350,11 +375,8 @@ void bindGroom(nb::module_& module) {
              "images that are averaged, 1 "
              "to 1024. frame: of simulate(), in place of the hair at rest.\n\nRaises ArgumentError for "
              "values out of range.")
-        .def("__len__", [](PyGroom& groom) { return groom.groom.strandCount(); })
-        .def("__repr__", [](PyGroom& groom) {
-            return fmt::format("<hairloom.Groom: {} strands, {} points>", groom.groom.strandCount(),
-                               groom.groom.pointCount());
-        });
+        .def("__len__", &strandCount)
+        .def("__repr__", &described);
     bindScene(type);
     bindSimulate(type);
     bindLiveOf(type);

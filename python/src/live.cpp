@@ -129,13 +129,13 @@ void stepLive(PyLive& live, double dt, nb::handle scalp, nb::handle head, nb::ha
               nb::handle bones, const std::optional<std::array<float, 3>>& wind) {
     const Use use(live.inUse, kTheLive);
     if (!(dt > 0 && dt <= 0.1)) raiseArgument("dt", fmt::format("is {}", dt), "above 0 s, at most 0.1 s");
+    const auto given = wind.value_or(std::array<float, 3>{});
+    const Vec3f velocity(given[0], given[1], given[2]);
+    // Before the scene, whose spheres the simulation keeps.
+    if (!(velocity.norm() <= 200))
+        raiseArgument("wind", fmt::format("is {} m/s", velocity.norm()), "at most 200 m/s");
     HeadPose pose = poseOf(live, {scalp, head, spheres, bones});
-    if (wind) {
-        const Vec3f velocity((*wind)[0], (*wind)[1], (*wind)[2]);
-        if (!(velocity.norm() <= 200))
-            raiseArgument("wind", fmt::format("is {} m/s", velocity.norm()), "at most 200 m/s");
-        pose.wind_ws = velocity;
-    }
+    if (wind) pose.wind_ws = velocity;
     unwrap(withoutGil([&] {
         live.simulation->step(static_cast<float>(dt), pose);
         return live.simulation->status();

@@ -299,8 +299,11 @@ class Motion(InFolder):
         thread.start()
         busy.wait()
         refused = 0
+        described = set()
         while thread.is_alive():
+            described.add(repr(groom))
             try:
+                len(groom)
                 groom.positions
                 groom.copy()
             except hairloom.BusyError as error:
@@ -308,6 +311,7 @@ class Motion(InFolder):
                 self.assertIn("another thread", str(error))
         thread.join()
         self.assertGreater(refused, 0)
+        self.assertIn("<hairloom.Groom: in use by another thread>", described)
         self.assertEqual(len(groom.positions), groom.point_count)
 
     def test_a_groom_for_each_thread(self) -> None:

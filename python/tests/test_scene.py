@@ -156,6 +156,14 @@ class Scenes(unittest.TestCase):
         with self.assertRaises(hairloom.Error):
             self.groom.set_body(*BOX, np.zeros(32, np.uint32), np.full((8, 4), -1, np.float32))
 
+    def test_a_refused_step_changes_no_spheres(self) -> None:
+        hit, clear = self.groom.live(), self.groom.live()
+        with self.assertRaises(hairloom.ArgumentError):
+            hit.step(DT, spheres=np.array([[0.1, 1.65, 0, 0.03]], np.float32), wind=(0, 0, 1e6))
+        for live in (hit, clear):
+            live.step(DT)
+        self.assertEqual(hit.stats()["state_hash"], clear.stats()["state_hash"])
+
     def test_empty_arrays_are_contiguous(self) -> None:
         live = self.groom.live()
         live.step(DT, spheres=np.array([], np.float32).reshape(-1, 4))
