@@ -64,7 +64,13 @@ def _text(value: Any, folder: list[str]) -> str:
     if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
         items = value.tolist() if hasattr(value, "tolist") else value
         return ",".join(_text(item, folder) for item in items) if isinstance(items, (list, tuple)) else str(items)
-    return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+    if isinstance(value, (bytes, os.PathLike)):
+        return os.fsdecode(value)
+    if isinstance(value, (str, int, float)):
+        return str(value)
+    raise ArgumentError(
+        None, None, f"an argument is {type(value).__name__}", "expected a text, a file, a number, a Groom, or a list of these"
+    )
 
 
 def _arguments(
@@ -75,6 +81,8 @@ def _arguments(
     placed: list[str] = []
     for keyword, argument, flag, many in options:
         value = values[keyword]
+        if flag and hasattr(value, "tolist"):
+            value = value.tolist()  # of NumPy
         if value is None or (flag and value is False):
             continue
         if flag:

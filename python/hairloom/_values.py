@@ -24,7 +24,7 @@ def _plain(value: Any) -> Any:
 def to_json(value: Any) -> str:
     try:
         return json.dumps(value, default=_plain, allow_nan=False)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, RecursionError) as error:
         raise ArgumentError(
             None, None, f"the value is not JSON ({error})", "expected numbers, texts, lists and dicts"
         ) from None
@@ -36,7 +36,7 @@ def from_json(text: str) -> Any:
 
 def motion_file(motion: Any) -> str:
     """A temporary file with the keys of `motion`."""
-    if isinstance(motion, os.PathLike) or not hasattr(motion, "keys"):
+    if not hasattr(motion, "keys"):
         raise ArgumentError(
             None,
             None,

@@ -185,6 +185,8 @@ nb::dict runSteps(PyGroom& groom, nb::handle operations) {
 
 /// {"op": operation, **fields}, as a script has it.
 nb::dict apply(PyGroom& groom, const std::string& operation, const nb::kwargs& fields) {
+    if (fields.contains("op"))
+        raiseArgument("op", "is given", "fields of the operation, whose name comes first");
     nb::dict step;
     step["op"] = operation;
     step.update(fields);
@@ -213,6 +215,11 @@ void configure(PyGroom& groom, nb::handle sections) {
     Groom changed = groom.groom;
     unwrap(applySettings(json, "settings", changed));
     groom.groom = std::move(changed);
+}
+
+std::unique_ptr<PyGroom> copied(PyGroom& groom) {
+    const Use use(groom.inUse, kTheGroom);
+    return std::make_unique<PyGroom>(groom.groom);
 }
 
 nb::list findings(PyGroom& groom) {
@@ -300,13 +307,11 @@ void bindGroom(nb::module_& module) {
             "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
             "Writes a project. Replaces the file at once or not at all.\n\nRaises Error where it cannot be "
             "written.")
+        .def("copy", &copied, "A groom of its own. The two share arrays until one of them changes.")
+        .def("__copy__", &copied)
         .def(
-            "copy",
-            [](PyGroom& groom) {
-                const Use use(groom.inUse, kTheGroom);
-                return std::make_unique<PyGroom>(groom.groom);
-            },
-            "A groom of its own. The two share arrays until one of them changes.")
+            "__deepcopy__", [](PyGroom& groom, nb::handle) { return copied(groom); }, "memo"_a,
+            nb::sig("def __deepcopy__(self, memo: dict[int, typing.Any]) -> Groom"))
         .def_prop_ro("strand_count", &strandCount, "Number of strands.")
         .def_prop_ro("point_count", &pointCount, "Number of points of all strands.")
         .def_prop_ro("guide_count", &guideCount, "Number of strands that are simulated.")
@@ -364,7 +369,7 @@ void bindGroom(nb::module_& module) {
         .def("render", &render, "size"_a = std::pair(1024u, 1024u), "camera"_a = "three-quarter",
              "view"_a = "", "passes"_a = 8u, "transparent"_a = false, "frame"_a.none() = nb::none(),
              nb::sig("def render(self, size: tuple[int, int] = (1024, 1024), camera: str = 'three-quarter', "
-                     "view: str = '', passes: "
+                     "view: str | os.PathLike[str] = '', passes: "
                      "int = 8, transparent: bool = False, frame: Frame | None = None) -> "
                      "numpy.typing.NDArray[numpy.uint8]"),
              "An image, uint8 (height, width, 4), sRGB and alpha, rows from the top. Drawn on a GPU if there "

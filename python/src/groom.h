@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 
 #include <atomic>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,6 +45,7 @@ nb::dict statsOf(const SimulationStats& stats);
 struct PyFrame;
 /// sRGB, rows from the top, as an array (height, width, 4) of uint8.
 nb::object render(PyGroom& groom, std::pair<std::uint32_t, std::uint32_t> size, const std::string& camera,
-                  const std::string& view, std::uint32_t passes, bool transparent, const PyFrame* frame);
+                  const std::filesystem::path& view, std::uint32_t passes, bool transparent,
+                  const PyFrame* frame);
 
 }  // namespace hairloom::python

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/src/json_values.h"
 
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
 
 #include <filesystem>
@@ -27,6 +28,10 @@ nb::object valueOfJson(const std::string& text) {
 
 MotionFile::MotionFile(nb::handle motion) {
     if (nb::try_cast(motion, name_)) return;
+    if (std::filesystem::path path; nb::try_cast(motion, path)) {
+        name_ = path.string();
+        return;
+    }
     name_ = nb::cast<std::string>(values().attr("motion_file")(motion));
     made_ = true;
 }

@@ -51,7 +51,8 @@ Result<render::Image> draw(const Groom& groom, const render::RenderOptions& aske
 }  // namespace
 
 nb::object render(PyGroom& groom, std::pair<std::uint32_t, std::uint32_t> size, const std::string& camera,
-                  const std::string& view, std::uint32_t passes, bool transparent, const PyFrame* frame) {
+                  const std::filesystem::path& view, std::uint32_t passes, bool transparent,
+                  const PyFrame* frame) {
     const Use use(groom.inUse, kTheGroom);
     if (size.first == 0 || size.second == 0 || std::uint64_t{size.first} * size.second > render::kMaxPixels)
         raiseArgument("size", fmt::format("is {} × {}", size.first, size.second), "1 to 64 million pixels");
@@ -66,7 +67,8 @@ nb::object render(PyGroom& groom, std::pair<std::uint32_t, std::uint32_t> size, 
     options.transparency = render::Transparency::automatic;
     options.exposure = 1;
     options.transparentBackground = transparent;
-    render::Image image = unwrap(withoutGil([&] { return draw(groom.groom, options, camera, view, frame); }));
+    render::Image image =
+        unwrap(withoutGil([&] { return draw(groom.groom, options, camera, view.string(), frame); }));
     return arrayOf(std::move(image.rgba), {image.height, image.width, std::size_t{4}});
 }
 

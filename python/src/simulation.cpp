@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "core/documents/motions.h"
@@ -67,7 +69,8 @@ Status begin(PySimulation& run, const std::string& motion, const std::string& ch
 std::unique_ptr<PySimulation> simulate(PyGroom& groom, nb::handle motion, std::optional<std::int64_t> frames,
                                        std::optional<double> fps,
                                        const std::optional<std::array<float, 3>>& wind,
-                                       std::optional<std::int64_t> preRoll, const std::string& character) {
+                                       std::optional<std::int64_t> preRoll,
+                                       const std::filesystem::path& character) {
     if (frames && (*frames < 1 || *frames > 1'000'000))
         raiseArgument("frames", fmt::format("is {}", *frames), "1 to 1000000");
     if (fps && !(*fps >= 1 && *fps <= 1000)) raiseArgument("fps", fmt::format("is {}", *fps), "1 to 1000");
@@ -87,7 +90,7 @@ std::unique_ptr<PySimulation> simulate(PyGroom& groom, nb::handle motion, std::o
     run->span = motionSpanOf(moves.name(), run->groom,
                              fps ? std::optional<float>(static_cast<float>(*fps)) : std::nullopt,
                              asked(frames), asked(preRoll));
-    unwrap(withoutGil([&] { return begin(*run, moves.name(), character); }));
+    unwrap(withoutGil([&] { return begin(*run, moves.name(), character.string()); }));
     return run;
 }
 
@@ -168,10 +171,11 @@ void bindSimulate(nb::class_<PyGroom>& groom) {
         "simulate", &simulate, "motion"_a = "none", "frames"_a.none() = nb::none(),
         "fps"_a.none() = nb::none(), "wind"_a.none() = nb::none(), "pre_roll"_a.none() = nb::none(),
         "character"_a = "",
-        nb::sig("def simulate(self, motion: str | collections.abc.Mapping[str, typing.Any] = 'none', "
+        nb::sig("def simulate(self, motion: str | os.PathLike[str] | collections.abc.Mapping[str, "
+                "typing.Any] = 'none', "
                 "frames: int | None = None, fps: float | None = "
                 "None, wind: tuple[float, float, float] | None = None, pre_roll: int | None = None, "
-                "character: str = '') -> Simulation"),
+                "character: str | os.PathLike[str] = '') -> Simulation"),
         "An iterator of frames, simulated as you ask for them, on the CPU with all cores. The groom "
         "itself does not change.\n\n"
         "motion: none, spin, nod, clip:NAME, timeline, a keyframe file F.json, or its content as a dict "

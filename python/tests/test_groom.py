@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
+import copy
 import gc
 import json
 import threading
 import time
 import unittest
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -53,9 +55,9 @@ class Arrays(unittest.TestCase):
         self.assertIn("position", attributes)
 
     def test_a_copy_is_independent(self) -> None:
-        other = self.groom.copy()
-        other.positions = self.positions * np.float32(2)
-        np.testing.assert_array_equal(self.groom.positions, self.positions)
+        for other in (self.groom.copy(), copy.copy(self.groom), copy.deepcopy(self.groom)):
+            other.positions = self.positions * np.float32(2)
+            np.testing.assert_array_equal(self.groom.positions, self.positions)
 
     def test_attributes_of_every_type(self) -> None:
         arrays: dict[str, NDArray[Any]] = {
@@ -166,6 +168,15 @@ class Edits(InFolder):
             groom.apply("curl", radius=float("nan"))
         with self.assertRaises(hairloom.ArgumentError):
             groom.apply("curl", radius=object())
+        with self.assertRaises(hairloom.ArgumentError) as caught:
+            groom.apply("curl", op="noise")
+        self.assertIn("op is given", str(caught.exception))
+        nested: dict[str, Any] = {}
+        inner = nested
+        for _ in range(100_000):
+            inner["a"] = inner = {}
+        with self.assertRaises(hairloom.ArgumentError):
+            groom.apply("curl", radius=nested)
         np.testing.assert_array_equal(groom.positions, before)
         with open("broken.json", "w") as file:
             file.write('{\n  "hairloom_script": 1,')
@@ -238,7 +249,10 @@ class Motion(InFolder):
     def test_keys(self) -> None:
         groom = self.create()
         keys = {"keys": [{"t": 0, "translate": [0, 0, 0]}, {"t": 1, "translate": np.array([0.5, 0, 0])}]}
+        Path("keys of a turn.json").write_text(json.dumps({"keys": [{"t": 0}, {"t": 1, "translate": [0.5, 0, 0]}]}))
+        *_, other = groom.simulate(Path("keys of a turn.json"), frames=60)
         *_, last = groom.simulate(keys, frames=60)
+        np.testing.assert_array_equal(other.positions, last.positions)
         self.assertAlmostEqual(float(last.positions[0, 0] - groom.positions[0, 0]), 0.5, places=3)
 
     def test_the_time_line_says_rate_range_and_pre_roll(self) -> None:

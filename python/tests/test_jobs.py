@@ -127,6 +127,9 @@ class Jobs(InFolder):
             hairloom.simulate(hair, hair_hair=typing.cast(bool, 3))
         with self.assertRaises(hairloom.ArgumentError):
             hairloom.info("a\0b")
+        with self.assertRaises(hairloom.ArgumentError) as wrong:
+            hairloom.set(hair, typing.cast(str, {"simulation.windSpeed": 4}), output="out.hairloom")
+        self.assertIn("an argument is dict", str(wrong.exception))
         with self.assertRaises(hairloom.Error):
             hairloom.info("--help")  # a file of that name, not an option
         again = pickle.loads(pickle.dumps(caught.exception))
@@ -153,6 +156,10 @@ class Jobs(InFolder):
         self.create(hair)
         report = hairloom.simulate(hair, frames=typing.cast(int, np.int64(2)), wind=np.array([3, 0, 1]).tolist())
         self.assertEqual(report.frames, 2)
+        alone = hairloom.simulate(hair, frames=2, wind=(3, 0, 1), hair_hair=True)
+        again = hairloom.simulate(hair, frames=2, wind=(3, 0, 1), hair_hair=typing.cast(bool, np.bool_(True)))
+        self.assertEqual(again.state_hash, alone.state_hash)
+        self.assertEqual(hairloom.info(typing.cast(str, os.fsencode(hair))).strands, 60)
 
     def test_nothing_is_left_in_the_folder_for_temporary_files(self) -> None:
         os.mkdir("tmp")
