@@ -24,6 +24,8 @@ namespace {
 
 constexpr double kSecondsBetweenLines = 5;
 
+enum class Ending : std::uint8_t { done, failed, elsewhere };
+
 /// Tells how far the parts are. Called from any thread.
 class Teller {
   public:
@@ -31,15 +33,18 @@ class Teller {
         if (kind == SweepProgress::bar) bar_.emplace("sweep", total);
     }
 
-    void ended(bool isDone) {
+    void ended(Ending how) {
         const std::scoped_lock lock(mutex_);
-        ++(isDone ? done_ : failed_);
-        const std::size_t ended = done_ + failed_;
+        ++(how == Ending::done ? done_ : how == Ending::failed ? failed_ : elsewhere_);
+        const std::size_t ended = done_ + failed_ + elsewhere_;
         const double left =
             watch_.seconds() / static_cast<double>(ended) * static_cast<double>(total_ - ended);
-        const std::string text = fmt::format("{} of {} parts done, {} failed, about {} left", done_, total_,
-                                             failed_, durationText(left));
-        if (bar_) bar_->done(ended, fmt::format(", {} failed, about {} left", failed_, durationText(left)));
+        const std::string rest =
+            fmt::format("{} failed{}, about {} left", failed_,
+                        elsewhere_ > 0 ? fmt::format(", {} done by another process", elsewhere_) : "",
+                        durationText(left));
+        const std::string text = fmt::format("{} of {} parts done, {}", done_, total_, rest);
+        if (bar_) bar_->done(ended, ", " + rest);
         if (kind_ == SweepProgress::bar || (ended < total_ && watch_.seconds() < nextLine_)) return;
         nextLine_ = watch_.seconds() + kSecondsBetweenLines;
         if (kind_ == SweepProgress::lines) {
@@ -52,10 +57,11 @@ class Teller {
     }
     std::size_t done() const { return done_; }
     std::size_t failed() const { return failed_; }
+    std::size_t elsewhere() const { return elsewhere_; }
 
   private:
     SweepProgress kind_;
-    std::size_t total_, done_ = 0, failed_ = 0;
+    std::size_t total_, done_ = 0, failed_ = 0, elsewhere_ = 0;
     std::optional<Progress> bar_;
     Stopwatch watch_;
     double nextLine_ = 0;
@@ -63,7 +69,7 @@ class Teller {
 };
 
 /// A process for the part. It has written what the job said; what it died of is in brackets.
-Status runInProcess(const SweepFolder& folder, const SweepPart& part, std::size_t threads) {
+Ending runInProcess(const SweepFolder& folder, const SweepPart& part, std::size_t threads) {
     ChildLimits limits;
     limits.time = std::chrono::hours(24 * 365);
     limits.residentBytes = std::numeric_limits<std::uint64_t>::max();
@@ -76,9 +82,9 @@ Status runInProcess(const SweepFolder& folder, const SweepPart& part, std::size_
     if (areUnconfinedReadersAllowed()) words.emplace_back("--allow-unconfined");
     words.insert(words.end(), {"--", file.string()});
     const auto ran = runChild("the job", programFolder() / "hairloom-cli", words, limits);
-    if (ran) return {};
-    if (auto busy = folder.busy(part)) return tl::unexpected(*busy);
-    if (auto failed = folder.failure(part)) return tl::unexpected(std::move(*failed));
+    if (ran) return Ending::done;
+    if (folder.busy(part)) return Ending::elsewhere;
+    if (folder.failure(part)) return Ending::failed;
     Error error = ran.error();
     const auto open = error.problem.find('('), close = error.problem.rfind(')');
     if (open != std::string::npos && close != std::string::npos && open < close)
@@ -86,8 +92,9 @@ Status runInProcess(const SweepFolder& folder, const SweepPart& part, std::size_
                  {},
                  "its process ended " + error.problem.substr(open, close + 1 - open),
                  "run the sweep again"};
-    if (auto status = folder.fail(part, error); !status) return status;
-    return tl::unexpected(error);
+    // A folder that does not take it is told of as the parts are joined.
+    static_cast<void>(folder.fail(part, error));
+    return Ending::failed;
 }
 
 }  // namespace
@@ -110,8 +117,7 @@ Result<SweepCounts> runParts(const SweepFolder& folder, const std::vector<std::s
     const auto work = [&] {
         for (std::size_t i = next++; i < missing.size(); i = next++) {
             const std::size_t together = std::min(workers, missing.size() - i);
-            teller.ended(
-                runInProcess(folder, *missing[i], std::max<std::size_t>(cores / together, 1)).has_value());
+            teller.ended(runInProcess(folder, *missing[i], std::max<std::size_t>(cores / together, 1)));
         }
     };
     std::vector<std::thread> threads;
@@ -120,6 +126,7 @@ Result<SweepCounts> runParts(const SweepFolder& folder, const std::vector<std::s
     for (std::thread& thread : threads) thread.join();
     counts.done = teller.done();
     counts.failed = teller.failed();
+    counts.elsewhere = teller.elsewhere();
     return counts;
 }
 

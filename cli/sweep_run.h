@@ -18,6 +18,7 @@ struct SweepCounts {
     std::size_t done = 0;  ///< in this run
     std::size_t kept = 0;  ///< that were done before
     std::size_t failed = 0;
+    std::size_t elsewhere = 0;  ///< that another process does now
 };
 
 /// Does those of the parts that are not done yet, as many at a time as threadCount(). A part that fails holds

@@ -46,17 +46,23 @@ Report reportOf(const SweepFolder& folder, const SweepOutcome& outcome) {
             {"output", folder.path().string()}};
 }
 
-/// One that counts as done only where every part is.
-Result<Report> merged(const SweepFolder& folder) {
+std::string elsewhereText(std::size_t parts) {
+    return parts == 0 ? std::string() : fmt::format(", and another process does {} of these now", parts);
+}
+
+/// One that counts as done only where every part is. `elsewhere` are parts that another process does.
+Result<Report> merged(const SweepFolder& folder, std::size_t elsewhere = 0) {
     const auto outcome = mergeSweep(folder);
     if (!outcome) return tl::unexpected(outcome.error());
     const std::size_t open = outcome->parts - outcome->done;
     if (open == 0) return reportOf(folder, *outcome);
-    return failIn(
-        (folder.path() / "report.html").string(), {},
-        fmt::format("{} of {} parts are not done, and {} of these failed{}", open, outcome->parts,
-                    outcome->failed, outcome->failures.empty() ? "" : ": " + outcome->failures.front()),
-        "run the sweep again: it does what is missing");
+    return failIn((folder.path() / "report.html").string(), {},
+                  fmt::format("{} of {} parts are not done{}, and {} of these failed{}", open, outcome->parts,
+                              elsewhereText(elsewhere), outcome->failed,
+                              outcome->failures.empty() ? "" : ": " + outcome->failures.front()),
+                  elsewhere > 0 && outcome->failed == 0
+                      ? "wait for the other process, which joins the results"
+                      : "run the sweep again: it does what is missing");
 }
 
 Result<Report> runSome(const SweepFolder& folder, const std::vector<std::size_t>& parts,
@@ -68,14 +74,17 @@ Result<Report> runSome(const SweepFolder& folder, const std::vector<std::size_t>
                   {"failed", counts->failed},
                   {"kept", counts->kept},
                   {"output", folder.path().string()}};
-    if (counts->failed == 0) return report;
+    if (counts->failed == 0 && counts->elsewhere == 0) return report;
     for (const std::size_t number : parts) {
         const SweepPart& part = folder.sweep().parts[number];
         if (const auto error = folder.failure(part))
             return failIn(error->file, error->place, fmt::format("{}: {}", inWords(part), error->problem),
                           fmt::format("{} of {} parts failed: run them again", counts->failed, parts.size()));
     }
-    return failIn(folder.path().string(), {}, fmt::format("{} parts failed", counts->failed));
+    return failIn(folder.path().string(), {},
+                  fmt::format("{} of {} parts are not done{}", counts->failed + counts->elsewhere,
+                              parts.size(), elsewhereText(counts->elsewhere)),
+                  "run them again later");
 }
 
 Result<Report> runOne(const SweepFolder& folder, std::size_t number) {
@@ -97,7 +106,7 @@ Result<Report> runAll(const SweepFolder& folder, SweepProgress progress) {
     std::iota(all.begin(), all.end(), std::size_t{0});
     const auto counts = runParts(folder, all, progress);
     if (!counts) return tl::unexpected(counts.error());
-    auto report = merged(folder);
+    auto report = merged(folder, counts->elsewhere);
     if (report) {
         (*report)["kept"] = counts->kept;
         (*report)["seconds"] = watch.seconds();

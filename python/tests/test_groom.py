@@ -168,9 +168,9 @@ class Edits(InFolder):
             groom.apply("curl", radius=float("nan"))
         with self.assertRaises(hairloom.ArgumentError):
             groom.apply("curl", radius=object())
-        with self.assertRaises(hairloom.ArgumentError) as caught:
+        with self.assertRaises(hairloom.ArgumentError) as twice:
             groom.apply("curl", op="noise")
-        self.assertIn("op is given", str(caught.exception))
+        self.assertIn("op is given", str(twice.exception))
         nested: dict[str, Any] = {}
         inner = nested
         for _ in range(100_000):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "core/base/output_file.h"
 #include "tests/cli/command.h"
 
 namespace hairloom::test {
@@ -216,6 +217,24 @@ TEST_F(Sweep, AFolderOfAnotherSweepIsLeftAlone) {
     EXPECT_THAT(outcome.errors, HasSubstr("out: is the folder of the sweep \"caches\" (\"simulate\")"));
     EXPECT_EQ(readText(folder / "out/merged.json"), merged);
     EXPECT_EQ(runJson("sweep caches.json -o out")["kept"], 2);
+}
+
+TEST_F(Sweep, APartThatAnotherProcessDoesIsLeftToIt) {
+    write("caches.json", caches());
+    runJson("sweep caches.json -o out --parts 1");
+    // What the other process holds while it works.
+    const auto held = OutputFile::open(folder / "out/state/0000.json", {}, Replacing::Anything);
+    ASSERT_TRUE(held);
+    const Outcome outcome = run("sweep caches.json -o out --progress lines");
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.errors, HasSubstr("0 failed, 1 done by another process"));
+    EXPECT_THAT(outcome.errors,
+                HasSubstr("1 of 2 parts are not done, and another process does 1 of these now, "
+                          "and 0 of these failed; wait for the other process"));
+    EXPECT_THAT(
+        run("sweep caches.json -o out --parts 0").errors,
+        HasSubstr("1 of 1 parts are not done, and another process does 1 of these now; run them again"));
+    EXPECT_EQ(runJson("sweep caches.json -o out --status")["failed"], 0);
 }
 
 TEST_F(Sweep, ListsOfPartsAreThoseOfQueues) {
