@@ -17,7 +17,7 @@ Status evaluate(Rounds& rounds, const Groom& groom, const FollowBindings& bindin
     const std::vector<Vec3f> velocities(moving ? guides.size() : 0, Vec3f(1, 0, 0));
     std::vector<Vec3f> positions(bindings.hairCount() * bindings.pointsPerHair);
     while (rounds.next()) {
-        auto status = evaluateFollowHairs(bindings, {guides, velocities, {}}, {}, positions);
+        auto status = evaluateFollowHairs(bindings, {guides, velocities, {}}, positions);
         if (!status) return status;
         keep(positions);
     }

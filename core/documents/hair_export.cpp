@@ -55,7 +55,7 @@ class MovingHairs {
         std::vector<Quatf> rotations;
         for (const std::uint32_t strand : bindings_.guideStrands) rotations.push_back(turns[strand]);
         std::vector<Vec3f> hairs(bindings_.hairCount() * bindings_.pointsPerHair);
-        auto made = evaluateFollowHairs(bindings_, {guides, velocities, rotations}, {}, hairs);
+        auto made = evaluateFollowHairs(bindings_, {guides, velocities, rotations}, hairs);
         before_ = std::move(guides);
         if (!made) return tl::unexpected(made.error());
         if (push_) pushOutOfBody(*push_, rest_, frame.pose, hairs);

@@ -69,6 +69,8 @@ Result<GpuFollowHairs> GpuFollowHairs::make(gpu::Device& device, const runtime::
     impl->constants.guides = static_cast<std::uint32_t>(view.rootPlanes_ss.size());
     impl->constants.hairs = static_cast<std::uint32_t>(view.guides.size());
     impl->constants.points = view.pointsPerHair;
+    impl->constants.wispSpread = view.wisps.spread;
+    impl->constants.wispLimit = view.wisps.limit;
     for (const runtime::RootPlane& plane : view.rootPlanes_ss)
         impl->planes.push_back(runtime::followPlane(plane));
     for (std::size_t g = 0; g < impl->planes.size(); ++g)
@@ -112,7 +114,6 @@ void GpuFollowHairs::record(gpu::CommandList& list, const FollowInput& input) {
     if (turned) list.updateBuffer(impl.frameBuffer, 0, std::as_bytes(std::span(impl.frames)));
     const gpu::BufferPtr& frames = input.roots_ws != nullptr ? input.roots_ws : impl.frameBuffer;
     shaders::FollowConstants constants = impl.constants;
-    constants.wispSpread = input.wispSpread;
     constants.hasVelocities = input.velocities_ws != nullptr ? 1 : 0;
     const gpu::BufferPtr& velocities =
         input.velocities_ws != nullptr ? input.velocities_ws : input.positions_ws;

@@ -17,7 +17,6 @@ struct FollowInput {
     gpu::BufferPtr velocities_ws;  ///< null for guides at rest
     /// Per guide, as runtime::GuideMotion has them; may be empty.
     std::span<const runtime::Quat> rootRotations_ws;
-    float wispSpread = 0.15f;  ///< s/m
     /// In place of those rotations: two float4 a guide, the second the rotation, as GpuHead writes them.
     gpu::BufferPtr roots_ws = {};
 };

@@ -49,7 +49,10 @@ struct InterpolationSettings {
     std::uint32_t followPerGuide = 0;
     float wispRadiusRoot = 0.002f;
     float wispRadiusTip = 0.004f;
+    float wispSpread = 0.15f;
+    float wispSpreadLimit = 10;
     float blend = 0.5f;
+    bool drawGuides = false;
     std::uint64_t seed = 1;
 };
 

@@ -30,6 +30,10 @@ Status checkSettings(const InterpolationSettings& settings, const PartingSetting
     }
     auto status = checkRange("the wisp radius at the root", settings.wispRadiusRoot, 0, kLargestRadius);
     if (status) status = checkRange("the wisp radius at the tip", settings.wispRadiusTip, 0, kLargestRadius);
+    if (status)
+        status = checkRange("the spread of wisps by speed", settings.wispSpread, 0, runtime::kMostSpread);
+    if (status)
+        status = checkRange("the limit of that spread", settings.wispSpreadLimit, 1, runtime::kMostWidening);
     if (status) status = checkRange("the blend", settings.blend, 0, 1);
     if (status) status = checkRange("the angle where a parting begins", parting.beginAngleDegrees, 0, 180);
     if (status &&
@@ -120,6 +124,7 @@ class Binder {
         setFrames();
         bindings_.radii =
             runtime::wispRadii(settings_.wispRadiusRoot, settings_.wispRadiusTip, bindings_.pointsPerHair);
+        bindings_.wisps = {settings_.wispSpread, settings_.wispSpreadLimit};
         bindings_.triangles = guideTriangles(groom_, bindings_.guideStrands);
         setHairs();
         projectRoots();
@@ -177,6 +182,7 @@ class Binder {
             {settings_.seed,
              bindings_.hairs,
              settings_.blend,
+             settings_.drawGuides,
              {parting_.beginAngleDegrees, parting_.endAngleDegrees, parting_.beginSpread, parting_.endSpread},
              bindings_.ids,
              layers,

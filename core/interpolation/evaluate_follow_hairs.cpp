@@ -40,6 +40,7 @@ runtime::FollowView followView(const FollowBindings& bindings, std::span<const s
     view.rootPlanes_ss = viewAs<runtime::RootPlane>(bindings.rootFrames);
     view.pointsPerHair = bindings.pointsPerHair;
     view.radii = bindings.radii;
+    view.wisps = bindings.wisps;
     view.guides = bindings.guides;
     view.weights = viewAs<runtime::Float3>(bindings.weights);
     view.rootWeights = viewAs<runtime::Float3>(bindings.rootWeights);
@@ -49,7 +50,7 @@ runtime::FollowView followView(const FollowBindings& bindings, std::span<const s
     return view;
 }
 
-Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state, const WispMotion& motion,
+Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state,
                            std::span<Vec3f> positions) {
     assert(positions.size() == bindings.hairCount() * bindings.pointsPerHair);
     assert(state.positions.size() == bindings.guideCount() * bindings.pointsPerHair);
@@ -63,7 +64,6 @@ Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& sta
     guides.positions_ws = viewAs<runtime::Float3>(state.positions);
     guides.velocities_ws = viewAs<runtime::Float3>(state.velocities);
     guides.rootRotations_ws = viewAs<runtime::Quat>(state.rotations);
-    guides.wispSpread = motion.spread;
     runtime::Host host;
     host.parallelFor = parallelFor;
     made.hairs->evaluate(guides, {reinterpret_cast<runtime::Float3*>(positions.data()), positions.size()},
@@ -123,7 +123,7 @@ Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings
     const std::size_t hairs = bindings.hairCount();
     const auto guides = guidePositions(groom, bindings);
     std::vector<Vec3f> positions(hairs * bindings.pointsPerHair);
-    if (auto status = evaluateFollowHairs(bindings, {guides, {}, {}}, {}, positions); !status) {
+    if (auto status = evaluateFollowHairs(bindings, {guides, {}, {}}, positions); !status) {
         return tl::unexpected(status.error());
     }
     std::vector<std::uint32_t> offsets(hairs + 1);

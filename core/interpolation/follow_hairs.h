@@ -36,7 +36,8 @@ struct FollowBindings {
     std::vector<float> areas;                 ///< of each triangle, twice its m²
     std::vector<Mat3f>
         rootFrames;  ///< per guide at rest: columns span the scalp's tangent plane; the third is its normal
-    std::vector<float> radii;  ///< per point of a hair: r_0, metres, radius of a wisp at rest
+    std::vector<float> radii;   ///< per point of a hair: r_0, metres, radius of a wisp at rest
+    runtime::WispMotion wisps;  ///< how those radii answer to speed
 
     std::vector<std::array<std::uint32_t, 3>> guides;  ///< the hair's own guide first
     std::vector<Vec3f> weights;  ///< ≥ 0, sum 1: shares of the guides in the hair's shape, partings kept open
@@ -63,12 +64,6 @@ Result<FollowBindings> bindFollowHairs(const Groom& groom, const InterpolationSe
 /// number of points are resampled evenly. Metres.
 std::vector<Vec3f> guidePositions(const Groom& groom, const FollowBindings& bindings);
 
-/// How wisps answer to speed (Choe et al., thesis Eq. 22–23): ξ = 1 + σ|v| with σ = spread · s at arc share s
-/// of the hair, 0 at the root and 1 at the tip.
-struct WispMotion {
-    float spread = 0.15f;  ///< s/m, ≥ 0; growth of the radius at the tip per m/s; 0 turns it off
-};
-
 /// The guides at one moment. Spans are guide after guide, `pointsPerHair` each.
 struct GuideState {
     std::span<const Vec3f> positions;   ///< metres
@@ -84,7 +79,7 @@ runtime::FollowView followView(const FollowBindings& bindings, std::span<const s
 /// Fills `positions` (hair after hair, `pointsPerHair` each, metres). The same bits for any number of
 /// threads. For one picture; who plays frames keeps the runtime::FollowHairs of followView(). Errors:
 /// bindings that the engine refuses, such as weights that are no numbers.
-Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state, const WispMotion& motion,
+Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state,
                            std::span<Vec3f> positions);
 
 /// What the guides around each point of a hair have there, by the hair's root; hair after hair,

@@ -18,6 +18,7 @@ StrandFollow::StrandFollow(const Groom& groom, const FollowBindings& bindings)
       rest_(groom.positions().begin(), groom.positions().end()),
       rootFrames_(groom.strandCount(), Mat3f::Identity()),
       radii_(bindings.radii),
+      wisps_(bindings.wisps),
       guides_(bindings.guides),
       weights_(bindings.weights),
       rootWeights_(bindings.rootWeights),
@@ -38,6 +39,7 @@ runtime::FollowView StrandFollow::view() const {
     view.rootPlanes_ss = viewAs<runtime::RootPlane>(rootFrames_);
     view.pointsPerHair = pointsPerHair_;
     view.radii = radii_;
+    view.wisps = wisps_;
     view.guides = guides_;
     view.weights = viewAs<runtime::Float3>(weights_);
     view.rootWeights = viewAs<runtime::Float3>(rootWeights_);

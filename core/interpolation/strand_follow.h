@@ -26,6 +26,7 @@ class StrandFollow {
     std::vector<Vec3f> rest_;
     std::vector<Mat3f> rootFrames_;
     std::vector<float> radii_;
+    runtime::WispMotion wisps_;
     std::vector<std::array<std::uint32_t, 3>> guides_;
     std::vector<Vec3f> weights_, rootWeights_, rootShifts_;
     std::vector<Vec2f> wispOffsets_;

@@ -200,6 +200,7 @@ DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
     DrawnHairs drawn = drawFollowHairs({r.seed,
                                         hairs,
                                         r.blend,
+                                        numberOf("interpolation.drawGuides", 0) != 0,
                                         {r.beginAngle, r.endAngle, r.beginSpread, r.endSpread},
                                         ids,
                                         layersOfGuides,
@@ -245,6 +246,7 @@ FollowView Asset::followView(const Strands& rest, const FollowArrays& arrays) co
     view.rootPlanes_ss = arrays.planes;
     view.pointsPerHair = recipe[0].pointsPerHair;
     view.radii = arrays.radii;
+    view.wisps = wispMotion();
     view.guides = arrays.drawn.guides;
     view.weights = arrays.drawn.weights;
     view.rootWeights = arrays.drawn.rootWeights;
@@ -252,6 +254,16 @@ FollowView Asset::followView(const Strands& rest, const FollowArrays& arrays) co
     view.blends = arrays.drawn.blends;
     view.rootShifts = arrays.shifts;
     return view;
+}
+
+WispMotion Asset::wispMotion() const {
+    const WispMotion usual;  // of files from before wisps had settings
+    const auto value = [&](std::string_view name, float missing, float least, float most) {
+        const auto found = static_cast<float>(numberOf(name, static_cast<double>(missing)));
+        return found >= least && found <= most ? found : missing;
+    };
+    return {value("interpolation.wispSpread", usual.spread, 0.0f, kMostSpread),
+            value("interpolation.wispSpreadLimit", usual.limit, 1.0f, kMostWidening)};
 }
 
 FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) const {

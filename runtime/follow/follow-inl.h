@@ -80,13 +80,15 @@ struct GuideLanes {
 HWY_INLINE void fillWispPoint(const GuideRows& guides, const GuideLanes& lanes, std::uint32_t point,
                               V3 position, V3 xAxis, V3 yAxis) {
     const float share = static_cast<float>(point) / static_cast<float>(guides.points - 1);
-    const float sigma = guides.wispSpread * share;
     const float radius = guides.radii[point];
     float* centre = lanes.wisps + std::size_t{point} * 3;
     const V3 velocity = gather3(centre, lanes.wisp);
-    const V xi = all(1.0f) + all(sigma) * hn::Sqrt(dot(velocity, velocity));  // Eq. 22
+    const V speed = hn::Sqrt(dot(velocity, velocity));
+    const V widest = all(guides.motion.limit - 1.0f) / hn::Max(speed, all(1e-30f));
+    const V sigma = hn::Min(all(guides.motion.spread * share), widest);
+    const V xi = all(1.0f) + sigma * speed;  // Eq. 22
     // Eq. 23, where (ξ − 1) v/|v| = σ v is smooth at rest.
-    scatter3(position - velocity * all(radius * sigma), centre, lanes.wisp);
+    scatter3(position - velocity * (all(radius) * sigma), centre, lanes.wisp);
     scatter3(xAxis * (all(radius) * xi), centre + guides.rowFloats, lanes.wisp);
     scatter3(yAxis * (all(radius) * xi), centre + 2 * guides.rowFloats, lanes.wisp);
 }

@@ -111,6 +111,11 @@ std::string validationError(const FollowView& view) {
             return "the wisp radius at point " + std::to_string(p) + " is not a length";
         }
     }
+    const WispMotion& wisps = view.wisps;
+    if (!(wisps.spread >= 0.0f && wisps.spread <= kMostSpread))
+        return "wisps widen by " + std::to_string(wisps.spread) + " per m/s; expected 0 to 10";
+    if (!(wisps.limit >= 1.0f && wisps.limit <= kMostWidening))
+        return "wisps widen at most " + std::to_string(wisps.limit) + " times; expected 1 to 100";
     for (std::size_t hair = 0; hair < view.guides.size(); ++hair) {
         if (std::string why = hairError(view, hair); !why.empty())
             return "hair " + std::to_string(hair) + " " + why;
@@ -212,6 +217,7 @@ struct FollowHairs::Impl {
     std::vector<std::size_t> firstSample;  // per guide; kNoSamples where its points are taken as they are
     std::vector<GuideSample> samples;      // `points` of them for each guide that is resampled
     std::vector<float> radii;
+    WispMotion wispMotion;
     std::vector<HairBinding> hairs;
     Floats positions, wisps, frames;  // of the frame, as GuideRows has them
 
@@ -235,7 +241,8 @@ FollowHairs::Impl::Impl(const FollowView& view)
       guideOffsets(view.guideOffsets.begin(), view.guideOffsets.end()),
       rootPlanes(view.rootPlanes_ss.begin(), view.rootPlanes_ss.end()),
       firstSample(view.rootPlanes_ss.size(), kNoSamples),
-      radii(view.radii.begin(), view.radii.end()) {
+      radii(view.radii.begin(), view.radii.end()),
+      wispMotion(view.wisps) {
     for (std::size_t g = 0; g < guideCount(); ++g) {
         const std::uint32_t count = guideOffsets[g + 1] - guideOffsets[g];
         if (count == points) continue;
@@ -287,7 +294,7 @@ bool FollowHairs::Impl::takes(const GuideMotion& guides, std::span<const std::ui
 }
 
 GuideRows FollowHairs::Impl::placeGuides(const GuideMotion& guides, const Host& host) {
-    const GuideRows rows{points,           rowFloats,    radii.data(), guides.wispSpread,
+    const GuideRows rows{points,           rowFloats,    radii.data(), wispMotion,
                          positions.data(), wisps.data(), frames.data()};
     inParallel(host, guideCount(), kGuidesPerJob,
                [&](std::size_t begin, std::size_t end) { fillGuides(guides, rows, begin, end); });

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "hairloom/follow.h"
 #include "hairloom/math.h"
 
 namespace hairloom::runtime {
@@ -33,7 +34,7 @@ struct GuideRows {
     std::uint32_t points;    ///< of every guide and hair, at most 2²⁰
     std::size_t rowFloats;   ///< from row to row
     const float* radii;      ///< per point
-    float wispSpread;        ///< s/m
+    WispMotion motion;       ///< how their radii grow with speed
     const float* positions;  ///< one row per guide
     float* wisps;            ///< kWispRows rows per guide
     const float* frames;     ///< kFrameFloats per guide: the root plane of now

@@ -115,6 +115,10 @@ void drawHair(const FollowRecipe& recipe, const Fans& fans, std::uint32_t guide,
     hairs.guides[hair] = {guide, guide, guide};
     hairs.weights[hair] = hairs.rootWeights[hair] = {1, 0, 0};
     hairs.blends[hair] = 0;
+    if (recipe.drawGuides && number == 0) {
+        hairs.wispOffsets[hair] = {0.0f, 0.0f};
+        return;
+    }
     if (chosen == kNone) return;
     std::array<std::uint32_t, 3> corners = recipe.triangles[chosen];
     std::rotate(corners.begin(), std::find(corners.begin(), corners.end(), guide), corners.end());

@@ -214,7 +214,7 @@ void Instance::fillGpu(std::uint32_t buffer, void* out) {
         gpuGuides_->fill(buffer, {static_cast<std::byte*>(out), gpuBytes(buffer)});
     } else if (buffer == HL_GPU_BUFFER_CONSTANTS) {
         writeGpu(out, shaders::FollowConstants{static_cast<std::uint32_t>(roots_.size()), gpuHairs_,
-                                               gpuPoints_, GuideMotion{}.wispSpread, 1, 0, 0, 0});
+                                               gpuPoints_, gpuWisps_.spread, 1, gpuWisps_.limit, 0, 0});
     } else if (buffer == HL_GPU_BUFFER_TURNS) {
         const bool onGpu = gpuGuides_ && !gpuGuides_->atBegin();
         if (!onGpu) showPositions();

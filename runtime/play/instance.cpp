@@ -152,6 +152,7 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
                       asset::checksum(asset.residuals);
     instance.gpuHairs_ = static_cast<std::uint32_t>(asset.hairCount());
     if (instance.gpuHairs_ > 0) instance.gpuPoints_ = asset.recipe[0].pointsPerHair;
+    instance.gpuWisps_ = asset.wispMotion();
     const Float3 low = asset.boundsMin_ss(), high = asset.boundsMax_ss();
     instance.pivot_ = {0, 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)};
     instance.roots_.resize(asset.strands.size());

@@ -170,8 +170,9 @@ class Instance {
     } last_;
     bool asleep_ = false;
     std::vector<Float3> positions_, velocities_;
-    std::array<double, 3> origin_{};              // of the last frame
-    Float3 pivot_{};                              // that heads nod about where something is measured
+    std::array<double, 3> origin_{};  // of the last frame
+    Float3 pivot_{};                  // that heads nod about where something is measured
+    WispMotion gpuWisps_;
     std::uint32_t gpuHairs_ = 0, gpuPoints_ = 0;  // of the asset, read or not, and of each
     std::optional<GpuGuides> gpuGuides_;          // from hl_gpu_begin() until the CPU moves the hair
     std::uint64_t asset_ = 0;                     // tells assets apart

@@ -15,7 +15,8 @@ struct FollowConstants {
     uint points;       ///< per hair
     float wispSpread;  ///< σ of Eq. 22 at the tip, s/m
     uint hasVelocities;
-    uint unused0, unused1, unused2;
+    float wispLimit;  ///< greatest ξ of Eq. 22
+    uint unused0, unused1;
 };
 
 /// The root plane of a guide at rest.

@@ -59,8 +59,10 @@ void main(uint3 thread : SV_DispatchThreadID) {
         const float3 x = p == 0 ? rotate(turn, plane.x.xyz) : normal;
         const float3 y = p == 0 ? rotate(turn, plane.y.xyz) : cross(tangent, normal);
         const float3 velocity = velocityAt(first + p);
-        const float sigma = gFollow.wispSpread * float(p) / float(last), radius = gRadii[p];
-        const float xi = 1.0 + sigma * sqrt(dot(velocity, velocity));  // Eq. 22
+        const float speed = sqrt(dot(velocity, velocity)), radius = gRadii[p];
+        const float sigma =
+            min(gFollow.wispSpread * float(p) / float(last), (gFollow.wispLimit - 1.0) / max(speed, 1e-30));
+        const float xi = 1.0 + sigma * speed;  // Eq. 22
         gRows[rowOf(guide, 0, p)] = float4(here, 0);
         // Eq. 23, where (ξ − 1) v/|v| = σ v is smooth at rest.
         gRows[rowOf(guide, 1, p)] = float4(here - velocity * (radius * sigma), 0);

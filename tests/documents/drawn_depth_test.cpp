@@ -105,7 +105,7 @@ TEST(DrawnDepth, FollowHairsCountAndGuidesAreToldApart) {
     laidGroom.pointAttributes.set(attribute::kPosition, moved);
     std::vector<Vec3f> hairs(bindings->hairCount() * bindings->pointsPerHair);
     const auto guides = guidePositions(laidGroom, *bindings);
-    ASSERT_TRUE(evaluateFollowHairs(*bindings, {guides, {}, {}}, {}, hairs));
+    ASSERT_TRUE(evaluateFollowHairs(*bindings, {guides, {}, {}}, hairs));
     const MeshSolid ball(groom.scalp->positions(), groom.scalp->triangles());
     float deepestPoint = 0;
     for (std::size_t h = 0; h < bindings->hairCount(); ++h) {

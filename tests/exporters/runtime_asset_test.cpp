@@ -99,7 +99,11 @@ TEST_F(RuntimeAsset, CarriesEverySettingAndSphere) {
     groom.interpolation.followPerGuide = 3;
     groom.spheres = {{"left", Vec3f(1, 2, 3), 0.25f, ""}, {"right", Vec3f(-1, 2, 3), 0.5f, "no such bone"}};
     ExportReport report;
-    written(groom, &report);
+    const auto bytes = written(groom, &report);
+    const auto opened = Asset::open(bytes);
+    ASSERT_TRUE(opened.asset);
+    EXPECT_EQ(opened.asset->wispMotion().spread, groom.interpolation.wispSpread);
+    EXPECT_EQ(opened.asset->wispMotion().limit, groom.interpolation.wispSpreadLimit);
     const auto back = importStrands(folder / "a.hairrt");
     ASSERT_TRUE(back) << back.error().message();
     EXPECT_TRUE(back->hasSettings);
@@ -118,7 +122,8 @@ TEST_F(RuntimeAsset, CarriesEverySettingAndSphere) {
 }
 
 TEST_F(RuntimeAsset, FollowHairsAreThoseOfPictures) {
-    const Groom groom = wholeGroom();
+    Groom groom = wholeGroom();
+    groom.interpolation.drawGuides = true;
     ExportReport report;
     const auto bytes = written(groom, &report);
     const auto opened = Asset::open(bytes);

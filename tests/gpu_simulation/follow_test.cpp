@@ -23,7 +23,7 @@ class Follow : public GpuSimulationTest {
     static double distance(const runtime::FollowView& view, const runtime::GuideMotion& motion) {
         auto gpuHairs = GpuFollowHairs::make(*device(), view);
         if (!gpuHairs) throw std::runtime_error(gpuHairs.error().message());
-        FollowInput input{quadsOf(motion.positions_ws), nullptr, motion.rootRotations_ws, motion.wispSpread};
+        FollowInput input{quadsOf(motion.positions_ws), nullptr, motion.rootRotations_ws};
         if (!motion.velocities_ws.empty()) input.velocities_ws = quadsOf(motion.velocities_ws);
         auto list = device()->createCommandList().value();
         gpuHairs->record(*list, input);
@@ -51,9 +51,11 @@ TEST_F(Follow, WispsTrianglesAndBlendsAreThoseOfTheRuntime) {
         scenes::Lawn lawn(60, 5, 9, blend);
         for (std::size_t g = 0; g < lawn.rotations.size(); ++g)
             lawn.rotations[g] = {0.1f * static_cast<float>(g % 5), 0.3f, -0.2f, 0.9f};
-        runtime::GuideMotion motion = lawn.motion();
-        motion.wispSpread = 0.5f;
-        EXPECT_LE(distance(lawn.view(), motion), kTolerance) << blend;
+        runtime::FollowView view = lawn.view();
+        for (const float limit : {10.0f, 1.2f}) {
+            view.wisps = {0.5f, limit};
+            EXPECT_LE(distance(view, lawn.motion()), kTolerance) << blend << ", " << limit;
+        }
     }
 }
 

@@ -54,10 +54,9 @@ InterpolationSettings settingsWith(float blend, std::uint32_t followPerGuide = 5
     return settings;
 }
 
-std::vector<Vec3f> evaluate(const FollowBindings& bindings, const GuideState& state,
-                            const WispMotion& motion = {}) {
+std::vector<Vec3f> evaluate(const FollowBindings& bindings, const GuideState& state) {
     std::vector<Vec3f> positions(bindings.hairCount() * bindings.pointsPerHair);
-    EXPECT_TRUE(evaluateFollowHairs(bindings, state, motion, positions));
+    EXPECT_TRUE(evaluateFollowHairs(bindings, state, positions));
     return positions;
 }
 
@@ -320,18 +319,20 @@ std::vector<Vec3f> velocities(std::size_t count, std::size_t points, const Vec3f
 
 TEST(WispsInMotion, FollowEquations22And23) {
     const Groom groom = field(8, straight, false);
-    const auto bindings = bindFollowHairs(groom, settingsWith(0.0f, 20));
+    InterpolationSettings settings = settingsWith(0.0f, 20);
+    settings.wispSpread = 0.2f;
+    settings.wispSpreadLimit = 1.7f;  // reached at the last two points
+    const auto bindings = bindFollowHairs(groom, settings);
     ASSERT_TRUE(bindings);
     const auto guides = guidePositions(groom, *bindings);
     const auto speeds = velocities(16, 8, Vec3f(3, 0, 4));
-    const WispMotion motion{0.2f};
     const auto rest = evaluate(*bindings, {guides, {}, {}});
-    const auto moving = evaluate(*bindings, {guides, speeds, {}}, motion);
+    const auto moving = evaluate(*bindings, {guides, speeds, {}});
     for (std::size_t h = 0; h < bindings->hairCount(); ++h) {
         for (std::size_t i = 0; i < 8; ++i) {
             const double s = static_cast<double>(i) / 7.0;
             const Vec3d v = speeds[i].cast<double>();
-            const double xi = 1.0 + 0.2 * s * v.norm();
+            const double xi = std::min(1.0 + 0.2 * s * v.norm(), 1.7);
             const Vec3d centre = groom.strand(h / 20)[i].cast<double>();
             const Vec3d offset = hair(*bindings, rest, h)[i].cast<double>() - centre;
             const Vec3d direction = v.norm() > 0 ? Vec3d(v.normalized()) : Vec3d(Vec3d::Zero());
@@ -350,21 +351,23 @@ TEST(WispsInMotion, TheLeadingEdgeDoesNotJumpWhenTheSpeedChanges) {
     const auto guides = guidePositions(groom, *bindings);
     const Vec3f direction = bindings->rootFrames[0].col(0);
     bindings->wispOffsets.assign(bindings->hairCount(), Vec2f(1, 0));
+    bindings->wisps.spread = 0.2f;
     const auto rest = evaluate(*bindings, {guides, {}, {}});
     for (const float speed : {0.0f, 1e-6f, 0.1f, 1.0f, 10.0f}) {
-        const auto moving =
-            evaluate(*bindings, {guides, velocities(16, 8, speed * direction), {}}, WispMotion{0.2f});
+        const auto moving = evaluate(*bindings, {guides, velocities(16, 8, speed * direction), {}});
         for (std::size_t i = 0; i < 8; ++i) EXPECT_LT((moving[i] - rest[i]).norm(), 1e-6f) << speed;
     }
 }
 
 TEST(WispsInMotion, PositionsAreContinuousInTheVelocity) {
     const Groom groom = field(8, bent, false);
-    const auto bindings = bindFollowHairs(groom, settingsWith(0.3f, 10));
+    InterpolationSettings settings = settingsWith(0.3f, 10);
+    settings.wispSpread = 0.2f;
+    const auto bindings = bindFollowHairs(groom, settings);
     ASSERT_TRUE(bindings);
     const auto guides = guidePositions(groom, *bindings);
     const auto positionsAt = [&](float speed) {
-        return evaluate(*bindings, {guides, velocities(16, 8, Vec3f(speed, 0, 0)), {}}, WispMotion{0.2f});
+        return evaluate(*bindings, {guides, velocities(16, 8, Vec3f(speed, 0, 0)), {}});
     };
     const float step = 0.01f;
     auto before = positionsAt(-0.2f);
@@ -471,6 +474,22 @@ TEST(FollowHairs, BakesIntoABoundGroom) {
     EXPECT_EQ(baked->rootBindings().size(), 112u);
 }
 
+TEST(FollowBindings, TheFirstHairOfAGuideMayBeTheGuide) {
+    const Groom groom = field(8, bent, false);
+    InterpolationSettings settings = settingsWith(0.6f, 4);
+    const auto without = bindFollowHairs(groom, settings);
+    settings.drawGuides = true;
+    const auto bindings = bindFollowHairs(groom, settings);
+    ASSERT_TRUE(without && bindings);
+    const auto hairs = evaluateAtRest(groom, *bindings), others = evaluateAtRest(groom, *without);
+    for (std::size_t h = 0; h < bindings->hairCount(); ++h) {
+        for (std::size_t i = 0; i < 8; ++i) {
+            const Vec3f expected = h % 4 == 0 ? groom.strand(h / 4)[i] : hair(*without, others, h)[i];
+            EXPECT_LT((hair(*bindings, hairs, h)[i] - expected).norm(), h % 4 == 0 ? 1e-6f : 1e-9f) << h;
+        }
+    }
+}
+
 TEST(FollowBindings, RefusesWhatIsOutOfRange) {
     const Groom groom = field(4, straight);
     EXPECT_FALSE(bindFollowHairs(Groom(), settingsWith(0.5f)));
@@ -478,6 +497,12 @@ TEST(FollowBindings, RefusesWhatIsOutOfRange) {
     EXPECT_FALSE(bindFollowHairs(groom, settingsWith(0.5f, 5000)));
     auto settings = settingsWith(0.5f);
     settings.wispRadiusTip = -1;
+    EXPECT_FALSE(bindFollowHairs(groom, settings));
+    settings = settingsWith(0.5f);
+    settings.wispSpread = -0.1f;
+    EXPECT_FALSE(bindFollowHairs(groom, settings));
+    settings = settingsWith(0.5f);
+    settings.wispSpreadLimit = 0.5f;
     EXPECT_FALSE(bindFollowHairs(groom, settings));
     PartingSettings parting;
     parting.endAngleDegrees = parting.beginAngleDegrees;

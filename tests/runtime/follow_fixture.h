@@ -25,7 +25,7 @@ struct FollowScene {
     std::vector<Float3> weights, rootWeights, rootShifts;
     std::vector<std::array<float, 2>> wispOffsets;
     std::vector<float> blends;
-    float wispSpread = 0.15f;
+    WispMotion wisps;
 
     explicit FollowScene(std::uint32_t pointsPerHair) : points(pointsPerHair) {
         for (std::uint32_t i = 0; i < points; ++i) radii.push_back(0.002f + 0.003f * share(i));
@@ -53,14 +53,14 @@ struct FollowScene {
         rootShifts.push_back({});
     }
     FollowView view() const {
-        return {offsets, rest,        planes,      points, radii,     guides,
-                weights, rootWeights, wispOffsets, blends, rootShifts};
+        return {offsets, rest,        planes,      points, radii,      guides,
+                weights, rootWeights, wispOffsets, blends, rootShifts, wisps};
     }
     std::vector<Float3> evaluate(const Host& host = {}) const {
         FollowHairs::Result made = FollowHairs::make(view());
         EXPECT_EQ(made.error, "");
         std::vector<Float3> result(hairs() * points);
-        made.hairs->evaluate({positions, velocities, rotations, wispSpread}, result, host);
+        made.hairs->evaluate({positions, velocities, rotations}, result, host);
         return result;
     }
 };
@@ -177,8 +177,8 @@ class PlainFollowHairs {
             frame = carried(frame, at(guide, p < last ? p + 1 : p) - at(guide, p - 1));
         }
         const Double3 velocity(scene_.velocities[scene_.offsets[guide] + i]);
-        const double speed = velocity.norm(), sigma = double{scene_.wispSpread} * i / last;
-        const double xi = 1.0 + sigma * speed;  // Eq. 22
+        const double speed = velocity.norm(), sigma = double{scene_.wisps.spread} * i / last;
+        const double xi = std::min(1.0 + sigma * speed, double{scene_.wisps.limit});  // Eq. 22
         const double radius = scene_.radii[i];
         Double3 centre = at(guide, i);
         if (speed > 0.0) centre = centre - velocity * (radius * (xi - 1.0) / speed);  // Eq. 23

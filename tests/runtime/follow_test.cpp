@@ -197,7 +197,7 @@ TEST(WispsInMotion, WidenWithSpeedTowardsTheTip) {
     // Across the motion Eq. 22 alone acts: the hair beside the centre moves out by ξ.
     FollowScene scene = oneWisp({0.0f, 1.0f});  // towards −z
     scene.velocities.assign(8, {4.0f, 0.0f, 0.0f});
-    scene.wispSpread = 0.25f;
+    scene.wisps.spread = 0.25f;
     const std::vector<Float3> hair = scene.evaluate();
     for (std::uint32_t i = 0; i < 8; ++i) {
         const float xi = 1.0f + 0.25f * scene.share(i) * 4.0f;
@@ -227,7 +227,7 @@ TEST(WispsInMotion, NoHairGetsAheadOfTheWispAtRest) {
 
 TEST(WispsInMotion, AreContinuousInTheVelocityAndThroughRest) {
     FollowScene scene = tangled(8);
-    scene.wispSpread = 0.2f;
+    scene.wisps.spread = 0.2f;
     const auto at = [&](float speed) {
         std::fill(scene.velocities.begin(), scene.velocities.end(), Float3{0.6f * speed, 0.0f, 0.8f * speed});
         return scene.evaluate();

@@ -68,7 +68,7 @@ TEST(Sizes, AlternativesRefuseArraysThatDoNotFit) {
 TEST(Sizes, FollowHairsRefuseArraysThatDoNotFit) {
     const FollowScene scene = tangled(9);
     FollowHairs hairs = std::move(*FollowHairs::make(scene.view()).hairs);
-    const GuideMotion motion{scene.positions, scene.velocities, scene.rotations, scene.wispSpread};
+    const GuideMotion motion{scene.positions, scene.velocities, scene.rotations};
     std::vector<Float3> out(scene.hairs() * 9), few(out.size() - 1);
     GuideMotion shortOf = motion;
     shortOf.positions_ws = shortOf.positions_ws.first(shortOf.positions_ws.size() - 1);

@@ -92,7 +92,10 @@ constexpr Field<I> kInterpolationFields[] = {
     field<&I::followPerGuide>("followPerGuide", "", 0, 4096, "follow hairs per guide: 0 shows only the strands themselves"),
     field<&I::wispRadiusRoot>("wispRadiusRoot", "m", 0, 0.1, "radius of a wisp at the root"),
     field<&I::wispRadiusTip>("wispRadiusTip", "m", 0, 0.1, "radius of a wisp at the tip"),
+    field<&I::wispSpread>("wispSpread", "s/m", 0, 10, "how much a wisp widens with speed at the tip, per m/s, and less towards the root: 0 keeps its width"),
+    field<&I::wispSpreadLimit>("wispSpreadLimit", "", 1, 100, "greatest factor by which speed widens a wisp"),
     field<&I::blend>("blend", "", 0, 1, "0 follows one guide in wisps, 1 interpolates the three guides of a root triangle"),
+    boolField<&I::drawGuides>("drawGuides", "one of the follow hairs of each guide is the guide itself"),
     seedField<&I::seed>("seed", "random seed of the follow hairs"),
 };
 

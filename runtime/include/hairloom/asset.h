@@ -109,6 +109,8 @@ class Asset {
     /// Follow hairs, ready to be evaluated from all strands of strandsAtRest(). The error says why there are
     /// none.
     FollowHairs::Result followHairs(const Strands& strands, const Host& host = {}) const;
+    /// What it says of wisps; the default where it says nothing, or no number within the range.
+    WispMotion wispMotion() const;
 
     std::span<const asset::Strand> strands;
     std::span<const std::byte> residuals;

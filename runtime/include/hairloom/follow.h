@@ -30,6 +30,14 @@ struct RootPlane {
 };
 static_assert(sizeof(RootPlane) == 3 * sizeof(Float3));
 
+/// How wisps answer to speed (Choe et al. 2005; thesis Eq. 22, 23): at arc share s of a guide that moves at v
+/// a wisp's radius is ξ = min(1 + σ s |v|, limit) times that at rest, and its centre lags by what it gained.
+struct WispMotion {
+    float spread = 0.15f;  ///< σ at the tip, s/m, 0 … kMostSpread; 0: wisps keep their width
+    float limit = 10.0f;   ///< greatest ξ, 1 … kMostWidening
+};
+inline constexpr float kMostSpread = 10.0f, kMostWidening = 100.0f;
+
 /// Guide strands and how hairs are bound to them. Arrays per hair are in the order of the hairs. With b the
 /// blend, o the wisp offset, w the weights, u the root weights, d the root shift, p_k[i] point i of guide k
 /// and X, Y the axes of guide 0's cross-section, point i of a hair lies at
@@ -51,6 +59,7 @@ struct FollowView {
     std::span<const std::array<float, 2>> wispOffsets;     ///< in units of the radius
     std::span<const float> blends;                         ///< 0 wisp … 1 root triangle
     std::span<const Float3> rootShifts;                    ///< metres, in the own guide's root plane
+    WispMotion wisps = {};
 };
 
 /// The guides at one moment, guide after guide in the order of the offsets.
@@ -60,9 +69,6 @@ struct GuideMotion {
     /// Per guide: turn of the scalp at its root since rest (a RootFrame's rotation divided by that at rest);
     /// need not be of unit length. Empty, or what is no rotation, stands for none.
     std::span<const Quat> rootRotations_ws;
-    /// σ of Eq. 22 at the tip, s/m, ≥ 0: share by which a wisp's radius grows per m/s. Falls linearly to 0 at
-    /// the root.
-    float wispSpread = 0.15f;
 };
 
 /// Owns packed bindings and the memory of a frame. Evaluation allocates nothing and gives the same bits for

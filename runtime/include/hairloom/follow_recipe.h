@@ -28,6 +28,7 @@ struct FollowRecipe {
     std::uint64_t seed = 1;
     std::span<const std::uint32_t> hairs;  ///< of each guide
     float blend = 0;                       ///< 0 wisp … 1 root triangle
+    bool drawGuides = false;               ///< the first hair of each guide is the guide itself
     PartingLimits parting{};
     std::span<const std::uint32_t> ids;  ///< of each guide: its hairs stay the same while others come and go
     /// Of each guide. Hairs follow guides of their own layer alone. Empty: all are of one.
