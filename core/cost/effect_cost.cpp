@@ -85,6 +85,21 @@ void fillIn(const Variants& variants, std::size_t effect, EffectCosts& costs) {
     }
 }
 
+/// A response that is authored and that this model of strands does not have.
+void noteOtherModel(const runtime::SimulationSettings& settings, EffectCosts& costs) {
+    const bool unused =
+        settings.strandModel == runtime::StrandModel::rods &&
+        (settings.collisionResponse != runtime::CollisionResponse::radial || settings.collisionSegments);
+    if (!unused) return;
+    for (EffectCost& cost : costs.effects) {
+        if (cost.name != "collision") continue;
+        cost.note += (cost.note.empty() ? "" : "; ") +
+                     std::string(
+                         "collisionResponse and collisionSegments are of springs alone: rods solve "
+                         "their contacts together with the strand");
+    }
+}
+
 }  // namespace
 
 std::optional<double> EffectCost::price() const {
@@ -140,6 +155,7 @@ Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& mot
         costs.effects[e].stageMilliseconds = quartiles(stageTimes[e]).median;
         fillIn(variants, e, costs);
     }
+    noteOtherModel(groom.simulation, costs);
     return costs;
 }
 

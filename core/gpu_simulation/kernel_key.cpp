@@ -63,6 +63,8 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
 std::string kernelError(const runtime::SimulationSettings& settings) {
     if (settings.hairHair && settings.strandModel == runtime::StrandModel::rods)
         return "hair-hair collision runs on the CPU alone. Set hairHair to 0 to use the GPU";
+    if (settings.windShelter > 0)
+        return "wind that goes around spheres runs on the CPU alone. Set windShelter to 0 to use the GPU";
     return gpuModelOf(settings.strandModel).error(settings);
 }
 

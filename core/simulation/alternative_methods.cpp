@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/hash.h"
+#include "core/simulation/body_push.h"
 #include "core/simulation/strand_method.h"
 #include "hairloom/alternatives/projective_equations.h"
 #include "hairloom/alternatives/rigid_chains.h"
@@ -156,19 +158,32 @@ class LatticeMethod : public AlternativeMethod {
         : AlternativeMethod(
               scene, {"lattice", true, fmt::format("on, {} control points", solver.controlPointCount()), 0,
                       solver.stepBytes()}),
-          solver_(std::move(solver)) {}
+          solver_(std::move(solver)),
+          groom_(scene.groom()),
+          push_(makeBodyPush(groom_, groom_.offsets.view(), groom_.positions())) {}
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         solver_.evaluate(positions_ws);
+        static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
+        if (push_)
+            pushOutOfBody(*push_, groom_, pose_,
+                          {reinterpret_cast<Vec3f*>(positions_ws.data()), positions_ws.size()});
     }
 
   protected:
-    void place(const SceneInput& scene, const HeadPose& pose) override { solver_.reset(scene.headAt(pose)); }
+    void place(const SceneInput& scene, const HeadPose& pose) override {
+        solver_.reset(scene.headAt(pose));
+        pose_ = pose;
+    }
     void advance(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) override {
-        solver_.step(scene.headAt(pose), input.dt);
+        solver_.step(scene.headAt(pose), input.dt, input.spheres);
+        pose_ = pose;
     }
 
   private:
     runtime::Lattice solver_;
+    Groom groom_;
+    std::optional<runtime::BodyPush> push_;  ///< out of the skin, of what is shown
+    HeadPose pose_;
 };
 
 }  // namespace
@@ -180,7 +195,13 @@ runtime::LatticeSettings latticeSettings(const runtime::SimulationSettings& sett
     lattice.wind = runtime::makeWind(settings).mean;
     lattice.dampingTime = settings.dampingTime;
     lattice.teleportDistance = settings.teleportDistance;
-    lattice.substeps = settings.substeps;
+    lattice.substeps = std::min(settings.substeps, 64u);
+    lattice.nodes = settings.latticeNodes;
+    lattice.rootFrequency = settings.latticeRootFrequency;
+    lattice.tipFrequency = settings.latticeTipFrequency;
+    lattice.couplingFrequency = settings.latticeCouplingFrequency;
+    lattice.collisionRadiusRoot = settings.collisionRadiusRoot;
+    lattice.collisionRadiusTip = settings.collisionRadiusTip;
     return lattice;
 }
 

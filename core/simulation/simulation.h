@@ -52,7 +52,7 @@ enum class SimulationMethod {
     strands,     ///< the strand engine
     projective,  ///< runtime/alternatives/projective_equations.h
     chain,       ///< runtime/alternatives/rigid_chains.h
-    lattice,     ///< runtime/alternatives/lattice.h: no collision, lengths are not held
+    lattice,     ///< runtime/alternatives/lattice.h: lengths are not held
 };
 
 class SceneInput;

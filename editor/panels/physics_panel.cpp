@@ -33,7 +33,7 @@ std::vector<Group> groups() {
         {QString("Time"), {"substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"}, true},
         {QString("Wind and gravity"),
          {"windSpeed", "windKind", "windDirection", "windGustiness", "windFrequency", "windGustSize",
-          "windSeed", "airDrag", "gravity"},
+          "windSeed", "windShelter", "airDrag", "gravity"},
          true},
         {QString("Collision"),
          {"collisionRadiusRoot", "collisionRadiusTip", "friction", "restitution"},
@@ -44,7 +44,10 @@ std::vector<Group> groups() {
          false},
         {QString("Springs only"),
          {"integrator", "angularMethod", "lengthMethod", "lengthIterations", "maximalExtension",
-          "springFrequency", "collisionResponse", "penaltyFrequency"},
+          "springFrequency", "collisionResponse", "penaltyFrequency", "collisionSegments"},
+         false},
+        {QString("Lattice only"),
+         {"latticeNodes", "latticeRootFrequency", "latticeTipFrequency", "latticeCouplingFrequency"},
          false},
     };
 }

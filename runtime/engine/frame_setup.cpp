@@ -155,6 +155,8 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.friction = settings.friction;
     context.restitution = settings.restitution;
     context.spheres = spheres;
+    context.windShelter = settings.windShelter;
+    context.segmentsTouch = settings.collisionSegments;
     context.slowestSwept = slowestSwept(context);
     modelOf(settings.strandModel).fillNumbers(settings, plan, context);
     return context;

@@ -140,6 +140,8 @@ struct SubstepContext : shaders::SubstepNumbers {
     bool spheresRest = false;   ///< nor do spheres and body
     const MovingBody* body = nullptr;
     const Wind* wind = nullptr;
+    float windShelter = 0.0f;           ///< 0…1, of spheres
+    bool segmentsTouch = false;         ///< springs: spheres are met between points, too
     const float* windPhases = nullptr;  ///< of the substep's end
     ModelNumbers numbers;
 };

@@ -52,6 +52,10 @@ std::string gpuGuidesRefused(const SimulationSettings& settings) {
     if (settings.clampedPoints != 2)
         return "clampedPoints is " + std::to_string(settings.clampedPoints) +
                ", and the kernel of guides clamps 2: step on the CPU";
+    if (settings.hairHair)
+        return "hairHair is on, and the kernel of guides has no hair-hair collision: step on the CPU";
+    if (settings.windShelter > 0.0f)
+        return "windShelter is above 0, and the kernel of guides lets wind through spheres: step on the CPU";
     return {};
 }
 

@@ -421,5 +421,85 @@ TEST(Collision, HandlesManySpheres) {
         EXPECT_NEAR(length(FreePoints::position(engine, k) - spheres[k].center_ws), 0.1f, 5e-6f) << k;
 }
 
+/// Metres by which a sphere is inside of a segment with its collision radius, sampled along it.
+double depthBetweenPoints(std::span<const Float3> points, const SimulationSettings& s, const Sphere& sphere) {
+    double deepest = -1e9;
+    const auto last = static_cast<double>(points.size() - 1);
+    for (std::size_t p = 1; p + 1 < points.size(); ++p) {
+        for (int n = 0; n <= 200; ++n) {
+            const double t = n / 200.0;
+            const auto at = [&](float a, float b, float c) {
+                return static_cast<double>(a) + t * (static_cast<double>(b) - static_cast<double>(a)) -
+                       static_cast<double>(c);
+            };
+            const Float3 &a = points[p], &b = points[p + 1], &c = sphere.center_ws;
+            const double away = std::hypot(at(a.x, b.x, c.x), at(a.y, b.y, c.y), at(a.z, b.z, c.z));
+            const double along = (static_cast<double>(p) + t) / last;
+            const double radius = static_cast<double>(s.collisionRadiusRoot) * (1.0 - along) +
+                                  static_cast<double>(s.collisionRadiusTip) * along;
+            deepest = std::max(deepest, static_cast<double>(sphere.radius) + radius - away);
+        }
+    }
+    return deepest;
+}
+
+TEST(SegmentCollision, ASphereBetweenTwoPointsIsSeen) {
+    // Segments of 4 cm fall onto a sphere of 1.5 cm.
+    Strands strands;
+    strands.add({-0.1f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.04f, 9);
+    const Sphere sphere{{0.04f, -0.05f, 0.001f}, 0.015f};
+    for (const CollisionResponse response : {CollisionResponse::radial, CollisionResponse::backward}) {
+        SimulationSettings s = springSettings();
+        s.collisionResponse = response;
+        s.angularStiffness = 0.02f;
+        s.collisionRadiusRoot = s.collisionRadiusTip = 0.001f;
+        s.substeps = 16;
+        double deepest[2] = {-1e9, -1e9};
+        for (const bool segments : {false, true}) {
+            s.collisionSegments = segments;
+            Engine engine = makeEngine(strands, s);
+            for (int f = 0; f < 120; ++f) {
+                run(engine, strands, 1, 1.0f / 60.0f, std::span(&sphere, 1));
+                deepest[segments ? 1 : 0] =
+                    std::max(deepest[segments ? 1 : 0], depthBetweenPoints(positionsOf(engine), s, sphere));
+            }
+            EXPECT_LT(engine.measure().maxStretch, 0.01);
+        }
+        EXPECT_GT(deepest[0], 0.003) << "points alone do not see it";
+        EXPECT_LT(deepest[1], 0.0012);
+    }
+}
+
+TEST(SegmentCollision, AnImpactTakesTheSpeedOfTheSegmentAndRestitutionGivesItBack) {
+    // Two free points of a strand without springs or lengths, whose middle flies into a sphere.
+    for (const float restitution : {0.0f, 0.6f}) {
+        Strands strands;
+        strands.add({-0.15f, 0.1f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.1f, 3);
+        SimulationSettings s = bare();
+        s.lengthIterations = 0;
+        s.substeps = 1;
+        s.collisionRadiusTip = 0.0f;
+        s.friction = 0.0f;
+        s.restitution = restitution;
+        s.collisionSegments = true;
+        s.gravity = {0.0f, -1000.0f, 0.0f};
+        Engine engine = makeEngine(strands, s);
+        run(engine, strands, 3, 1e-3f);  // away from the sphere, which comes then
+        s.gravity = {};
+        engine.setSettings(s);
+        std::vector<Float3> before(3), after(3);
+        engine.readVelocities(before);
+        const std::vector<Float3> at = positionsOf(engine);
+        const Float3 middle = (at[1] + at[2]) * 0.5f;
+        const Sphere sphere{middle - Float3{0.0f, 0.02f - 0.5f * before[1].y * -1e-3f, 0.0f}, 0.02f};
+        run(engine, strands, 1, 1e-3f, std::span(&sphere, 1));
+        engine.readVelocities(after);
+        // Both points are as far from the middle, and share its impulse: Newton's law of restitution.
+        const float wanted = -restitution * 0.5f * (before[1].y + before[2].y);
+        EXPECT_LT(before[1].y, -1.0f);
+        EXPECT_NEAR(0.5f * (after[1].y + after[2].y), wanted, 0.02f);
+    }
+}
+
 }  // namespace
 }  // namespace hairloom::runtime

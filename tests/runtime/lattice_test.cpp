@@ -381,5 +381,61 @@ TEST(Lattice, RefusesInvalidSettings) {
     EXPECT_LT(farthestFromRigid(lattice, flat, {}), 1e-7f);
 }
 
+TEST(LatticeCollision, HairStaysOutOfSpheresAndPushesItsCells) {
+    const Strands strands = cap();
+    LatticeSettings s;
+    s.collisionRadiusTip = 0.002f;
+    s.substeps = 4;
+    // A sphere comes from the side into the hair, which hangs below a cap of 8 cm.
+    const auto deepest = [&](const std::vector<Float3>& hair, const Sphere& sphere) {
+        double depth = -1e9;
+        for (std::size_t p = 0; p < hair.size(); ++p) {
+            const std::size_t along = p % 12;
+            if (along == 0) continue;  // roots stay
+            const double wanted =
+                static_cast<double>(sphere.radius) + 0.002 * static_cast<double>(along) / 11.0;
+            const Float3 d = hair[p] - sphere.center_ws;
+            depth = std::max(depth, wanted - std::hypot(static_cast<double>(d.x), static_cast<double>(d.y),
+                                                        static_cast<double>(d.z)));
+        }
+        return depth;
+    };
+    Lattice met = makeLattice(strands, s), unmet = makeLattice(strands, s);
+    double worst = -1e9, through = -1e9;
+    for (int f = 0; f < 60; ++f) {
+        const Sphere sphere{{0.3f - 0.004f * static_cast<float>(f), -0.02f, 0.0f}, 0.06f};
+        met.step({}, 1.0f / 60.0f, std::span(&sphere, 1));
+        unmet.step({}, 1.0f / 60.0f);
+        worst = std::max(worst, deepest(hairOf(met), sphere));
+        through = std::max(through, deepest(hairOf(unmet), sphere));
+    }
+    EXPECT_LT(worst, 1e-5);
+    EXPECT_GT(through, 0.02);
+    // The control points were moved, not the shown hair alone.
+    std::vector<Float3> nodes(met.controlPointCount()), others(nodes.size());
+    met.readControlPoints(nodes);
+    unmet.readControlPoints(others);
+    float farthest = 0.0f;
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        farthest = std::max(farthest, length(nodes[n] - others[n]));
+    EXPECT_GT(farthest, 0.01f);
+}
+
+TEST(LatticeCollision, IsTheSameForAnyNumberOfThreads) {
+    const Strands strands = cap(40);
+    std::vector<std::vector<Float3>> results;
+    for (const bool parallel : {false, true}) {
+        Lattice lattice = makeLattice(strands, {}, parallel ? hostWithThreads(3) : Host{});
+        for (int f = 0; f < 20; ++f) {
+            const Sphere spheres[] = {{{0.12f, 0.0f, 0.0f}, 0.06f},
+                                      {{0.05f, -0.05f, 0.08f}, 0.05f},
+                                      {{std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f}, 0.05f}};
+            lattice.step({}, 1.0f / 60.0f, spheres);
+        }
+        results.push_back(hairOf(lattice));
+    }
+    EXPECT_EQ(results[0], results[1]);
+}
+
 }  // namespace
 }  // namespace hairloom::runtime

@@ -35,8 +35,15 @@ TEST(Settings, DefaultsAreInRangeAndEveryFieldIsDescribed) {
 
 TEST(Settings, TheTableCoversEveryByteOfTheStruct) {
     std::size_t bytes = 0;
-    for (const auto& field : fields())
-        bytes += field.kind == FieldKind::Ramp ? sizeof(Ramp) : 4 * field.components();
+    const auto padTo = [&](std::size_t alignment) {
+        bytes = (bytes + alignment - 1) / alignment * alignment;
+    };
+    for (const auto& field : fields()) {
+        const bool isFlag = field.kind == FieldKind::Bool;
+        padTo(isFlag ? 1 : 4);
+        bytes += field.kind == FieldKind::Ramp ? sizeof(Ramp) : (isFlag ? 1 : 4) * field.components();
+    }
+    padTo(alignof(SimulationSettings));
     EXPECT_EQ(bytes, sizeof(SimulationSettings));
 }
 

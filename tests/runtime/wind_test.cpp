@@ -284,5 +284,106 @@ TEST(Wind, PhasesAreSoundAtAnyTime) {
     EXPECT_NEAR(windPhases(wind, 0.3)[0], windPhases(wind, 0.3 + period * 1e6)[0], 1e-5);
 }
 
+/// What the air does at points around a sphere at the origin, in a wind of 1 m/s along x: measured by light
+/// points that hang across the plane of x and the place, in which the air stays.
+std::vector<Float3> airAround(std::span<const Float3> places, float radius, float shelter) {
+    SimulationSettings s = blowing(WindKind::uniform);
+    s.windDirection = {1.0f, 0.0f, 0.0f};
+    s.windSpeed = 1.0f;
+    s.windShelter = shelter;
+    Vane vane(s);
+    vane.strands = {};
+    for (const Float3& place : places) {
+        const Float3 across = cross(Float3{1.0f, 0.0f, 0.0f}, place);
+        const float size = length(across);
+        const Float3 along = size > 1e-6f ? across * (1.0f / size) : Float3{0.0f, 0.0f, 1.0f};
+        vane.strands.add(place - along * 1e-4f, along, 1e-4f, 2);
+    }
+    Engine engine = makeEngine(vane.strands, vane.settings);
+    const std::vector<RootFrame> roots = vane.strands.roots();
+    const Sphere sphere{{}, radius};
+    engine.step({1e-3f, 0.0, roots, std::span(&sphere, 1)});
+    std::vector<Float3> velocities(engine.pointCount()), found;
+    engine.readVelocities(velocities);
+    for (std::size_t p = 1; p < velocities.size(); p += 2)
+        found.push_back(velocities[p] * (2.0f / (1.0f - std::exp(-20.0f * 1e-3f))));
+    return found;
+}
+
+TEST(Lee, NoAirGoesThroughTheSphereAndTheFarFieldIsOpen) {
+    constexpr float kRadius = 0.1f;
+    std::vector<Float3> front, far;
+    for (int n = 0; n <= 90; n += 5) {
+        const float angle = static_cast<float>(n) * std::numbers::pi_v<float> / 180.0f;
+        // Just outside, or the collision takes the point.
+        front.push_back(Float3{-std::cos(angle), std::sin(angle), 0.0f} * (1.003f * kRadius));
+        far.push_back(Float3{-std::cos(angle), std::sin(angle), 0.0f} * (20.0f * kRadius));
+    }
+    const std::vector<Float3> skin = airAround(front, kRadius, 1.0f), away = airAround(far, kRadius, 1.0f);
+    for (std::size_t n = 0; n < front.size(); ++n) {
+        const Float3 normal = front[n] * (1.0f / length(front[n]));
+        EXPECT_LT(std::abs(dot(skin[n], normal)), 0.02f) << n;
+        // Potential flow slides by 3/2 sin θ (Lamb 1932, Article 96).
+        EXPECT_NEAR(length(skin[n]), 1.5f * normal.y, 0.02f) << n;
+        EXPECT_LT(length(away[n] - Float3{1.0f, 0.0f, 0.0f}), 0.01f) << n;
+    }
+}
+
+TEST(Lee, TheWakeCarriesTheDragAwayAtEveryDistance) {
+    constexpr float kRadius = 0.1f;
+    for (const float distance : {6.0f, 12.0f, 30.0f}) {  // radii
+        // ∫ u (1 − u) dA over the plane is the drag by density and U² (Batchelor 1967, Section 5.12).
+        std::vector<Float3> places;
+        std::vector<double> edges{0.0};
+        for (int n = 0; n < 400; ++n) edges.push_back(1e-3 * std::pow(4e5, n / 399.0));  // (ρ/R)², to 20 R
+        for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
+            const auto across = static_cast<float>(std::sqrt(0.5 * (edges[n] + edges[n + 1])));
+            places.push_back(Float3{distance, across, 0.0f} * kRadius);
+        }
+        const std::vector<Float3> air = airAround(places, kRadius, 1.0f);
+        double lost = 0.0;
+        for (std::size_t n = 0; n < air.size(); ++n) {
+            const double u = static_cast<double>(air[n].x);
+            lost += u * (1.0 - u) * (edges[n + 1] - edges[n]);
+        }
+        // The disc ends where the open flow around the sphere is still slower by what its dipole takes back.
+        const double s = static_cast<double>(distance), rim = std::sqrt(s * s + edges.back());
+        EXPECT_NEAR(lost, 0.47 / 2.0 + 1.0 / rim - s * s / (rim * rim * rim), 0.01) << distance;
+    }
+}
+
+TEST(Lee, TheAirStandsBehindAndSettingsBlend) {
+    const std::vector<Float3> places{{0.15f, 0.0f, 0.0f}, {0.5f, 0.0f, 0.0f}, {3.0f, 0.0f, 0.0f}};
+    const auto full = airAround(places, 0.1f, 1.0f), half = airAround(places, 0.1f, 0.5f),
+               none = airAround(places, 0.1f, 0.0f);
+    EXPECT_LT(length(full[0]), 0.02f);
+    EXPECT_LT(full[0].x, full[1].x);
+    EXPECT_LT(full[1].x, full[2].x);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        EXPECT_NEAR(none[n].x, 1.0f, 5e-3f);
+        EXPECT_NEAR(half[n].x, 0.5f * (full[n].x + none[n].x), 1e-3f);
+    }
+}
+
+TEST(Lee, RodsBehindASphereHardlyMove) {
+    const auto blown = [](float shelter) {
+        SimulationSettings s;
+        s.angularStiffness = 0.001f;
+        s.windKind = WindKind::uniform;
+        s.windDirection = {1.0f, 0.0f, 0.0f};
+        s.windSpeed = 4.0f;
+        s.windShelter = shelter;
+        Strands strands;
+        strands.add({0.16f, 0.03f, 0.0f}, {0.0f, -1.0f, 0.0f}, 0.006f, 10);
+        Engine engine = makeEngine(strands, s);
+        const Sphere sphere{{}, 0.12f};
+        run(engine, strands, 60, 1.0f / 60.0f, std::span(&sphere, 1));
+        return length(positionsOf(engine).back() - strands.points.back());
+    };
+    const float open = blown(0.0f);
+    EXPECT_GT(open, 0.01f);
+    EXPECT_LT(blown(1.0f), 0.25f * open);
+}
+
 }  // namespace
 }  // namespace hairloom::runtime

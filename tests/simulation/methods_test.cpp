@@ -87,10 +87,20 @@ TEST(Methods, EachMovesAndMeasuresItself) {
 TEST(Methods, MeasurementsOfAnAlternativeAreThoseOfItsPoints) {
     Groom groom = hangingHair(1, 3);
     groom.simulation.collisionRadiusRoot = groom.simulation.collisionRadiusTip = 0;
-    groom.spheres.push_back({"ball", Vec3f(0, 1.4f, 0.1f), 0.03f, ""});  // about the tip, which lattices miss
-    const Outcome still = run(groom, "none", SimulationMethod::lattice, 3);
-    EXPECT_NEAR(still.stats.maxPenetrationMm, 30, 0.1);
+    groom.spheres.push_back({"ball", Vec3f(0, 1.6f, 0.1f), 0.5f, ""});  // about the root: no way out
+    const Outcome still = run(groom, "none", SimulationMethod::projective, 3);
+    EXPECT_NEAR(still.stats.maxPenetrationMm, 300, 0.1);
     EXPECT_LT(still.stats.maxStretch, 1e-3);
+}
+
+TEST(Methods, TheLatticeStaysOutOfSpheres) {
+    Groom groom = hangingHair();
+    groom.simulation.collisionRadiusRoot = groom.simulation.collisionRadiusTip = 0.001f;
+    const Outcome open = run(groom, "nod", SimulationMethod::lattice, 30);
+    groom.spheres.push_back({"ball", Vec3f(0.02f, 1.42f, 0.1f), 0.03f, ""});
+    const Outcome met = run(groom, "nod", SimulationMethod::lattice, 30);
+    EXPECT_LT(met.stats.maxPenetrationMm, 0.01);
+    EXPECT_GT(largestDistance(met.positions, open.positions), 0.02f);
 }
 
 TEST(Methods, AlternativesDoNotDependOnThreads) {
@@ -113,7 +123,17 @@ TEST(Methods, TheLatticeTakesAirAndGravityFromTheSettings) {
     settings.windDirection = {0, 0, 0.5f};
     settings.windSpeed = 4;
     settings.substeps = 3;
+    settings.latticeNodes = 9;
+    settings.latticeRootFrequency = 11;
+    settings.latticeTipFrequency = 2.5f;
+    settings.latticeCouplingFrequency = 0.5f;
+    settings.collisionRadiusTip = 0.01f;
     const runtime::LatticeSettings lattice = latticeSettings(settings);
+    EXPECT_EQ(lattice.nodes, 9u);
+    EXPECT_EQ(lattice.rootFrequency, 11);
+    EXPECT_EQ(lattice.tipFrequency, 2.5f);
+    EXPECT_EQ(lattice.couplingFrequency, 0.5f);
+    EXPECT_EQ(lattice.collisionRadiusTip, 0.01f);
     EXPECT_EQ(lattice.gravity, settings.gravity);
     EXPECT_EQ(lattice.airDrag, 7);
     EXPECT_EQ(lattice.wind, (runtime::Float3{0, 0, 4}));

@@ -75,6 +75,8 @@ std::uint32_t velocitySlot(const KernelKey& key) {
 }
 
 std::string error(const runtime::SimulationSettings& settings) {
+    if (settings.collisionSegments)
+        return "segments that meet spheres run on the CPU alone. Set collisionSegments to 0 to use the GPU";
     if (settings.integrator != Integrator::implicitEuler) return {};
     return "the integrator implicitEuler runs on the CPU only";
 }

@@ -137,9 +137,12 @@ struct SimulationSettings {
     float windGustSize = 0.5f;
     /// 0 … 4294967295. Random seed of the gusts.
     std::uint32_t windSeed = 1;
+    /// 0 … 1. How much spheres shelter hair: 1 guides wind around them and leaves their lee calm, 0 blows
+    /// through them.
+    float windShelter = 0.0f;
 
     // --- Collision with spheres ---
-    /// How points are pushed out of a sphere.
+    /// How points of springs are pushed out of a sphere. Rods solve contacts together with the strand.
     CollisionResponse collisionResponse = CollisionResponse::radial;
     /// m, 0 … 0.1. Distance from spheres at the root. Grows linearly to collisionRadiusTip. A larger one
     /// keeps the middle of long segments out of a sphere.
@@ -152,6 +155,8 @@ struct SimulationSettings {
     float restitution = 0.0f;
     /// Hz, 1 … 10000. Stiffness of penalty springs: higher penetrates less and needs shorter time steps.
     float penaltyFrequency = 100.0f;
+    /// Segments of springs meet spheres between their points as well, as cylinders.
+    bool collisionSegments = false;
 
     // --- Hair-hair collision ---
     /// Rods resist being pressed closer together than authored, and rub on the hair around them.
@@ -168,6 +173,16 @@ struct SimulationSettings {
     /// m, 0 … 1. Size of the cells that hair is counted in: 0 chooses it from the hair's spacing. Below
     /// 0.001 as 0.001; larger where the authored hair would take more than 2¹⁴ cells.
     float hairHairCell = 0.0f;
+
+    // --- Lattice, an alternative to strands ---
+    /// 3 … 16. Control points along each axis of the lattice: more move finer and cost more.
+    std::uint32_t latticeNodes = 6;
+    /// Hz, 0.1 … 1000. How tightly the lattice holds to the head at the roots.
+    float latticeRootFrequency = 8.0f;
+    /// Hz, 0.1 … 1000. How tightly the lattice holds to the head at the tips.
+    float latticeTipFrequency = 1.5f;
+    /// Hz, 0 … 1000. Springs between neighbouring control points of the lattice.
+    float latticeCouplingFrequency = 2.0f;
 
     friend bool operator==(const SimulationSettings&, const SimulationSettings&) = default;
 };

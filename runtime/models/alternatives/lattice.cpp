@@ -17,6 +17,7 @@ constexpr float kThinnest = 1e-3f;  // metres, of a cell: flat hair spans a volu
 constexpr int kMaxIterations = 24;
 constexpr double kSolved = 1e-10;  // share of the squared residual at which iterations end
 constexpr std::size_t kPointsPerJob = 4096;
+constexpr int kRounds = 8;  // of pushes out of spheres that overlap
 
 /// Control points and weights of one axis at `cells`: uniform quadratic B-spline.
 struct Spline {
@@ -63,6 +64,8 @@ std::string validationError(const LatticeSettings& s) {
     for (const float v : {s.gravity.x, s.gravity.y, s.gravity.z}) check("gravity", v, -1000.0, 1000.0);
     check("teleportDistance", s.teleportDistance, static_cast<double>(0.01f), 10000.0);
     refuseOutside(text, "substeps", s.substeps, 1.0, 64.0);
+    check("collisionRadiusRoot", s.collisionRadiusRoot, 0.0, static_cast<double>(0.1f));
+    check("collisionRadiusTip", s.collisionRadiusTip, 0.0, static_cast<double>(0.1f));
     return text;
 }
 
@@ -105,7 +108,16 @@ void Lattice::layOut(const StrandsView& strands) {
     for (const Float3& p : strands.restPositions_ss) {
         points_.push_back(
             {p,
-             {(p.x - low.x) / cell.x + 0.5f, (p.y - low.y) / cell.y + 0.5f, (p.z - low.z) / cell.z + 0.5f}});
+             {(p.x - low.x) / cell.x + 0.5f, (p.y - low.y) / cell.y + 0.5f, (p.z - low.z) / cell.z + 0.5f},
+             0.0f});
+    }
+    const float root = settings_.collisionRadiusRoot, tip = settings_.collisionRadiusTip;
+    for (std::size_t s = 0; s + 1 < strands.offsets.size(); ++s) {
+        const std::uint32_t first = strands.offsets[s], last = strands.offsets[s + 1] - 1;
+        points_[first].radius = -1.0f;
+        for (std::uint32_t p = first + 1; p <= last; ++p)
+            points_[p].radius =
+                root + (tip - root) * static_cast<float>(p - first) / static_cast<float>(last - first);
     }
 }
 
@@ -136,10 +148,11 @@ void Lattice::reset(const RootFrame& head_ws) {
     head_ = head_ws;
     if (!usableWithin(head_, kFarthest)) head_ = {};
     report_ = {};
+    spheres_.clear();
     for (Node& node : nodes_) node.displacement = node.velocity = node.headVelocity = {};
 }
 
-void Lattice::step(const RootFrame& head_ws, float dt) {
+void Lattice::step(const RootFrame& head_ws, float dt, std::span<const Sphere> spheres_ws) {
     if (!(dt > 0.0f) || !std::isfinite(dt)) return;
     report_ = {};
     RootFrame to = head_ws;
@@ -164,6 +177,71 @@ void Lattice::step(const RootFrame& head_ws, float dt) {
         before = now;
     }
     head_ = to;
+    spheres_.clear();
+    for (const Sphere& sphere : spheres_ws) {
+        if (isFinite(sphere.center_ws) && sphere.radius > 0.0f && std::isfinite(sphere.radius))
+            spheres_.push_back(sphere);
+    }
+    if (!spheres_.empty()) collide();
+}
+
+Float3 Lattice::positionOf(const Point& point) const {
+    return head_.position + (rotate(head_.rotation, point.rest_ss) + displacementAt(point));
+}
+
+/// Where spheres leave a point: one after the other, in a few rounds where they overlap.
+Float3 Lattice::outside(const Point& point, Float3 position_ws) const {
+    if (point.radius < 0.0f) return position_ws;
+    for (int round = 0; round < kRounds; ++round) {
+        bool moved = false;
+        for (const Sphere& sphere : spheres_) {
+            const Float3 from = position_ws - sphere.center_ws;
+            const float reach = sphere.radius + point.radius, away = length(from);
+            if (!(away < reach)) continue;
+            const Float3 normal = away > 1e-9f ? from * (1.0f / away) : Float3{0.0f, 1.0f, 0.0f};
+            position_ws = sphere.center_ws + normal * reach;
+            moved = true;
+        }
+        if (!moved) break;
+    }
+    return position_ws;
+}
+
+/// Control points go where their points are pushed to: point p asks of node n for w d / Σ w², and a node
+/// takes the mean of what is asked, weighted by w² (Lee, Wolberg, Shin 1997, Eq. 5).
+void Lattice::collide() {
+    pushes_.resize(points_.size());
+    inParallel(host_, points_.size(), kPointsPerJob, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            const Float3 at = positionOf(points_[p]);
+            pushes_[p] = outside(points_[p], at) - at;
+        }
+    });
+    for (Node& node : nodes_) {
+        node.push = {};
+        node.pushWeight = 0.0f;
+    }
+    // In the order of points, so that sums do not depend on threads.
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+        if (pushes_[p] == Float3{}) continue;
+        float squares = 0.0f;
+        forControlPoints(points_[p].cells, settings_.nodes,
+                         [&](std::size_t, float weight) { squares += weight * weight; });
+        forControlPoints(points_[p].cells, settings_.nodes, [&](std::size_t n, float weight) {
+            nodes_[n].push = nodes_[n].push + pushes_[p] * (weight * weight * weight / squares);
+            nodes_[n].pushWeight += weight * weight;
+        });
+    }
+    for (Node& node : nodes_) {
+        if (!(node.pushWeight > 0.0f)) continue;
+        const Float3 push = node.push * (1.0f / node.pushWeight);
+        node.displacement = node.displacement + push;
+        const float size = length(push);
+        if (!(size > 0.0f)) continue;
+        const Float3 normal = push * (1.0f / size);
+        const float inwards = std::min(dot(node.velocity, normal), 0.0f);
+        node.velocity = node.velocity - normal * inwards;
+    }
 }
 
 /// One implicit Euler step for the displacements from the head's rigid motion, whose own change of velocity
@@ -250,8 +328,7 @@ bool Lattice::evaluate(std::span<Float3> positions_ws) const {
     if (positions_ws.size() != points_.size()) return false;
     const auto move = [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
-            positions_ws[p] =
-                head_.position + (rotate(head_.rotation, points_[p].rest_ss) + displacementAt(points_[p]));
+            positions_ws[p] = outside(points_[p], positionOf(points_[p]));
         }
     };
     inParallel(host_, points_.size(), kPointsPerJob, move);

@@ -276,7 +276,8 @@ class RodStrip {
         if (context_.air != Air::none) {
             V3 air = zero3();
             if (context_.air == Air::moving)
-                air = windAt(*context_.wind, context_.windPhases, position + rootPosition());
+                air = shelteredWindAt(*context_.wind, context_.windPhases, position + rootPosition(),
+                                      context_, static_cast<float>(context_.index + 1));
             // Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz
             // 2012, Section 3.3); velocity and tangent are predicted for the end of the substep, so that the
             // scheme keeps its order.

@@ -300,8 +300,8 @@ class Contacts {
 /// one of them pushes into others goes to their common edge. Of more than SphereSet::kMax spheres this holds
 /// within each kMax of them. `fromList` is what farthestFromList() says where there is a list.
 template <bool kBackward>
-HWY_INLINE void collideWith(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context,
-                            float fromList) {
+HWY_INLINE void collidePoints(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context,
+                              float fromList) {
     const float step = static_cast<float>(context.index + 1);
     const float maxCollisionRadius = std::max(context.collisionRadiusAtRoot, context.collisionRadiusAtTip);
     alignas(64) float collisionRadii[kMaxPoints];
@@ -321,6 +321,66 @@ HWY_INLINE void collideWith(const SpringBlock& block, LaneFrame& lanes, const Su
         springLanes(lanes).near.overlapsKnown = 0;
         Contacts<kBackward>(block, lanes, part, spheres, collisionRadii, springLanes(lanes).near).run();
     }
+}
+
+/// Pushes segments out of spheres as cylinders (Choe, Choi, Ko 2005): the point of a segment's axis that is
+/// nearest to the centre keeps the collision radius there. Its two points share the push as their levers and
+/// masses of 1 have it, and the impulse with restitution (Eq. 20) and friction likewise. A clamped point
+/// does not move.
+HWY_NOINLINE void collideSegments(const SpringBlock& block, const LaneFrame& lanes,
+                                  const SubstepContext& context) {
+    alignas(64) float collisionRadii[kMaxPoints];
+    fillCollisionRadii(block, context, collisionRadii);
+    const V zero = hn::Zero(D()), one = all(1.0f);
+    const V step = all(static_cast<float>(context.index + 1));
+    for (std::uint32_t p = std::max(block.firstFree, 1u); p < block.points; ++p) {
+        const bool innerMoves = p - 1 >= block.firstFree;
+        const V innerMass = all(innerMoves ? 1.0f : 0.0f);
+        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
+            const std::size_t outer = std::size_t{p} * kBlockLanes + lane, inner = outer - kBlockLanes;
+            const V3 root = load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * step;
+            for (const MovingSphere& sphere : context.spheres) {
+                const V3 centre =
+                    all3(sphere.from_ws + sphere.step * static_cast<float>(context.index + 1)) - root;
+                const V3 a = load3(block.position, inner), b = load3(block.position, outer), edge = b - a;
+                const V along = dot(centre - a, edge) / hn::Max(dot(edge, edge), all(1e-20f));
+                const V t = hn::Min(hn::Max(along, zero), one), left = one - t;
+                const V3 from = a + edge * t - centre;
+                const V reach = all(sphere.radius + collisionRadii[p - 1]) +
+                                all(collisionRadii[p] - collisionRadii[p - 1]) * t;
+                // Points themselves have met the sphere already.
+                const auto between = hn::And(along > zero, along < one);
+                const auto touching = hn::And(between, dot(from, from) < reach * reach);
+                if (HWY_LIKELY(hn::AllFalse(D(), touching))) continue;
+                const Direction direction = directionOf(from);
+                const V3 normal = direction.from * direction.inverse;
+                const V3 wayA = a - load3(block.previous, inner), wayB = b - load3(block.previous, outer);
+                const V3 relative = wayA + (wayB - wayA) * t - all3(sphere.step);
+                const V speed = dot(relative, normal), approach = hn::Max(zero - speed, zero);
+                const V3 sliding = relative - normal * speed;
+                const V impulse = approach * all(1.0f + context.restitution);
+                const V slid = hn::Sqrt(hn::Max(dot(sliding, sliding), all(1e-30f)));
+                const V lost = hn::Min(all(context.friction) * impulse / slid, one);
+                const V3 push = normal * (reach - direction.length);
+                const V3 change = normal * impulse - sliding * lost;
+                const V lever = one / hn::Max(left * left * innerMass + t * t, all(1e-6f));
+                const auto move = [&](std::size_t i, V3 at, V3 way, V share) HWY_ATTR {
+                    const V3 placed = at + push * share;
+                    store3(select(touching, placed, at), block.position, i);
+                    store3(select(touching, placed - (way + change * share), at - way), block.previous, i);
+                };
+                move(outer, b, wayB, lever * t);
+                if (innerMoves) move(inner, a, wayA, lever * left);
+            }
+        }
+    }
+}
+
+template <bool kBackward>
+HWY_INLINE void collideWith(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context,
+                            float fromList) {
+    collidePoints<kBackward>(block, lanes, context, fromList);
+    if (HWY_UNLIKELY(context.segmentsTouch)) collideSegments(block, lanes, context);
 }
 
 template <bool kBackward>

@@ -27,9 +27,9 @@ struct SpringKernels {
     /// Halves the ways that position Verlet has found: from rest the first step is x₁ = x₀ + ½ a h², and the
     /// velocity that it keeps is that of the half step.
     Stage startHalfway;
-    /// Fills windRoot and windTip, for substeps of h seconds, for the frame that begins at the phases `from`
-    /// and ends at `to`.
-    void (*sampleWind)(const SpringBlock& block, LaneFrame& lanes, float h, const Wind& wind,
+    /// Fills windRoot and windTip for the context's wind and substeps, for the frame that begins at the
+    /// phases `from` and ends at `to`.
+    void (*sampleWind)(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context,
                        const float* from, const float* to);
 };
 /// Those for the best instruction set of this machine.

@@ -118,8 +118,7 @@ class SpringStrands final : public ModelStrands {
         springLanes(lanes).near.forget();
         if (frame.rescale != 1.0f) kernels.rescale(block, frame.rescale);
         if (!frame.windy) return;
-        kernels.sampleWind(block, lanes, frame.context.h, *frame.context.wind, frame.windFrom.data(),
-                           frame.windTo.data());
+        kernels.sampleWind(block, lanes, frame.context, frame.windFrom.data(), frame.windTo.data());
     }
     void closeFrame(const ModelFrame& frame) override {
         if (isNew(frame)) bend_.substep = frame.context.h;

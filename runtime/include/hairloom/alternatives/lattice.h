@@ -27,7 +27,9 @@ struct LatticeSettings {
     Float3 gravity{0.0f, -9.81f, 0.0f};  ///< m/s², each component −1000…1000
     float teleportDistance =
         2.0f;  ///< metres, 0.01…10000. A head that moves farther carries the lattice along
-    std::uint32_t substeps = 2;  ///< 1…64
+    std::uint32_t substeps = 2;        ///< 1…64
+    float collisionRadiusRoot = 0.0f;  ///< metres, 0…0.1: distance from spheres at the root
+    float collisionRadiusTip = 0.0f;   ///< metres, 0…0.1: at the tip, linear between them
 };
 
 /// Hair of distant characters: a box of nodes³ control points around the hair at rest, a damped mass-spring
@@ -44,12 +46,17 @@ struct LatticeSettings {
 /// against the head and minimise the energy of the step, so that after any number of iterations the lattice
 /// has no more energy than before: any frame time, any stiffness.
 ///
-/// Cost: a step works on control points only, whatever the number of hairs; evaluate() is linear in points.
+/// Collision: what points of hair lack to be outside of the spheres moves the control points around them, by
+/// the multilevel approximation of Lee, Wolberg, Shin 1997, and stops their motion inwards, once a step. What
+/// a cell is too coarse for is placed on the sphere by evaluate(). Roots stay.
+///
+/// Cost: a step works on control points only, whatever the number of hairs, but for points that may be inside
+/// of spheres; evaluate() is linear in points.
 ///
 /// Limits: hair is a continuous medium here: no single wisps, no hair against hair; strands do not keep their
-/// length; nothing collides with the head or anything else; roots leave the scalp by as much as the lattice
-/// around them is deformed. The lattice differs from the paper's, whose elasticity comes from the strands in
-/// each cell and which collides with metaballs.
+/// length; roots leave the scalp by as much as the lattice around them is deformed. The lattice differs from
+/// the paper's, whose elasticity comes from the strands in each cell and whose control points collide with
+/// metaballs.
 class Lattice {
   public:
     struct Result;
@@ -61,8 +68,8 @@ class Lattice {
     void reset(const RootFrame& head_ws);
     /// Advances by dt seconds to this pose of the head; what it was before moves there evenly. A dt that is
     /// not above 0 changes nothing, others count as 10⁻⁶…1000 s; a head that is no position within 1e6 m
-    /// stays where it was.
-    void step(const RootFrame& head_ws, float dt);
+    /// stays where it was. `spheres_ws`: where they are at the end; those that are no numbers are left out.
+    void step(const RootFrame& head_ws, float dt, std::span<const Sphere> spheres_ws = {});
     // Calls that are given arrays return false, and do nothing, where one has the wrong size.
 
     /// Where the hair is: metres, world, in the order given to make(), pointCount() of them.
@@ -91,10 +98,13 @@ class Lattice {
         Float3 velocity;      ///< against the head, m/s
         Float3 headVelocity;  ///< of the rigidly moved rest position over the last substep, m/s
         Float3 change, residual, direction, image;  ///< of the conjugate gradients
+        Float3 push;                                ///< of spheres, times `pushWeight`
+        float pushWeight;
     };
     struct Point {
         Float3 rest_ss;  ///< metres
         Float3 cells;    ///< position in the lattice: control point i stands at i
+        float radius;    ///< metres that it keeps from spheres; negative of a root, which they do not move
     };
     Lattice() = default;
 
@@ -105,12 +115,17 @@ class Lattice {
     /// Force per displacement at a control point: attachment and coupling.
     Float3 springs(std::size_t node, Float3 Node::*field) const;
     Float3 displacementAt(const Point& point) const;
+    Float3 positionOf(const Point& point) const;
+    Float3 outside(const Point& point, Float3 position_ws) const;
+    void collide();
 
     LatticeSettings settings_;
     Host host_;
     RootFrame head_;
     std::vector<Node> nodes_;
     std::vector<Point> points_;
+    std::vector<Sphere> spheres_;  ///< of the last step
+    std::vector<Float3> pushes_;   ///< by point
     StepReport report_;
 };
 
