@@ -50,6 +50,7 @@ inline constexpr std::array<std::string_view, 8> kFamilies{
 
 /// A column of Table 3, in milliseconds per frame on one thread.
 struct ThesisCosts {
+    runtime::StrandModel model = runtime::StrandModel::springs;  ///< the thesis has springs alone
     std::uint32_t guides = 0;
     std::uint32_t neighbours = 0;  ///< hairs that follow a guide, besides one in its own place
     std::array<double, kFamilies.size()> printed{};
@@ -79,6 +80,11 @@ struct SimulationBench {
 
 /// Of the guides of Table 3: the thesis does not say; its Figure 5 has 10 segments.
 inline constexpr std::uint32_t kThesisSegments = 30;
+
+/// All columns with springs, then all with rods; `seconds` of one repetition, about.
+std::vector<ThesisCosts> measureThesisCosts(int repetitions, double seconds);
+/// The table as Markdown, the thesis' own numbers first; "" without columns.
+std::string thesisTable(const std::vector<ThesisCosts>& columns);
 
 /// The tables as Markdown; `command` is how they were made.
 std::string markdownOf(const SimulationBench& bench, const std::string& command);

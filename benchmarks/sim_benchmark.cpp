@@ -49,7 +49,7 @@ class Bench {
                 }
             }
         }
-        measureThesis();
+        bench_.thesis = measureThesisCosts(options_.repetitions.value_or(5), seconds_);
         stepForward();
         measureInstructionSets();
         stepForward();
@@ -137,44 +137,6 @@ class Bench {
                 place = costs.stages.insert(costs.stages.end(), {id, {name, kPerParticle, {}}});
             }
             place->cost.values.push_back(milliseconds * 1e6 / run.work());
-        }
-    }
-
-    void measureThesis() {
-        // Table 3, in the order of kFamilies.
-        bench_.thesis = {
-            {100, 30, {0.1973, 1.2046, 0.0542, 0.3124, 0.1094, 0.8614, 0.0108, 0.7276}, {}, {}},
-            {200, 30, {0.3985, 2.4012, 0.1100, 0.6269, 0.2159, 1.6741, 0.0201, 1.4497}, {}, {}},
-            {300, 30, {0.5907, 3.6037, 0.1652, 0.9403, 0.3441, 2.5928, 0.0288, 2.1637}, {}, {}},
-            {300, 60, {0.5935, 3.6015, 0.1686, 0.9417, 0.3561, 2.6141, 0.0337, 4.1803}, {}, {}},
-        };
-        for (ThesisCosts& column : bench_.thesis) measureColumn(column);
-    }
-
-    void measureColumn(ThesisCosts& column) const {
-        const std::string setup = fmt::format("{} guides of {} segments with {} neighbours", column.guides,
-                                              kThesisSegments, column.neighbours);
-        for (std::size_t i = 0; i < kFamilies.size(); ++i)
-            column.measured[i] = {fmt::format("Table 3, {}, {}", kFamilies[i], setup), "ms", {}};
-        column.whole = {fmt::format("Table 3, step and interpolation, {}", setup), "ms", {}};
-        StepRun run({.strands = column.guides,
-                     .points = kThesisSegments + 1,
-                     .model = runtime::StrandModel::springs,
-                     .byStage = true});
-        const scenes::Lawn lawn(column.guides, column.neighbours + 1, kThesisSegments + 1, 0.0f);
-        auto made = runtime::FollowHairs::make(lawn.view());
-        const std::uint32_t frames = run.framesFor(seconds_);
-        for (int r = 0; r < options_.repetitions.value_or(5); ++r) {
-            const double step = run.milliseconds(frames);
-            std::array<double, kFamilies.size()> sums{};
-            for (std::size_t i = 0; i < runtime::kStageCount; ++i) {
-                const auto family = std::ranges::find(
-                    kFamilies, std::string_view(runtime::stageFamily(static_cast<runtime::StageId>(i))));
-                sums[static_cast<std::size_t>(family - kFamilies.begin())] += run.stageMilliseconds()[i];
-            }
-            sums.back() = followMilliseconds(*made.hairs, lawn, false, frames);
-            for (std::size_t i = 0; i < sums.size(); ++i) column.measured[i].values.push_back(sums[i]);
-            column.whole.values.push_back(step + sums.back());
         }
     }
 
@@ -296,9 +258,12 @@ Report reportOf(const SimulationBench& bench) {
     }
     for (const ThesisCosts& column : bench.thesis) {
         for (std::size_t i = 0; i < kFamilies.size(); ++i) {
+            if (column.measured[i].median() == 0) continue;  // rods solve all forces at once
             Report row = rowOf(column.measured[i]);
-            row["thesis"] = column.printed[i];
-            row["ratio"] = column.printed[i] / column.measured[i].median();
+            if (column.model == runtime::StrandModel::springs) {
+                row["thesis"] = column.printed[i];
+                row["ratio"] = column.printed[i] / column.measured[i].median();
+            }
             rows.push_back(std::move(row));
         }
         rows.push_back(rowOf(column.whole));

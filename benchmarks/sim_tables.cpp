@@ -46,6 +46,7 @@ void writeWanted(const SimulationBench& bench, Out out) {
                        other.met() ? "met" : "**not met**");
     }
     for (const ThesisCosts& column : bench.thesis) {
+        if (column.model != runtime::StrandModel::springs) continue;
         std::string slower;
         for (std::size_t i = 0; i < kFamilies.size(); ++i) {
             if (column.measured[i].median() <= column.printed[i]) continue;
@@ -119,36 +120,6 @@ void writeStages(const SimulationBench& bench, Out out) {
     }
 }
 
-void writeThesis(const SimulationBench& bench, Out out) {
-    fmt::format_to(
-        out,
-        "\n## Table 3 of the thesis\n\nMilliseconds per frame on one thread: Rünz 2012, Section 7.2 "
-        "(Core i7-920), then this machine, then how many times faster. {} segments a guide, {} substeps, "
-        "wind and ten spheres.\n\n| |",
-        kThesisSegments, runtime::kSpringSubsteps);
-    std::string rule = "|---|";
-    for (const ThesisCosts& column : bench.thesis) {
-        fmt::format_to(out, " {} guides, {} neighbours |", column.guides, column.neighbours);
-        rule += "---|";
-    }
-    fmt::format_to(out, "\n{}\n", rule);
-    const auto cell = [&](double printed, double measured) {
-        fmt::format_to(out, " {:.3f} → {:.3f} ({}×) |", printed, measured, shortened(printed / measured));
-    };
-    for (std::size_t i = 0; i < kFamilies.size(); ++i) {
-        fmt::format_to(out, "| {} |", kFamilies[i]);
-        for (const ThesisCosts& column : bench.thesis) cell(column.printed[i], column.measured[i].median());
-        fmt::format_to(out, "\n");
-    }
-    fmt::format_to(out, "| **all of these; here the whole step and interpolation** |");
-    for (const ThesisCosts& column : bench.thesis) {
-        double printed = 0.0;
-        for (const double milliseconds : column.printed) printed += milliseconds;
-        cell(printed, column.whole.median());
-    }
-    fmt::format_to(out, "\n");
-}
-
 void writeInstructionSets(const SimulationBench& bench, Out out) {
     fmt::format_to(
         out, "\n## Instruction sets\n\nNanoseconds per particle and substep, one thread.\n\n| set | scene |");
@@ -183,7 +154,7 @@ std::string markdownOf(const SimulationBench& bench, const std::string& command)
     writeSamples(bench, out);
     writeSteps(bench, out);
     writeStages(bench, out);
-    writeThesis(bench, out);
+    text += thesisTable(bench.thesis);
     writeInstructionSets(bench, out);
     writeOthers(bench, out);
     return text;
