@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -361,6 +362,39 @@ class CaseList {
     std::uint32_t middle_ = 0;
 };
 
+/// What drawing takes when the geometry of hair is made once, as here and with stream-out (thesis, Section
+/// 6.6.1), and when each pass that draws hair makes it, from the passes of one case.
+struct Geometry {
+    std::string passes;
+    double once = 0, each = 0;  ///< ms
+};
+
+/// Those that read the curves of hair.
+constexpr std::array kDrawHair{render::Pass::firstHair, render::Pass::opacity, render::Pass::shade,
+                               render::Pass::nearest, render::Pass::draw};
+
+/// For one, two, … of the passes that draw hair. Empty where the case has no times.
+std::vector<Geometry> geometryOf(const RenderCase& which) {
+    const auto timeOf = [&](render::Pass pass) {
+        const auto found = std::ranges::find(which.passes, render::passName(pass), &Measurement::name);
+        return found == which.passes.end() ? 0.0 : found->median();
+    };
+    const double curves = timeOf(render::Pass::curves);
+    if (!(curves > 0)) return {};
+    std::vector<Geometry> rows;
+    Geometry row;
+    for (const Measurement& pass : which.passes) {
+        const bool drawsHair = std::ranges::any_of(
+            kDrawHair, [&](render::Pass one) { return pass.name == render::passName(one); });
+        if (!drawsHair) continue;
+        row.passes += (row.passes.empty() ? "" : ", ") + pass.name;
+        row.once += pass.median();
+        const auto count = static_cast<double>(rows.size() + 1);
+        rows.push_back({row.passes, row.once + curves, row.once + count * curves});
+    }
+    return rows;
+}
+
 std::string inWords(const Measurement& m) {
     const auto [minimum, maximum] = std::ranges::minmax(m.values);
     return fmt::format("{:.3g} ({:.3g}…{:.3g})", m.median(), minimum, maximum);
@@ -432,6 +466,10 @@ Report reportOf(const RenderBench& bench) {
         rows.push_back(std::move(whole));
         rows.push_back(row(which.wall, "wall"));
         for (const Measurement& pass : which.passes) rows.push_back(row(pass, pass.name));
+        for (const Geometry& made : geometryOf(which))
+            rows.push_back({{"name", which.name + ", geometry for " + made.passes},
+                            {"once_ms", made.once},
+                            {"each_ms", made.each}});
     }
     return Report{
         {"name", "render"},           {"device", bench.device.name}, {"driver", bench.device.driver},
@@ -458,6 +496,14 @@ std::string markdownOf(const RenderBench& bench, const std::string& command) {
         fmt::format_to(out, "| {} | {} | {}x{} | {} | {} | {} | {:.1f} | {} |\n", c.name, c.hairs,
                        c.options.width, c.options.height, c.options.samples, inWords(c.frame),
                        inWords(c.wall), static_cast<double>(c.targetBytes) / (1u << 20u), wanted);
+    }
+    fmt::format_to(out,
+                   "\n## Geometry, made once or in each pass\n\n| case | passes that draw hair | made "
+                   "once, ms | made in each, ms | gain |\n|---|---|---|---|---|\n");
+    for (const RenderCase& c : bench.cases) {
+        for (const Geometry& row : geometryOf(c))
+            fmt::format_to(out, "| {} | {} | {:.3g} | {:.3g} | {:.1f} % |\n", c.name, row.passes, row.once,
+                           row.each, 100 * (1 - row.once / row.each));
     }
     fmt::format_to(out, "\n## Passes\n\n| case | pass | ms |\n|---|---|---|\n");
     for (const RenderCase& c : bench.cases) {
