@@ -65,7 +65,6 @@ class Builder {
             keptStations(strip, card.widen, cards_.tolerance, cards_.segments + 1);
         const bool bent = isBent(strip, cards_.tolerance);
         const std::vector<float> columns = bent ? std::vector<float>{-1, 0, 1} : std::vector<float>{-1, 1};
-        addRoots(c, strip);
         const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
         for (const std::size_t k : kept)
             for (const float x : columns) cards_.mesh.vertices.push_back(vertex(c, strip, k, x, bent));
@@ -78,41 +77,40 @@ class Builder {
         }
     }
 
-  private:
-    /// From the side one looks below a card, since it is one surface where hair is many: what is seen there
-    /// is hair, not skin.
-    void addRoots(std::uint32_t c, const Strip& strip) {
-        const Card& card = cards_.cards[c];
-        const RootPatch& patch = card.roots;
-        constexpr float kLeast = 0.001f;  // metres
-        if (std::min(patch.halfLength, patch.halfWidth) < kLeast) return;
-        // Where textures are densest, in their own scale.
-        constexpr float kDense = 0.35f, kMostShown = 0.4f;
-        const float shown = std::min(kMostShown, 2 * patch.halfLength / std::max(strip.length(), kLeast));
-        const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
-        for (const float y : {-1.0f, 1.0f}) {
-            for (const float x : {-1.0f, 1.0f}) {
+    /// What is seen between cards where they rise from the skin.
+    void addCap() {
+        for (std::size_t i = 0; i < cards_.cap.size(); ++i) {
+            const CapChart& chart = cards_.cap[i];
+            const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
+            for (const CapChart::Vertex& at : chart.vertices) {
                 CardVertex v;
-                v.position_ws =
-                    patch.middle + x * patch.halfWidth * patch.across + y * patch.halfLength * patch.along;
-                v.normal_ws = patch.normal, v.along_ws = patch.along;
-                wear(card, Vec2f(0.5f + 0.5f * x, kDense + 0.5f * y * shown), 0, v);
-                v.card = c;
+                v.position_ws = at.position_ws, v.normal_ws = at.normal_ws;
+                const Vec3f& along = chart.plane.along[0];
+                v.along_ws = (along - along.dot(at.normal_ws) * at.normal_ws).normalized();
+                v.tint = Vec3f::Constant(cards_.brightness);
+                v.card = kOfCap, v.texture = static_cast<std::uint32_t>(cards_.painters.size() + i);
+                setPlace(at.place, v);
                 cards_.mesh.vertices.push_back(v);
             }
+            for (const std::uint32_t index : chart.indices) cards_.mesh.indices.push_back(first + index);
         }
-        for (const std::uint32_t i : {0u, 1u, 2u, 2u, 1u, 3u}) cards_.mesh.indices.push_back(first + i);
+    }
+
+  private:
+    /// A place of the texture that it has.
+    void setPlace(const Vec2f& place, CardVertex& v) const {
+        const Rect& rect = cards_.atlas.rects[v.texture];
+        v.place = place;
+        v.uv = Vec2f(static_cast<float>(rect.x) + place.x() * static_cast<float>(rect.width),
+                     static_cast<float>(rect.y) + place.y() * static_cast<float>(rect.height)) /
+               static_cast<float>(cards_.atlas.side());
     }
 
     /// A place of its texture, with the colour that the card has at a station.
     void wear(const Card& card, const Vec2f& place, std::size_t station, CardVertex& v) const {
         const Card& painter = cards_.cards[cards_.painters[card.texture]];
-        const Rect& rect = cards_.atlas.rects[card.texture];
-        v.place = place;
-        const auto side = static_cast<float>(cards_.atlas.side());
-        v.uv = Vec2f(static_cast<float>(rect.x) + place.x() * static_cast<float>(rect.width),
-                     static_cast<float>(rect.y) + place.y() * static_cast<float>(rect.height)) /
-               side;
+        v.texture = card.texture;
+        setPlace(place, v);
         const auto painted = static_cast<std::size_t>(place.y() * static_cast<float>(kStations - 1) + 0.5f);
         constexpr float kMost = 4;
         for (int i = 0; i < 3; ++i) {
@@ -158,6 +156,8 @@ void buildMesh(Cards& cards) {
     std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return depth[a] < depth[b]; });
     cards.mesh = {};
     Builder builder(cards);
+    const auto isThere = [](const Card& card) { return !card.deleted; };
+    if (std::ranges::any_of(cards.cards, isThere)) builder.addCap();
     for (const std::uint32_t c : order)
         if (!cards.cards[c].deleted) builder.add(c);
     std::vector<CardVertex> inOrder(cards.mesh.vertices.size());

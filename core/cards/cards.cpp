@@ -67,15 +67,20 @@ float meanWidth(const Strip& strip) {
     return sum / static_cast<float>(strip.stations());
 }
 
+std::uint32_t texelsOf(float metres, float texel, float least) {
+    return static_cast<std::uint32_t>(std::clamp(metres / texel, least, 16384.0f));
+}
+
 /// Rects of all textures with texels of that size; empty where they do not fit.
 std::vector<Rect> rectsFor(const Cards& cards, float texel, std::uint32_t side) {
     std::vector<std::array<std::uint32_t, 2>> sizes;
     for (const std::uint32_t painter : cards.painters) {
         const Strip& strip = cards.cards[painter].strip;
-        const auto texels = [&](float metres, float least) {
-            return static_cast<std::uint32_t>(std::clamp(metres / texel, least, 16384.0f));
-        };
-        sizes.push_back({texels(meanWidth(strip), 4), texels(strip.length(), 8)});
+        sizes.push_back({texelsOf(meanWidth(strip), texel, 4), texelsOf(strip.length(), texel, 8)});
+    }
+    for (const CapChart& chart : cards.cap) {
+        sizes.push_back(
+            {texelsOf(meanWidth(chart.plane), texel, 4), texelsOf(chart.plane.length(), texel, 4)});
     }
     return packed(sizes, side, kPadding);
 }
@@ -146,11 +151,18 @@ void shapeByHand(std::span<const HeldCard> held, Cards& cards) {
 }
 
 Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Cards& cards, Cancel cancel) {
-    std::vector<Picture> pictures(cards.painters.size());
+    const std::size_t painters = cards.painters.size();
+    std::vector<Picture> pictures(painters + cards.cap.size());
+    const Hair laid = laidRoots(hair);
     parallelFor(pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && !cancelled(cancel); ++i) {
-            const Card& card = cards.cards[cards.painters[i]];
             const Rect& rect = cards.atlas.rects[i];
+            if (i >= painters) {
+                pictures[i] =
+                    bakeCap(hair, laid, light, cards.cap[i - painters], thickness, rect.width, rect.height);
+                continue;
+            }
+            const Card& card = cards.cards[cards.painters[i]];
             pictures[i] = bake(hair, light, card.strip, card.strands, thickness, rect.width, rect.height);
         }
     });
@@ -182,13 +194,13 @@ Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOpti
                 const Strip fitted = fitStrip(fine, card.strands, hair.rootNormals_ws);
                 card.strip = finishStrip(fine, card.strands, fitted, kStations, hair.rootNormals_ws);
             }
-            card.roots = rootPatch(fine, card.strands, card.strip, hair.rootNormals_ws);
             measure(hair, light, card);
         }
     });
     if (cancelled(cancel)) return stopped();
     const auto looks = looksOf(hair, light, cards.cards);
     cards.painters = shareLooks(looks, options.textures, cards.cards);
+    cards.cap = makeCap(hair, options.tolerance);
     auto layout = layOut(cards, options);
     if (!layout) return tl::unexpected(layout.error());
     cards.texel = layout->texel;

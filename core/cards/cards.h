@@ -5,8 +5,8 @@
 #include <array>
 #include <optional>
 
+#include "core/cards/cap.h"
 #include "core/cards/clusters.h"
-#include "core/cards/root_patch.h"
 #include "core/cards/texture.h"
 
 namespace hairloom::cards {
@@ -33,14 +33,14 @@ struct CardOptions {
     std::vector<HeldCard> held = {};
 };
 
-constexpr std::uint32_t kStations = 25;  ///< of a card's strip: 24 segments at most
+constexpr std::uint32_t kOfCap = UINT32_MAX;  ///< CardVertex::card of the cap's vertices
+constexpr std::uint32_t kStations = 25;       ///< of a card's strip: 24 segments at most
 
 struct Card {
     Strip strip;  ///< as its strands have it, or as it is pinned
     std::vector<std::uint32_t> strands;
     std::array<Vec3f, kStations> albedo;  ///< means of its strands
     std::array<float, kStations> open;
-    RootPatch roots;  ///< a quad with a piece of the texture covers the skin there
     std::uint32_t texture = 0;
     float widen = 1;  ///< factor on the width, by which a shared texture covers as much as its own strands do
 
@@ -58,10 +58,11 @@ struct CardVertex {
     Vec2f uv;         ///< in the atlas, 0 … 1; v grows downwards, as rows do
     Vec2f place;      ///< in the card's own picture, 0 … 1
     Vec3f tint =
-        Vec3f::Ones();  ///< factor on the albedo: what the card has beside the texture that it shares
-    float open = 1;     ///< factor on the ambient occlusion, likewise
-    float hangs = 0;    ///< share of the way to the tip, of what moves it
-    std::uint32_t card = 0;
+        Vec3f::Ones();          ///< factor on the albedo: what the card has beside the texture that it shares
+    float open = 1;             ///< factor on the ambient occlusion, likewise
+    float hangs = 0;            ///< share of the way to the tip, of what moves it
+    std::uint32_t card = 0;     ///< or kOfCap
+    std::uint32_t texture = 0;  ///< of the atlas
 };
 
 /// Triangles of inner cards come first, so that blending in order looks right from outside.
@@ -73,6 +74,7 @@ struct CardMesh {
 struct Cards {
     std::vector<Card> cards;
     std::vector<std::uint32_t> painters;  ///< of each texture, the card whose strands it shows
+    std::vector<CapChart> cap;            ///< under the cards; its textures come behind theirs
     Atlas atlas;
     CardMesh mesh;
     float texel = 0;  ///< metres, as the atlas had room for

@@ -60,15 +60,16 @@ void hangOnBones(const Level& level, const Chain& chain, const Character& charac
     if (character.roots.empty()) return;
     const auto* const cards = std::get_if<Cards>(&level.content);
     std::vector<std::uint32_t> all;
-    if (cards == nullptr) {
-        all.resize(chain.roots_ws.size());
-        std::iota(all.begin(), all.end(), 0u);
-    }
+    all.resize(chain.roots_ws.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const auto near = [&](std::size_t v) -> std::span<const std::uint32_t> {
+        const std::uint32_t card = cards == nullptr ? kOfCap : cards->mesh.vertices[v].card;
+        if (card == kOfCap) return all;
+        return cards->cards[card].strands;
+    };
     parallelFor(arrays.positions_ws.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            const std::span<const std::uint32_t> strands =
-                cards == nullptr ? all : cards->cards[cards->mesh.vertices[v].card].strands;
-            const std::uint32_t root = nearestRoot(arrays.positions_ws[v], strands, chain.roots_ws);
+            const std::uint32_t root = nearestRoot(arrays.positions_ws[v], near(v), chain.roots_ws);
             hangVertex(character.roots[root], chain.rig.joints.size(), arrays.joints[v], arrays.weights[v]);
         }
     });

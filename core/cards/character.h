@@ -33,8 +33,8 @@ struct Character {
 };
 
 /// Gives what hangs on the head's joint to the character's bones, numbered behind the rig's joints: each
-/// vertex moves as the skin at the nearest root does, of its card's strands or, in a shell, of all. The four
-/// strongest joints of a vertex are kept. Nothing where the character has no roots.
+/// vertex moves as the skin at the nearest root does, of its card's strands or, in a cap or a shell, of all.
+/// The four strongest joints of a vertex are kept. Nothing where the character has no roots.
 void hangOnBones(const Level& level, const Chain& chain, const Character& character, LevelArrays& arrays);
 
 /// The bone that each chain of the rig hangs on: that of most roots to which the chain is the nearest, the

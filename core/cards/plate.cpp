@@ -261,7 +261,7 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const auto low = static_cast<std::size_t>(level);
         const std::size_t high = std::min(low + 1, cards.atlas.levels.size() - 1);
         const float share = level - static_cast<float>(low);
-        const Rect& rect = cards.atlas.rects[cards.cards[v[0]->card].texture];
+        const Rect& rect = cards.atlas.rects[v[0]->texture];
         const CoverageSampler finer(cards.atlas, rect, low), coarser(cards.atlas, rect, high);
         const Vec2f least = v[0]->place.cwiseMin(v[1]->place).cwiseMin(v[2]->place);
         const Vec2f largest = v[0]->place.cwiseMax(v[1]->place).cwiseMax(v[2]->place);
@@ -304,7 +304,7 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const Vec3f w(seen_[i].b0, seen_[i].b1, 1 - seen_[i].b0 - seen_[i].b1);
         const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
         const auto level = static_cast<std::size_t>(levels[seen_[i].triangle] + 0.5f);
-        const Texel texel = sample(cards.atlas, cards.atlas.rects[cards.cards[v[0]->card].texture], level,
+        const Texel texel = sample(cards.atlas, cards.atlas.rects[v[0]->texture], level,
                                    place.x(), place.y());
         const Vec3f normal = mixed<Vec3f>(w, v[0]->normal_ws, v[1]->normal_ws, v[2]->normal_ws).normalized();
         const Vec3f strip = mixed<Vec3f>(w, v[0]->along_ws, v[1]->along_ws, v[2]->along_ws).normalized();

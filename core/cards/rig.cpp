@@ -72,6 +72,10 @@ Binding bind(const Rig& rig, const Cards& cards) {
     for (const Card& card : cards.cards) holds.push_back(holdOf(card.strip, rig.curves));
     Binding binding;
     for (const CardVertex& vertex : cards.mesh.vertices) {
+        if (vertex.card == kOfCap) {
+            binding.joints.push_back({}), binding.weights.emplace_back(1, 0, 0, 0);
+            continue;
+        }
         const Hold& hold = holds[vertex.card];
         const float at = vertex.hangs * static_cast<float>(rig.perChain - 1);
         const auto joint = std::min(static_cast<std::uint32_t>(at), rig.perChain - 2);

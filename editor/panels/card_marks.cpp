@@ -23,6 +23,7 @@ CardMarks::CardMarks(const cards::Cards& cards) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // an outline's belong to one triangle
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const std::array<std::uint32_t, 3> t{indices[i], indices[i + 1], indices[i + 2]};
+        if (vertices[t[0]].card == cards::kOfCap) continue;
         triangles_.push_back(
             {{vertices[t[0]].position_ws, vertices[t[1]].position_ws, vertices[t[2]].position_ws},
              vertices[t[0]].card});

@@ -42,6 +42,7 @@ std::optional<std::uint32_t> CardTool::cardAt(const QPointF& at_px) const {
     const auto& indices = mesh_->indices;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const cards::CardVertex& a = vertices[indices[i]];
+        if (a.card == cards::kOfCap) continue;
         const auto hit = hitOf(ray, a.position_ws, vertices[indices[i + 1]].position_ws,
                                vertices[indices[i + 2]].position_ws);
         if (hit && *hit < nearest) nearest = *hit, card = a.card;

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/cap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/geometry/curve.h"
+
+namespace hairloom::cards {
+namespace {
+
+constexpr float kLength = 0.012f;                     // metres of a hair that the cap shows
+constexpr float kClear = 0.0003f;                     // metres above the skin, beside the tolerance
+constexpr float kHeadRadius = 0.09f;                  // metres: how much a square of the grid bulges
+constexpr float kFinest = 0.004f, kCoarsest = 0.03f;  // metres, squares of the grid
+constexpr float kShownSlope = 0.35f;  // cosine: skin that turns away further is another chart's
+
+/// The axis that a normal is nearest to: +x, -x, +y and so on.
+std::size_t axisOf(const Vec3f& normal) {
+    Eigen::Index axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    return 2 * static_cast<std::size_t>(axis) + (normal[axis] < 0 ? 1 : 0);
+}
+
+/// Across, along and outwards, right-handed as those of a strip are.
+struct Frame {
+    Vec3f across, along, outwards;
+
+    explicit Frame(std::size_t axis) {
+        outwards = (axis % 2 == 0 ? 1.0f : -1.0f) * Vec3f::Unit(static_cast<Eigen::Index>(axis / 2));
+        // Hair hangs down or, on the crown, backwards.
+        along = axis / 2 == 1 ? Vec3f(0, 0, -1) : Vec3f(0, -1, 0);
+        across = outwards.cross(along);
+    }
+    Vec3f of(const Vec3f& v) const { return {v.dot(across), v.dot(along), v.dot(outwards)}; }
+    Vec3f back(const Vec3f& v) const { return v.x() * across + v.y() * along + v.z() * outwards; }
+};
+
+/// A root as a chart sees it.
+struct Root {
+    Vec3f at, normal;
+};
+
+class Grid {
+  public:
+    Grid(const std::vector<Vec3f>& held, float square) : square_(square) {
+        Vec2f low = held[0].head<2>(), high = low;
+        for (const Vec3f& p : held) low = low.cwiseMin(p.head<2>()), high = high.cwiseMax(p.head<2>());
+        low_ = low;
+        columns_ = static_cast<std::uint32_t>((high - low).x() / square) + 1;
+        rows_ = static_cast<std::uint32_t>((high - low).y() / square) + 1;
+        full_.assign(std::size_t{columns_} * rows_, false);
+        for (const Vec3f& p : held) {
+            const Vec2f at = (p.head<2>() - low_) / square_;
+            const auto x = std::min(static_cast<std::uint32_t>(at.x()), columns_ - 1);
+            const auto y = std::min(static_cast<std::uint32_t>(at.y()), rows_ - 1);
+            full_[std::size_t{y} * columns_ + x] = true;
+        }
+    }
+    std::uint32_t columns() const { return columns_; }
+    std::uint32_t rows() const { return rows_; }
+    bool isFull(std::uint32_t x, std::uint32_t y) const { return full_[std::size_t{y} * columns_ + x]; }
+    Vec2f corner(std::uint32_t x, std::uint32_t y) const {
+        return low_ + square_ * Vec2f(static_cast<float>(x), static_cast<float>(y));
+    }
+    Vec2f size() const { return corner(columns_, rows_) - low_; }
+
+  private:
+    float square_;
+    Vec2f low_;
+    std::uint32_t columns_, rows_;
+    std::vector<bool> full_;
+};
+
+/// Height and normal of the skin at a place, from the planes that touch it at the roots around.
+Root skinAt(const Vec2f& place, const std::vector<Root>& roots, float square) {
+    const float reach = 0.5f * square;
+    float weights = 0, height = 0;
+    Vec3f normal = Vec3f::Zero();
+    // Near roots count so much more that one far away matters only where there is no other.
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const Root& root : roots) nearest = std::min(nearest, (root.at.head<2>() - place).squaredNorm());
+    for (const Root& root : roots) {
+        const Vec2f away = place - root.at.head<2>();
+        const float off = (away.squaredNorm() - nearest) / (reach * reach);
+        constexpr float kNothing = 12;
+        if (off > kNothing) continue;
+        const float weight = std::exp(-off);
+        const float fall = root.normal.head<2>().dot(away) / std::max(root.normal.z(), kShownSlope);
+        weights += weight, height += weight * (root.at.z() - fall), normal += weight * root.normal;
+    }
+    return {Vec3f(place.x(), place.y(), height / weights), normal.normalized()};
+}
+
+Strip planeOf(const Frame& frame, const Vec2f& low, const Vec2f& size, float height) {
+    Strip plane;
+    for (const float end : {0.0f, 1.0f}) {
+        plane.centre.push_back(
+            frame.back(Vec3f(low.x() + 0.5f * size.x(), low.y() + end * size.y(), height)));
+        plane.along.push_back(frame.along), plane.cross.push_back(frame.across);
+        plane.normal.push_back(frame.outwards);
+        plane.halfWidth.push_back(0.5f * size.x());
+        plane.bend.push_back(0), plane.spread.push_back(0);
+    }
+    return plane;
+}
+
+CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance) {
+    const Frame frame(axis);
+    CapChart chart;
+    std::vector<Root> roots;
+    std::vector<Vec3f> held;
+    for (std::uint32_t s = 0; s < laid.strandCount(); ++s) {
+        const Vec3f normal = frame.of(laid.rootNormals_ws[s]);
+        if (normal.z() < kShownSlope) continue;
+        chart.strands.push_back(s);
+        roots.push_back({frame.of(laid.strand(s)[0]), normal});
+        if (axisOf(laid.rootNormals_ws[s]) != axis) continue;
+        for (const Vec3f& point : laid.strand(s)) held.push_back(frame.of(point));
+    }
+    if (held.empty()) return chart;
+    const float square = std::clamp(std::sqrt(8 * kHeadRadius * tolerance), kFinest, kCoarsest);
+    const Grid grid(held, square);
+    const Vec2f low = grid.corner(0, 0), size = grid.size();
+    chart.plane = planeOf(frame, low, size, held[0].z());
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    const std::uint32_t across = grid.columns() + 1;
+    std::vector<std::uint32_t> numbers(std::size_t{across} * (grid.rows() + 1), kNone);
+    std::vector<Vec2f> places;
+    const auto number = [&](std::uint32_t x, std::uint32_t y) {
+        std::uint32_t& n = numbers[std::size_t{y} * across + x];
+        if (n == kNone) n = static_cast<std::uint32_t>(places.size()), places.push_back(grid.corner(x, y));
+        return n;
+    };
+    for (std::uint32_t y = 0; y < grid.rows(); ++y) {
+        for (std::uint32_t x = 0; x < grid.columns(); ++x) {
+            if (!grid.isFull(x, y)) continue;
+            const std::uint32_t a = number(x, y), b = number(x + 1, y), c = number(x, y + 1),
+                                d = number(x + 1, y + 1);
+            for (const std::uint32_t v : {a, c, b, b, c, d}) chart.indices.push_back(v);
+        }
+    }
+    chart.vertices.resize(places.size());
+    parallelFor(places.size(), 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            const Root skin = skinAt(places[v], roots, square);
+            chart.vertices[v] = {frame.back(skin.at + (kClear + tolerance) * skin.normal),
+                                 frame.back(skin.normal), (places[v] - low).cwiseQuotient(size)};
+        }
+    });
+    return chart;
+}
+
+}  // namespace
+
+Hair laidRoots(const Hair& hair) {
+    Hair laid;
+    for (std::size_t s = 0; s < hair.strandCount(); ++s) {
+        const Vec3f root = hair.strand(s)[0], normal = hair.rootNormals_ws[s];
+        const auto add = [&](const Vec3f& point, std::size_t p, float t) {
+            laid.positions_ws.push_back(point - (point - root).dot(normal) * normal);
+            laid.radii.push_back(t < 1 ? (1 - t) * hair.radii[p] + t * hair.radii[p + 1] : hair.radii[p + 1]);
+            laid.albedo.push_back(t < 1 ? Vec3f((1 - t) * hair.albedo[p] + t * hair.albedo[p + 1])
+                                        : hair.albedo[p + 1]);
+        };
+        add(root, hair.offsets[s], 0);
+        float left = kLength;
+        for (std::size_t p = hair.offsets[s]; p + 1 < hair.offsets[s + 1] && left > 0; ++p) {
+            const Vec3f &a = hair.positions_ws[p], &b = hair.positions_ws[p + 1];
+            const float length = (b - a).norm();
+            const float t = length > left ? left / length : 1.0f;
+            add((1 - t) * a + t * b, p, t);
+            left -= length;
+        }
+        laid.offsets.push_back(static_cast<std::uint32_t>(laid.positions_ws.size()));
+        laid.rootNormals_ws.push_back(normal);
+    }
+    return laid;
+}
+
+std::vector<CapChart> makeCap(const Hair& hair, float tolerance) {
+    const Hair laid = laidRoots(hair);
+    std::vector<CapChart> charts;
+    constexpr std::size_t kAxes = 6;
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+        CapChart chart = chartOf(laid, axis, tolerance);
+        if (!chart.indices.empty()) charts.push_back(std::move(chart));
+    }
+    return charts;
+}
+
+Picture bakeCap(const Hair& hair, const Hair& laid, const HairLight& light, const CapChart& chart,
+                float thickness, std::uint32_t width, std::uint32_t height) {
+    Picture picture = bake(laid, light, chart.plane, chart.strands, thickness, width, height);
+    double shown = 0, whole = 0;
+    for (const std::uint32_t s : chart.strands) {
+        const double length = static_cast<double>(polylineLength(hair.strand(s)));
+        shown += std::min(length, static_cast<double>(kLength)), whole += length;
+    }
+    const auto share = static_cast<float>(whole > 0 ? shown / whole : 1);
+    for (Texel& texel : picture.texels) {
+        texel.along *= share;  // of a whole hair
+        texel.depth = 0;       // the grid follows the skin, which the plane of the picture does not
+    }
+    return picture;
+}
+
+}  // namespace hairloom::cards
