@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "core/render/font.h"
 
@@ -15,17 +16,31 @@ constexpr std::size_t kMargin = 2;
 
 using Glyphs = std::vector<std::size_t>;
 
+/// The letters from U+00C0 to U+017F without their marks.
+constexpr std::string_view kBare =
+    "AAAAAAACEEEEIIIIDNOOOOOxOUUUUYTsaaaaaaaceeeeiiiidnooooo/ouuuuyty"
+    "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlL"
+    "lLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs";
+
+/// What the font shows in place of the character of two bytes; none: it has nothing.
+char bareLetter(unsigned char first, unsigned char second) {
+    const std::size_t code = (first & 0x1fu) << 6u | (second & 0x3fu);
+    constexpr std::size_t kFirst = 0xc0;
+    if ((first & 0xe0u) != 0xc0u || code < kFirst || code - kFirst >= kBare.size()) return '?';
+    return kBare[code - kFirst];
+}
+
 /// Indices into the font.
 Glyphs glyphsOf(const std::string& text) {
-    constexpr std::size_t kDegrees = 95, kUnknown = '?' - ' ';
+    constexpr std::size_t kDegrees = 95;
     Glyphs glyphs;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
         if ((byte & 0xc0u) == 0x80u) continue;  // goes on with a character
         const bool isDegrees = text.compare(i, 2, "\xc2\xb0") == 0;
-        glyphs.push_back(byte >= ' ' && byte <= '~' ? byte - std::size_t{' '}
-                         : isDegrees                ? kDegrees
-                                                    : kUnknown);
+        const unsigned char next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+        const char shown = byte >= ' ' && byte <= '~' ? text[i] : bareLetter(byte, next);
+        glyphs.push_back(isDegrees ? kDegrees : static_cast<std::size_t>(shown - ' '));
     }
     return glyphs;
 }

@@ -45,6 +45,16 @@ TEST(Text, EveryCharacterHasAShapeOfItsOwn) {
         for (std::size_t x = kGlyphWidth; x < row.size(); x += kGlyphWidth + 1) EXPECT_EQ(row[x], '.') << row;
 }
 
+TEST(Text, LettersWithMarksAreReadWithoutThem) {
+    Image marked = grey(200, 40), bare = grey(200, 40), unknown = grey(200, 40), asked = grey(200, 40);
+    burnIn(marked, {"L\u00e4nge \u00c5s\u00ed \u017b\u00f3\u0142w \u0131\u017e 5\u00b0"});
+    burnIn(bare, {"Lange Asi Zolw iz 5\u00b0"});
+    EXPECT_EQ(seen(marked), seen(bare));
+    burnIn(unknown, {"\u6bdb\U0001f600\u0180\u00bf\xc3"});
+    burnIn(asked, {"?????"});
+    EXPECT_EQ(seen(unknown), seen(asked));
+}
+
 TEST(Text, StandsInTheLowerLeftCorner) {
     Image image = grey(20, 18);
     burnIn(image, {"Ag"});
