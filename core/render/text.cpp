@@ -26,7 +26,9 @@ constexpr std::string_view kBare =
 char bareLetter(unsigned char first, unsigned char second) {
     const std::size_t code = (first & 0x1fu) << 6u | (second & 0x3fu);
     constexpr std::size_t kFirst = 0xc0;
-    if ((first & 0xe0u) != 0xc0u || code < kFirst || code - kFirst >= kBare.size()) return '?';
+    if ((first & 0xe0u) != 0xc0u || (second & 0xc0u) != 0x80u || code < kFirst ||
+        code - kFirst >= kBare.size())
+        return '?';
     return kBare[code - kFirst];
 }
 
