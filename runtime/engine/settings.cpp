@@ -65,8 +65,8 @@ constexpr Field<S> kFields[] = {
     field<&S::hairHairCohesion>("hairHairCohesion", "1/s", 0, 100, "rate at which hair takes on the motion around it: higher moves in wisps"),
     field<&S::hairHairCell>("hairHairCell", "m", 0, 1, "size of the cells that hair is counted in: 0 chooses it from the hair's spacing"),
     field<&S::latticeNodes>("latticeNodes", "", 3, 16, "control points along each axis of the lattice: more move finer and cost more"),
-    field<&S::latticeRootFrequency>("latticeRootFrequency", "Hz", 0.1, 1000, "how tightly the lattice holds to the head at the roots"),
-    field<&S::latticeTipFrequency>("latticeTipFrequency", "Hz", 0.1, 1000, "how tightly the lattice holds to the head at the tips"),
+    field<&S::latticeRootFrequency>("latticeRootFrequency", "Hz", 0.1, 1000, "frequency of the lattice's springs to the head at the roots"),
+    field<&S::latticeTipFrequency>("latticeTipFrequency", "Hz", 0.1, 1000, "frequency of the lattice's springs to the head at the tips"),
     field<&S::latticeCouplingFrequency>("latticeCouplingFrequency", "Hz", 0, 1000, "springs between neighbouring control points of the lattice"),
 };
 // clang-format on

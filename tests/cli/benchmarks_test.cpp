@@ -22,7 +22,8 @@ TEST(Benchmarks, AreNamedOnceAndSayWhatTheyMeasure) {
         EXPECT_TRUE(names.insert(benchmark.name).second) << benchmark.name;
         EXPECT_FALSE(benchmark.measures.empty()) << benchmark.name;
     }
-    for (const char* name : {"sim", "interpolate", "gpu-sim", "render", "place", "io", "brush", "runtime"})
+    for (const char* name : {"sim", "interpolate", "gpu-sim", "render", "place", "io", "brush", "runtime",
+                             "momentum", "spheres", "thesis"})
         EXPECT_TRUE(names.contains(name)) << name;
 }
 

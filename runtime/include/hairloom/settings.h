@@ -177,9 +177,9 @@ struct SimulationSettings {
     // --- Lattice, an alternative to strands ---
     /// 3 … 16. Control points along each axis of the lattice: more move finer and cost more.
     std::uint32_t latticeNodes = 6;
-    /// Hz, 0.1 … 1000. How tightly the lattice holds to the head at the roots.
+    /// Hz, 0.1 … 1000. Frequency of the lattice's springs to the head at the roots.
     float latticeRootFrequency = 8.0f;
-    /// Hz, 0.1 … 1000. How tightly the lattice holds to the head at the tips.
+    /// Hz, 0.1 … 1000. Frequency of the lattice's springs to the head at the tips.
     float latticeTipFrequency = 1.5f;
     /// Hz, 0 … 1000. Springs between neighbouring control points of the lattice.
     float latticeCouplingFrequency = 2.0f;
