@@ -9,10 +9,10 @@
 namespace hairloom {
 namespace {
 
-constexpr std::uint32_t kPoints = 16;
-constexpr float kLength = 0.3f;   // metres
-constexpr double kFalling = 0.2;  // seconds
-constexpr float kFrame = runtime::kUsualFrame;
+constexpr std::uint32_t kSpinPoints = 16;
+constexpr float kSpinLength = 0.3f;  // metres
+constexpr double kSpinFalls = 0.2;   // seconds
+constexpr float kSpinFrame = runtime::kUsualFrame;
 
 /// About z through the root; hair weighs 1 per metre.
 struct Spin {
@@ -24,7 +24,7 @@ Spin spinOf(const runtime::Engine& engine) {
     engine.readPositions(positions);
     engine.readVelocities(velocities);
     Spin spin;
-    const double segment = static_cast<double>(kLength) / (kPoints - 1);
+    const double segment = static_cast<double>(kSpinLength) / (kSpinPoints - 1);
     for (std::size_t p = 1; p < positions.size(); ++p) {
         const double mass = p + 1 < positions.size() ? segment : 0.5 * segment;
         const double x = static_cast<double>(positions[p].x), y = static_cast<double>(positions[p].y);
@@ -61,20 +61,20 @@ double backwardEulerLoss(double rate, double step, double seconds) {
 Result<MomentumLoss> angularMomentumLoss(const runtime::SimulationSettings& authored, double seconds) {
     runtime::SimulationSettings settings = freeOf(authored);
     StrandSet strand;
-    strand.add({}, {1.0f, 0.0f, 0.0f}, kLength / (kPoints - 1), kPoints);
+    strand.add({}, {1.0f, 0.0f, 0.0f}, kSpinLength / (kSpinPoints - 1), kSpinPoints);
     auto made = runtime::Engine::make(strand.view(), settings);
     if (!made.engine) return fail(made.error);
     runtime::Engine& engine = *made.engine;
     const std::vector<runtime::RootFrame> roots = strand.roots();
     double time = 0;
     const auto run = [&](double until) {
-        for (; time < until - 0.5 * static_cast<double>(kFrame); time += static_cast<double>(kFrame))
-            engine.step({kFrame, time, roots, {}});
+        for (; time < until - 0.5 * static_cast<double>(kSpinFrame); time += static_cast<double>(kSpinFrame))
+            engine.step({kSpinFrame, time, roots, {}});
     };
-    run(kFalling);
+    run(kSpinFalls);
     settings.gravity = {};
     if (const std::string why = engine.setSettings(settings); !why.empty()) return fail(why);
-    run(time + static_cast<double>(kFrame));  // velocities of the last substep know no gravity then
+    run(time + static_cast<double>(kSpinFrame));  // velocities of the last substep know no gravity then
     const Spin before = spinOf(engine);
     run(time + seconds);
     const Spin after = spinOf(engine);
@@ -82,7 +82,7 @@ Result<MomentumLoss> angularMomentumLoss(const runtime::SimulationSettings& auth
     loss.rate = std::abs(before.momentum) / before.inertia;
     loss.lost = 1 - after.momentum / before.momentum;
     loss.predicted = backwardEulerLoss(
-        loss.rate, static_cast<double>(kFrame) / runtime::substepsIn(settings, kFrame), seconds);
+        loss.rate, static_cast<double>(kSpinFrame) / runtime::substepsIn(settings, kSpinFrame), seconds);
     if (!std::isfinite(loss.lost)) return fail("the strand is not finite", "expected stable settings");
     return loss;
 }
