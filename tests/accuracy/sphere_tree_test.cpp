@@ -26,7 +26,7 @@ TEST(SphereTree, FindsWhatATestOfEverySphereFinds) {
         const std::vector<runtime::Sphere> spheres = scattered(count, static_cast<unsigned>(count));
         const SphereTree tree(spheres);
         EXPECT_EQ(tree.nodeCount(), 2 * count - 1);
-        for (int n = 0; n < 2000; ++n) {
+        for (int n = 0; n < 5000; ++n) {
             const runtime::Float3 point{any(random), any(random), any(random)};
             const float margin = n % 2 == 0 ? 0.0f : 0.05f;
             std::vector<std::uint32_t> found, wanted;
