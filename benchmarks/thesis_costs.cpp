@@ -100,6 +100,9 @@ std::string thesisTable(const std::vector<ThesisCosts>& columns) {
                 fmt::format_to(out, " {:.3f} → – |", printed);
         };
         for (std::size_t i = 0; i < kFamilies.size(); ++i) {
+            const bool none = std::ranges::all_of(
+                shown, [&](const ThesisCosts* column) { return column->measured[i].median() == 0; });
+            if (none) continue;
             fmt::format_to(out, "| {} |", kFamilies[i]);
             for (const ThesisCosts* column : shown) cell(column->printed[i], column->measured[i].median());
             fmt::format_to(out, "\n");
