@@ -277,6 +277,18 @@ TEST_F(Permutation, BackwardEulerIsRefusedInWords) {
     EXPECT_THAT(made.error().message(), testing::HasSubstr("implicitEuler"));
 }
 
+TEST_F(Permutation, WhatTheCpuAloneHasIsRefusedInWords) {
+    SimulationSettings s = springSettings();
+    s.windShelter = 0.5f;
+    EXPECT_THAT(kernelError(s), testing::HasSubstr("windShelter"));
+    s = springSettings();
+    s.collisionSegments = true;
+    EXPECT_THAT(kernelError(s), testing::HasSubstr("collisionSegments"));
+    // Rods have no such segments, and do not fall back for what they ignore.
+    s.strandModel = runtime::StrandModel::rods;
+    EXPECT_EQ(kernelError(s), "");
+}
+
 /// Structs are where shader and C++ think they are.
 TEST_F(Permutation, ConstantsArriveWhereTheyAreRead) {
     std::array<float, sizeof(shaders::SimulationConstants) / 4> numbers{};
