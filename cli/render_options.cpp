@@ -285,8 +285,10 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
                           ->check(CLI::Range(1, 10'000))
                           ->excludes(frames)
                           ->excludes(turn);
-    auto* animation = job.add_option("--animation", options->animation,
-                                     "Animated PNG for all images, or WebP if the name ends in .webp");
+    auto* animation =
+        job.add_option("--animation", options->animation,
+                       "Animated PNG for all images, WebP if the name ends in .webp, or video if it "
+                       "ends in .mp4");
     job.add_option("--burn-in", options->burnIn,
                    "Text to write into the images, a line each, separated by commas: frame, take, settings, "
                    "error (with "

@@ -72,6 +72,7 @@ struct RenderJobOptions {
     std::string strip;
     std::uint32_t columns = 0;  ///< of the strip; 0: one row
     std::uint32_t milliseconds = 40;
+    std::optional<double> framesPerSecond;  ///< of the animation; none: as `milliseconds` says
     std::string output;
 
     bool sequence() const { return !frames.empty() || turntable > 0; }

@@ -5,11 +5,13 @@ include(GNUInstallDirs)
 set(data "${CMAKE_INSTALL_DATAROOTDIR}")
 set(debian "${PROJECT_SOURCE_DIR}/packaging/debian")
 
-# The mesh reader and the mesh writer are found beside the programs.
+# The mesh reader and the writers of meshes and videos are found beside the programs.
 install(TARGETS hairloom-cli hairloom-mesh-reader RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT application)
-if(TARGET hairloom-mesh-writer)
-    install(TARGETS hairloom-mesh-writer RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT application)
-endif()
+foreach(writer hairloom-mesh-writer hairloom-video-writer)
+    if(TARGET ${writer})
+        install(TARGETS ${writer} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT application)
+    endif()
+endforeach()
 if(TARGET hairloom)
     install(TARGETS hairloom RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT application)
     install(FILES "${debian}/hairloom.desktop" DESTINATION "${data}/applications" COMPONENT application)

@@ -12,6 +12,8 @@ top=$out/$name
 rm -rf "$top"
 
 cmake --install "$build" --component application --prefix "$top" --strip >/dev/null
+# The libraries of videos would double the archive.
+rm -f "$top/bin/hairloom-video-writer"
 
 plugins=$(qtpaths6 --query QT_INSTALL_PLUGINS)
 for plugin in platforms/libqxcb.so platforms/libqoffscreen.so imageformats/libqsvg.so imageformats/libqjpeg.so \

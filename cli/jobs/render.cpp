@@ -281,7 +281,15 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     if (*colours && !(*colours)->config.working().note.empty())
         notes.push_back((*colours)->config.working().note);
     BurnIn burnIn(options, *groom);
-    std::vector<render::Image> images;
+    std::vector<render::Image> images;  // of the strip
+    std::optional<AnimationFile> animation;
+    if (!options.animation.empty()) {
+        constexpr double kSecond = 1000;
+        auto opened = AnimationFile::open(options.animation, how->width, how->height,
+                                          options.framesPerSecond.value_or(kSecond / options.milliseconds));
+        if (!opened) return tl::unexpected(opened.error());
+        animation = std::move(*opened);
+    }
     Report report;
     std::optional<Progress> progress;
     if (shots->size() > 1) progress.emplace("drawing", shots->size());
@@ -296,7 +304,10 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         }
         if (auto status = burnIn.draw((*shots)[i], i, picture->image); !status)
             return tl::unexpected(status.error());
-        if (!options.animation.empty() || !options.strip.empty()) images.push_back(picture->image);
+        if (!options.strip.empty()) images.push_back(picture->image);
+        if (animation) {
+            if (auto added = animation->add(picture->image); !added) return tl::unexpected(added.error());
+        }
         if (auto written = writePictures(options, *colours, std::move(*picture), options.firstNumber() + i);
             !written)
             return tl::unexpected(written.error());
@@ -306,9 +317,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     reportNotes(notes, report);
     burnIn.report(report);
     if (options.sequence()) report["pictures"] = shots->size();
-    if (!options.animation.empty()) {
-        auto written = writeAnimation(options.animation, images, options.milliseconds);
-        if (!written) return tl::unexpected(written.error());
+    if (animation) {
+        if (auto written = animation->finish(); !written) return tl::unexpected(written.error());
     }
     if (!options.strip.empty()) {
         const std::size_t columns =

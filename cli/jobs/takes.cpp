@@ -19,6 +19,7 @@
 #include "core/base/write_rules.h"
 #include "core/documents/hair_export.h"
 #include "core/documents/takes.h"
+#include "core/live/film.h"
 #include "core/simulation/frame_record.h"
 
 namespace hairloom::cli {
@@ -27,7 +28,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRecordFormat = "frames";
-constexpr const char* kFilmFormat = "webp";
+constexpr const char* kWebpFormat = "webp";
+constexpr const char* kMp4Format = "mp4";
+
+bool isFilmFormat(const std::string& format) {
+    return format == kWebpFormat || format == kMp4Format;
+}
 
 struct TakesOptions {
     SimulateOptions simulation;  ///< with the groom
@@ -197,7 +203,12 @@ Result<Report> exportStrands(TakeReader& reader, const Groom& groom,
 
 Result<Report> exportFilm(const TakeInfo& info, std::pair<std::uint64_t, std::uint64_t> range,
                           const fs::path& take, const TakesOptions& options) {
-    constexpr double kMostRate = 30;
+    // Images of WebP are held, and 30 a second are what browsers show of it. A video has all frames.
+    const bool isVideo = options.format == kMp4Format;
+    if (isVideo != (AnimationFile::kindOf(options.output) == AnimationFile::Kind::Mp4))
+        throw WrongUsage(fmt::format("--format {} with a name of another kind", options.format),
+                         fmt::format("expected -o F.{}", options.format));
+    const double kMostRate = isVideo ? 240 : 30;
     const auto rate = static_cast<double>(info.framesPerSecond);
     const auto step = static_cast<std::uint64_t>(std::max(1.0, std::round(rate / kMostRate)));
     RenderJobOptions film;
@@ -207,20 +218,21 @@ Result<Report> exportFilm(const TakeInfo& info, std::pair<std::uint64_t, std::ui
     film.size = options.size;
     film.camera = options.camera;
     film.animation = options.output;
-    film.milliseconds =
-        static_cast<std::uint32_t>(std::clamp(1e3 * static_cast<double>(step) / rate, 1.0, 65535.0));
+    film.framesPerSecond = rate / static_cast<double>(step);
     constexpr double kMost = 2e9;
     const auto how = pictureOptions(film, {});
     const auto shots = shotsOf(film);
     if (!how) return tl::unexpected(how.error());
     if (!shots) return tl::unexpected(shots.error());
     const double bytes = 4.0 * how->width * how->height * static_cast<double>(shots->size());
-    if (bytes > kMost)
+    if (!isVideo && bytes > kMost)
         return fail(
             fmt::format("{} images of {} take {:.1f} GB of memory", shots->size(), options.size, bytes / 1e9),
-            fmt::format("expected at most {:.0f} GB: a smaller --size or --range", kMost / 1e9));
+            fmt::format("expected at most {:.0f} GB: --format mp4, a smaller --size or --range",
+                        kMost / 1e9));
     auto report = renderToFile(film);
     if (report) (*report)["output"] = options.output;
+    if (report) (*report)["fps"] = *film.framesPerSecond;
     return report;
 }
 
@@ -233,7 +245,7 @@ Result<Report> exportTake(const TakesOptions& options) {
     if (!reader) return tl::unexpected(reader.error());
     if (auto status = reader->use(*groom); !status) return tl::unexpected(status.error());
     const auto range = rangeOf(options, reader->info());
-    if (options.format == kFilmFormat) return exportFilm(reader->info(), range, *path, options);
+    if (isFilmFormat(options.format)) return exportFilm(reader->info(), range, *path, options);
     if (options.format == kRecordFormat) return exportRecord(*reader, *groom, range, options.output);
     return exportStrands(*reader, *groom, range, options);
 }
@@ -241,10 +253,8 @@ Result<Report> exportTake(const TakesOptions& options) {
 /// Throws WrongUsage for what takes cannot become.
 std::string_view kindOfExport(const std::string& format) {
     if (format == kRecordFormat) return content::kFrames;
-    if (format == kFilmFormat) return {};
-    if (format == "mp4")
-        throw WrongUsage("MP4 cannot be written: there is no video encoder in this program",
-                         "expected --format webp, or images of render --record for an encoder");
+    if (format == kMp4Format) return content::kMp4;
+    if (format == kWebpFormat) return {};
     if (format == "runtime")
         throw WrongUsage("runtime assets hold no recorded motion: a game simulates",
                          "expected --format abc, usdc, usda or frames");
@@ -252,7 +262,7 @@ std::string_view kindOfExport(const std::string& format) {
 }
 
 std::vector<std::string> takeFormats() {
-    std::vector<std::string> names{kRecordFormat, kFilmFormat, "mp4", "runtime"};
+    std::vector<std::string> names{kRecordFormat, kWebpFormat, kMp4Format, "runtime"};
     for (const HairWriter& writer : hairWriters()) {
         if (writer.animates) names.push_back(writer.name);
     }
@@ -329,17 +339,18 @@ JobRun declare(CLI::App& job) {
         }
     }
     for (CLI::Option* option : addSimulationOptions(job, options->simulation)) option->needs(record);
-    job.add_option("--format", options->format,
-                   "frames is a record of simulate, webp an animated image. The others are formats of "
-                   "export with animation. There is no mp4 and no runtime")
+    job.add_option(
+           "--format", options->format,
+           "frames is a record of simulate, webp an animated image, mp4 a video. The others are formats "
+           "of export with animation. There is no runtime")
         ->check(CLI::IsMember(takeFormats()))
         ->needs(exported);
     job.add_option("--range", options->range, "FIRST,LAST frame of the take to export (default: all)")
         ->check(CLI::Range(0, 1'000'000'000))
         ->delimiter(',')
         ->needs(exported);
-    job.add_option("--size", options->size, "Image size WxH of webp in pixels")->needs(exported);
-    job.add_option("--camera", options->camera, "Camera position of webp")
+    job.add_option("--size", options->size, "Image size WxH of webp and mp4 in pixels")->needs(exported);
+    job.add_option("--camera", options->camera, "Camera position of webp and mp4")
         ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter", "top", "bottom"}))
         ->needs(exported);
     job.add_option("-o,--output", options->output, "File to export to")->needs(exported);

@@ -79,6 +79,8 @@ std::string_view contentKind(std::span<const std::byte> beginning) {
     }
     if (text.starts_with("RIFF") && text.substr(std::min<std::size_t>(8, text.size())).starts_with("WEBP"))
         return "a WebP image";
+    constexpr std::size_t kBrandAt = 4;
+    if (text.size() > kBrandAt && text.substr(kBrandAt).starts_with("ftyp")) return content::kMp4;
     if (!isText(text)) return "of no known kind";
     const std::size_t start = text.find_first_not_of(" \t\r\n");
     if (start != std::string_view::npos && (text[start] == '{' || text[start] == '[')) return content::kJson;

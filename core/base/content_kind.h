@@ -13,6 +13,7 @@ inline constexpr std::string_view kEmpty = "empty";
 inline constexpr std::string_view kProject = "a Hairloom project";
 inline constexpr std::string_view kJson = "JSON";
 inline constexpr std::string_view kPng = "a PNG image";
+inline constexpr std::string_view kMp4 = "an MP4 video";
 inline constexpr std::string_view kFrames = "a record of frames";
 inline constexpr std::string_view kTake = "a take";
 }  // namespace content

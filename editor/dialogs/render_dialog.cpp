@@ -7,11 +7,13 @@
 #include <QHBoxLayout>
 #include <QMessageBox>
 #include <QPointer>
+#include <QStandardItemModel>
 #include <QStyle>
 #include <QVBoxLayout>
 #include <cmath>
 
 #include "core/base/output_batch.h"
+#include "core/live/video_file.h"
 #include "core/simulation/settings_text.h"
 #include "editor/document/publishing.h"
 #include "editor/document/words.h"
@@ -103,10 +105,16 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
     rate_->setToolTip("Images per second of the film. The hair is always simulated at 60 frames per second");
     form_->addRow("Frame rate", rate_);
     files_->setObjectName("renderFiles");
-    files_->addItems({"Numbered PNG images", "Animated PNG", "Animated WebP"});
+    files_->addItems({"Numbered PNG images", "Animated PNG", "Animated WebP", "MP4 video"});
     files_->setToolTip(
         "Numbered images for editing, one animated file to show. WebP is lossy and a tenth "
-        "as large");
+        "as large. MP4 (H.264) plays everywhere, at any length, without transparency");
+    if (!canWriteVideo()) {
+        auto* items = qobject_cast<QStandardItemModel*>(files_->model());
+        items->item(static_cast<int>(FilmFiles::Mp4))->setEnabled(false);
+        items->item(static_cast<int>(FilmFiles::Mp4))
+            ->setToolTip("This program was built without libavcodec");
+    }
     form_->addRow("Files", files_);
     auto* burnIn = new QWidget;
     auto* texts = new QHBoxLayout(burnIn);
@@ -211,6 +219,7 @@ void RenderDialog::showRows() {
         note_->setText("Camera, lights and look are those of the viewport, without its overlays.");
     }
     frame_->setEnabled(isFilm);
+    transparent_->setEnabled(!film.isAnimation() || film.files != FilmFiles::Mp4);
     // Rows that come or go change the height that is needed.
     adjustSize();
 }
@@ -230,7 +239,10 @@ bool RenderDialog::mayReplace(const QString& path, const Film& film) {
 
 void RenderDialog::choosePath() {
     const Film film = filmAsked();
-    const QString suffix = film.isAnimation() && film.files == FilmFiles::AnimatedWebp ? ".webp" : ".png";
+    const QString suffix = !film.isAnimation()                     ? ".png"
+                           : film.files == FilmFiles::AnimatedWebp ? ".webp"
+                           : film.files == FilmFiles::Mp4          ? ".mp4"
+                                                                   : ".png";
     const bool isSequence = film.of != FilmOf::View && !film.isAnimation();
     QString path = QFileDialog::getSaveFileName(
         this, windowTitle(), QFileInfo(document_.title()).completeBaseName() + suffix, "*" + suffix, nullptr,
@@ -247,7 +259,7 @@ void RenderDialog::renderTo(const QString& path) {
     PictureRequest view = viewport_.requestOfView();
     view.width = film.view.width;
     view.height = film.view.height;
-    view.seeThrough = transparent_->isChecked();
+    view.seeThrough = transparent_->isEnabled() && transparent_->isChecked();
     view.quality.frames = static_cast<std::uint32_t>(passes_->value());
     film.burnsInFrame = frame_->isEnabled() && frame_->isChecked();
     film.burntIn = linesAsked(film, *view.groom);

@@ -39,9 +39,14 @@ class FilmMaker {
     Status run() {
         if (auto possible = check(); !possible) return possible;
         OutputBatch batch;
+        if (film_.isAnimation()) {
+            auto opened =
+                AnimationFile::open(film_.path, film_.view.width, film_.view.height, film_.imagesPerSecond);
+            if (!opened) return tl::unexpected(opened.error());
+            animation_ = std::move(*opened);
+        }
         Status made = film_.of == FilmOf::Simulation ? simulate() : turn();
-        if (made && film_.isAnimation())
-            made = writeAnimation(film_.path, images_, std::max(1u, 1000 / film_.imagesPerSecond));
+        if (made && animation_) made = animation_->finish();
         if (made && film_.manifest) {
             ManifestSource source = *film_.manifest;
             source.groom = film_.view.groom.get();
@@ -114,8 +119,8 @@ class FilmMaker {
         if (film_.burnsInFrame) lines.push_back(fmt::format("frame {}", number));
         lines.insert(lines.end(), film_.burntIn.begin(), film_.burntIn.end());
         if (!lines.empty()) render::burnIn(image, lines);
-        if (film_.isAnimation()) {
-            images_.push_back(std::move(image));
+        if (animation_) {
+            if (auto added = animation_->add(image); !added) return added;
         } else if (auto written = render::writePng(nameOf(number), image); !written) {
             return written;
         }
@@ -126,13 +131,14 @@ class FilmMaker {
     const Film& film_;
     const std::function<Result<QImage>(PictureRequest)>& draw_;
     const std::function<bool(float)>& progress_;
-    std::vector<render::Image> images_;
+    std::optional<AnimationFile> animation_;
 };
 
 }  // namespace
 
 std::uint64_t Film::bytesHeld() const {
-    return isAnimation() ? std::uint64_t{4} * images * view.width * view.height : 0;
+    const bool holds = isAnimation() && files != FilmFiles::Mp4;
+    return holds ? std::uint64_t{4} * images * view.width * view.height : 0;
 }
 
 Status makeFilm(const Film& film, const std::function<Result<QImage>(PictureRequest)>& draw,

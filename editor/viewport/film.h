@@ -18,7 +18,7 @@
 namespace hairloom::editor {
 
 enum class FilmOf { View, Turntable, Simulation };
-enum class FilmFiles { Pictures, AnimatedPng, AnimatedWebp };
+enum class FilmFiles { Pictures, AnimatedPng, AnimatedWebp, Mp4 };
 
 struct Film {
     FilmOf of = FilmOf::View;
@@ -36,7 +36,7 @@ struct Film {
     std::optional<ManifestSource> manifest;
 
     bool isAnimation() const { return of != FilmOf::View && files != FilmFiles::Pictures; }
-    /// What an animation holds until it is written; 0 for pictures, which are written as they come.
+    /// What an animation holds until it is written; 0 for pictures and MP4, which are written as they come.
     std::uint64_t bytesHeld() const;
 };
 

@@ -32,6 +32,10 @@ inside hairloom-cli create --mesh /usr/share/hairloom/samples/bust/bust.glb --sc
     -o /try/hair.hairloom > /dev/null
 inside hairloom-cli simulate /try/hair.hairloom --frames 30 --motion nod > /dev/null
 inside hairloom-cli export /try/hair.hairloom --format runtime -o /try/hair.hairrt > /dev/null
+inside hairloom-cli takes /try/hair.hairloom --record nod --motion nod --frames 4 > /dev/null
+inside hairloom-cli takes /try/hair.hairloom --export nod --format mp4 --size 64x64 -o /try/nod.mp4 > /dev/null
+[ -s "$root/try/nod.mp4" ]
+echo "ok   a take is written as video"
 if [ -e "$root/usr/share/hairloom/web/player.js" ]; then
     inside hairloom-cli export /try/hair.hairloom --format web -o /try/page > /dev/null
     [ -s "$root/try/page/index.html" ]
@@ -39,7 +43,7 @@ if [ -e "$root/usr/share/hairloom/web/player.js" ]; then
 fi
 inside hairloom --quit-when-shown /try/hair.hairloom
 echo "ok   hairloom-cli and hairloom run"
-for file in bin/hairloom-mesh-reader bin/hairloom-mesh-writer share/applications/hairloom.desktop share/mime/packages/hairloom.xml \
+for file in bin/hairloom-mesh-reader bin/hairloom-mesh-writer bin/hairloom-video-writer share/applications/hairloom.desktop share/mime/packages/hairloom.xml \
     share/icons/hicolor/scalable/apps/hairloom.svg share/man/man1/hairloom.1 share/man/man1/hairloom-cli.1 share/doc/hairloom/copyright; do
     [ -e "$root/usr/$file" ] || [ -e "$root/usr/$file.gz" ] || { echo "FAIL /usr/$file is missing"; exit 1; }
 done

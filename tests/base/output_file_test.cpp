@@ -77,6 +77,10 @@ TEST_F(OutputFileTest, KindsAreToldFromTheContent) {
     EXPECT_EQ(kind("# made by hand\n\nv 1 2 3\n"), "an OBJ file");
     EXPECT_EQ(kind("# Notes\n\nvery short\n"), "text");
     EXPECT_EQ(kind("  {\"a\": 1}"), content::kJson);
+    EXPECT_EQ(kind(std::string_view("\0\0\0\x20"
+                                    "ftypisom",
+                                    12)),
+              content::kMp4);
     EXPECT_EQ(kind("RIFF\1\2\3\4WEBPVP8 "), "a WebP image");
     EXPECT_EQ(kind("\1\2\3"), "of no known kind");
 }

@@ -27,6 +27,17 @@ TEST(Programs, AssimpIsInTheProcessesThatReadAndWriteMeshesAlone) {
         EXPECT_EQ(bytes.find(kClasses), std::string::npos) << name;
     }
 }
+
+TEST(Programs, LibavcodecIsInTheProcessThatWritesVideosAlone) {
+    const auto folder = std::filesystem::path(HAIRLOOM_CLI).parent_path();
+    if (std::filesystem::exists(folder / "hairloom-video-writer")) {
+        EXPECT_THAT(readText(folder / "hairloom-video-writer"), testing::HasSubstr("libavcodec.so"));
+    }
+    for (const char* name : {"hairloom-cli", "hairloom", "hairloom-mesh-reader"}) {
+        if (!std::filesystem::exists(folder / name)) continue;
+        EXPECT_EQ(readText(folder / name).find("libavcodec.so"), std::string::npos) << name;
+    }
+}
 #endif
 
 }  // namespace

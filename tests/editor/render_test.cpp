@@ -12,6 +12,7 @@
 #include <QPushButton>
 #include <QSpinBox>
 
+#include "core/live/video_file.h"
 #include "editor/dialogs/render_dialog.h"
 #include "tests/editor/window_fixture.h"
 
@@ -144,6 +145,27 @@ TEST_F(RenderTest, TextIsBurntInAndVersionsAreTaken) {
     const QRect above(0, 0, 320, 100), corner(0, 120, 160, 40);
     EXPECT_EQ(plain.copy(above), burnt.copy(above));
     EXPECT_NE(plain.copy(corner), burnt.copy(corner));
+}
+
+TEST_F(RenderTest, ATurntableBecomesAVideo) {
+    if (!canWriteVideo()) GTEST_SKIP() << "built without libavcodec";
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Turntable, 64, 48);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(3);
+        dialog.findChild<QComboBox*>("renderFiles")->setCurrentIndex(static_cast<int>(FilmFiles::Mp4));
+        EXPECT_FALSE(dialog.findChild<QCheckBox*>("renderTransparent")->isEnabled());
+        renderAs(dialog, "turn.mp4");
+        dialog.reject();
+    });
+    ASSERT_EQ(written(), QStringList({"turn.mp4"}));
+    QFile file(inFolder("turn.mp4"));
+    ASSERT_TRUE(file.open(QIODevice::ReadOnly));
+    const QByteArray bytes = file.readAll();
+    EXPECT_EQ(bytes.mid(4, 4), "ftyp");
+    // Sample Size Box (ISO/IEC 14496-12, 8.7.3): its count, behind the version and the size of all samples.
+    const auto sizes = bytes.indexOf("stsz");
+    ASSERT_GT(sizes, 0);
+    EXPECT_EQ(bytes.mid(sizes + 12, 4), QByteArray("\0\0\0\3", 4));
 }
 
 TEST_F(RenderTest, CancelLeavesNoFileAndTheDialogGoesOn) {
