@@ -389,6 +389,27 @@ TEST_F(RuntimeAsset, FilesOfTheFirstVersionAreStillRead) {
     ASSERT_TRUE(hairs.hairs) << hairs.error;
 }
 
+/// Hairs of files from before version 1.2 may cross borders of layers, as they did.
+TEST_F(RuntimeAsset, HairsOfOlderFilesAreDrawnAsBefore) {
+    Groom groom = wholeGroom();
+    const auto weightsOf = [](std::span<const std::byte> bytes) {
+        const auto opened = Asset::open(bytes);
+        EXPECT_TRUE(opened.asset);
+        return opened.asset->drawnHairs(opened.asset->strandsAtRest()).weights;
+    };
+    const std::vector<runtime::Float3> ofOneLayer = weightsOf(written(groom));
+    groom.layers.resize(2);
+    groom.layers[1].name = "Beard";
+    std::vector<std::uint32_t> layers(groom.strandCount());
+    for (std::uint32_t strand = 0; strand < layers.size(); ++strand) layers[strand] = strand % 2;
+    groom.strandAttributes.set(attribute::kLayer, layers);
+    AssetBytes copy(written(groom));
+    EXPECT_NE(weightsOf(copy.span()), ofOneLayer);
+    copy.header().minor = 1;
+    copy.seal();
+    EXPECT_EQ(weightsOf(copy.span()), ofOneLayer);
+}
+
 /// The same of version 1.1, which brought the skin that hair collides with.
 TEST_F(RuntimeAsset, FilesOfTheFirstVersionWithSkinAreStillRead) {
     const auto bytes = readFile(sourceDir() / "tests/exporters/files/version_1_1.hairrt").value();
