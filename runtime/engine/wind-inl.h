@@ -76,8 +76,9 @@ HWY_INLINE V3 airPastSphere(V3 air, V3 to, V radius, V3 along) {
 HWY_INLINE V3 shelteredWindAt(const Wind& wind, const float* phases, V3 position_ws,
                               const SubstepContext& context, float steps) {
     const V3 open = windAt(wind, phases, position_ws);
+    if (HWY_LIKELY(!(context.windShelter > 0.0f))) return open;
     const float speed = length(wind.mean);
-    if (!(context.windShelter > 0.0f) || !(speed > 0.0f)) return open;
+    if (!(speed > 0.0f)) return open;
     const V3 along = all3(wind.mean * (1.0f / speed));
     V3 air = open;
     for (const MovingSphere& sphere : context.spheres) {
