@@ -2,6 +2,7 @@
 #include "editor/simulation/frame_cache.h"
 
 #include <cmath>
+#include <iterator>
 
 namespace hairloom::editor {
 namespace {
@@ -30,7 +31,32 @@ std::int64_t FrameCache::frameAt(float lineTime) const {
 void FrameCache::remove(Frames::iterator frame) {
     bytes_ -= bytesOf(*frame->second.pose);
     byAge_.erase(frame->second.age);
+    takeFromRuns(frame->first);
     frames_.erase(frame);
+}
+
+void FrameCache::addToRuns(std::int64_t frame) {
+    std::int64_t last = frame;
+    if (const auto next = runs_.find(frame + 1); next != runs_.end()) {
+        last = next->second;
+        runs_.erase(next);
+    }
+    if (auto before = runs_.lower_bound(frame); before != runs_.begin()) {
+        --before;
+        if (before->second + 1 == frame) {
+            before->second = last;
+            return;
+        }
+    }
+    runs_[frame] = last;
+}
+
+void FrameCache::takeFromRuns(std::int64_t frame) {
+    const auto run = std::prev(runs_.upper_bound(frame));
+    const std::int64_t first = run->first, last = run->second;
+    runs_.erase(run);
+    if (first < frame) runs_[first] = frame - 1;
+    if (frame < last) runs_[frame + 1] = last;
 }
 
 void FrameCache::add(double seconds, std::shared_ptr<const HairPose> pose) {
@@ -43,6 +69,7 @@ void FrameCache::add(double seconds, std::shared_ptr<const HairPose> pose) {
     bytes_ += more;
     frames_[frame] = {std::move(pose), ++added_};
     byAge_[added_] = frame;
+    addToRuns(frame);
 }
 
 std::shared_ptr<const HairPose> FrameCache::at(std::int64_t frame) const {
@@ -53,14 +80,7 @@ std::shared_ptr<const HairPose> FrameCache::at(std::int64_t frame) const {
 
 std::vector<std::pair<std::int64_t, std::int64_t>> FrameCache::runs() const {
     const std::lock_guard lock(mutex_);
-    std::vector<std::pair<std::int64_t, std::int64_t>> runs;
-    for (const auto& [frame, kept] : frames_) {
-        if (!runs.empty() && runs.back().second + 1 == frame)
-            runs.back().second = frame;
-        else
-            runs.emplace_back(frame, frame);
-    }
-    return runs;
+    return {runs_.begin(), runs_.end()};
 }
 
 }  // namespace hairloom::editor

@@ -28,7 +28,7 @@ class FrameCache {
     std::shared_ptr<const HairPose> at(std::int64_t frame) const;
     std::int64_t frameAt(float lineTime) const;
     float framesPerSecond() const { return range_.framesPerSecond; }
-    /// First and last frame of those that follow each other.
+    /// First and last frame of those that follow each other; kept up to date, since each paint asks.
     std::vector<std::pair<std::int64_t, std::int64_t>> runs() const;
 
   private:
@@ -38,11 +38,14 @@ class FrameCache {
     };
     using Frames = std::map<std::int64_t, Kept>;
     void remove(Frames::iterator frame);
+    void addToRuns(std::int64_t frame);
+    void takeFromRuns(std::int64_t frame);
 
     TimeLine range_;
     std::size_t mostBytes_;
     mutable std::mutex mutex_;
     Frames frames_;
+    std::map<std::int64_t, std::int64_t> runs_;  ///< last frame of each by its first
     std::map<std::uint64_t, std::int64_t> byAge_;
     std::size_t bytes_ = 0;
     std::uint64_t added_ = 0;

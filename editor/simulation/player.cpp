@@ -55,6 +55,7 @@ Player::~Player() {
 void Player::chooseMotion() {
     hasTimeLine_ = !timeLineOf(document_.groom()).isEmpty();
     motion_ = hasTimeLine_ ? QString(kTimeLine) : QString("none");
+    beforeLine_ = "none";
 }
 
 void Player::request(const std::function<void(WorkerRequests&)>& change) {
@@ -121,7 +122,8 @@ void Player::takeTimeLine() {
         const bool isShown = !playing_ && (frame_ || scrubbed_);
         return begin(kTimeLine, isShown ? std::optional(lineTime()) : std::nullopt);
     }
-    if (had && !hasTimeLine_ && motion_ == kTimeLine) return begin("none", playHead());
+    if (had && !hasTimeLine_ && motion_ == kTimeLine)
+        return begin(motions().contains(beforeLine_) ? beforeLine_ : QString("none"), playHead());
     if (motion_ != kTimeLine || !captured_) return;
     auto made = makeMotion(motion_);
     if (!made) {
@@ -200,6 +202,7 @@ Status Player::setMotion(const QString& name) {
 
 void Player::begin(const QString& motion, std::optional<float> playHead) {
     const bool play = playing_;
+    if (motion == kTimeLine && motion_ != kTimeLine) beforeLine_ = motion_;
     motion_ = motion;
     reset();
     if (play) this->play();

@@ -190,6 +190,7 @@ class Player : public QObject {
     QtDocument& document_;
     std::shared_ptr<const Actor> actor_;
     QString motion_ = "none";
+    QString beforeLine_ = "none";  ///< what played before the time line, which may be undone
     bool playing_ = false;
     double from_ = 0;           ///< seconds of the motion, where the next start begins
     bool hasTimeLine_ = false;  ///< the document's is not empty

@@ -68,13 +68,19 @@ void Player::stepForward() {
 
 std::shared_ptr<const HairPose> Player::posedAt(float lineTime) {
     const Groom& groom = document_.groom();
-    const auto motion = makeMotion(motion_);
+    const TimeLine& line = timeLineOf(groom);
+    // Outside of the range nothing plays, but its keys and clips are there to be seen.
+    const bool isOutside = motion_ == kTimeLine && (lineTime < line.start || lineTime > line.end);
+    TimeLine all = line;
+    all.start = 0;
+    all.loop = false;
+    const auto motion = isOutside ? makeTimeLineMotion(std::move(all), actor_, groom) : makeMotion(motion_);
     if (!motion) {
         Q_EMIT failed(errorText(motion.error()));
         return nullptr;
     }
     auto pose = std::make_shared<HairPose>();
-    pose->head = inWorld((*motion)->poseAt(std::max(0.0f, lineTime - timeLineOf(groom).start)));
+    pose->head = inWorld((*motion)->poseAt(isOutside ? lineTime : std::max(0.0f, lineTime - line.start)));
     moveBy(offset_, pose->head);
     pose->positions_ws = posedPositions(groom, pose->head);
     return pose;

@@ -261,6 +261,47 @@ TEST_F(TimeLinePanelTest, TheCacheLetsTheFirstFramesGo) {
     EXPECT_TRUE(cache.runs().empty());
 }
 
+TEST_F(TimeLinePanelTest, RunsAreOfTheFramesThatAreKept) {
+    TimeLine line;
+    line.framesPerSecond = 10;
+    line.loop = false;
+    line.end = 100;
+    const auto pose = std::make_shared<HairPose>();
+    pose->positions_ws.resize(10'000);
+    FrameCache cache(line, 205'000 * sizeof(Vec3f));
+    std::uint32_t state = 1;
+    for (int i = 0; i < 400; ++i) {
+        state = state * 1664525u + 1013904223u;
+        cache.add((state >> 16u) % 40 / 10.0, pose);
+        std::vector<std::pair<std::int64_t, std::int64_t>> runs;
+        for (std::int64_t f = 0; f < 40; ++f) {
+            if (!cache.at(f)) continue;
+            if (runs.empty() || runs.back().second + 1 != f) runs.emplace_back(f, f);
+            runs.back().second = f;
+        }
+        ASSERT_EQ(cache.runs(), runs) << i;
+    }
+}
+
+TEST_F(TimeLinePanelTest, OutsideOfTheRangeThePlayHeadShowsItsOwnTime) {
+    TimeLine line = windy();
+    line.start = 0.2f;
+    line.end = 0.4f;
+    line.loop = true;
+    keyHead(line, {0});
+    HeadKey turned;
+    turned.time = 0.8f;
+    turned.degrees = 80;
+    keyHead(line, turned);
+    set(line);
+    for (const float time : {0.1f, 0.3f, 0.6f, 0.8f}) {
+        player().scrub(time);
+        ASSERT_TRUE(player().pose());
+        const Eigen::AngleAxisf turn(player().pose()->head.head_ws.linear());
+        EXPECT_NEAR(degrees(turn.angle()), 100 * time, 0.01) << time;
+    }
+}
+
 TEST_F(TimeLinePanelTest, TheHeadIsKeyedAsTheHandHasMovedIt) {
     window->panel("time_line")->show();
     player().scrub(0.5f);

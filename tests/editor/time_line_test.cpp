@@ -72,6 +72,14 @@ TEST_F(TimeLineTest, PlaysAtItsRateToItsEndAndIsUndone) {
     EXPECT_EQ(timeLineOf(document().groom()), line());
     trigger("timeLine.clear");
     EXPECT_TRUE(timeLineOf(document().groom()).isEmpty());
+    // What played before the first key comes back with its undo.
+    ASSERT_TRUE(player().setMotion("nod"));
+    ASSERT_TRUE(window->openTimeLine(fileOf(line())));
+    EXPECT_EQ(player().motion(), "timeline");
+    trigger("edit.undo");
+    EXPECT_EQ(player().motion(), "nod");
+    trigger("edit.redo");
+    EXPECT_EQ(player().motion(), "timeline");
 }
 
 TEST_F(TimeLineTest, IsSavedAndOpenedAgainAndTakesKeyframeFiles) {
