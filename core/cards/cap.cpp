@@ -121,7 +121,9 @@ CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance) {
         for (const Vec3f& point : laid.strand(s)) held.push_back(frame.of(point));
     }
     if (held.empty()) return chart;
-    const float square = std::clamp(std::sqrt(8 * kHeadRadius * tolerance), kFinest, kCoarsest);
+    // A chord of length c leaves a ball of radius r by c² / 8r. Diagonals where three charts meet are longer.
+    constexpr float kSteep = 0.5f;
+    const float square = std::clamp(kSteep * std::sqrt(8 * kHeadRadius * tolerance), kFinest, kCoarsest);
     const Grid grid(held, square);
     const Vec2f low = grid.corner(0, 0), size = grid.size();
     chart.plane = planeOf(frame, low, size, held[0].z());

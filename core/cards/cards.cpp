@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kPadding = 4;  // texels around a picture
 constexpr std::uint32_t kLeastSide = 64;
+constexpr float kCapTexels = 1.5f;          // of the cap's textures beside those of cards
 constexpr std::uint32_t kHairStations = 9;  // of strands, while they are sorted into bundles
 
 Status check(const CardOptions& options) {
@@ -78,10 +79,11 @@ std::vector<Rect> rectsFor(const Cards& cards, float texel, std::uint32_t side) 
         const Strip& strip = cards.cards[painter].strip;
         sizes.push_back({texelsOf(meanWidth(strip), texel, 4), texelsOf(strip.length(), texel, 8)});
     }
-    for (const CapChart& chart : cards.cap) {
+    // Hairs on the cap lie side by side as cards have them, and are mostly hidden by these.
+    const float ofCap = kCapTexels * texel;
+    for (const CapChart& chart : cards.cap)
         sizes.push_back(
-            {texelsOf(meanWidth(chart.plane), texel, 4), texelsOf(chart.plane.length(), texel, 4)});
-    }
+            {texelsOf(meanWidth(chart.plane), ofCap, 4), texelsOf(chart.plane.length(), ofCap, 4)});
     return packed(sizes, side, kPadding);
 }
 

@@ -11,6 +11,10 @@ namespace hairloom::cards {
 namespace {
 
 constexpr float kSize = 0.25f;  // what a size e times as large counts beside coverage
+// What hair e times as dense counts: a sparse card that wears a dense texture is a flap where skin should be
+// seen, however small both coverages are.
+constexpr float kDensity = 0.4f;
+constexpr float kLeastCoverage = 0.02f;  // below it no eye tells densities apart
 constexpr int kRounds = 8;
 
 struct Medoids {
@@ -50,9 +54,14 @@ bool mend(const std::vector<Look>& looks, Medoids& medoids) {
 }  // namespace
 
 float Look::operator-(const Look& other) const {
-    float sum = 0;
-    for (std::size_t i = 0; i < coverage.size(); ++i) sum += std::abs(coverage[i] - other.coverage[i]);
-    return sum / static_cast<float>(coverage.size()) +
+    float sum = 0, own = 0, others = 0;
+    for (std::size_t i = 0; i < coverage.size(); ++i) {
+        sum += std::abs(coverage[i] - other.coverage[i]);
+        own += coverage[i], others += other.coverage[i];
+    }
+    const auto count = static_cast<float>(coverage.size());
+    const float denser = std::log((own / count + kLeastCoverage) / (others / count + kLeastCoverage));
+    return sum / count + kDensity * std::abs(denser) +
            kSize * (std::abs(std::log(width / other.width)) + std::abs(std::log(length / other.length)));
 }
 

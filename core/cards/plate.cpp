@@ -304,8 +304,8 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const Vec3f w(seen_[i].b0, seen_[i].b1, 1 - seen_[i].b0 - seen_[i].b1);
         const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
         const auto level = static_cast<std::size_t>(levels[seen_[i].triangle] + 0.5f);
-        const Texel texel = sample(cards.atlas, cards.atlas.rects[v[0]->texture], level,
-                                   place.x(), place.y());
+        const Texel texel =
+            sample(cards.atlas, cards.atlas.rects[v[0]->texture], level, place.x(), place.y());
         const Vec3f normal = mixed<Vec3f>(w, v[0]->normal_ws, v[1]->normal_ws, v[2]->normal_ws).normalized();
         const Vec3f strip = mixed<Vec3f>(w, v[0]->along_ws, v[1]->along_ws, v[2]->along_ws).normalized();
         const Vec3f along = (texel.flow.y() * strip + texel.flow.x() * normal.cross(strip)).normalized();

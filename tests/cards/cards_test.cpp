@@ -221,11 +221,11 @@ TEST(Cards, KeepTheirBudgets) {
     ASSERT_TRUE(made) << made.error().message();
     EXPECT_LE(made->cards.size(), 40u);
     EXPECT_EQ(made->painters.size(), 5u);
-    EXPECT_EQ(made->atlas.rects.size(), 5u);
+    EXPECT_EQ(made->atlas.rects.size(), 5u + made->cap.size());
     EXPECT_LE(made->atlas.side(), 256u);
     std::vector<std::size_t> rows(made->cards.size());
     for (const CardVertex& v : made->mesh.vertices) {
-        ++rows[v.card];
+        if (v.card != kOfCap) ++rows[v.card];
         EXPECT_TRUE(v.position_ws.allFinite());
         EXPECT_GE(v.uv.minCoeff(), 0);
         EXPECT_LE(v.uv.maxCoeff(), 1);
@@ -234,35 +234,8 @@ TEST(Cards, KeepTheirBudgets) {
     }
     for (const std::size_t count : rows) {
         EXPECT_GE(count, 4u) << "two segments' ends of two columns";
-        EXPECT_LE(count, 3u * kStations + 4u) << "and the quad over its roots";
+        EXPECT_LE(count, 3u * kStations);
     }
-}
-
-TEST(Cards, CoverTheSkinThatTheirRootsStandOn) {
-    const Hair hair = ballHair(1500);
-    const auto made = cardsOf(hair, {.cards = 40, .textures = 5});
-    ASSERT_TRUE(made) << made.error().message();
-    std::size_t covered = 0, roots = 0;
-    for (const Card& card : made->cards) {
-        const RootPatch& patch = card.roots;
-        EXPECT_NEAR((patch.along.cross(patch.across) - patch.normal).norm(), 0, 1e-5f);
-        for (const std::uint32_t s : card.strands) {
-            const Vec3f away = hair.strand(s)[0] - patch.middle;
-            const bool isWithin = std::abs(away.dot(patch.along)) <= patch.halfLength &&
-                                  std::abs(away.dot(patch.across)) <= patch.halfWidth;
-            ++roots, covered += isWithin ? 1 : 0;
-            if (!isWithin) continue;
-            EXPECT_LT(away.dot(patch.normal), 0.01f) << "skin bulges through by no more";
-        }
-    }
-    EXPECT_GT(covered, 8 * roots / 10);
-    std::size_t quads = 0;
-    for (const CardVertex& v : made->mesh.vertices) {
-        if (v.hangs == v.place.y()) continue;
-        ++quads;
-        EXPECT_EQ(v.hangs, 0) << "it stays with the head";
-    }
-    EXPECT_EQ(quads, 4 * made->cards.size());
 }
 
 TEST(Cards, RefuseWhatCannotBe) {

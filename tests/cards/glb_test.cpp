@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -312,12 +313,15 @@ TEST(Glb, RootsMoveWithTheirSkin) {
     const auto posed = skinned(glb, 0, now);
     std::size_t roots = 0;
     float farthest = 0;
+    std::vector<std::uint32_t> all(chain->roots_ws.size());
+    std::iota(all.begin(), all.end(), 0u);
     for (std::size_t v = 0; v < posed.size(); ++v) {
         const CardVertex& vertex = cards.mesh.vertices[v];
         if (vertex.hangs > 0) continue;
         float least = 1;
         Character::Root nearest;
-        for (const std::uint32_t strand : cards.cards[vertex.card].strands) {
+        const auto& strands = vertex.card == kOfCap ? all : cards.cards[vertex.card].strands;
+        for (const std::uint32_t strand : strands) {
             const float distance = (chain->roots_ws[strand] - vertex.position_ws).norm();
             if (distance < least) least = distance, nearest = character.roots[strand];
         }
