@@ -15,6 +15,7 @@ constexpr float kLength = 0.012f;                     // metres of a hair that t
 constexpr float kClear = 0.0003f;                     // metres above the skin, beside the tolerance
 constexpr float kHeadRadius = 0.09f;                  // metres: how much a square of the grid bulges
 constexpr float kFinest = 0.004f, kCoarsest = 0.03f;  // metres, squares of the grid
+constexpr float kOverlap = 0.15f;     // of a square, that charts go beyond the hairs that they hold
 constexpr float kShownSlope = 0.35f;  // cosine: skin that turns away further is another chart's
 
 /// The axis that a normal is nearest to: +x, -x, +y and so on.
@@ -48,15 +49,16 @@ class Grid {
     Grid(const std::vector<Vec3f>& held, float square) : square_(square) {
         Vec2f low = held[0].head<2>(), high = low;
         for (const Vec3f& p : held) low = low.cwiseMin(p.head<2>()), high = high.cwiseMax(p.head<2>());
-        low_ = low;
+        // Charts overlap, so that no seam of skin shows where the next one begins.
+        const float margin = kOverlap * square;
+        low_ = low = low - Vec2f::Constant(margin);
+        high += Vec2f::Constant(margin);
         columns_ = static_cast<std::uint32_t>((high - low).x() / square) + 1;
         rows_ = static_cast<std::uint32_t>((high - low).y() / square) + 1;
         full_.assign(std::size_t{columns_} * rows_, false);
         for (const Vec3f& p : held) {
-            const Vec2f at = (p.head<2>() - low_) / square_;
-            const auto x = std::min(static_cast<std::uint32_t>(at.x()), columns_ - 1);
-            const auto y = std::min(static_cast<std::uint32_t>(at.y()), rows_ - 1);
-            full_[std::size_t{y} * columns_ + x] = true;
+            for (const float x : {-margin, margin})
+                for (const float y : {-margin, margin}) fill(p.head<2>() + Vec2f(x, y));
         }
     }
     std::uint32_t columns() const { return columns_; }
@@ -68,6 +70,13 @@ class Grid {
     Vec2f size() const { return corner(columns_, rows_) - low_; }
 
   private:
+    void fill(const Vec2f& place) {
+        const Vec2f at = ((place - low_) / square_).cwiseMax(0.0f);
+        const auto x = std::min(static_cast<std::uint32_t>(at.x()), columns_ - 1);
+        const auto y = std::min(static_cast<std::uint32_t>(at.y()), rows_ - 1);
+        full_[std::size_t{y} * columns_ + x] = true;
+    }
+
     float square_;
     Vec2f low_;
     std::uint32_t columns_, rows_;
