@@ -60,9 +60,16 @@ std::vector<json> steps(JsonReader& axis) {
         return {};
     }
     // As people write them: 0.3, not the 0.30000000000000004 of a sum. 13 digits of the largest number are
-    // kept.
+    // kept, at least 3 of them the step's. Sums of whole numbers are exact.
     const double largest = std::max({std::abs(from), std::abs(to), std::abs(step)});
-    const int decimals = std::clamp(13 - static_cast<int>(std::ceil(std::log10(largest))), 0, 300);
+    const bool isWhole = from == std::floor(from) && step == std::floor(step);
+    if (!isWhole && std::abs(step) < largest * 1e-10) {
+        axis.complain("step", fmt::format("is {}, too small beside {}", step, largest),
+                      fmt::format("expected at least {}", largest * 1e-10));
+        return {};
+    }
+    const int decimals =
+        isWhole ? 0 : std::clamp(13 - static_cast<int>(std::ceil(std::log10(largest))), 0, 300);
     std::vector<json> values;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(count); ++i) {
         const std::string text = fmt::format("{:.{}f}", from + step * static_cast<double>(i), decimals);

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <map>
 #include <optional>
+#include <random>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "cli/certificate_report.h"
@@ -231,6 +234,21 @@ std::string pageOf(const SweepFolder& folder, const Parts& parts, const SweepOut
     return page.html();
 }
 
+/// Merging is for one at a time: another that has seen fewer parts done would take away what this one joins.
+/// Waits up to a minute for it.
+Result<OutputFile> turnToMerge(const SweepFolder& folder) {
+    const fs::path state = folder.path() / "state";
+    constexpr int kTries = 600;
+    for (int i = 0;; ++i) {
+        auto turn = OutputFile::open(state / "merge", {}, Replacing::Anything);
+        if (turn || i == kTries) return turn;
+        // A folder that takes no file at all is waited for in vain.
+        const fs::path other = state / fmt::format("merge-{:08x}", std::random_device{}());
+        if (i == 0 && !OutputFile::open(other, {}, Replacing::Anything)) return turn;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+}
+
 }  // namespace
 
 SweepOutcome statusOf(const SweepFolder& folder) {
@@ -238,8 +256,7 @@ SweepOutcome statusOf(const SweepFolder& folder) {
 }
 
 Result<SweepOutcome> mergeSweep(const SweepFolder& folder) {
-    // One at a time: another that has seen fewer parts done would take away what this one joins.
-    const auto turn = OutputFile::open(folder.path() / "state" / "merge", {}, Replacing::Anything);
+    const auto turn = turnToMerge(folder);
     if (!turn) return tl::unexpected(turn.error());
     const Parts parts = partsOf(folder);
     SweepOutcome outcome = outcomeOf(folder, parts);

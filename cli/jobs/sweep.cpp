@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -47,7 +48,7 @@ Report reportOf(const SweepFolder& folder, const SweepOutcome& outcome) {
 }
 
 std::string elsewhereText(std::size_t parts) {
-    return parts == 0 ? std::string() : fmt::format(", and another process does {} of these now", parts);
+    return parts == 0 ? std::string() : fmt::format(", of which another process does {} now", parts);
 }
 
 /// One that counts as done only where every part is. `elsewhere` are parts that another process does.
@@ -56,13 +57,16 @@ Result<Report> merged(const SweepFolder& folder, std::size_t elsewhere = 0) {
     if (!outcome) return tl::unexpected(outcome.error());
     const std::size_t open = outcome->parts - outcome->done;
     if (open == 0) return reportOf(folder, *outcome);
+    // What the other process has ended meanwhile is no longer open.
+    elsewhere = std::min(elsewhere, open - outcome->failed);
+    std::string failed;
+    if (outcome->failed > 0)
+        failed = fmt::format(", and {} of these failed: {}", outcome->failed, outcome->failures.front());
     return failIn((folder.path() / "report.html").string(), {},
-                  fmt::format("{} of {} parts are not done{}, and {} of these failed{}", open, outcome->parts,
-                              elsewhereText(elsewhere), outcome->failed,
-                              outcome->failures.empty() ? "" : ": " + outcome->failures.front()),
-                  elsewhere > 0 && outcome->failed == 0
-                      ? "wait for the other process, which joins the results"
-                      : "run the sweep again: it does what is missing");
+                  fmt::format("{} of {} parts are not done{}{}", open, outcome->parts,
+                              elsewhereText(elsewhere), failed),
+                  elsewhere == open ? "wait for the other process, which joins the results"
+                                    : "run the sweep again: it does what is missing");
 }
 
 Result<Report> runSome(const SweepFolder& folder, const std::vector<std::size_t>& parts,

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
+#include <optional>
+#include <thread>
 
 #include "core/base/output_file.h"
 #include "tests/cli/command.h"
@@ -228,13 +231,38 @@ TEST_F(Sweep, APartThatAnotherProcessDoesIsLeftToIt) {
     const Outcome outcome = run("sweep caches.json -o out --progress lines");
     EXPECT_EQ(outcome.exitCode, 1);
     EXPECT_THAT(outcome.errors, HasSubstr("0 failed, 1 done by another process"));
-    EXPECT_THAT(outcome.errors,
-                HasSubstr("1 of 2 parts are not done, and another process does 1 of these now, "
-                          "and 0 of these failed; wait for the other process"));
     EXPECT_THAT(
-        run("sweep caches.json -o out --parts 0").errors,
-        HasSubstr("1 of 1 parts are not done, and another process does 1 of these now; run them again"));
+        outcome.errors,
+        HasSubstr(
+            "1 of 2 parts are not done, of which another process does 1 now; wait for the other process"));
+    EXPECT_THAT(run("sweep caches.json -o out --parts 0").errors,
+                HasSubstr("1 of 1 parts are not done, of which another process does 1 now; run them again"));
     EXPECT_EQ(runJson("sweep caches.json -o out --status")["failed"], 0);
+}
+
+TEST_F(Sweep, JoiningWaitsForAnotherThatJoins) {
+    write("caches.json", caches());
+    runJson("sweep caches.json -o out --parts 0,1");
+    auto held = std::make_optional(OutputFile::open(folder / "out/state/merge", {}, Replacing::Anything));
+    ASSERT_TRUE(held->has_value());
+    std::thread other([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(700));
+        held.reset();
+    });
+    EXPECT_EQ(runJson("sweep caches.json -o out --merge")["done"], 2);
+    other.join();
+    EXPECT_TRUE(fs::exists(folder / "out/merged.json"));
+}
+
+TEST_F(Sweep, StepsAreKeptBesideLargeNumbers) {
+    json sweep = storms();
+    sweep["over"][1] = {{"name", "first"}, {"from", 4'000'000'000}, {"to", 4'000'000'002}};
+    sweep["arguments"]["storms"] = 1;
+    write("large.json", sweep);
+    const json report = runJson("sweep large.json -o out --slurm --write-only");
+    EXPECT_EQ(report["parts"], 6);
+    sweep["over"][1] = {{"name", "first"}, {"from", 1e9}, {"to", 1e9 + 1}, {"step", 0.01}};
+    EXPECT_THAT(errorOf(sweep), HasSubstr("/over/1/step is 0.01, too small beside 1000000001"));
 }
 
 TEST_F(Sweep, ListsOfPartsAreThoseOfQueues) {
