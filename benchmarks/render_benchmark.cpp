@@ -363,7 +363,7 @@ class CaseList {
 };
 
 /// What drawing takes when the geometry of hair is made once, as here and with stream-out (thesis, Section
-/// 6.6.1), and when each pass that draws hair makes it, from the passes of one case.
+/// 6.6.1), and when each pass that draws hair makes it: computed from the passes of one case.
 struct Geometry {
     std::string passes;
     double once = 0, each = 0;  ///< ms
@@ -499,7 +499,7 @@ std::string markdownOf(const RenderBench& bench, const std::string& command) {
     }
     fmt::format_to(out,
                    "\n## Geometry, made once or in each pass\n\n| case | passes that draw hair | made "
-                   "once, ms | made in each, ms | gain |\n|---|---|---|---|---|\n");
+                   "once, ms | made in each, ms (computed) | gain |\n|---|---|---|---|---|\n");
     for (const RenderCase& c : bench.cases) {
         for (const Geometry& row : geometryOf(c))
             fmt::format_to(out, "| {} | {} | {:.3g} | {:.3g} | {:.1f} % |\n", c.name, row.passes, row.once,

@@ -179,7 +179,15 @@ const SettingField* findKeyable(std::string_view name) {
     if (!name.starts_with(kSection)) return nullptr;
     const SettingField* const field = runtime::findField<SimulationSettings>(name.substr(kSection.size()));
     // These choose the engine, or have it count all of the hair anew.
-    constexpr std::array<std::string_view, 3> kChosenBefore{"strandModel", "hairHair", "hairHairCell"};
+    constexpr std::array<std::string_view, 9> kChosenBefore{"strandModel",
+                                                            "hairHair",
+                                                            "hairHairCell",
+                                                            "windShelter",
+                                                            "collisionSegments",
+                                                            "latticeNodes",
+                                                            "latticeRootFrequency",
+                                                            "latticeTipFrequency",
+                                                            "latticeCouplingFrequency"};
     const bool cannot = field == nullptr || field->kind == FieldKind::Ramp ||
                         field->kind == FieldKind::Seed || std::ranges::count(kChosenBefore, field->name) > 0;
     return cannot ? nullptr : field;

@@ -200,6 +200,7 @@ runtime::LatticeSettings latticeSettings(const runtime::SimulationSettings& sett
     lattice.rootFrequency = settings.latticeRootFrequency;
     lattice.tipFrequency = settings.latticeTipFrequency;
     lattice.couplingFrequency = settings.latticeCouplingFrequency;
+    lattice.clampedPoints = settings.clampedPoints;
     lattice.collisionRadiusRoot = settings.collisionRadiusRoot;
     lattice.collisionRadiusTip = settings.collisionRadiusTip;
     return lattice;

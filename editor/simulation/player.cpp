@@ -6,6 +6,7 @@
 
 #include "core/documents/motions.h"
 #include "core/editing/document.h"
+#include "core/gpu_simulation/kernel_key.h"
 #include "core/simulation/clip_motion.h"
 #include "core/simulation/time_line_motion.h"
 #include "editor/document/words.h"
@@ -349,9 +350,11 @@ void Player::documentChanged(editing::Part parts) {
     request([&](WorkerRequests& requests) {
         // Engines are made with the body.
         const bool sameBody = !requests.groom || requests.groom->body == groom.body;
-        // Hair-hair collision runs on the CPU alone.
-        const bool sameEngines =
-            !requests.groom || requests.groom->simulation.hairHair == groom.simulation.hairHair;
+        // Some effects run on the CPU alone.
+        const auto runsOnGpu = [](const Groom& which) {
+            return gpu_simulation::kernelError(which.simulation).empty();
+        };
+        const bool sameEngines = !requests.groom || runsOnGpu(*requests.groom) == runsOnGpu(groom);
         if (!sameBody || !sameEngines || followsOther || isMadeWithSettings(method_))
             requests.regroomed = true;
         requests.changed = requests.changed || changed;

@@ -82,6 +82,7 @@ HWY_INLINE V3 shelteredWindAt(const Wind& wind, const float* phases, V3 position
     const V3 along = all3(wind.mean * (1.0f / speed));
     V3 air = open;
     for (const MovingSphere& sphere : context.spheres) {
+        if (sphere.radius < 1e-6f) continue;  // no air stands behind a point
         const V3 centre = all3(sphere.from_ws + sphere.step * steps);
         air = airPastSphere(air, position_ws - centre, all(sphere.radius), along);
     }

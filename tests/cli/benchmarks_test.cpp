@@ -2,6 +2,7 @@
 // How benchmarks measure; how long anything takes is not tested.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <set>
 #include <thread>
@@ -25,6 +26,36 @@ TEST(Benchmarks, AreNamedOnceAndSayWhatTheyMeasure) {
     for (const char* name : {"sim", "interpolate", "gpu-sim", "render", "place", "io", "brush", "runtime",
                              "momentum", "spheres", "thesis"})
         EXPECT_TRUE(names.contains(name)) << name;
+}
+
+/// What they measure is not tested, only that all of it comes.
+TEST(Benchmarks, OfTheThesisWriteTheirFilesAndRows) {
+    const auto quick = [](const char* name) {
+        Options options;
+        options.quick = true;
+        options.repetitions = 1;
+        const auto outcome = std::ranges::find(benchmarks(), name, &Benchmark::name)->run(options);
+        EXPECT_TRUE(outcome.has_value()) << name << ": " << outcome.error().message();
+        return outcome.value_or(Outcome{});
+    };
+    const auto files = [](const Outcome& outcome) {
+        std::set<std::string> names;
+        for (const auto& [name, content] : outcome.files) {
+            EXPECT_GT(content.size(), 200u) << name;
+            names.insert(name);
+        }
+        return names;
+    };
+    const Outcome momentum = quick("momentum"), spheres = quick("spheres"), thesis = quick("thesis");
+    EXPECT_EQ(files(momentum), (std::set<std::string>{"momentum.md", "momentum.svg"}));
+    EXPECT_EQ(momentum.report["rows"].size(), 16u);
+    EXPECT_EQ(files(spheres), (std::set<std::string>{"spheres.md", "spheres.svg"}));
+    EXPECT_EQ(spheres.report["rows"].size(), 10u);
+    const std::set<std::string> made = files(thesis);
+    for (const char* name : {"thesis.md", "figure-25.png", "figure-26.png"})
+        EXPECT_TRUE(made.contains(name)) << name;
+    EXPECT_THAT(thesis.files.front().second, testing::HasSubstr("## Table 3 of the thesis, rods"));
+    EXPECT_THAT(thesis.files.front().second, testing::HasSubstr("## Table 2"));
 }
 
 TEST(Benchmarks, RoundsLeaveOutWhatIsPaused) {

@@ -54,7 +54,8 @@ TEST(TimeLine, ALoopBeginsAnewAtItsEnd) {
 }
 
 TEST(TimeLine, WhatChoosesTheEngineHasNoKeys) {
-    for (const char* const name : {"strandModel", "hairHair", "hairHairCell"})
+    for (const char* const name :
+         {"strandModel", "hairHair", "hairHairCell", "windShelter", "collisionSegments", "latticeNodes"})
         EXPECT_EQ(findKeyable(std::string("simulation.") + name), nullptr) << name;
     EXPECT_NE(findKeyable("simulation.hairHairStrength"), nullptr);
 }

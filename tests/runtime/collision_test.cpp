@@ -470,6 +470,31 @@ TEST(SegmentCollision, ASphereBetweenTwoPointsIsSeen) {
     }
 }
 
+/// Roots lie in the sphere that stands for the head, and hair is combed over it.
+TEST(SegmentCollision, ClampedPointsInsideDoNotThrowTheRest) {
+    Strands strands;
+    for (int n = 0; n < 40; ++n) {
+        const float angle = 0.15f * static_cast<float>(n);
+        const Float3 out{std::cos(angle), 0.3f, std::sin(angle)};
+        strands.add(out * 0.085f, Float3{-out.z, 0.0f, out.x}, 0.02f, 10);  // along the sphere
+    }
+    const Sphere sphere{{}, 0.095f};
+    for (const std::uint32_t clamped : {1u, 2u}) {
+        SimulationSettings s = springSettings();
+        s.collisionSegments = true;
+        s.clampedPoints = clamped;
+        Engine engine = makeEngine(strands, s);
+        for (int f = 0; f < 90; ++f) {
+            run(engine, strands, 1, 1.0f / 60.0f, std::span(&sphere, 1));
+            const std::vector<Float3> now = positionsOf(engine);
+            for (std::size_t p = 0; p < now.size(); ++p)
+                ASSERT_LT(length(now[p]), 0.085f * 1.1f + 0.19f) << clamped << " frame " << f;
+        }
+        EXPECT_LT(engine.measure().maxStretch, 0.01) << clamped;
+        EXPECT_EQ(engine.measure().nanCount, 0u);
+    }
+}
+
 TEST(SegmentCollision, AnImpactTakesTheSpeedOfTheSegmentAndRestitutionGivesItBack) {
     // Two free points of a strand without springs or lengths, whose middle flies into a sphere.
     for (const float restitution : {0.0f, 0.6f}) {

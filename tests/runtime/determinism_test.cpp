@@ -54,7 +54,9 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndOrder) {
 /// Those that round a product and a sum once agree with each other, and so do those that round each.
 TEST(Determinism, SameBitsForEveryInstructionSetThatRoundsAlike) {
     const Strands strands = tuft(50, true);
-    for (const SimulationSettings& s : {everything(), rods()}) {
+    SimulationSettings segments = everything();
+    segments.collisionSegments = true;
+    for (const SimulationSettings& s : {everything(), segments, rods()}) {
         std::optional<std::uint64_t> expected[2];
         forEveryInstructionSet([&] {
             const std::uint64_t hash = hashAfterMotion(strands, s);

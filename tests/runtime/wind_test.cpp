@@ -365,6 +365,12 @@ TEST(Lee, TheAirStandsBehindAndSettingsBlend) {
     }
 }
 
+TEST(Lee, ASphereWithoutASizeCastsNone) {
+    const std::vector<Float3> places{{0.15f, 0.0f, 0.0f}};
+    for (const float radius : {1e-20f, 1e-30f, 1e-8f})
+        EXPECT_NEAR(airAround(places, radius, 1.0f)[0].x, 1.0f, 5e-3f);
+}
+
 TEST(Lee, RodsBehindASphereHardlyMove) {
     const auto blown = [](float shelter) {
         SimulationSettings s;

@@ -44,6 +44,12 @@ Status check(const Strands& strands, const runtime::SimulationSettings& settings
     const bool springs = settings.strandModel == runtime::StrandModel::springs;
     if (springs && !(greatestStiffness(settings) < 1.0f))
         return fail("angularStiffness 1 has no finite stiffness", "less than 1");
+    if (settings.windShelter > 0.0f && settings.windSpeed > 0.0f)
+        return fail("the reference has no lee of spheres",
+                    "windShelter 0, or the converged engine as truth (--truth engine)");
+    if (springs && settings.collisionSegments)
+        return fail("the reference meets spheres at points",
+                    "collisionSegments 0, or the converged engine as truth (--truth engine)");
     const std::size_t points = strands.restPositions_ss.size();
     if (strands.offsets.empty() || strands.offsets.front() != 0 || strands.offsets.back() != points)
         return fail("offsets do not match the points", "strand count + 1 of them, from 0 to the point count");

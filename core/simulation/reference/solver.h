@@ -9,8 +9,9 @@
 // count, `implicit` springs are `smallAngle` ones, `springVelocities` are `springs`, and `backward` response
 // is `radial`: they differ only by a step's length. Kelvin-Voigt damping of bending acts in both directions
 // of angular springs. The wind is that of runtime/wind.h at each point itself. Does not do: maximal extension
-// of springs, sleep; stiff hair that is pressed end-on or between two spheres, where lengths and hard
-// contacts have no sound common solution: StepReport::failed tells.
+// of springs, sleep, windShelter and collisionSegments, which it refuses; stiff hair that is pressed end-on
+// or between two spheres, where lengths and hard contacts have no sound common solution: StepReport::failed
+// tells.
 //
 // `strandModel` decides which model it is. Rods (rod_step.h) read none of the settings of lengths and
 // angular springs, nor collisionResponse: contacts are springs whose stiffness grows with the square of the

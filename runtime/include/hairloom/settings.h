@@ -138,7 +138,7 @@ struct SimulationSettings {
     /// 0 … 4294967295. Random seed of the gusts.
     std::uint32_t windSeed = 1;
     /// 0 … 1. How much spheres shelter hair: 1 guides wind around them and leaves their lee calm, 0 blows
-    /// through them.
+    /// through them. Not of alternative methods.
     float windShelter = 0.0f;
 
     // --- Collision with spheres ---
@@ -155,7 +155,8 @@ struct SimulationSettings {
     float restitution = 0.0f;
     /// Hz, 1 … 10000. Stiffness of penalty springs: higher penetrates less and needs shorter time steps.
     float penaltyFrequency = 100.0f;
-    /// Segments of springs meet spheres between their points as well, as cylinders.
+    /// Segments of springs meet spheres between their points as well, as cylinders. Not with penalty
+    /// forces.
     bool collisionSegments = false;
 
     // --- Hair-hair collision ---

@@ -64,6 +64,7 @@ std::string validationError(const LatticeSettings& s) {
     for (const float v : {s.gravity.x, s.gravity.y, s.gravity.z}) check("gravity", v, -1000.0, 1000.0);
     check("teleportDistance", s.teleportDistance, static_cast<double>(0.01f), 10000.0);
     refuseOutside(text, "substeps", s.substeps, 1.0, 64.0);
+    refuseOutside(text, "clampedPoints", s.clampedPoints, 1.0, 2.0);
     check("collisionRadiusRoot", s.collisionRadiusRoot, 0.0, static_cast<double>(0.1f));
     check("collisionRadiusTip", s.collisionRadiusTip, 0.0, static_cast<double>(0.1f));
     return text;
@@ -114,8 +115,9 @@ void Lattice::layOut(const StrandsView& strands) {
     const float root = settings_.collisionRadiusRoot, tip = settings_.collisionRadiusTip;
     for (std::size_t s = 0; s + 1 < strands.offsets.size(); ++s) {
         const std::uint32_t first = strands.offsets[s], last = strands.offsets[s + 1] - 1;
-        points_[first].radius = -1.0f;
-        for (std::uint32_t p = first + 1; p <= last; ++p)
+        const std::uint32_t free = std::min(first + settings_.clampedPoints, last + 1);
+        for (std::uint32_t p = first; p < free; ++p) points_[p].radius = -1.0f;
+        for (std::uint32_t p = free; p <= last; ++p)
             points_[p].radius =
                 root + (tip - root) * static_cast<float>(p - first) / static_cast<float>(last - first);
     }

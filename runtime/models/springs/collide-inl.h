@@ -326,7 +326,8 @@ HWY_INLINE void collidePoints(const SpringBlock& block, LaneFrame& lanes, const 
 /// Pushes segments out of spheres as cylinders (Choe, Choi, Ko 2005): the point of a segment's axis that is
 /// nearest to the centre keeps the collision radius there. Its two points share the push as their levers and
 /// masses of 1 have it, and the impulse with restitution (Eq. 20) and friction likewise. A clamped point
-/// does not move.
+/// does not move: where it is inside itself nothing turns the segment out, and where the sphere is nearer to
+/// it than a tenth of the segment the lever of the other would be too short.
 HWY_NOINLINE void collideSegments(const SpringBlock& block, const LaneFrame& lanes,
                                   const SubstepContext& context) {
     alignas(64) float collisionRadii[kMaxPoints];
@@ -349,12 +350,19 @@ HWY_NOINLINE void collideSegments(const SpringBlock& block, const LaneFrame& lan
                 const V reach = all(sphere.radius + collisionRadii[p - 1]) +
                                 all(collisionRadii[p] - collisionRadii[p - 1]) * t;
                 // Points themselves have met the sphere already.
-                const auto between = hn::And(along > zero, along < one);
+                auto between = hn::And(along > zero, along < one);
+                if (!innerMoves) {
+                    const V3 clamped = a - centre;
+                    const V itsReach = all(sphere.radius + collisionRadii[p - 1]);
+                    between = hn::And(between, dot(clamped, clamped) >= itsReach * itsReach);
+                    between = hn::And(between, t >= all(0.1f));
+                }
                 const auto touching = hn::And(between, dot(from, from) < reach * reach);
                 if (HWY_LIKELY(hn::AllFalse(D(), touching))) continue;
                 const Direction direction = directionOf(from);
                 const V3 normal = direction.from * direction.inverse;
-                const V3 wayA = a - load3(block.previous, inner), wayB = b - load3(block.previous, outer);
+                const V3 beforeA = load3(block.previous, inner), beforeB = load3(block.previous, outer);
+                const V3 wayA = a - beforeA, wayB = b - beforeB;
                 const V3 relative = wayA + (wayB - wayA) * t - all3(sphere.step);
                 const V speed = dot(relative, normal), approach = hn::Max(zero - speed, zero);
                 const V3 sliding = relative - normal * speed;
@@ -364,13 +372,14 @@ HWY_NOINLINE void collideSegments(const SpringBlock& block, const LaneFrame& lan
                 const V3 push = normal * (reach - direction.length);
                 const V3 change = normal * impulse - sliding * lost;
                 const V lever = one / hn::Max(left * left * innerMass + t * t, all(1e-6f));
-                const auto move = [&](std::size_t i, V3 at, V3 way, V share) HWY_ATTR {
+                const auto move = [&](std::size_t i, V3 at, V3 before, V share) HWY_ATTR {
                     const V3 placed = at + push * share;
                     store3(select(touching, placed, at), block.position, i);
-                    store3(select(touching, placed - (way + change * share), at - way), block.previous, i);
+                    store3(select(touching, placed - ((at - before) + change * share), before),
+                           block.previous, i);
                 };
-                move(outer, b, wayB, lever * t);
-                if (innerMoves) move(inner, a, wayA, lever * left);
+                move(outer, b, beforeB, lever * t);
+                if (innerMoves) move(inner, a, beforeA, lever * left);
             }
         }
     }

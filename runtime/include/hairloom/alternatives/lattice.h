@@ -28,6 +28,7 @@ struct LatticeSettings {
     float teleportDistance =
         2.0f;  ///< metres, 0.01…10000. A head that moves farther carries the lattice along
     std::uint32_t substeps = 2;        ///< 1…64
+    std::uint32_t clampedPoints = 1;   ///< 1…2 points of a strand, from its root, that spheres do not move
     float collisionRadiusRoot = 0.0f;  ///< metres, 0…0.1: distance from spheres at the root
     float collisionRadiusTip = 0.0f;   ///< metres, 0…0.1: at the tip, linear between them
 };
@@ -50,8 +51,8 @@ struct LatticeSettings {
 /// the multilevel approximation of Lee, Wolberg, Shin 1997, and stops their motion inwards, once a step. What
 /// a cell is too coarse for is placed on the sphere by evaluate(). Roots stay.
 ///
-/// Cost: a step works on control points only, whatever the number of hairs, but for points that may be inside
-/// of spheres; evaluate() is linear in points.
+/// Cost: without spheres a step works on control points only, whatever the number of hairs. With some it
+/// places every point once more; evaluate() is linear in points.
 ///
 /// Limits: hair is a continuous medium here: no single wisps, no hair against hair; strands do not keep their
 /// length; roots leave the scalp by as much as the lattice around them is deformed. The lattice differs from
@@ -86,8 +87,11 @@ class Lattice {
         std::uint64_t nodeUpdates = 0;  ///< control points times iterations over all substeps
     };
     const StepReport& lastStep() const { return report_; }
-    /// Memory that a step works on; it does not depend on the hair.
-    std::size_t stepBytes() const { return nodes_.size() * sizeof(Node); }
+    /// Memory that a step works on. It depends on the hair where spheres are met.
+    std::size_t stepBytes() const {
+        const std::size_t met = pushes_.empty() ? 0 : points_.size() * sizeof(Point);
+        return nodes_.size() * sizeof(Node) + pushes_.size() * sizeof(Float3) + met;
+    }
 
   private:
     struct Node {
