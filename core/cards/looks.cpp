@@ -14,7 +14,7 @@ constexpr float kSize = 0.25f;  // what a size e times as large counts beside co
 // What hair e times as dense counts: a sparse card that wears a dense texture is a flap where skin should be
 // seen, however small both coverages are.
 constexpr float kDensity = 0.4f;
-constexpr float kLeastCoverage = 0.02f;  // below it no eye tells densities apart
+constexpr float kLeastCoverage = 0.02f;  // below it densities look alike
 constexpr int kRounds = 8;
 
 struct Medoids {
