@@ -2,6 +2,7 @@
 #include "core/cards/cap.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,10 +12,10 @@
 namespace hairloom::cards {
 namespace {
 
-constexpr float kLength = 0.012f;                     // metres of a hair that the cap shows
-constexpr float kClear = 0.0003f;                     // metres above the skin, beside the tolerance
-constexpr float kHeadRadius = 0.09f;                  // metres: how much a square of the grid bulges
-constexpr float kFinest = 0.004f, kCoarsest = 0.03f;  // metres, squares of the grid
+constexpr float kLength = 0.012f;                           // metres of a hair that the cap shows
+constexpr float kClear = 0.0003f;                           // metres above the skin, beside the tolerance
+constexpr float kHeadRadius = 0.09f;                        // metres: how much a square of the grid bulges
+constexpr float kFinestSquare = 0.004f, kCoarsest = 0.03f;  // metres, squares of the grid
 constexpr float kOverlap = 0.15f;     // of a square, that charts go beyond the hairs that they hold
 constexpr float kShownSlope = 0.35f;  // cosine: skin that turns away further is another chart's
 
@@ -83,7 +84,11 @@ class Grid {
     std::vector<bool> full_;
 };
 
-/// Height and normal of the skin at a place, from the planes that touch it at the roots around.
+/// Where skin lies behind skin, as a chest behind a beard, what is farther back than so many squares is
+/// another sheet. Without that a chart would hang between the two.
+constexpr float kSheet = 4;
+
+/// Height and normal of the outermost skin at a place, from the planes that touch it at the roots around.
 Root skinAt(const Vec2f& place, const std::vector<Root>& roots, float square) {
     const float reach = 0.5f * square;
     float weights = 0, height = 0;
@@ -91,11 +96,18 @@ Root skinAt(const Vec2f& place, const std::vector<Root>& roots, float square) {
     // Near roots count so much more that one far away matters only where there is no other.
     float nearest = std::numeric_limits<float>::infinity();
     for (const Root& root : roots) nearest = std::min(nearest, (root.at.head<2>() - place).squaredNorm());
+    const auto offOf = [&](const Root& root) {
+        return ((root.at.head<2>() - place).squaredNorm() - nearest) / (reach * reach);
+    };
+    constexpr float kNothing = 12;
+    float outermost = -std::numeric_limits<float>::infinity();
+    for (const Root& root : roots) {
+        if (offOf(root) <= kNothing) outermost = std::max(outermost, root.at.z());
+    }
     for (const Root& root : roots) {
         const Vec2f away = place - root.at.head<2>();
-        const float off = (away.squaredNorm() - nearest) / (reach * reach);
-        constexpr float kNothing = 12;
-        if (off > kNothing) continue;
+        const float off = offOf(root);
+        if (off > kNothing || root.at.z() < outermost - kSheet * square) continue;
         const float weight = std::exp(-off);
         const float fall = root.normal.head<2>().dot(away) / std::max(root.normal.z(), kShownSlope);
         weights += weight, height += weight * (root.at.z() - fall), normal += weight * root.normal;
@@ -132,7 +144,8 @@ CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance) {
     if (held.empty()) return chart;
     // A chord of length c leaves a ball of radius r by c² / 8r. Diagonals where three charts meet are longer.
     constexpr float kSteep = 0.5f;
-    const float square = std::clamp(kSteep * std::sqrt(8 * kHeadRadius * tolerance), kFinest, kCoarsest);
+    const float square =
+        std::clamp(kSteep * std::sqrt(8 * kHeadRadius * tolerance), kFinestSquare, kCoarsest);
     const Grid grid(held, square);
     const Vec2f low = grid.corner(0, 0), size = grid.size();
     chart.plane = planeOf(frame, low, size, held[0].z());
@@ -145,22 +158,28 @@ CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance) {
         if (n == kNone) n = static_cast<std::uint32_t>(places.size()), places.push_back(grid.corner(x, y));
         return n;
     };
+    std::vector<std::array<std::uint32_t, 4>> cells;
     for (std::uint32_t y = 0; y < grid.rows(); ++y) {
         for (std::uint32_t x = 0; x < grid.columns(); ++x) {
-            if (!grid.isFull(x, y)) continue;
-            const std::uint32_t a = number(x, y), b = number(x + 1, y), c = number(x, y + 1),
-                                d = number(x + 1, y + 1);
-            for (const std::uint32_t v : {a, c, b, b, c, d}) chart.indices.push_back(v);
+            if (grid.isFull(x, y))
+                cells.push_back({number(x, y), number(x + 1, y), number(x, y + 1), number(x + 1, y + 1)});
         }
     }
     chart.vertices.resize(places.size());
+    std::vector<float> heights(places.size());
     parallelFor(places.size(), 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             const Root skin = skinAt(places[v], roots, square);
+            heights[v] = skin.at.z();
             chart.vertices[v] = {frame.back(skin.at + (kClear + tolerance) * skin.normal),
                                  frame.back(skin.normal), (places[v] - low).cwiseQuotient(size)};
         }
     });
+    for (const auto& [a, b, c, d] : cells) {
+        const auto [lowest, highest] = std::minmax({heights[a], heights[b], heights[c], heights[d]});
+        if (highest - lowest > kSheet * square) continue;  // from one sheet to another
+        for (const std::uint32_t v : {a, c, b, b, c, d}) chart.indices.push_back(v);
+    }
     return chart;
 }
 

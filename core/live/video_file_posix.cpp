@@ -29,8 +29,9 @@ namespace hairloom {
 namespace {
 
 constexpr const char* kVideoProgram = "hairloom-video-writer";
-/// An encoder that takes or gives nothing for so long hangs: a frame of the largest size takes seconds.
-constexpr timeval kVideoPatience{120, 0};
+/// An encoder that takes or gives nothing for so long hangs: a frame of the largest size takes seconds, and
+/// at the end some twenty frames are still to be encoded.
+constexpr timeval kVideoPatience{600, 0};
 
 /// The running encoder, at the other end of a socket. It is ended when this goes.
 class Encoder {
@@ -123,12 +124,14 @@ struct VideoFile::Impl {
     Result<std::vector<std::byte>> answer() {
         encoder.endInput();
         std::vector<std::byte> bytes = encoder.receive();
-        VideoAnswer kind{};
-        if (bytes.size() < sizeof kind)
-            return failIn(name, {}, "the video writer ended without a word", "expected more free memory");
-        std::memcpy(&kind, bytes.data(), sizeof kind);
-        bytes.erase(bytes.begin(), bytes.begin() + sizeof kind);
-        if (kind == VideoAnswer::File) return bytes;
+        VideoAnswer head;
+        const bool begun = bytes.size() >= sizeof head;
+        if (begun) std::memcpy(&head, bytes.data(), sizeof head);
+        if (!begun || head.stream != kVideoStream || bytes.size() - sizeof head != head.bytes)
+            return failIn(name, {}, "the video writer was ended before the video was whole",
+                          "expected more free memory");
+        bytes.erase(bytes.begin(), bytes.begin() + sizeof head);
+        if (head.isFile != 0) return bytes;
         return failIn(
             name, {},
             "cannot be encoded: " + std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
@@ -149,9 +152,9 @@ bool canWriteVideo() {
 Result<VideoFile> VideoFile::open(const std::filesystem::path& path, std::uint32_t width,
                                   std::uint32_t height, double framesPerSecond) {
     const std::string name = path.string();
-    if (width < 1 || height < 1 || width > kMostVideoSide || height > kMostVideoSide)
+    if (!isVideoSize(width, height))
         return failIn(name, {}, fmt::format("a video of {} × {} pixels", width, height),
-                      fmt::format("expected 1 to {} along a side", kMostVideoSide));
+                      fmt::format("expected 1 to {} along a side, and 8192 × 4352 in all", kMostVideoSide));
     if (!(framesPerSecond >= kLeastVideoRate && framesPerSecond <= kMostVideoRate))
         return failIn(name, {}, fmt::format("a video of {} frames per second", framesPerSecond),
                       "expected 1/66 to 1000");
@@ -161,7 +164,7 @@ Result<VideoFile> VideoFile::open(const std::filesystem::path& path, std::uint32
     if (auto may = OutputFile::check(path, content::kMp4); !may) return tl::unexpected(may.error());
     auto encoder = Encoder::start(programFolder() / kVideoProgram);
     if (!encoder) return tl::unexpected(inFile(encoder.error(), name));
-    const VideoHead head{width, height, framesPerSecond};
+    const VideoHead head{kVideoStream, width, height, framesPerSecond};
     encoder->send(std::as_bytes(std::span(&head, 1)));  // one that has ended is seen at the first frame
     return VideoFile(std::unique_ptr<Impl>(new Impl{path, name, width, height, std::move(*encoder)}));
 }

@@ -38,9 +38,11 @@ Glyphs glyphsOf(const std::string& text) {
     Glyphs glyphs;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
-        if ((byte & 0xc0u) == 0x80u) continue;  // goes on with a character
-        const bool isDegrees = text.compare(i, 2, "\xc2\xb0") == 0;
+        if ((byte & 0xc0u) == 0x80u) continue;  // a later byte of a character
         const unsigned char next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+        // U+0300 to U+036F, marks that join the letter before them, as names from macOS have them.
+        if (byte == 0xcc || (byte == 0xcd && next < 0xb0)) continue;
+        const bool isDegrees = text.compare(i, 2, "\xc2\xb0") == 0;
         const char shown = byte >= ' ' && byte <= '~' ? text[i] : bareLetter(byte, next);
         glyphs.push_back(isDegrees ? kDegrees : static_cast<std::size_t>(shown - ' '));
     }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/cards/rig.h"
@@ -58,6 +59,26 @@ TEST(Cap, FacesOutwards) {
         }
         for (const CapChart::Vertex& v : chart.vertices)
             EXPECT_GT(v.normal_ws.dot(v.position_ws.normalized()), 0.9f);
+    }
+}
+
+TEST(Cap, DoesNotHangBetweenSkinAndSkinBehindIt) {
+    Hair hair = ballHair(1500);
+    const Hair front = hair;
+    const Vec3f behind(0, 0, -0.3f);
+    const auto points = static_cast<std::uint32_t>(front.positions_ws.size());
+    for (std::size_t s = 1; s < front.offsets.size(); ++s) hair.offsets.push_back(points + front.offsets[s]);
+    for (const Vec3f& point : front.positions_ws) hair.positions_ws.push_back(point + behind);
+    hair.radii.insert(hair.radii.end(), front.radii.begin(), front.radii.end());
+    hair.albedo.insert(hair.albedo.end(), front.albedo.begin(), front.albedo.end());
+    hair.rootNormals_ws.insert(hair.rootNormals_ws.end(), front.rootNormals_ws.begin(),
+                               front.rootNormals_ws.end());
+    for (const CapChart& chart : makeCap(hair, kTolerance)) {
+        for (const std::uint32_t index : chart.indices) {
+            const Vec3f& at = chart.vertices[index].position_ws;
+            const float off = std::min(std::abs(at.norm() - kBall), std::abs((at - behind).norm() - kBall));
+            ASSERT_LT(off, 0.01f) << "a flap at " << at.transpose();
+        }
     }
 }
 

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -42,10 +44,19 @@ struct MemoryFile {
     std::vector<std::uint8_t> bytes;
     std::size_t at = 0;
 
-    static int write(void* file, std::uint8_t* data, int size) {
+#if LIBAVFORMAT_VERSION_MAJOR >= 61
+    using Data = const std::uint8_t*;
+#else
+    using Data = std::uint8_t*;
+#endif
+    static int write(void* file, Data data, int size) {
         auto& self = *static_cast<MemoryFile*>(file);
         const auto count = static_cast<std::size_t>(size);
-        self.bytes.resize(std::max(self.bytes.size(), self.at + count));
+        try {
+            self.bytes.resize(std::max(self.bytes.size(), self.at + count));
+        } catch (const std::exception&) {
+            return AVERROR(ENOMEM);  // no exception may pass through C
+        }
         std::memcpy(self.bytes.data() + self.at, data, count);
         self.at += count;
         return size;
@@ -124,8 +135,11 @@ struct H264Encoder::Impl {
         // A second at most to the frame that a player begins at, so that scrubbing is quick.
         codec->gop_size = std::clamp(static_cast<int>(head.framesPerSecond), 1, 250);
         if (std::strcmp(encoder.name, "libx264") == 0) {
-            av_opt_set(codec->priv_data, "preset", "medium", 0);
-            av_opt_set(codec->priv_data, "crf", "16", 0);
+            checkAv("libx264", av_opt_set(codec->priv_data, "preset", "medium", 0));
+            checkAv("libx264", av_opt_set(codec->priv_data, "crf", "16", 0));
+            // Sums whose order depends on the processor are left out. Frames that wait cost memory.
+            checkAv("libx264",
+                    av_opt_set(codec->priv_data, "x264-params", "cpu-independent=1:rc-lookahead=20", 0));
         } else {
             constexpr double kBitsOfPixel = 0.3;
             codec->bit_rate = static_cast<std::int64_t>(kBitsOfPixel * codec->width * codec->height *
@@ -159,11 +173,16 @@ struct H264Encoder::Impl {
         frame->height = codec->height;
         checkAv("memory", av_frame_get_buffer(frame, 0));
         packet = checkAv("memory", av_packet_alloc());
-        colours = checkAv(
-            "libswscale",
-            sws_getContext(codec->width, codec->height, AV_PIX_FMT_RGB0, codec->width, codec->height,
-                           codec->pix_fmt, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP | SWS_BITEXACT,
-                           nullptr, nullptr, nullptr));
+        colours = checkAv("libswscale", sws_alloc_context());
+        const auto set = [&](const char* option, int value) {
+            checkAv("libswscale", av_opt_set_int(colours, option, value, 0));
+        };
+        set("srcw", codec->width), set("srch", codec->height), set("src_format", AV_PIX_FMT_RGB0);
+        set("dstw", codec->width), set("dsth", codec->height), set("dst_format", codec->pix_fmt);
+        set("sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP | SWS_BITEXACT);
+        // Where AVCHROMA_LOC_LEFT has chroma, in 256ths of a pixel of the image.
+        set("dst_h_chr_pos", 0), set("dst_v_chr_pos", 128);
+        checkAv("libswscale", sws_init_context(colours, nullptr, nullptr));
         const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);
         constexpr int kFull = 1, kLimited = 0, kOne = 1 << 16;
         checkAv("libswscale",

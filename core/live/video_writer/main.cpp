@@ -18,8 +18,9 @@ namespace {
 
 std::vector<std::uint8_t> encodeInput() {
     VideoHead head;
-    if (std::fread(&head, sizeof head, 1, stdin) != 1 || head.width < 1 || head.height < 1 ||
-        head.width > kMostVideoSide || head.height > kMostVideoSide ||
+    if (std::fread(&head, sizeof head, 1, stdin) != 1 || head.stream != kVideoStream)
+        throw std::runtime_error("the video writer is of another version");
+    if (!isVideoSize(head.width, head.height) ||
         !(head.framesPerSecond >= kLeastVideoRate && head.framesPerSecond <= kMostVideoRate))
         throw std::runtime_error("the input has no head");
     H264Encoder encoder(head);
@@ -31,18 +32,19 @@ std::vector<std::uint8_t> encodeInput() {
     return encoder.finish();
 }
 
-bool answer(VideoAnswer kind, const void* bytes, std::size_t count) {
-    return std::fwrite(&kind, sizeof kind, 1, stdout) == 1 && std::fwrite(bytes, 1, count, stdout) == count &&
+bool answer(bool isFile, const void* bytes, std::size_t count) {
+    const VideoAnswer head{kVideoStream, isFile, count};
+    return std::fwrite(&head, sizeof head, 1, stdout) == 1 && std::fwrite(bytes, 1, count, stdout) == count &&
            std::fflush(stdout) == 0;
 }
 
 int run() {
     try {
         const std::vector<std::uint8_t> file = encodeInput();
-        return answer(VideoAnswer::File, file.data(), file.size()) ? 0 : 1;
+        return answer(true, file.data(), file.size()) ? 0 : 1;
     } catch (const std::exception& exception) {
         const std::string_view words = exception.what();
-        answer(VideoAnswer::Failed, words.data(), words.size());
+        answer(false, words.data(), words.size());
         return 1;
     }
 }
