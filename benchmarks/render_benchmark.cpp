@@ -448,7 +448,7 @@ Result<RenderBench> measureAll(const Options& options) {
 }
 
 Report reportOf(const RenderBench& bench) {
-    Report rows = Report::array();
+    Report rows = Report::array(), geometry = Report::array();
     for (const RenderCase& which : bench.cases) {
         const auto row = [&](const Measurement& measurement, const std::string& what) {
             Report report = rowOf(measurement);
@@ -467,13 +467,18 @@ Report reportOf(const RenderBench& bench) {
         rows.push_back(row(which.wall, "wall"));
         for (const Measurement& pass : which.passes) rows.push_back(row(pass, pass.name));
         for (const Geometry& made : geometryOf(which))
-            rows.push_back({{"name", which.name + ", geometry for " + made.passes},
-                            {"once_ms", made.once},
-                            {"each_ms", made.each}});
+            geometry.push_back({{"name", which.name},
+                                {"passes", made.passes},
+                                {"once_ms", made.once},
+                                {"each_ms", made.each}});
     }
-    return Report{
-        {"name", "render"},           {"device", bench.device.name}, {"driver", bench.device.driver},
-        {"segments", kBenchSegments}, {"notes", bench.notes},        {"rows", std::move(rows)}};
+    return Report{{"name", "render"},
+                  {"device", bench.device.name},
+                  {"driver", bench.device.driver},
+                  {"segments", kBenchSegments},
+                  {"notes", bench.notes},
+                  {"rows", std::move(rows)},
+                  {"geometry", std::move(geometry)}};
 }
 
 std::string markdownOf(const RenderBench& bench, const std::string& command) {

