@@ -239,10 +239,9 @@ bool RenderDialog::mayReplace(const QString& path, const Film& film) {
 
 void RenderDialog::choosePath() {
     const Film film = filmAsked();
-    const QString suffix = !film.isAnimation()                     ? ".png"
-                           : film.files == FilmFiles::AnimatedWebp ? ".webp"
-                           : film.files == FilmFiles::Mp4          ? ".mp4"
-                                                                   : ".png";
+    QString suffix = ".png";
+    if (film.isAnimation() && film.files == FilmFiles::AnimatedWebp) suffix = ".webp";
+    if (film.isAnimation() && film.files == FilmFiles::Mp4) suffix = ".mp4";
     const bool isSequence = film.of != FilmOf::View && !film.isAnimation();
     QString path = QFileDialog::getSaveFileName(
         this, windowTitle(), QFileInfo(document_.title()).completeBaseName() + suffix, "*" + suffix, nullptr,

@@ -27,12 +27,6 @@ double stepOf(std::uint32_t gridBits) {
     return std::ldexp(1.0, -static_cast<int>(gridBits));
 }
 
-float lengthOf(std::span<const Float3> points) {
-    float sum = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) sum += length(points[i] - points[i - 1]);
-    return sum;
-}
-
 /// Sets what the asset says of a field, where the field can have it.
 void setField(const Asset& asset, const Setting& setting, const Field<SimulationSettings>& field,
               SimulationSettings& settings) {
@@ -184,7 +178,7 @@ DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
         ids.push_back(guide.id);
         rootsOfGuides.push_back(points.front());
         tips.push_back(points.back());
-        lengths.push_back(lengthOf(points));
+        lengths.push_back(polylineLength(points));
         if (minor() < kMinorOfPartedRoots) continue;
         layersOfGuides.push_back(layerOf(guide.strand));
         quarters.push_back(pointAtShare(points, FollowRecipe::kQuarter));

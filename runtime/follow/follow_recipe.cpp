@@ -166,10 +166,14 @@ Float3 shiftDirection(std::span<const RootPlane> planes_ss, const std::array<std
     return {dot(unit, own.x), dot(unit, own.y), dot(unit, own.normal)};
 }
 
+float polylineLength(std::span<const Float3> points) {
+    float sum = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) sum += length(points[i] - points[i - 1]);
+    return sum;
+}
+
 Float3 pointAtShare(std::span<const Float3> points, float share) {
-    float whole = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) whole += length(points[i] - points[i - 1]);
-    float left = share * whole;
+    float left = share * polylineLength(points);
     for (std::size_t i = 1; i < points.size(); ++i) {
         const Float3 segment = points[i] - points[i - 1];
         const float size = length(segment);

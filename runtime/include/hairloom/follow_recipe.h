@@ -58,6 +58,9 @@ DrawnHairs drawFollowHairs(const FollowRecipe& recipe, const Host& host = {});
 Float3 shiftDirection(std::span<const RootPlane> planes_ss, const std::array<std::uint32_t, 3>& guides,
                       Float3 rootWeights);
 
+/// Metres.
+float polylineLength(std::span<const Float3> points);
+
 /// The point at `share` 0 … 1 of the length of a polyline of at least one point.
 Float3 pointAtShare(std::span<const Float3> points, float share);
 
