@@ -130,7 +130,7 @@ endfunction()
 # cases, all cases together become the entry NAME. Tests find the repository through tests/support/source_dir.h.
 # Tests are compiled once and run for moments: what they include is precompiled, once for all or with PRECOMPILE's together for
 # this one, and they are optimised little. SLOW is a filter of GoogleTest for cases that take seconds: they have the label
-# NAME-slow, which ./dev test --quick leaves out, and begin before others, so that no core waits for the last.
+# NAME-slow, which ./dev test --quick leaves out, and begin before others, so that no core waits for the last. They have 300 s.
 function(hairloom_test name)
     cmake_parse_arguments(ARG "" "TIMEOUT;SLOW" "SOURCES;LINK;PRECOMPILE" ${ARGN})
     if(NOT ARG_TIMEOUT)
@@ -152,7 +152,7 @@ function(hairloom_test name)
     endif()
     if(ARG_SLOW)
         gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 TEST_FILTER "${ARG_SLOW}"
-            TEST_LIST test_${name}_slow PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 10 LABELS ${name}-slow)
+            TEST_LIST test_${name}_slow PROPERTIES TIMEOUT 300 COST 10 LABELS ${name}-slow)
         set(quick TEST_FILTER "-${ARG_SLOW}")
     endif()
     gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 ${quick}

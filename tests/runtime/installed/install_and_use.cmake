@@ -16,7 +16,7 @@ endif()
 run(${CMAKE_COMMAND} -S "${SOURCE}/runtime" -B "${BUILD}/library" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${COMPILER}"
     "-DCMAKE_CXX_FLAGS=-march=native -DHWY_COMPILE_ONLY_STATIC"
     -DCMAKE_INSTALL_LIBDIR=lib)
-run(${CMAKE_COMMAND} --build "${BUILD}/library" --parallel)
+run(${CMAKE_COMMAND} --build "${BUILD}/library" --parallel 2)
 run(${CMAKE_COMMAND} --install "${BUILD}/library" --prefix "${BUILD}/prefix")
 
 run(${CMAKE_COMMAND} -S "${SOURCE}/tests/runtime/installed" -B "${BUILD}/game" -DCMAKE_BUILD_TYPE=Release
