@@ -17,7 +17,7 @@ struct Parameters {
 class ComputeTest : public GpuTest {
   protected:
     void SetUp() override {
-        GpuTest::SetUp();
+        ASSERT_NO_FATAL_FAILURE(GpuTest::SetUp());
         pipeline =
             device->createComputePipeline({"double", shader("double.comp", ShaderStage::Compute)}).value();
     }

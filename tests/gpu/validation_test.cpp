@@ -18,7 +18,7 @@ using testing::HasSubstr;
 class ValidationTest : public GpuTest {
   protected:
     void SetUp() override {
-        GpuTest::SetUp();
+        ASSERT_NO_FATAL_FAILURE(GpuTest::SetUp());
         watch = validationOf(*device);
         ASSERT_NE(watch, nullptr);
         doubling =

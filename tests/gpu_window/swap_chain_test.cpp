@@ -18,7 +18,7 @@ class SwapChainTest : public GpuTest {
     void SetUp() override {
         window = TestWindow::open(200, 100);
         if (window == nullptr) GTEST_SKIP() << "no display";
-        GpuTest::SetUp();
+        ASSERT_NO_FATAL_FAILURE(GpuTest::SetUp());
         if (device == nullptr || !device->info().presents) GTEST_SKIP() << "no device that presents";
     }
     void TearDown() override {
