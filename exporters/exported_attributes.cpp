@@ -257,7 +257,9 @@ ExportNames plyNames() {
 
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
                                                   const ExportNames& names) {
-    return Collector(groom, strands, names).run();
+    std::vector<ExportedAttribute> attributes = Collector(groom, strands, names).run();
+    for (const ExportedAttribute& attribute : attributes) strands.names.push_back(attribute.name);
+    return attributes;
 }
 
 std::vector<std::string> unrealGroupNames(const Groom& groom, const PreparedStrands& strands) {

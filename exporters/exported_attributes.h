@@ -47,7 +47,7 @@ ExportNames plyNames();
 /// where the groom has them (an id always), then all that Hairloom gives no meaning to, in order of name. An
 /// attribute of the groom that has one of these names is written in its place, with the author's values.
 /// Points of resampled strands have nothing but colours and widths. What had to be changed becomes a finding
-/// of `strands`.
+/// of `strands`, which get their names.
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
                                                   const ExportNames& names);
 

@@ -446,6 +446,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     report.maxErrorMm = farthest;
     compareAttributes(groom, prepared, options.metresPerUnit, *readBack, report);
     report.findings = std::move(prepared.findings);
+    report.names = std::move(prepared.names);
     judgeRoots(groom, prepared, report.findings);
     report.findings.insert(report.findings.end(), readBack->warnings.begin(), readBack->warnings.end());
     return report;

@@ -33,6 +33,7 @@ struct PreparedStrands {
     float metresPerUnit = 1;                 ///< of the file
     UpAxis up = UpAxis::Y;                   ///< likewise
     bool isResampled = false;                ///< some strand has other points than the groom's
+    std::vector<std::string> names;          ///< of attributes in the file, as exportedAttributes() gave them
     std::vector<Finding> findings;
 
     std::size_t strandCount() const { return sources.size(); }

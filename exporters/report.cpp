@@ -20,6 +20,7 @@ nlohmann::json toJson(const ExportReport& report) {
     for (const LeftBehind& left : report.leftBehind)
         leftBehind.push_back({{"what", left.what}, {"fix", left.fix}});
     nlohmann::json json{{"attributes", std::move(attributes)},
+                        {"names", report.names},
                         {"left_behind", std::move(leftBehind)},
                         {"format", report.format},
                         {"strands", report.strands},

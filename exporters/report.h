@@ -54,6 +54,7 @@ struct ExportReport {
     /// where the file has no point of a strand.
     std::optional<double> maxErrorMm;
     std::vector<ComparedAttribute> attributes;
+    std::vector<std::string> names;  ///< of attributes of strands and points in the file, each once
     std::vector<LeftBehind> leftBehind;
     std::vector<Finding> findings;
     std::vector<WrittenLevel> levels;  ///< of files of cards, the nearest first
@@ -64,8 +65,8 @@ struct ExportReport {
 };
 
 /// Keys: format, strands, points, frames (where strands move), samples (where these are more), bytes,
-/// max_error_mm (null where nothing was measured), attributes (name, max_error), left_behind (what, fix),
-/// findings (severity, what, where, fix); certificate (the fields of SafeLimits, where it was made);
+/// max_error_mm (null where nothing was measured), attributes (name, max_error), names, left_behind
+/// (what, fix), findings (severity, what, where, fix); certificate (the fields of SafeLimits, where it was made);
 /// companions (names, where there are some); of cards levels (name, cards, triangles, bytes, distance_m,
 /// coverage, flip, light) and springs (hz, rates: hz, error_mm, largest_mm; where the file has fitted ones).
 nlohmann::json toJson(const ExportReport& report);

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/sphere_report.h"
@@ -22,6 +23,7 @@ struct CollidersOptions {
     std::string fit;
     double error = 1;  // mm
     std::size_t kilobytes = kMostBodyBytes / 1000;
+    std::uint32_t count = 0;  // of spheres; 0: as few as --error takes
     double near = 0.08;
     std::string character;
     std::string output;
@@ -43,20 +45,22 @@ Status fitField(Groom& groom, const Actor* actor, const CollidersOptions& option
     return {};
 }
 
-/// As few as come as close as was asked for, but not more than a fit may have.
+/// As many as were asked for, else as few as come as close as was asked for, but not more than a fit may
+/// have.
 Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& options, Report& report) {
     if (!groom.scalp) return failIn(options.input, {}, "there is no head to fit spheres to");
     editing::SphereFitOptions wanted;
     if (options.near > 0) wanted.region = editing::facesNearHair(groom, static_cast<float>(options.near));
     const auto error = static_cast<float>(1e-3 * options.error);
-    for (wanted.count = 4;; wanted.count = std::min(2 * wanted.count, editing::kMaxSpheres)) {
+    for (wanted.count = options.count > 0 ? options.count : 4;;
+         wanted.count = std::min(2 * wanted.count, editing::kMaxSpheres)) {
         auto fit = editing::fitSpheres(*groom.scalp, wanted);
         if (!fit) return tl::unexpected(inFile(fit.error(), options.input));
-        if (fit->worstGap > error && wanted.count < editing::kMaxSpheres) continue;
+        if (options.count == 0 && fit->worstGap > error && wanted.count < editing::kMaxSpheres) continue;
         if (actor) attachSpheres(*actor, fit->spheres);
         addFit(report, *fit);
         Report notes = Report::array();
-        if (fit->worstGap > error)
+        if (options.count == 0 && fit->worstGap > error)
             notes.push_back("more spheres than a fit may have would be needed. Use --fit field");
         for (const Report& note : notes) log::warning("{}", note.get<std::string>());
         report["notes"] = std::move(notes);
@@ -64,6 +68,53 @@ Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& o
         groom.spheres.insert(groom.spheres.end(), fit->spheres.begin(), fit->spheres.end());
         return {};
     }
+}
+
+/// What hair meets, a row for each sphere and each bone that moves skin; without bones the whole head moves
+/// it.
+Report rowsOf(const Groom& groom) {
+    Report rows = Report::array();
+    const auto bone = [](const std::string& name) { return name.empty() ? Report(nullptr) : Report(name); };
+    for (const CollisionSphere& sphere : groom.spheres) {
+        rows.push_back(Report{{"kind", "sphere"},
+                              {"name", sphere.name},
+                              {"bone", bone(sphere.bone)},
+                              {"centre", {sphere.centre.x(), sphere.centre.y(), sphere.centre.z()}},
+                              {"radius", sphere.radius}});
+    }
+    if (!groom.body) return rows;
+    if (groom.body->bones.empty()) rows.push_back(Report{{"kind", "field"}, {"bone", nullptr}});
+    for (const std::string& name : groom.body->bones)
+        rows.push_back(Report{{"kind", "field"}, {"bone", bone(name)}});
+    return rows;
+}
+
+/// How far the skin of the head and what hair meets are apart: of the field, else of the spheres near hair.
+void measureColliders(const Groom& groom, const CollidersOptions& options, Report& report) {
+    report["worst_gap_mm"] = report["worst_bulge_mm"] = nullptr;
+    if (!groom.scalp || (!groom.body && groom.spheres.empty())) return;
+    constexpr double kMm = 1000;
+    if (groom.body) {
+        const BodyFit fit = measureBody(*groom.scalp, *groom.body);
+        report["worst_gap_mm"] = kMm * static_cast<double>(fit.worstGap);
+        report["mean_gap_mm"] = kMm * static_cast<double>(fit.meanGap);
+        report["worst_bulge_mm"] = kMm * static_cast<double>(fit.worstBulge);
+        return;
+    }
+    FaceSet near;
+    if (options.near > 0) near = editing::facesNearHair(groom, static_cast<float>(options.near));
+    addFit(report, editing::measureSpheres(*groom.scalp, near, groom.spheres));
+}
+
+Result<Report> listColliders(const CollidersOptions& options) {
+    const auto groom = openGroom(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    Report report;
+    measureColliders(*groom, options, report);
+    report["colliders"] = rowsOf(*groom);
+    report["spheres"] = groom->spheres.size();
+    report["body"] = groom->body != nullptr;
+    return report;
 }
 
 Result<Report> fitColliders(const CollidersOptions& options) {
@@ -78,36 +129,52 @@ Result<Report> fitColliders(const CollidersOptions& options) {
     if (options.fit == "spheres") fitted = fitFewSpheres(*groom, actor->get(), options, report);
     if (options.fit == "none") groom->body.reset();
     if (!fitted) return tl::unexpected(fitted.error());
-    if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+    if (!options.output.empty()) {
+        if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+    }
     report["fit"] = options.fit;
+    report["colliders"] = rowsOf(*groom);
     report["spheres"] = groom->spheres.size();
     report["body"] = groom->body != nullptr;
     report["seconds"] = watch.seconds();
-    report["output"] = options.output;
+    if (!options.output.empty()) report["output"] = options.output;
     return report;
 }
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<CollidersOptions>();
     job.add_option("groom", options->input, "Groom on a head")->required();
-    job.add_option("--fit", options->fit,
-                   "What hair collides with: field bakes the skin of the head, spheres replaces the fitted "
-                   "spheres, none removes the baked skin")
-        ->required()
-        ->check(CLI::IsMember({"field", "spheres", "none"}));
+    CLI::Option* fit =
+        job.add_option("--fit", options->fit,
+                       "What hair collides with: field bakes the skin of the head, spheres replaces the "
+                       "fitted spheres, none removes the baked skin. Without it, colliders are listed and "
+                       "measured")
+            ->check(CLI::IsMember({"field", "spheres", "none"}));
     job.add_option("--error", options->error, "Skin may lie this far outside the colliders, in millimetres")
-        ->check(CLI::Range(0.1, 100.0));
+        ->check(CLI::Range(0.1, 100.0))
+        ->needs(fit);
     job.add_option("--kilobytes", options->kilobytes,
                    "With --fit field: the most that it may take. More is finer at ears and other thin parts")
-        ->check(CLI::Range(50, 10'000));
-    job.add_option(
-           "--near", options->near,
-           "With --fit spheres: skin within this distance of hair counts, in metres. 0 uses all of it")
+        ->check(CLI::Range(50, 10'000))
+        ->needs(fit);
+    job.add_option("--count", options->count,
+                   "With --fit spheres: this number of them, in place of as few as --error takes")
+        ->check(CLI::Range(1u, editing::kMaxSpheres))
+        ->needs(fit);
+    job.add_option("--near", options->near,
+                   "Spheres are fitted and measured to skin within this distance of hair, in metres. 0 uses "
+                   "all of it")
         ->check(CLI::Range(0.0, 10.0));
     job.add_option("--character", options->character,
-                   "File with the skeleton that moves the colliders, if other than the scalp's file");
-    job.add_option("-o,--output", options->output, "Project to write")->required();
+                   "File with the skeleton that moves the colliders, if other than the scalp's file")
+        ->needs(fit);
+    job.add_option("-o,--output", options->output,
+                   "Project to write. Without it, a fit is measured and not kept")
+        ->needs(fit);
     return [options](const std::string&) {
+        if (options->fit.empty()) return listColliders(*options);
+        if (options->count > 0 && options->fit != "spheres")
+            throw WrongUsage("--count counts spheres", "expected it with --fit spheres");
         return withOutputs({{options->output, content::kProject}}, [&] { return fitColliders(*options); });
     };
 }
@@ -115,7 +182,7 @@ JobRun declare(CLI::App& job) {
 }  // namespace
 
 Job collidersJob() {
-    return {"colliders", "Fit what hair collides with to the head",
+    return {"colliders", "List what hair collides with, or fit it to the head",
             "hair.hairloom --fit field --error 1 -o hair.hairloom", declare};
 }
 

@@ -215,13 +215,14 @@ Result<Report> import(const ImportOptions& options) {
         report["points"] = groom.pointCount();
     }
     if (groom.scalp) triangulate(options, groom);
+    report["resampled_fps"] = nullptr;
     if (!options.record.empty()) {
         if (auto recorded = recordFrames(options, *imported); !recorded)
             return tl::unexpected(recorded.error());
         report["record"] = options.record;
         report["frames"] = imported->frames.size();
         report["fps"] = imported->framesPerSecond;
-        report["resampled_fps"] = imported->isResampled ? Report(imported->framesPerSecond) : Report(nullptr);
+        if (imported->isResampled) report["resampled_fps"] = imported->framesPerSecond;
     }
     if (auto saved = saveProject(groom, options.output); !saved) return tl::unexpected(saved.error());
     report["output"] = options.output;

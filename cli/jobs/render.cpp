@@ -232,6 +232,22 @@ Result<DrawingDevice> deviceOf(const RenderJobOptions& options, const Groom& gro
     return chooseDrawingDevice(byPasses);
 }
 
+/// What draws; where hair moves, what simulates it.
+void reportEngine(const RenderJobOptions& options, const DrawingDevice& device, const Playing& playing,
+                  Report& report) {
+    if (playing.shots) {
+        report["engine"] = engineName(playing.engine.kind);
+        report["why"] = playing.engine.why;
+        return;
+    }
+    const bool byProcessor = software::isSoftware(device.backend->device());
+    report["engine"] = byProcessor ? "software" : "gpu";
+    report["why"] = !device.note.empty() ? device.note
+                    : options.engine == (byProcessor ? "software" : "gpu")
+                        ? "you asked for it"
+                        : "this machine has a device that draws";
+}
+
 }  // namespace
 
 Result<Report> renderToFile(const RenderJobOptions& options) {
@@ -298,10 +314,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (!picture) return tl::unexpected(picture.error());
         if (i == 0) report = reportOf(*picture, options);
         if (i == 0 && *colours) report["color"] = colourReport(**colours);
-        if (i == 0 && playing->shots) {
-            report["engine"] = engineName(playing->engine.kind);
-            report["why"] = playing->engine.why;
-        }
+        if (i == 0) reportEngine(options, *device, *playing, report);
         if (auto status = burnIn.draw((*shots)[i], i, picture->image); !status)
             return tl::unexpected(status.error());
         if (!options.strip.empty()) images.push_back(picture->image);

@@ -11,6 +11,7 @@
 
 #include "core/base/random.h"
 #include "core/base/smooth_step.h"
+#include "core/base/utf8.h"
 
 namespace hairloom {
 
@@ -195,12 +196,18 @@ class FormulaReader {
         if (isDigit(c) || c == '.') return number();
         if (isLetter(c)) return word();
         if (!take("("))
-            return complain(fmt::format("'{}' means nothing here", printable(c)),
+            return complain(fmt::format("'{}' means nothing here", character()),
                             "expected a number, a name or (");
         comparison();
         if (!take(")")) complain("a parenthesis is open", "expected )");
     }
-    static std::string printable(char c) { return c >= ' ' && c < 127 ? std::string(1, c) : "?"; }
+    /// The whole character at the place of reading, '?' for what is no UTF-8.
+    std::string character() const {
+        const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+        std::size_t end = at_ + 1;
+        while (end < text_.size() && continues(text_[end])) ++end;
+        return cleanUtf8(text_.substr(at_, end - at_));
+    }
     void number() {
         float value = 0;
         const auto [end, code] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);

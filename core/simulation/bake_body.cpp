@@ -424,6 +424,11 @@ Box3f reachOfHair(const Groom& groom) {
     return box;
 }
 
+BodyFit measureBody(const ScalpMesh& mesh, const BodyField& field) {
+    const Body body(mesh);
+    return body.faces().empty() ? BodyFit{} : fitOf(mesh, body, field);
+}
+
 Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
                            std::span<const std::string> boneNames, const BakeBodyOptions& options) {
     const bool isSkinned = skin.vertexCount() > 0;

@@ -48,6 +48,9 @@ struct BakedBody {
 Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
                            std::span<const std::string> boneNames = {}, const BakeBodyOptions& options = {});
 
+/// How far a field is from a mesh in its rest space, 0 throughout where the mesh encloses nothing.
+BodyFit measureBody(const ScalpMesh& mesh, const runtime::BodyField& field);
+
 /// Of the groom's scalp where its hair reaches, moved by the skin of `actor` where there is one. Errors: no
 /// scalp, a character of another mesh, those above.
 Result<BakedBody> bakeBodyOf(const Groom& groom, const Actor* actor, const BakeBodyOptions& options = {});

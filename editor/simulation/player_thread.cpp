@@ -220,8 +220,14 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
     const bool onDevice = frame->pose->onDevice && frame->stats.millisecondsPerFrame > 0;
     frame->milliseconds = onDevice ? frame->stats.millisecondsPerFrame : clock;
     deliver(std::move(frame), taken.epoch);
-    if (taken.playing && before < taken.stopAt - kOnTime && playing.time() >= taken.stopAt - kOnTime)
-        QMetaObject::invokeMethod(this, &Player::pause);
+    if (!taken.playing || before >= taken.stopAt - kOnTime || playing.time() < taken.stopAt - kOnTime) return;
+    // At once: a window that is busy would let frames beyond the end play.
+    request([&](WorkerRequests& requests) {
+        if (requests.epoch == taken.epoch) requests.playing = false;
+    });
+    QMetaObject::invokeMethod(this, [this, epoch = taken.epoch] {
+        if (epoch == epoch_) pause();
+    });
 }
 
 void Player::run() {

@@ -46,6 +46,38 @@ TEST_F(Colliders, TheSkinKeepsHairOutOfTheHead) {
     EXPECT_EQ(readText(folder / "off.hairloom"), readText(folder / "soft.hairloom"));
 }
 
+TEST_F(Colliders, AreListedAndMeasuredAsTheyWereFitted) {
+    const auto fitted = fitSkin();
+    const auto listed = runJson("colliders on.hairloom");
+    for (const char* key : {"worst_gap_mm", "mean_gap_mm", "worst_bulge_mm"})
+        EXPECT_EQ(listed[key], fitted[key]) << key;
+    std::vector<nlohmann::json> bones;
+    for (const auto& row : listed["colliders"]) {
+        EXPECT_EQ(row["kind"], "field");
+        bones.push_back(row["bone"]);
+    }
+    EXPECT_THAT(fitted["bones"], testing::ElementsAreArray(bones));
+
+    const auto spheres =
+        runJson("colliders soft.hairloom --fit spheres --count 9 --near 0.03 -o nine.hairloom");
+    ASSERT_EQ(spheres["spheres"], 9);
+    const auto nine = runJson("colliders nine.hairloom --near 0.03");
+    EXPECT_EQ(nine["colliders"], spheres["colliders"]);
+    EXPECT_EQ(nine["worst_gap_mm"], spheres["worst_gap_mm"]);
+    EXPECT_EQ(nine["colliders"][8]["kind"], "sphere");
+    EXPECT_FALSE(nine["colliders"][8]["bone"].is_null());
+    EXPECT_GT(nine["colliders"][8]["radius"], 0);
+
+    // Without a file to write, a fit is measured alone.
+    const std::string before = readText(folder / "nine.hairloom");
+    EXPECT_LT(runJson("colliders nine.hairloom --fit field --kilobytes 300")["worst_gap_mm"],
+              nine["worst_gap_mm"]);
+    EXPECT_EQ(readText(folder / "nine.hairloom"), before);
+    const auto bare = runJson("colliders soft.hairloom");
+    EXPECT_TRUE(bare["colliders"].empty());
+    EXPECT_TRUE(bare["worst_gap_mm"].is_null());
+}
+
 TEST_F(Colliders, FewSpheresComeAsCloseAsWasAskedFor) {
     runJson(createArguments());
     const auto fitted = runJson("colliders hair.hairloom --fit spheres --error 30 -o on.hairloom");
@@ -57,6 +89,7 @@ TEST_F(Colliders, FewSpheresComeAsCloseAsWasAskedFor) {
     EXPECT_EQ(fine.json()["notes"].size(), 1u);
     EXPECT_EQ(run("colliders hair.hairloom -o x.hairloom").exitCode, 2);
     EXPECT_EQ(run("colliders hair.hairloom --fit capsules -o x.hairloom").exitCode, 2);
+    EXPECT_EQ(run("colliders hair.hairloom --fit field --count 9 -o x.hairloom").exitCode, 2);
     const Outcome lost = run("colliders hair.hairloom --fit field --character none.glb -o x.hairloom");
     EXPECT_EQ(lost.exitCode, 1);
     EXPECT_THAT(lost.errors, HasSubstr("none.glb"));

@@ -37,7 +37,7 @@ class ColourOfImages : public CommandLineTest {
 };
 
 TEST_F(ColourOfImages, AreThoseOfTheViewAndFilesThoseOfTheScene) {
-    picture("plain", "");
+    EXPECT_EQ(picture("plain", "")["engine"], "software");
     const auto film = picture("film", "--color-config '" + studio() + "'")["color"];
     EXPECT_EQ(film["view"], "Film");
     EXPECT_EQ(film["scene_linear"], "ACEScg");

@@ -157,6 +157,10 @@ TEST_F(Hairstyle, LayersAreMadeByScriptsShownAndExportedAlone) {
     EXPECT_EQ(red[1]["own_material"], true);
     EXPECT_EQ(red[0]["own_material"], false);
     const auto hairs = runJson("export red.hairloom --what hairs --format abc -o red.abc");
+    const std::vector<std::string> names = hairs["names"];
+    EXPECT_THAT(names, testing::Contains("groom_id"));
+    EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+    EXPECT_TRUE(runJson("import red.abc -o again.hairloom")["resampled_fps"].is_null());
     EXPECT_EQ(hairs["strands"], 280 * 8 + 20 * 4);
     EXPECT_EQ(runJson("export red.hairloom --format runtime -o red.hairrt")["strands"], 300);
     runJson("import red.hairrt -o red_back.hairloom");

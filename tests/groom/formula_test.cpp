@@ -89,6 +89,7 @@ TEST(Formula, WhatDoesNotReadSaysWhereAndWhatWas) {
              {"1e999", "no number that can be used"},
              {"0,4", "column 2: what follows"},
              {"u; v", "column 2"},
+             {"2 + ×", "column 5: '×' means nothing here"},
              {"\xff", "'?' means nothing here"}}) {
         const auto read = Formula::read(text);
         ASSERT_FALSE(read) << text;
