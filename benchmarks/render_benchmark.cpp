@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <tuple>
 
 #include "benchmarks/measurement.h"
@@ -39,6 +40,9 @@ struct RenderCase {
     Measurement frame;  ///< all passes on the device, ms; wall time where it has no clock
     Measurement wall;   ///< from recording to the end on the device, ms, with the upload of positions
     std::vector<Measurement> passes;  ///< ms
+    std::vector<std::pair<std::string, gpu::PassCounts>>
+        counts;  ///< of a frame's passes, where they are counted
+    std::uint64_t meshTriangles = 0;
     std::uint64_t targetBytes = 0;
     bool software = false;        ///< by the software renderer
     std::optional<double> limit;  ///< ms that the frame may take, where that is laid down for this device
@@ -187,6 +191,7 @@ class RenderMeasuring {
             if (auto status = frame(which, renderer, *target, i, true); !status) return status;
         }
         which.targetBytes = renderer.plan().bytes();
+        which.meshTriangles = renderer.triangles();
         return {};
     }
 
@@ -222,6 +227,7 @@ class RenderMeasuring {
         double sum = 0;
         for (const gpu::PassTime& time : *times) {
             passOf(which, time.name).values.push_back(time.milliseconds);
+            if (time.counts) which.counts.emplace_back(time.name, *time.counts);
             sum += time.milliseconds;
         }
         which.wall.values.push_back(1e3 * watch.seconds());
@@ -395,6 +401,46 @@ std::vector<Geometry> geometryOf(const RenderCase& which) {
     return rows;
 }
 
+/// One frame of each kind of ribbon that a device's own stages draw, on a device that counts what they do:
+/// apart, since counting takes time.
+Status countStages(gpu::DeviceOptions wanted, RenderBench& bench) {
+    if (!bench.device.statistics) {
+        bench.notes.emplace_back("vertices: the device has no pipeline statistics");
+        return {};
+    }
+    wanted.statistics = true;
+    const auto device = gpu::createDevice(wanted);
+    if (!device) return tl::unexpected(device.error());
+    RenderMeasuring counting(**device, 1);
+    for (RenderCase& which : bench.cases) {
+        if (!which.name.starts_with("ribbons: ") || which.options.ribbons == render::Ribbons::compute)
+            continue;
+        RenderCase counted = which;
+        if (auto status = counting.run(counted); !status) return status;
+        which.counts = std::move(counted.counts);
+        which.meshTriangles = counted.meshTriangles;
+    }
+    return {};
+}
+
+/// What a case's hair takes in the pass that draws it; nothing where it was not counted.
+std::optional<gpu::PassCounts> hairCounts(const RenderCase& which) {
+    const auto found = std::ranges::find(which.counts, std::string(render::passName(render::Pass::draw)),
+                                         &std::pair<std::string, gpu::PassCounts>::first);
+    if (found == which.counts.end()) return std::nullopt;
+    gpu::PassCounts counts = found->second;
+    counts.primitives -= which.meshTriangles;
+    counts.vertices -= 3 * which.meshTriangles;
+    counts.vertexRuns -= std::min(counts.vertexRuns, 3 * which.meshTriangles);
+    return counts;
+}
+
+/// Vertices by the thesis' 3f + 1 (Section 6.2) for patches cut f times along: by Euler's formula each then
+/// has 4f − 2 triangles, which gives f.
+std::uint64_t thesisVertices(const gpu::PassCounts& counts) {
+    return 3 * ((counts.primitives + 2 * counts.patches) / 4) + counts.patches;
+}
+
 std::string inWords(const Measurement& m) {
     const auto [minimum, maximum] = std::ranges::minmax(m.values);
     return fmt::format("{:.3g} ({:.3g}…{:.3g})", m.median(), minimum, maximum);
@@ -444,11 +490,12 @@ Result<RenderBench> measureAll(const Options& options) {
         }
         if (options.progress) options.progress("drawing", i + 1, bench.cases.size());
     }
+    if (auto status = countStages(wanted, bench); !status) return tl::unexpected(status.error());
     return bench;
 }
 
 Report reportOf(const RenderBench& bench) {
-    Report rows = Report::array(), geometry = Report::array();
+    Report rows = Report::array(), geometry = Report::array(), stages = Report::array();
     for (const RenderCase& which : bench.cases) {
         const auto row = [&](const Measurement& measurement, const std::string& what) {
             Report report = rowOf(measurement);
@@ -466,6 +513,17 @@ Report reportOf(const RenderBench& bench) {
         rows.push_back(std::move(whole));
         rows.push_back(row(which.wall, "wall"));
         for (const Measurement& pass : which.passes) rows.push_back(row(pass, pass.name));
+        if (const auto counts = hairCounts(which)) {
+            Report stage{{"name", which.name},
+                         {"vertices", counts->vertices},
+                         {"vertex_runs", counts->vertexRuns},
+                         {"patches", counts->patches},
+                         {"evaluations", counts->evaluations},
+                         {"primitives", counts->primitives},
+                         {"fragments", counts->fragments}};
+            if (counts->patches > 0) stage["evaluations_by_formula"] = thesisVertices(*counts);
+            stages.push_back(std::move(stage));
+        }
         for (const Geometry& made : geometryOf(which))
             geometry.push_back({{"name", which.name},
                                 {"passes", made.passes},
@@ -478,7 +536,8 @@ Report reportOf(const RenderBench& bench) {
                   {"segments", kBenchSegments},
                   {"notes", bench.notes},
                   {"rows", std::move(rows)},
-                  {"geometry", std::move(geometry)}};
+                  {"geometry", std::move(geometry)},
+                  {"stages", std::move(stages)}};
 }
 
 std::string markdownOf(const RenderBench& bench, const std::string& command) {
@@ -509,6 +568,23 @@ std::string markdownOf(const RenderBench& bench, const std::string& command) {
         for (const Geometry& row : geometryOf(c))
             fmt::format_to(out, "| {} | {} | {:.3g} | {:.3g} | {:.1f} % |\n", c.name, row.passes, row.once,
                            row.each, 100 * (1 - row.once / row.each));
+    }
+    if (std::ranges::any_of(bench.cases, [](const RenderCase& c) { return hairCounts(c).has_value(); })) {
+        fmt::format_to(
+            out,
+            "\n## Stages, counted\n\nPipeline statistics of the pass that draws hair, without the "
+            "head's vertices and triangles. A patch that is cut f times has 3f + 1 vertices "
+            "(thesis, 6.2) and 4f − 2 triangles.\n\n"
+            "| case | vertices | vertex shader | patches | domain shader | by 3f + 1 | triangles | "
+            "fragments, with the head's |\n|---|---|---|---|---|---|---|---|\n");
+        for (const RenderCase& c : bench.cases) {
+            const auto counts = hairCounts(c);
+            if (!counts) continue;
+            fmt::format_to(out, "| {} | {} | {} | {} | {} | {} | {} | {} |\n", c.name, counts->vertices,
+                           counts->vertexRuns, counts->patches, counts->evaluations,
+                           counts->patches > 0 ? fmt::to_string(thesisVertices(*counts)) : "–",
+                           counts->primitives, counts->fragments);
+        }
     }
     fmt::format_to(out, "\n## Passes\n\n| case | pass | ms |\n|---|---|---|\n");
     for (const RenderCase& c : bench.cases) {

@@ -183,6 +183,8 @@ struct DeviceOptions {
     /// With the checks of core/gpu/validation.h and those of the graphics API; with Vulkan an error where the
     /// latter are not installed, with Direct3D 11 as far as DeviceInfo::validates says.
     bool validation = false;
+    /// Passes say what their stages did (PassTime::counts), as far as DeviceInfo::statistics says.
+    bool statistics = false;
     double timeoutSeconds = 300;  ///< after which waiting for the device is an error
 };
 

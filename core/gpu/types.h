@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -310,13 +311,36 @@ struct DeviceInfo {
     std::uint32_t maxTextureSize = 0;  ///< pixels along one side
     std::uint64_t memoryBytes = 0;     ///< of the largest device-local heap
     WaveSizes waves;
+    bool statistics = false;  ///< counts what passes did, where DeviceOptions::statistics asks for it
 
     std::uint32_t maxSamples() const { return sampleCounts.empty() ? 1 : sampleCounts.back(); }
+};
+
+/// What the stages of a graphics pass did (pipeline statistics of both graphics APIs).
+struct PassCounts {
+    std::uint64_t vertices = 0;     ///< that the input assembler handed on
+    std::uint64_t vertexRuns = 0;   ///< of the vertex shader
+    std::uint64_t patches = 0;      ///< that the hull shader worked on
+    std::uint64_t evaluations = 0;  ///< runs of the domain shader
+    std::uint64_t primitives = 0;   ///< that came to the clipper, from tessellation, too
+    std::uint64_t fragments = 0;    ///< runs of the pixel shader
+
+    PassCounts& operator+=(const PassCounts& other) {
+        vertices += other.vertices;
+        vertexRuns += other.vertexRuns;
+        patches += other.patches;
+        evaluations += other.evaluations;
+        primitives += other.primitives;
+        fragments += other.fragments;
+        return *this;
+    }
 };
 
 struct PassTime {
     std::string name;
     double milliseconds = 0;  ///< on the device
+    /// Of graphics passes, where they were asked for and the device has them.
+    std::optional<PassCounts> counts = {};
 };
 
 }  // namespace hairloom::gpu

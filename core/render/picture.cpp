@@ -22,6 +22,7 @@ class PassSums {
                 sums_.push_back(time);
             } else {
                 same->milliseconds += time.milliseconds;
+                if (same->counts && time.counts) *same->counts += *time.counts;
             }
         }
     }

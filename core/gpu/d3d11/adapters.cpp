@@ -122,7 +122,7 @@ DeviceInfo describe(IDXGIAdapter1* adapter, std::uint32_t index) {
     }
     info.usable = true;
     // Feature level 11_0 has these wherever it is.
-    info.tessellation = info.depthClamp = info.wireframe = info.presents = true;
+    info.tessellation = info.depthClamp = info.wireframe = info.presents = info.statistics = true;
     info.sampleCounts = sampleCounts(context.device.Get());
     info.timestampPeriodNs = timestampPeriod(context);
     Context checked;

@@ -32,6 +32,14 @@ void CommandListImpl::setTimestamp(ComPtr<ID3D11Query>& query) {
     });
 }
 
+void CommandListImpl::beginStatistics(ComPtr<ID3D11Query>& query) {
+    if (!context_->countsWork) return;
+    constexpr D3D11_QUERY_DESC kStatistics{D3D11_QUERY_PIPELINE_STATISTICS, 0};
+    const HRESULT r = context_->device->CreateQuery(&kStatistics, &query);
+    if (FAILED(r)) return wrong(context_->failed(r, "counting what a pass does").value());
+    step([handle = query.Get()](ID3D11DeviceContext& context) { context.Begin(handle); });
+}
+
 void CommandListImpl::recordUpdate(const BufferPtr& target, std::uint64_t offset,
                                    std::span<const std::byte> bytes) {
     auto& buffer = static_cast<BufferImpl&>(*target);

@@ -17,10 +17,10 @@ struct RowCopy {
     std::uint64_t offset = 0;
 };
 
-/// The two timestamps of a pass.
+/// The two timestamps of a pass, and what its stages did, where that was asked for.
 struct PassQueries {
     std::string name;
-    ComPtr<ID3D11Query> begin, end;
+    ComPtr<ID3D11Query> begin, end, statistics;
 };
 
 /// What one list holds until the device has run it.
@@ -71,6 +71,7 @@ class CommandListImpl final : public CheckedList {
 
     void step(Recording::Step work) { recording_.steps.push_back(std::move(work)); }
     void setTimestamp(ComPtr<ID3D11Query>& query);
+    void beginStatistics(ComPtr<ID3D11Query>& query);
     void setTargets();
     // bindings.cpp
     bool collectViews(std::span<const std::shared_ptr<const ShaderImpl>> shaders);

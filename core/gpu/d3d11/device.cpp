@@ -29,6 +29,7 @@ Result<std::unique_ptr<gpu::Device>> openDevice(std::uint32_t index, const Devic
     auto context = std::make_shared<Context>();
     context->info = info;
     context->timeoutSeconds = options.timeoutSeconds;
+    context->countsWork = options.statistics;
     if (auto status = openDevice(adapter, options.validation && info.validates, *context); !status) {
         return tl::unexpected(status.error());
     }

@@ -77,7 +77,9 @@ void CommandListImpl::recordPassBegin() {
     queries.name = passDesc().name;
     setTimestamp(queries.begin);
     recording_.passes.push_back(std::move(queries));
-    if (passKind() == PassKind::Graphics) setTargets();
+    if (passKind() != PassKind::Graphics) return;
+    setTargets();
+    beginStatistics(recording_.passes.back().statistics);
 }
 
 void CommandListImpl::setTargets() {
@@ -103,6 +105,8 @@ void CommandListImpl::setTargets() {
 }
 
 void CommandListImpl::recordPassEnd() {
+    if (ID3D11Query* const statistics = recording_.passes.back().statistics.Get())
+        step([statistics](ID3D11DeviceContext& context) { context.End(statistics); });
     step([](ID3D11DeviceContext& context) { context.ClearState(); });
     for (const ColourTarget& target : passDesc().colour) {
         if (target.resolve == nullptr) continue;

@@ -19,6 +19,7 @@ struct Context {
     ComPtr<ID3D11InfoQueue> messages;  ///< of the debug layer, where it was asked for
     DeviceInfo info;
     double timeoutSeconds = 0;
+    bool countsWork = false;         ///< DeviceOptions::statistics
     std::atomic<bool> lost = false;  ///< may be noted by the thread that makes shaders
 
     /// Notes a lost device; every later call fails at once.

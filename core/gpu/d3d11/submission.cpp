@@ -101,6 +101,13 @@ Status SubmissionImpl::finish() {
         }
         const double ticks = known && end > begin ? static_cast<double>(end - begin) : 0;
         times_.push_back({pass.name, ticks * context_->info.timestampPeriodNs * 1e-6});
+        D3D11_QUERY_DATA_PIPELINE_STATISTICS counts{};
+        if (pass.statistics &&
+            context_->immediate->GetData(pass.statistics.Get(), &counts, sizeof(counts), 0) == S_OK) {
+            times_.back().counts =
+                PassCounts{counts.IAVertices,    counts.VSInvocations, counts.HSInvocations,
+                           counts.DSInvocations, counts.CInvocations,  counts.PSInvocations};
+        }
     }
     passes_.clear();
     done_ = true;

@@ -32,6 +32,7 @@ Recording::~Recording() {
     vkDestroyFence(context->device, fence, nullptr);
     for (VkDescriptorPool p : descriptorPools) vkDestroyDescriptorPool(context->device, p, nullptr);
     vkDestroyQueryPool(context->device, queries, nullptr);
+    vkDestroyQueryPool(context->device, statistics, nullptr);
     vkDestroyCommandPool(context->device, pool, nullptr);
 }
 
@@ -57,12 +58,20 @@ Result<std::unique_ptr<Recording>> Recording::create(const ContextPtr& context) 
         r = vkCreateQueryPool(context->device, &query, nullptr, &recording->queries);
         if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
     }
+    if (context->countsWork) {
+        auto query = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+        query.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
+        query.queryCount = kMaxPasses;
+        query.pipelineStatistics = kStatistics;
+        r = vkCreateQueryPool(context->device, &query, nullptr, &recording->statistics);
+        if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
+    }
     return recording;
 }
 
 Status Recording::reset() {
     retained.clear();
-    passNames.clear();
+    passes.clear();
     descriptorPoolsUsed = 0;
     VkResult r = vkResetFences(context->device, 1, &fence);
     if (r == VK_SUCCESS) r = vkResetCommandPool(context->device, pool, 0);
@@ -128,10 +137,24 @@ Result<CommandListImpl::Staged> CommandListImpl::stage(std::span<const std::byte
 
 void CommandListImpl::writeTimestamp(bool end) {
     if (recording_->queries == VK_NULL_HANDLE) return;
-    const auto query = static_cast<std::uint32_t>(2 * (recording_->passNames.size() - 1) + (end ? 1 : 0));
+    const auto query = static_cast<std::uint32_t>(2 * (recording_->passes.size() - 1) + (end ? 1 : 0));
     if (!end) vkCmdResetQueryPool(recording_->commands, recording_->queries, query, 2);
     vkCmdWriteTimestamp2(recording_->commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recording_->queries,
                          query);
+}
+
+void CommandListImpl::beginStatistics() {
+    if (recording_->statistics == VK_NULL_HANDLE) return;
+    const auto query = static_cast<std::uint32_t>(recording_->passes.size() - 1);
+    recording_->passes.back().counted = true;
+    vkCmdResetQueryPool(recording_->commands, recording_->statistics, query, 1);
+    vkCmdBeginQuery(recording_->commands, recording_->statistics, query, 0);
+}
+
+void CommandListImpl::endStatistics() {
+    if (recording_->statistics == VK_NULL_HANDLE) return;
+    vkCmdEndQuery(recording_->commands, recording_->statistics,
+                  static_cast<std::uint32_t>(recording_->passes.size() - 1));
 }
 
 void CommandListImpl::recordUpdate(const BufferPtr& target, std::uint64_t offset,

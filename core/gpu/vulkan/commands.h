@@ -7,6 +7,16 @@
 
 namespace hairloom::gpu::vulkan {
 
+/// What PassCounts has.
+inline constexpr VkQueryPipelineStatisticFlags kStatistics =
+    VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_CONTROL_SHADER_PATCHES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_EVALUATION_SHADER_INVOCATIONS_BIT;
+inline constexpr std::size_t kStatisticsCount = 6;
+
 /// What one list owns until the device has run it.
 struct Recording {
     /// Errors: out of memory.
@@ -23,11 +33,16 @@ struct Recording {
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
+    VkQueryPool statistics = VK_NULL_HANDLE;  ///< where DeviceOptions asked for it: one a graphics pass
     std::vector<VkDescriptorPool> descriptorPools;
     std::size_t descriptorPoolsUsed = 0;
     std::shared_ptr<BufferImpl> arena;  ///< the first upload memory
     std::vector<std::shared_ptr<const void>> retained;
-    std::vector<std::string> passNames;  ///< pass i has the queries 2i and 2i + 1
+    struct Pass {
+        std::string name;
+        bool counted = false;  ///< it has a query of statistics
+    };
+    std::vector<Pass> passes;  ///< pass i has the queries 2i and 2i + 1, and i of statistics
 
   private:
     explicit Recording(ContextPtr c) : context(std::move(c)) {}
@@ -99,6 +114,8 @@ class CommandListImpl final : public CheckedList {
     /// Copies bytes into upload memory at a multiple of 256.
     Result<Staged> stage(std::span<const std::byte> bytes);
     void writeTimestamp(bool end);
+    void beginStatistics();
+    void endStatistics();
 
     // bindings.cpp
     VkDescriptorSet makeSet(const PipelineCore& pipeline, VkPipelineStageFlags2 stages);

@@ -31,6 +31,7 @@ Status openDevice(Context& context) {
     f2.features.tessellationShader = offered.tessellationShader;
     f2.features.depthClamp = offered.depthClamp;
     f2.features.fillModeNonSolid = offered.fillModeNonSolid;
+    f2.features.pipelineStatisticsQuery = context.countsWork ? VK_TRUE : VK_FALSE;
     f2.features.independentBlend = offered.independentBlend;
     f2.features.sampleRateShading = offered.sampleRateShading;
     f2.features.fragmentStoresAndAtomics = offered.fragmentStoresAndAtomics;
@@ -84,6 +85,7 @@ Result<std::unique_ptr<gpu::Device>> DeviceImpl::create(std::uint32_t index, con
     context->info = info;
     context->physical = (*physical)[index];
     context->timeoutSeconds = options.timeoutSeconds;
+    context->countsWork = options.statistics && info.statistics;
     if (auto status = openDevice(*context); !status) return tl::unexpected(status.error());
     return std::unique_ptr<gpu::Device>(std::make_unique<DeviceImpl>(std::move(context)));
 }

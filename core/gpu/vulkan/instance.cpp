@@ -251,6 +251,7 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surface
     }
     info.tessellation = f2.features.tessellationShader == VK_TRUE && limits.maxTessellationPatchSize >= 32;
     info.depthClamp = f2.features.depthClamp == VK_TRUE;
+    info.statistics = f2.features.pipelineStatisticsQuery == VK_TRUE;
     info.wireframe = f2.features.fillModeNonSolid == VK_TRUE;
     info.presents = surfaces && hasSwapChainExtension(physical);
     info.timestampPeriodNs =

@@ -29,7 +29,7 @@ VkBuffer handleOf(const BufferPlace& place) {
 }  // namespace
 
 void CommandListImpl::recordPassBegin() {
-    recording_->passNames.push_back(passDesc().name);
+    recording_->passes.push_back({passDesc().name});
     draws_.clear();
     if (passKind() == PassKind::Compute) return writeTimestamp(false);
     useTargets();
@@ -91,9 +91,11 @@ void CommandListImpl::recordPassEnd() {
     if (passKind() == PassKind::Graphics) {
         barriers_.flush(recording_->commands);
         writeTimestamp(false);
+        beginStatistics();
         beginRendering();
         for (const DrawCall& call : draws_) replay(call);
         vkCmdEndRendering(recording_->commands);
+        endStatistics();
     }
     writeTimestamp(true);
 }

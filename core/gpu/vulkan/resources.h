@@ -22,6 +22,7 @@ struct Context {
     DeviceInfo info;
     Allocator allocator;
     double timeoutSeconds = 0;
+    bool countsWork = false;         ///< DeviceOptions::statistics, where the device has them
     std::atomic<bool> lost = false;  ///< may be noted by the thread that makes shaders
 
     Context() = default;

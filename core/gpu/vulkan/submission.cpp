@@ -1,11 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Submitting, waiting, timestamps and reading back.
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "core/gpu/vulkan/device.h"
 
 namespace hairloom::gpu::vulkan {
+namespace {
+
+/// In the order of the bits of kStatistics, as Vulkan writes them.
+PassCounts countsOf(VkDevice device, VkQueryPool pool, std::uint32_t query) {
+    std::array<std::uint64_t, kStatisticsCount> all{};
+    vkGetQueryPoolResults(device, pool, query, 1, sizeof(all), all.data(), sizeof(all),
+                          VK_QUERY_RESULT_64_BIT);
+    return {all[0], all[1], all[4], all[5], all[2], all[3]};
+}
+
+}  // namespace
 
 SubmissionImpl::~SubmissionImpl() {
     if (started_ && !done_) vkDeviceWaitIdle(context_->device);
@@ -31,14 +43,16 @@ void SubmissionImpl::finish() {
     if (done_) return;
     done_ = true;
     const Recording& last = *recordings_.back();
-    std::vector<std::uint64_t> ticks(2 * last.passNames.size(), 0);
+    std::vector<std::uint64_t> ticks(2 * last.passes.size(), 0);
     if (last.queries != VK_NULL_HANDLE && !ticks.empty()) {
         vkGetQueryPoolResults(context_->device, last.queries, 0, static_cast<std::uint32_t>(ticks.size()),
                               ticks.size() * 8, ticks.data(), 8, VK_QUERY_RESULT_64_BIT);
     }
-    for (std::size_t i = 0; i < last.passNames.size(); ++i) {
+    for (std::size_t i = 0; i < last.passes.size(); ++i) {
         const double spent = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]);
-        times_.push_back({last.passNames[i], spent * context_->info.timestampPeriodNs * 1e-6});
+        times_.push_back({last.passes[i].name, spent * context_->info.timestampPeriodNs * 1e-6});
+        if (last.passes[i].counted)
+            times_.back().counts = countsOf(context_->device, last.statistics, static_cast<std::uint32_t>(i));
     }
     if (const auto store = store_.lock()) {
         for (auto& recording : recordings_) store->giveBack(std::move(recording));
