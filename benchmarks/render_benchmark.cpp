@@ -278,6 +278,7 @@ class CaseList {
         vary("shadows: absorption", [](auto& o) { o.shadows = render::Shadows::absorption; });
         vary("shadows: opacity maps", [](auto& o) { o.shadows = render::Shadows::opacityMaps; });
         vary("shadows: deep opacity maps", [](auto&) {});
+        vary("shadows: adaptive, 8 nodes", [](auto& o) { o.shadows = render::Shadows::adaptive; });
         vary("ribbons: compute", [](auto& o) { o.ribbons = render::Ribbons::compute; });
         vary("ribbons: strip", [](auto& o) { o.ribbons = render::Ribbons::strip; });
         if (device_.tessellation) {

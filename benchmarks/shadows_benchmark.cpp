@@ -53,6 +53,13 @@ Kind sliced(std::uint32_t slices) {
     return kind;
 }
 
+Kind noded(std::uint32_t nodes) {
+    Kind kind{fmt::format("adaptive, {} nodes", nodes), {}, {}};
+    kind.options.shadows = Shadows::adaptive;
+    kind.options.shadowNodes = nodes;
+    return kind;
+}
+
 /// Ends of layers as parts of the depth that hair takes up. Layers that end where the next begins are none.
 std::vector<Kind> kinds() {
     using render::LayerEnds, render::ShadowFilter;
@@ -78,6 +85,7 @@ std::vector<Kind> kinds() {
         kind.inFigure = kind.layers ? isUsual : kind.options.layerEnds != LayerEnds::growing;
     }
     for (const std::uint32_t slices : {4u, 8u, 16u}) all.push_back(sliced(slices));
+    for (const std::uint32_t nodes : {4u, 8u, 16u}) all.push_back(noded(nodes));
     Kind absorption{"absorption by depth", {}, {}};
     absorption.options.shadows = Shadows::absorption;
     all.push_back(absorption);
@@ -151,7 +159,7 @@ Status measureHead(gpu::Device& device, render::RenderScene scene, ShadowBench& 
 
 /// The first hair's depth, and the layers.
 std::uint32_t bytesOf(const render::RenderOptions& options) {
-    const bool first = options.shadows != Shadows::opacityMaps;
+    const bool first = options.shadows == Shadows::deepOpacity || options.shadows == Shadows::absorption;
     return 4 * ((first ? 1 : 0) + render::opacityWords(options.shadows, render::layerCount(options)));
 }
 
@@ -263,7 +271,8 @@ std::string markdownOf(const ShadowBench& bench, const std::string& command) {
         "Root mean square error of the transmittance exp(−n/2) of {} points in {} hairs, against n counted "
         "along beams of\n"
         "{:.0f} mm across (mean n {:.2f}); bytes of a texel are those of the first hair's depth and of its "
-        "layers, 16 bits each.\n"
+        "layers, 16 bits each, or of nodes, 32 bits\n"
+        "each, without the lists that these come from (12 bytes a piece of hair in a texel).\n"
         "Times are of maps of {}², of the same hair, and of looking them up. {}. `{}`\n\n",
         bench.points, bench.hairs, 2000 * render::kShadowFootprint, bench.fibres, kTimed, bench.device,
         command);
@@ -286,10 +295,12 @@ std::string figureOf(const ShadowBench& bench) {
     plot.y = {.title = "error of the transmittance", .low = 0};
     for (const ShadowRow& row : bench.rows) {
         if (!row.inFigure) continue;
-        const bool isDeep = row.name.starts_with("deep");
+        const bool isDeep = row.name.starts_with("deep"), isAdaptive = row.name.starts_with("adaptive");
         Series series{.name = row.name,
-                      .marker = isDeep ? Marker::Circle : Marker::Square,
-                      .line = isDeep ? LineStyle::Solid : LineStyle::Dashed};
+                      .marker = isDeep       ? Marker::Circle
+                                : isAdaptive ? Marker::TriangleUp
+                                             : Marker::Square,
+                      .line = isDeep || isAdaptive ? LineStyle::Solid : LineStyle::Dashed};
         for (std::size_t i = 0; i < sides.size(); ++i) {
             if (!std::isnan(row.errors[i])) series.points.push_back({sides[i], row.errors[i]});
         }

@@ -35,7 +35,8 @@ const std::map<std::string, AntiAliasing> kAntiAliasing{{"auto", {0}},
 const std::map<std::string, render::Shadows> kShadows{{"none", render::Shadows::none},
                                                       {"dom", render::Shadows::deepOpacity},
                                                       {"absorption", render::Shadows::absorption},
-                                                      {"opacity", render::Shadows::opacityMaps}};
+                                                      {"opacity", render::Shadows::opacityMaps},
+                                                      {"adaptive", render::Shadows::adaptive}};
 const std::map<std::string, render::ShadowFilter> kShadowFilters{{"off", render::ShadowFilter::off},
                                                                  {"3x3", render::ShadowFilter::three},
                                                                  {"5x5", render::ShadowFilter::five}};
@@ -97,6 +98,7 @@ void takeShadows(const RenderJobOptions& options, const ShadowSettings& project,
     picture.shadowResolution = options.shadowResolution.value_or(picture.shadowResolution);
     picture.shadowLayers = options.shadowLayers.value_or(picture.shadowLayers);
     picture.shadowSlices = options.shadowSlices.value_or(picture.shadowSlices);
+    picture.shadowNodes = options.shadowNodes.value_or(picture.shadowNodes);
     picture.layerGrowth = options.layerGrowth.value_or(picture.layerGrowth);
     picture.headAbsorption = options.headAbsorption.value_or(picture.headAbsorption);
     picture.shadowBlur = options.shadowBlur.value_or(picture.shadowBlur);
@@ -169,10 +171,10 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     job.add_option("--scatter", options->scatter,
                    "Light scattered by other hairs: single ignores it, dual adds it. Not for kajiya")
         ->check(CLI::IsMember({"single", "dual"}));
-    job.add_option(
-           "--shadow", options->shadow,
-           "Hair shadows: deep opacity maps, absorption by depth, opacity maps at fixed depths, or none "
-           "(default: the view's, or the project's)")
+    job.add_option("--shadow", options->shadow,
+                   "Hair shadows: deep opacity maps, absorption by depth, opacity maps at fixed depths, "
+                   "adaptive maps "
+                   "with nodes where light changes most, or none (default: the view's, or the project's)")
         ->check(CLI::IsMember(namesOf(kShadows)));
     job.add_option("--shadow-lights", options->shadowLights,
                    "Maximum number of lights with shadow maps. Area lights and bright parts of images are "
@@ -200,6 +202,9 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     job.add_option("--shadow-slices", options->shadowSlices,
                    "Slices of opacity maps, evenly spaced (default: the view's, or the project's)")
         ->check(CLI::Range(std::uint32_t{1}, render::kMaxShadowSlices));
+    job.add_option("--shadow-nodes", options->shadowNodes,
+                   "Nodes of each texel's curve in adaptive maps (default: the view's, or the project's)")
+        ->check(CLI::Range(render::kMinShadowNodes, render::kMaxShadowNodes));
     job.add_option("--subdivisions", options->subdivisions,
                    "Curve segments per segment of a strand (default: the view's, or 2)")
         ->check(CLI::Range(std::uint32_t{1}, render::kMaxSubdivisions));

@@ -38,7 +38,7 @@ struct RenderJobOptions {
     float detail = 0;
     std::optional<std::uint32_t> shadowResolution;
     std::string shadowFilter;
-    std::optional<std::uint32_t> shadowLayers, shadowSlices;
+    std::optional<std::uint32_t> shadowLayers, shadowSlices, shadowNodes;
     std::string layerEnds;
     std::optional<float> layerGrowth;
     std::optional<std::uint32_t> subdivisions;

@@ -8,7 +8,7 @@
 namespace hairloom {
 
 /// How hair stands between a point and a light (render::Shadows).
-enum class ShadowKind : std::uint32_t { deepOpacity, absorption, opacityMaps, none };
+enum class ShadowKind : std::uint32_t { deepOpacity, absorption, opacityMaps, adaptive, none };
 
 /// Texels that are averaged (render::ShadowFilter).
 enum class ShadowFiltering : std::uint32_t { off, three, five };
@@ -25,6 +25,7 @@ struct ShadowSettings {
     ShadowLayerEnds layerEnds = ShadowLayerEnds::early;
     float layerGrowth = 2.0f;
     std::uint32_t slices = 4;
+    std::uint32_t nodes = 8;
     float headAbsorption = 0.0f;
     float blur = 0.0f;
 };

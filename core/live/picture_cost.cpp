@@ -57,7 +57,8 @@ class Candidates {
                          {{"none", Shadows::none},
                           {"absorption", Shadows::absorption},
                           {"opacityMaps", Shadows::opacityMaps},
-                          {"deepOpacity", Shadows::deepOpacity}});
+                          {"deepOpacity", Shadows::deepOpacity},
+                          {"adaptive", Shadows::adaptive}});
         if (now.picture.shadows != Shadows::none) {
             using render::ShadowFilter;
             numbers("shadowResolution", {256, 512, 1024, 2048}, &render::RenderOptions::shadowResolution);
@@ -75,6 +76,9 @@ class Candidates {
         }
         if (now.picture.shadows == Shadows::opacityMaps) {
             numbers("shadowSlices", {4, 8, 16}, &render::RenderOptions::shadowSlices);
+        }
+        if (now.picture.shadows == Shadows::adaptive) {
+            numbers("shadowNodes", {4, 8, 16}, &render::RenderOptions::shadowNodes);
         }
         if (scatters) {
             add("scattering", "single", [](Settings& s) { s.scattering = render::Scattering::single; });

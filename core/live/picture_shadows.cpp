@@ -12,6 +12,8 @@ render::Shadows kindOf(ShadowKind kind) {
             return render::Shadows::absorption;
         case ShadowKind::opacityMaps:
             return render::Shadows::opacityMaps;
+        case ShadowKind::adaptive:
+            return render::Shadows::adaptive;
         case ShadowKind::none:
             break;
     }
@@ -35,6 +37,7 @@ void takeShadows(const ShadowSettings& project, render::RenderOptions& options) 
     options.layerEnds = static_cast<render::LayerEnds>(project.layerEnds);
     options.layerGrowth = project.layerGrowth;
     options.shadowSlices = project.slices;
+    options.shadowNodes = project.nodes;
     options.headAbsorption = project.headAbsorption;
     options.shadowBlur = project.blur;
 }
@@ -48,6 +51,7 @@ void takeShadows(const ShadowSettings& project, const ViewFile& view, render::Re
     options.layerEnds = view.layerEnds.value_or(options.layerEnds);
     options.layerGrowth = view.layerGrowth.value_or(options.layerGrowth);
     options.shadowSlices = view.shadowSlices.value_or(options.shadowSlices);
+    options.shadowNodes = view.shadowNodes.value_or(options.shadowNodes);
     options.headAbsorption = view.headAbsorption.value_or(options.headAbsorption);
     options.shadowBlur = view.shadowBlur.value_or(options.shadowBlur);
 }

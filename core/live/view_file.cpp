@@ -203,7 +203,7 @@ Result<ViewFile> parseViewFile(const std::string& path, std::string_view text,
         view.shadowFilter = static_cast<render::ShadowFilter>(reader.choice("shadow_filter", kFilters));
     }
     if (reader.has("shadow")) {
-        constexpr std::string_view kKinds[] = {"none", "dom", "absorption", "opacity"};
+        constexpr std::string_view kKinds[] = {"none", "dom", "absorption", "opacity", "adaptive"};
         view.shadows = static_cast<render::Shadows>(reader.choice("shadow", kKinds));
     }
     if (reader.has("shadow_layers"))
@@ -219,6 +219,9 @@ Result<ViewFile> parseViewFile(const std::string& path, std::string_view text,
     if (reader.has("shadow_slices"))
         view.shadowSlices =
             static_cast<std::uint32_t>(reader.count("shadow_slices", 1, render::kMaxShadowSlices));
+    if (reader.has("shadow_nodes"))
+        view.shadowNodes = static_cast<std::uint32_t>(
+            reader.count("shadow_nodes", render::kMinShadowNodes, render::kMaxShadowNodes));
     if (reader.has("look")) view.look = reader.string("look");
     if (reader.has("subdivisions"))
         view.subdivisions =

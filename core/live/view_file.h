@@ -56,7 +56,7 @@ struct ViewFile {
     std::optional<render::Shadows> shadows;
     std::optional<std::uint32_t> shadowResolution;  ///< pixels
     std::optional<render::ShadowFilter> shadowFilter;
-    std::optional<std::uint32_t> shadowLayers, shadowSlices;
+    std::optional<std::uint32_t> shadowLayers, shadowSlices, shadowNodes;
     std::optional<render::LayerEnds> layerEnds;
     std::optional<float> layerGrowth;
     std::optional<std::uint32_t> subdivisions;  ///< likewise

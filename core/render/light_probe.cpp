@@ -33,6 +33,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     facts.hair = !state.scene.batches.empty();
     facts.environment = !state.environment.dark();
     facts.lights = facts.shadowLights = static_cast<std::uint32_t>(state.lights.size());
+    facts.fragments = fragmentsThatFit(options, device.info());
     state.plan = planRender(facts, options, 1);
     if (const auto fitted = state.targets.fit(device, state.plan); !fitted)
         return tl::unexpected(fitted.error());
@@ -79,17 +80,20 @@ Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const 
     return results;
 }
 
-Result<OpacityTexels> readOpacity(gpu::Device& device, const RenderScene& scene,
-                                  const RenderOptions& options) {
+namespace {
+
+/// The words of a map of hair: `state` is what they were made with, `width` words' texels in a row.
+struct MapWords {
+    std::vector<std::uint32_t> all;
+    std::size_t ofTexel = 0, width = 0;
+};
+
+Result<MapWords> readMap(gpu::Device& device, const RenderScene& scene, const RenderOptions& options,
+                         RendererState& state) {
     const auto failed = [](const Error& error) { return tl::unexpected(error); };
-    OpacityTexels texels{options.shadowResolution, layerCount(options), {}, {}};
-    if (texels.layers == 0) return fail("these shadows have no opacity map", "deep opacity or opacity maps");
-    RendererState state(device);
     if (auto status = prepare(device, scene, options, state); !status) return failed(status.error());
-    const ShadowAtlas atlas = [&] {
-        fitViews(state, false);
-        return lightAtlas(state);
-    }();
+    fitViews(state, false);
+    const ShadowAtlas atlas = lightAtlas(state);
     if (state.scene.batches.empty() || atlas.views.empty())
         return fail("there is no hair in the light, and so no map of it", "hair, and a light with shadows");
     auto list = device.createCommandList();
@@ -100,18 +104,53 @@ Result<OpacityTexels> readOpacity(gpu::Device& device, const RenderScene& scene,
     if (auto status = state.pipelines.takeStatus(); !status) return failed(status.error());
     const auto submission = device.submit(std::move(*list));
     if (!submission) return failed(submission.error());
-    const std::size_t words = opacityWords(options.shadows, texels.layers);
-    std::vector<std::uint32_t> all(words * atlas.width() * texels.side);
-    if (auto read =
-            device.readBuffer(state.targets[BufferId::opacity], 0, std::as_writable_bytes(std::span(all)));
+    MapWords words{{}, opacityWords(options.shadows, layerCount(options)), atlas.width()};
+    words.all.resize(words.ofTexel * words.width * atlas.side);
+    if (auto read = device.readBuffer(state.targets[BufferId::opacity], 0,
+                                      std::as_writable_bytes(std::span(words.all)));
         !read)
         return failed(read.error());
+    return words;
+}
+
+}  // namespace
+
+Result<NodeTexels> readNodes(gpu::Device& device, const RenderScene& scene, const RenderOptions& options) {
+    if (options.shadows != Shadows::adaptive)
+        return fail("these shadows have no nodes", "adaptive shadow maps");
+    RendererState state(device);
+    const auto words = readMap(device, scene, options, state);
+    if (!words) return tl::unexpected(words.error());
+    NodeTexels texels{options.shadowResolution, layerCount(options), {}, 0, 0};
     for (std::size_t i = 0; i < std::size_t{texels.side} * texels.side; ++i) {
-        const std::size_t texel = words * (i / texels.side * atlas.width() + i % texels.side);
+        const std::size_t texel = words->ofTexel * (i / texels.side * words->width + i % texels.side);
+        for (std::size_t node = 0; node < texels.nodes; ++node)
+            texels.words.push_back(words->all[texel + node]);
+    }
+    std::array<std::uint32_t, 2> counts{};
+    if (auto read = device.readBuffer(state.targets[BufferId::fragmentCounts], 0,
+                                      std::as_writable_bytes(std::span(counts)));
+        !read)
+        return tl::unexpected(read.error());
+    texels.found = counts[0];
+    texels.listed = counts[1];
+    return texels;
+}
+
+Result<OpacityTexels> readOpacity(gpu::Device& device, const RenderScene& scene,
+                                  const RenderOptions& options) {
+    OpacityTexels texels{options.shadowResolution, layerCount(options), {}, {}};
+    if (texels.layers == 0 || options.shadows == Shadows::adaptive)
+        return fail("these shadows have no opacity map", "deep opacity or opacity maps");
+    RendererState state(device);
+    const auto words = readMap(device, scene, options, state);
+    if (!words) return tl::unexpected(words.error());
+    for (std::size_t i = 0; i < std::size_t{texels.side} * texels.side; ++i) {
+        const std::size_t texel = words->ofTexel * (i / texels.side * words->width + i % texels.side);
         float sum = 0;
         for (std::size_t layer = 0; layer < texels.layers; ++layer) {
             // As packShares() in opacity.hlsli.
-            const std::uint32_t share = all[texel + layer / 2] >> (16 * (layer % 2)) & 0xffffu;
+            const std::uint32_t share = words->all[texel + layer / 2] >> (16 * (layer % 2)) & 0xffffu;
             texels.fibres.push_back(64 * static_cast<float>(share) / 65535);
             sum += texels.fibres.back();
         }

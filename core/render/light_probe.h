@@ -24,6 +24,17 @@ Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const 
                                                      std::span<const shaders::LightCase> cases,
                                                      const std::optional<DeepLayers>& layers = {});
 
+/// A texel's line in an adaptive map, as shading reads it.
+struct NodeTexels {
+    std::uint32_t side = 0;            ///< texels; rows from the top
+    std::uint32_t nodes = 0;           ///< of a texel, nearest the light first
+    std::vector<std::uint32_t> words;  ///< one a node: adaptive.hlsli
+    std::uint32_t found = 0;           ///< pieces of hair in texels
+    std::uint32_t listed = 0;          ///< of them, those that lists took
+};
+/// Of the first light with shadows. Errors: shadows that are not adaptive, and as readOpacity().
+Result<NodeTexels> readNodes(gpu::Device& device, const RenderScene& scene, const RenderOptions& options);
+
 /// The opacity map of hair that the first light with shadows has, as shading reads it.
 struct OpacityTexels {
     std::uint32_t side = 0;     ///< texels; rows from the top

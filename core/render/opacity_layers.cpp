@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "shaders/shared/render_types.h"
+
 namespace hairloom::render {
 namespace {
 
@@ -12,24 +14,43 @@ constexpr std::array kEarly{0.0f, 0.04f, 0.14f, 1.0f};
 
 }  // namespace
 
+std::uint32_t& layersOf(RenderOptions& options) {
+    if (options.shadows == Shadows::opacityMaps) return options.shadowSlices;
+    return options.shadows == Shadows::adaptive ? options.shadowNodes : options.shadowLayers;
+}
+
 std::uint32_t layerCount(const RenderOptions& options) {
-    if (options.shadows == Shadows::deepOpacity) return options.shadowLayers;
-    return options.shadows == Shadows::opacityMaps ? options.shadowSlices : 0;
+    if (options.shadows == Shadows::none || options.shadows == Shadows::absorption) return 0;
+    RenderOptions of = options;
+    return layersOf(of);
 }
 
 std::uint32_t layersThatFit(RenderOptions options, const gpu::DeviceInfo& device) {
-    const bool slices = options.shadows == Shadows::opacityMaps;
-    std::uint32_t& layers = slices ? options.shadowSlices : options.shadowLayers;
+    std::uint32_t& layers = layersOf(options);
     if (layerCount(options) == 0) return layers;
+    const std::uint32_t least = options.shadows == Shadows::opacityMaps ? 1
+                                : options.shadows == Shadows::adaptive  ? kMinShadowNodes
+                                                                        : kMinShadowLayers;
     const std::uint64_t texels = std::uint64_t{options.shadowResolution} * options.shadowResolution;
     // Of one light: its counts, a word a layer, and its texels.
     const auto bytes = [&] { return 4 * texels * std::max(layers, opacityWords(options.shadows, layers)); };
-    while (layers > (slices ? 1 : kMinShadowLayers) && bytes() > device.maxBufferBytes) --layers;
+    while (layers > least && bytes() > device.maxBufferBytes) --layers;
     return layers;
 }
 
+std::uint32_t fragmentsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device) {
+    constexpr std::uint64_t kOfTexel = 16;            // as many as dense hair has in one of usual size
+    constexpr std::uint64_t kOfSmallMap = 1u << 22u;  // whose texels have more
+    if (options.shadows != Shadows::adaptive) return 0;
+    const std::uint64_t texels = std::uint64_t{options.shadowResolution} * options.shadowResolution;
+    const std::uint64_t wanted =
+        std::min<std::uint64_t>(std::max(kOfTexel * texels, kOfSmallMap), options.shadowFragments);
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(wanted, device.maxBufferBytes / (4 * HAIRLOOM_LISTED_WORDS)));
+}
+
 std::uint32_t opacityWords(Shadows shadows, std::uint32_t layers) {
-    if (layers == 0) return 0;
+    if (layers == 0 || shadows == Shadows::adaptive) return layers;
     const std::uint32_t shares = layers + (shadows == Shadows::deepOpacity ? 1 : 0);
     return 2 * ((shares + 3) / 4);
 }

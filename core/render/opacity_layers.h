@@ -9,13 +9,20 @@ namespace hairloom::render {
 /// Of the kind of shadow; 0 where it has none.
 std::uint32_t layerCount(const RenderOptions& options);
 
-/// As many of those as the device has buffers for, at least one, or three of deep opacity maps; those of the
-/// options where the kind has none.
+/// The member of the options that says so for their kind of shadow; that of deep opacity maps where it has
+/// none.
+std::uint32_t& layersOf(RenderOptions& options);
+
+/// As many of those as the device has buffers for, at least one, or three of deep opacity maps, or four
+/// nodes; those of the options where the kind has none.
 std::uint32_t layersThatFit(RenderOptions options, const gpu::DeviceInfo& device);
 
 /// Of a texel, in words of 32 bits: four shares of 16 bits, a texture of four channels, take two. Deep
-/// opacity maps have the first hair's depth as the last of them.
+/// opacity maps have the first hair's depth as the last of them. A node of adaptive maps takes one.
 std::uint32_t opacityWords(Shadows shadows, std::uint32_t layers);
+
+/// Pieces of hair in texels that the lists of an adaptive map hold on this device; 0 for other shadows.
+std::uint32_t fragmentsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device);
 
 /// How layers grow from one to the next, as the shaders know it; 0: LayerEnds::early.
 float growthOf(const RenderOptions& options);

@@ -31,6 +31,12 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.shadowSlices < 1 || o.shadowSlices > kMaxShadowSlices)
         return fail(fmt::format("{} slices of opacity maps", o.shadowSlices),
                     fmt::format("1 to {}", kMaxShadowSlices));
+    if (o.shadowNodes < kMinShadowNodes || o.shadowNodes > kMaxShadowNodes)
+        return fail(fmt::format("{} nodes of adaptive shadow maps", o.shadowNodes),
+                    fmt::format("{} to {}", kMinShadowNodes, kMaxShadowNodes));
+    if (o.shadowFragments < kMinShadowFragments || o.shadowFragments > kMaxShadowFragments)
+        return fail(fmt::format("lists of {} pieces of hair for adaptive shadow maps", o.shadowFragments),
+                    fmt::format("{} to {}", kMinShadowFragments, kMaxShadowFragments));
     if (!(o.layerGrowth >= 1 && o.layerGrowth <= kMaxLayerGrowth))
         return fail(fmt::format("layers that grow by {}", o.layerGrowth),
                     fmt::format("1 to {}", kMaxLayerGrowth));
@@ -92,8 +98,7 @@ Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::Dev
 RenderOptions chooseWays(const RenderOptions& options, std::uint32_t samples, bool kernels,
                          const gpu::DeviceInfo& device) {
     RenderOptions chosen = options;
-    (chosen.shadows == Shadows::opacityMaps ? chosen.shadowSlices : chosen.shadowLayers) =
-        layersThatFit(chosen, device);
+    layersOf(chosen) = layersThatFit(chosen, device);
     const std::uint64_t words =
         std::uint64_t{options.width} * options.height * std::max(samples, std::uint32_t{HAIRLOOM_FRAGMENTS});
     const bool fits = words * sizeof(std::uint32_t) <= device.maxBufferBytes;

@@ -16,6 +16,7 @@ enum class Shadows {
     deepOpacity,  ///< Yuksel and Keyser 2008: layers that follow the first hair, and its depth
     absorption,   ///< depth behind the first hair alone, hair taken to be spread evenly
     opacityMaps,  ///< Kim and Neumann 2001: layers at fixed depths
+    adaptive,     ///< Salvi et al. 2010: nodes of each texel's transmittance, where it changes most
 };
 
 /// Over how many texels of a shadow map finished comparisons are averaged (percentage-closer filtering:
@@ -71,6 +72,12 @@ struct RenderOptions {
     LayerEnds layerEnds = LayerEnds::early;
     float layerGrowth = 2;           ///< 1…8, for LayerEnds::growing
     std::uint32_t shadowSlices = 4;  ///< of opacity maps, 1…16, evenly spaced; fewer as layers are
+    /// Of a texel's transmittance in adaptive maps, 4…16; fewer as layers are.
+    std::uint32_t shadowNodes = 8;
+    /// Most pieces of hair in texels that the lists of one light's adaptive map hold, 2^16…2^25; fewer where
+    /// the map is small or a buffer of the device is. Where hair has more, a random part of them counts as
+    /// all.
+    std::uint32_t shadowFragments = 1u << 25u;
     /// Most lights with shadow maps, parts of areas and of images among them, 1…16; fewer where the device
     /// has no room for as many maps.
     std::uint32_t shadowLights = 8;
@@ -107,6 +114,8 @@ inline constexpr std::uint32_t kMaxSubdivisions = 64;
 inline constexpr std::uint32_t kMinShadowResolution = 64, kMaxShadowResolution = 4096;  ///< pixels
 inline constexpr std::uint32_t kMinShadowLayers = 3, kMaxShadowLayers = 11;
 inline constexpr std::uint32_t kMaxShadowSlices = 16;
+inline constexpr std::uint32_t kMinShadowNodes = 4, kMaxShadowNodes = 16;
+inline constexpr std::uint32_t kMinShadowFragments = 1u << 16u, kMaxShadowFragments = 1u << 25u;
 inline constexpr float kMaxLayerGrowth = 8;
 inline constexpr float kMaxHeadAbsorption = 10'000;  ///< 1/m
 inline constexpr float kMaxShadowBlur = 32;          ///< pixels

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/render/picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/base/profiler.h"
@@ -55,6 +57,27 @@ Result<gpu::TexturePtr> makeTarget(gpu::Device& device, const RenderOptions& opt
     desc.height = options.height;
     desc.usage = gpu::Usage::RenderTarget;
     return device.createTexture(desc);
+}
+
+/// Says in the plan how much hair the lists of adaptive shadow maps had no place for.
+Status sayWhatListsLeft(gpu::Device& device, const Renderer& renderer, Picture& picture) {
+    if (renderer.fragmentCounts() == nullptr) return {};
+    std::vector<std::uint32_t> counts(picture.plan.buffer(BufferId::fragmentCounts).elements);
+    if (auto status =
+            device.readBuffer(renderer.fragmentCounts(), 0, std::as_writable_bytes(std::span(counts)));
+        !status)
+        return status;
+    const auto most = static_cast<std::uint32_t>(picture.plan.buffer(BufferId::lightFragments).elements /
+                                                 HAIRLOOM_LISTED_WORDS);
+    std::uint32_t found = 0;
+    for (std::size_t i = 0; i < counts.size(); i += 2) found = std::max(found, counts[i]);
+    if (found > most) {
+        picture.plan.passes[static_cast<std::size_t>(Pass::opacity)].why += fmt::format(
+            "; {} pieces of hair in texels are more than the {} that lists hold, so a random "
+            "{:.0f} % count as all",
+            found, most, 98.0 * most / found);
+    }
+    return {};
 }
 
 }  // namespace
@@ -129,6 +152,7 @@ Result<Picture> renderPicture(gpu::Device& device, Renderer& renderer, const Ren
     }
     picture.passes = sums.take();
     picture.plan = renderer.plan();
+    if (auto status = sayWhatListsLeft(device, renderer, picture); !status) return failed(status.error());
     picture.device = device.info().name;
     picture.triangles = renderer.triangles();
     picture.strands = renderer.strands();

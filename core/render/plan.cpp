@@ -62,7 +62,8 @@ class Planner {
                                                                   : "nothing receives them";
         const bool hair = on && facts_.hair;
         const bool layers = hair && options_.shadows != Shadows::absorption;
-        const bool first = hair && options_.shadows != Shadows::opacityMaps;
+        const bool adaptive = hair && options_.shadows == Shadows::adaptive;
+        const bool first = hair && !adaptive && options_.shadows != Shadows::opacityMaps;
         const std::string noHair = on ? "no hair to cast them" : off;
         pass(Pass::headDepth, on && facts_.meshes,
              !on ? off
@@ -70,9 +71,10 @@ class Planner {
                  ? fmt::format("the head shadows hair and itself from {} lights", facts_.shadowLights)
                  : "no head to cast shadows");
         pass(Pass::firstHair, first,
-             first  ? "depths in hair are relative to the first one that a light hits"
-             : hair ? "fixed layers need no first depth"
-                    : noHair);
+             first      ? "depths in hair are relative to the first one that a light hits"
+             : adaptive ? "lists need no first depth"
+             : hair     ? "fixed layers need no first depth"
+                        : noHair);
         pass(Pass::opacity, layers,
              layers ? layersWhy()
              : hair ? "absorption assumes evenly spread hair"
@@ -84,18 +86,30 @@ class Planner {
         buffer(BufferId::firstHair, square * facts_.shadowLights, 4, first,
                "first hair seen from the lights");
         const std::uint32_t count = layerCount(options_);
-        buffer(BufferId::layerCounts, square * count, 4, layers,
-               "fibres of one light's layers during counting");
+        buffer(BufferId::layerCounts, square * (adaptive ? 1 : count), 4, layers,
+               adaptive ? "where the lists of one light's texels begin"
+                        : "fibres of one light's layers during counting");
+        buffer(BufferId::fragmentCounts, std::uint64_t{2} * facts_.shadowLights, 4, adaptive,
+               "pieces of hair in texels, and those in lists");
+        buffer(BufferId::lightFragments, std::uint64_t{HAIRLOOM_LISTED_WORDS} * facts_.fragments, 4,
+               adaptive && facts_.fragments > 0,
+               fmt::format("lists of {} pieces of hair in the texels of one light", facts_.fragments));
         buffer(BufferId::opacity, opacityWords(options_.shadows, count) * square * facts_.shadowLights, 4,
                layers,
-               deep ? fmt::format("{} layers and the depth they are relative to", count)
-                    : fmt::format("{} slices", count));
+               deep       ? fmt::format("{} layers and the depth they are relative to", count)
+               : adaptive ? fmt::format("{} nodes of a texel's transmittance", count)
+                          : fmt::format("{} slices", count));
     }
 
     std::string layersWhy() const {
         const std::uint32_t count = layerCount(options_);
         std::string why = options_.shadows == Shadows::deepOpacity
                               ? fmt::format("counts hair in {} layers behind the first", count)
+                          : options_.shadows == Shadows::adaptive
+                              ? fmt::format(
+                                    "sorts the hair in each texel and keeps {} nodes of its "
+                                    "transmittance",
+                                    count)
                               : fmt::format("counts hair in {} slices at fixed depths", count);
         if (facts_.askedLayers > count)
             why += fmt::format(", since {} do not fit in a buffer of this device", facts_.askedLayers);
@@ -273,6 +287,8 @@ const char* bufferName(BufferId buffer) {
     constexpr std::array<const char*, kBufferCount> kNames{"first hair",
                                                            "layer counts",
                                                            "opacity layers",
+                                                           "fragment counts",
+                                                           "light fragments",
                                                            "sky first hair",
                                                            "sky layer counts",
                                                            "sky layers",

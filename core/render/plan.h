@@ -63,10 +63,12 @@ const char* targetName(TargetId target);
 
 /// What passes keep in buffers.
 enum class BufferId {
-    firstHair,    ///< depths as bits; an atlas as TargetId::headDepth
-    layerCounts,  ///< one light's fibres, before they become shares
-    opacity,      ///< an atlas: four 16-bit shares of 1 a texel
-    skyFirst,     ///< the same three for light from around
+    firstHair,       ///< depths as bits; an atlas as TargetId::headDepth
+    layerCounts,     ///< one light's fibres, before they become shares
+    opacity,         ///< an atlas: four 16-bit shares of 1 a texel
+    fragmentCounts,  ///< two a light that has an adaptive map: of all in its texels, and of those in lists
+    lightFragments,  ///< HAIRLOOM_LISTED_WORDS each, of one light's lists, which begin where counts are
+    skyFirst,        ///< the same three for light from around
     skyCounts,
     skyLayers,
     nearest,         ///< depths of all samples as bits
@@ -100,6 +102,7 @@ struct SceneFacts {
     bool overlayOnTop = false;
     bool look = false;              ///< some hair does not look the same everywhere
     std::uint32_t askedLayers = 0;  ///< of opacity, where the options have fewer; else no matter
+    std::uint32_t fragments = 0;    ///< that lists of adaptive maps hold: fragmentsThatFit()
     bool presents = true;           ///< there is a target to show the picture in
     std::uint64_t tableBytes = 0;   ///< of the materials' look-up tables on the device
 

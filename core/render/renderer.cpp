@@ -41,7 +41,8 @@ struct Changes {
 Changes compare(const RenderOptions& before, const RenderOptions& now) {
     Changes changes = Changes::placeholderTexture();
     if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows ||
-        layerCount(now) != layerCount(before) || growthOf(now) != growthOf(before)) {
+        layerCount(now) != layerCount(before) || growthOf(now) != growthOf(before) ||
+        now.shadowFragments != before.shadowFragments) {
         changes.add(Changes::lights());
     }
     if (now.skyStrands != before.skyStrands) changes.add(Changes::head());
@@ -250,6 +251,7 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
     facts.presents = presents;
     facts.askedLayers = askedLayers;
+    facts.fragments = fragmentsThatFit(state.options, device.info());
     for (const StrandGroup& group : state.scene.groups) {
         for (const MaterialOnDevice& material : group.materials) {
             facts.look = facts.look || material.shading.look.has_value();
@@ -446,6 +448,10 @@ const gpu::BufferPtr& Renderer::linearSum() const {
 
 const gpu::BufferPtr& Renderer::surface() const {
     return parts_->state.targets[BufferId::surface];
+}
+
+const gpu::BufferPtr& Renderer::fragmentCounts() const {
+    return parts_->state.targets[BufferId::fragmentCounts];
 }
 
 Box3f Renderer::bounds() const {

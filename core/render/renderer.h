@@ -105,6 +105,10 @@ class Renderer {
     /// that middle.
     const gpu::BufferPtr& surface() const;
 
+    /// Of adaptive shadow maps, two a light in the order of their lights: pieces of hair in its texels, and
+    /// those that its lists took; null for other shadows.
+    const gpu::BufferPtr& fragmentCounts() const;
+
     Box3f bounds() const;  ///< of all meshes and strands
     std::uint64_t triangles() const;
     std::uint64_t strands() const;      ///< drawn in the last frame

@@ -36,6 +36,7 @@ shaders::float4 layersOf(const RendererState& state, const ShadowAtlas& atlas, c
             const HairMeasure measure = state.scene.measure();
             return {measure.fibresPerMetre, measure.fibresThrough, 0, 0};
         }
+        case Shadows::adaptive:
         case Shadows::none:
             break;
     }
@@ -63,7 +64,7 @@ shaders::ViewConstants squareConstants(const RendererState& state, const ShadowA
 
 /// Strands into a square, with the kernel that is set.
 void rasterise(gpu::CommandList& list, const RendererState& state, const ShadowAtlas& atlas,
-               std::size_t square) {
+               std::size_t square, std::uint32_t phase = 0) {
     const auto side = static_cast<float>(atlas.side);
     shaders::RasterConstants raster{};
     raster.window = {static_cast<float>(atlas.left(square)), 0, side, side};
@@ -72,6 +73,10 @@ void rasterise(gpu::CommandList& list, const RendererState& state, const ShadowA
     raster.layers = atlas.layerCount;
     raster.layerGrowth = atlas.growth;
     raster.slices = 1;
+    raster.phase = phase;
+    raster.square = static_cast<std::uint32_t>(square);
+    if (const gpu::BufferPtr& lists = state.targets[BufferId::lightFragments])
+        raster.fragments = static_cast<std::uint32_t>(lists->desc().size / (4 * HAIRLOOM_LISTED_WORDS));
     list.setConstants(0, gpu::bytesOf(squareConstants(state, atlas, square)));
     dispatchStrands(list, state, raster, atlas.share);
 }
@@ -85,6 +90,41 @@ void recordFirstHair(gpu::CommandList& list, RendererState& state, const ShadowA
     list.endPass();
 }
 
+shaders::PackConstants packConstants(const ShadowAtlas& atlas, std::size_t square) {
+    shaders::PackConstants constants{};
+    constants.side = atlas.side;
+    constants.tileLeft = atlas.left(square);
+    constants.atlasWidth = atlas.width();
+    constants.shadows = static_cast<std::uint32_t>(atlas.shadows);
+    constants.depthRange = atlas.views[square]->depthRange;
+    constants.nearPlane = atlas.views[square]->nearPlane;
+    constants.layers = atlas.layerCount;
+    constants.words = opacityWords(atlas.shadows, atlas.layerCount);
+    return constants;
+}
+
+/// Lists of what each texel has, and nodes from them: a light after the other, for lists take much memory.
+void recordNodes(gpu::CommandList& list, RendererState& state, const ShadowAtlas& atlas) {
+    const std::uint32_t groups = groupsFor(atlas.side, HAIRLOOM_TILE_GROUP);
+    const Targets& t = state.targets;
+    list.beginPass({passName(atlas.layersPass), {}, {}});
+    fill(list, state, BufferId::fragmentCounts, 0);
+    for (std::size_t i = 0; i < atlas.views.size(); ++i) {
+        fill(list, state, atlas.counts, 0);
+        list.setPipeline(state.pipelines.compute("light_link.comp"));
+        bind(list, {Binding::write(0, t[BufferId::fragmentCounts]), Binding::write(1, t[atlas.counts]),
+                    Binding::write(2, t[BufferId::lightFragments])});
+        rasterise(list, state, atlas, i, HAIRLOOM_PHASE_COUNT);
+        rasterise(list, state, atlas, i, HAIRLOOM_PHASE_LINK);
+        list.setPipeline(state.pipelines.compute("light_nodes.comp"));
+        list.setConstants(0, gpu::bytesOf(packConstants(atlas, i)));
+        bind(list, {Binding::read(0, t[atlas.counts]), Binding::write(0, t[BufferId::lightFragments]),
+                    Binding::write(1, t[atlas.layers])});
+        list.dispatch(groups, groups);
+    }
+    list.endPass();
+}
+
 void recordLayers(gpu::CommandList& list, RendererState& state, const ShadowAtlas& atlas) {
     const std::uint32_t groups = groupsFor(atlas.side, HAIRLOOM_TILE_GROUP);
     list.beginPass({passName(atlas.layersPass), {}, {}});
@@ -95,16 +135,7 @@ void recordLayers(gpu::CommandList& list, RendererState& state, const ShadowAtla
                     Binding::write(0, state.targets[atlas.counts])});
         rasterise(list, state, atlas, i);
         list.setPipeline(state.pipelines.compute("light_pack.comp"));
-        shaders::PackConstants constants{};
-        constants.side = atlas.side;
-        constants.tileLeft = atlas.left(i);
-        constants.atlasWidth = atlas.width();
-        constants.shadows = static_cast<std::uint32_t>(atlas.shadows);
-        constants.depthRange = atlas.views[i]->depthRange;
-        constants.nearPlane = atlas.views[i]->nearPlane;
-        constants.layers = atlas.layerCount;
-        constants.words = opacityWords(atlas.shadows, atlas.layerCount);
-        list.setConstants(0, gpu::bytesOf(constants));
+        list.setConstants(0, gpu::bytesOf(packConstants(atlas, i)));
         bind(list,
              {Binding::read(0, state.orPlaceholder(atlas.first)),
               Binding::read(1, state.targets[atlas.counts]), Binding::write(0, state.targets[atlas.layers])});
@@ -279,7 +310,9 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t l
 void recordMaps(gpu::CommandList& list, RendererState& state, const ShadowAtlas& atlas) {
     if (state.plan.runs(atlas.headPass)) recordHeadDepth(list, state, atlas);
     if (state.plan.runs(atlas.firstPass)) recordFirstHair(list, state, atlas);
-    if (state.plan.runs(atlas.layersPass)) recordLayers(list, state, atlas);
+    if (!state.plan.runs(atlas.layersPass)) return;
+    if (atlas.shadows == Shadows::adaptive) return recordNodes(list, state, atlas);
+    recordLayers(list, state, atlas);
 }
 
 }  // namespace hairloom::render

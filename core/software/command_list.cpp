@@ -279,6 +279,12 @@ bool HostCommandList::dispatchApart(const KernelEntry& kernel) {
                           elementsOf<const std::uint32_t>(read(2)), elementsOf<std::uint32_t>(written(0)));
         return true;
     }
+    if (kernel.name == "light_link.comp") {
+        maps_.listFragments(batchOf(), constantsAt<shaders::RasterConstants>(2),
+                            elementsOf<std::uint32_t>(written(0)), elementsOf<std::uint32_t>(written(1)),
+                            elementsOf<std::uint32_t>(written(2)));
+        return true;
+    }
     if (kernel.name == "fill.comp") {
         std::ranges::fill(elementsOf<std::uint32_t>(written(0)),
                           constantsAt<shaders::FillConstants>(0).value);

@@ -373,6 +373,12 @@ inline void InterlockedMax(const SharedWord& word, uint value) {
 inline void InterlockedAdd(const SharedWord& word, uint value) {
     word.atomic().fetch_add(value, std::memory_order_relaxed);
 }
+inline void InterlockedAdd(const SharedWord& word, uint value, uint& before) {
+    before = word.atomic().fetch_add(value, std::memory_order_relaxed);
+}
+inline void InterlockedExchange(const SharedWord& word, uint value, uint& before) {
+    before = word.atomic().exchange(value, std::memory_order_relaxed);
+}
 inline void InterlockedOr(const SharedWord& word, uint value) {
     word.atomic().fetch_or(value, std::memory_order_relaxed);
 }

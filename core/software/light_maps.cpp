@@ -2,6 +2,7 @@
 #include "core/software/light_maps.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 
@@ -45,6 +46,18 @@ std::uint32_t layerAt(float part, std::uint32_t count, float growth) {
         place = std::log(1 + max(part, 0.0f) * (std::pow(growth, all) - 1)) / (std::log(growth) * all);
     }
     return static_cast<std::uint32_t>(std::clamp(place * all, 0.0f, all - 1));
+}
+
+/// As adaptive.hlsli has it.
+std::uint32_t chanceOf(std::uint32_t a, std::uint32_t b) {
+    std::uint32_t h = a * 747796405u + b * 2891336453u + 277803737u;
+    h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
+    return (h >> 22u) ^ h;
+}
+
+/// As adaptive.hlsli has it.
+float listedShare(std::uint32_t all, std::uint32_t most) {
+    return all <= most ? 1.0f : 0.98f * static_cast<float>(most) / static_cast<float>(all);
 }
 
 }  // namespace
@@ -97,6 +110,13 @@ std::unique_ptr<RibbonTiles> LightMaps::takeTiles(const RibbonBatch& batch,
     return tiles;
 }
 
+void LightMaps::keep(const RibbonBatch& batch, const shaders::RasterConstants& raster,
+                     std::unique_ptr<RibbonTiles> tiles) {
+    std::size_t bytes = tiles->bytes();
+    for (const Kept& kept : kept_) bytes += kept.tiles->bytes();
+    if (bytes <= kMostKept) kept_.push_back({batch, raster.window, std::move(tiles)});
+}
+
 void LightMaps::drawFirstHair(const RibbonBatch& all, const shaders::RasterConstants& raster,
                               std::span<std::uint32_t> first) {
     const RibbonBatch batch = thinned(all);
@@ -115,9 +135,52 @@ void LightMaps::drawFirstHair(const RibbonBatch& all, const shaders::RasterConst
             });
         }
     });
-    std::size_t bytes = tiles->bytes();
-    for (const Kept& kept : kept_) bytes += kept.tiles->bytes();
-    if (bytes <= kMostKept) kept_.push_back({batch, raster.window, std::move(tiles)});
+    keep(batch, raster, std::move(tiles));
+}
+
+void LightMaps::listFragments(const RibbonBatch& all, const shaders::RasterConstants& raster,
+                              std::span<std::uint32_t> listed, std::span<std::uint32_t> begins,
+                              std::span<std::uint32_t> fragments) {
+    const RibbonBatch batch = thinned(all);
+    const bool counts = raster.phase == HAIRLOOM_PHASE_COUNT;
+    std::unique_ptr<RibbonTiles> tiles = counts ? tilesOf(batch, raster) : takeTiles(batch, raster);
+    const std::atomic_ref<std::uint32_t> found(listed[2 * raster.square]);
+    const std::atomic_ref<std::uint32_t> linked(listed[2 * raster.square + 1]);
+    const float share = counts ? 1 : listedShare(found.load(), raster.fragments);
+    const auto least = static_cast<std::uint32_t>(share * 4294967040.0f);
+    const auto left = static_cast<std::size_t>(raster.window.x);
+    const auto top = static_cast<std::size_t>(raster.window.y);
+    const auto columns = static_cast<std::size_t>(raster.window.z);
+    const auto listOne = [&](const RibbonPiece& piece, std::uint32_t item, const RibbonHits& hits,
+                             std::size_t h) {
+        const auto x = static_cast<std::size_t>(piece.originX + static_cast<int>(hits.x[h]));
+        const auto y = static_cast<std::size_t>(piece.originY + static_cast<int>(hits.y[h]));
+        const std::size_t texel = (y - top) * columns + (x - left);
+        if (share < 1 && chanceOf(item, static_cast<std::uint32_t>(texel)) >= least) return;
+        const std::uint32_t place = linked.fetch_add(1, std::memory_order_relaxed);
+        if (place >= raster.fragments) return;
+        const float cover =
+            saturate(lerp(piece.coverageBegin, piece.coverageEnd, hits.along[h])) * batch.view.fibresForEach;
+        std::uint32_t* const fragment = &fragments[std::size_t{HAIRLOOM_LISTED_WORDS} * place];
+        fragment[0] = asuint(hits.depth[h]);
+        fragment[1] = static_cast<std::uint32_t>(cover * kFibreCount / share + 0.5f);
+        fragment[2] = begins[texel];  // a tile has its texels for itself
+        begins[texel] = place + 1;
+    };
+    parallelUntil(stop_, tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            std::uint32_t here = 0;
+            tiles->visit(t, [&](const RibbonPiece& piece, std::uint32_t item, const RibbonHits& hits) {
+                for (std::size_t h = 0; h < hits.count; ++h) {
+                    if (!(hits.depth[h] >= 0 && hits.depth[h] <= 1)) continue;
+                    ++here;
+                    if (!counts) listOne(piece, item, hits, h);
+                }
+            });
+            if (counts) found.fetch_add(here, std::memory_order_relaxed);
+        }
+    });
+    if (counts) keep(batch, raster, std::move(tiles));
 }
 
 void LightMaps::countLayers(const RibbonBatch& all, const shaders::RasterConstants& raster,

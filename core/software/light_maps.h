@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Opacity maps of hair as a light or the sky sees it: what light_first.comp.hlsl and light_layers.comp.hlsl
-// do on a GPU, tile by tile.
+// Opacity maps of hair as a light or the sky sees it: what light_first.comp.hlsl, light_layers.comp.hlsl
+// and light_link.comp.hlsl do on a GPU, tile by tile.
 
 #include <list>
 #include <memory>
@@ -21,6 +21,10 @@ class LightMaps {
     /// Adds the hair's coverage, in counts, to the layers of the window's pixels.
     void countLayers(const RibbonBatch& batch, const shaders::RasterConstants& raster,
                      std::span<const std::uint32_t> first, std::span<std::uint32_t> counts);
+    /// Counts what lies in the window's pixels into `listed`, or links it, as the phase says.
+    void listFragments(const RibbonBatch& batch, const shaders::RasterConstants& raster,
+                       std::span<std::uint32_t> listed, std::span<std::uint32_t> begins,
+                       std::span<std::uint32_t> fragments);
     /// Curves are about to change, or all maps are drawn.
     void forget();
 
@@ -38,6 +42,8 @@ class LightMaps {
     };
     RibbonBatch thinned(const RibbonBatch& batch);
     std::unique_ptr<RibbonTiles> takeTiles(const RibbonBatch& batch, const shaders::RasterConstants& raster);
+    void keep(const RibbonBatch& batch, const shaders::RasterConstants& raster,
+              std::unique_ptr<RibbonTiles> tiles);
 
     Stop stop_;
     std::vector<Kept> kept_;

@@ -155,7 +155,8 @@ std::vector<Field> shadowFields() {
     // Names that stand beside those of other settings of pictures, and that prices have.
     constexpr std::pair<const char*, const char*> kNames[] = {
         {"kind", "shadows"},        {"filter", "shadowFilter"}, {"resolution", "shadowResolution"},
-        {"layers", "shadowLayers"}, {"slices", "shadowSlices"}, {"blur", "shadowBlur"}};
+        {"layers", "shadowLayers"}, {"slices", "shadowSlices"}, {"nodes", "shadowNodes"},
+        {"blur", "shadowBlur"}};
     std::vector<Field> fields = fieldsIn(&Groom::shadows, editing::Part::Shadows);
     for (Field& field : fields) {
         for (const auto& [name, shown] : kNames) {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands between a point and a light: the head (a depth map) and fibres (one of three kinds of maps).
+// What stands between a point and a light: the head (a depth map) and fibres (one of four kinds of maps).
 #ifndef HAIRLOOM_SHADOWS_HLSLI
 #define HAIRLOOM_SHADOWS_HLSLI
 #include "shaders/render/lights.hlsli"
+#include "shaders/render/adaptive.hlsli"
 #include "shaders/render/opacity.hlsli"
 
 Texture2D<float> gHeadDepth : register(t8);
 StructuredBuffer<uint> gFirstHair : register(t9);  // depths as bits
-StructuredBuffer<uint> gOpacity : register(t10);    // two words a texel, or more where there are more layers
+StructuredBuffer<uint> gOpacity : register(t10);    // two words a texel, or more where there are more layers; or nodes
 
 static const float kSkinPatch = 0.05;  // metres: radius of skin that is lit alike
 
@@ -58,6 +59,23 @@ float fibresInManyLayers(LightConstants light, uint texel, float depth) {
     return fibres;
 }
 
+// Fibres in front of a depth, on the line through a texel's nodes.
+float fibresInNodes(LightConstants light, uint texel, float depth) {
+    const uint count = uint(light.layerCount);
+    const float part = depth / light.depthRange;
+    float2 before = float2(0, 0);
+    for (uint i = 0u; i < count; ++i) {
+        const float2 node = unpackNode(gOpacity[count * texel + i]);
+        if (part < node.x) {
+            if (i == 0u) return 0.0;
+            const float along = (part - before.x) / (node.x - before.x);
+            return -2.0 * log(lerp(lightBehind(before.y), lightBehind(node.y), along));
+        }
+        before = node;
+    }
+    return before.y;
+}
+
 // Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
 float fibresAt(LightConstants light, uint texel, float depth, float bias) {
     const uint mode = uint(light.shadows);
@@ -66,6 +84,7 @@ float fibresAt(LightConstants light, uint texel, float depth, float bias) {
         const float behind = depth - metresBehindNear(light.depthRange, light.nearPlane, asfloat(gFirstHair[texel])) - bias;
         return light.layers.y * (1.0 - exp(-max(behind, 0.0) * light.layers.x / max(light.layers.y, 1e-6)));
     }
+    if (mode == HAIRLOOM_SHADOWS_ADAPTIVE) return fibresInNodes(light, texel, depth - bias);
     if (uint(light.layerCount) != (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS ? 4u : 3u)) return fibresInManyLayers(light, texel, depth - bias);
     const float4 layers = unpackShares(uint2(gOpacity[2u * texel], gOpacity[2u * texel + 1u]));
     if (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS) {

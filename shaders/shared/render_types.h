@@ -21,6 +21,7 @@ namespace hairloom::shaders {
 #define HAIRLOOM_SHADOWS_DEEP_OPACITY 1
 #define HAIRLOOM_SHADOWS_ABSORPTION 2
 #define HAIRLOOM_SHADOWS_OPACITY_MAPS 3
+#define HAIRLOOM_SHADOWS_ADAPTIVE 4
 
 // One strand as it was given: a run of points, and where its finer curve goes.
 struct StrandHeader {
@@ -125,7 +126,7 @@ struct LightConstants {
     float headAbsorption;  // of hair behind the head, 1/m; 0: a test of depth
     float withoutShadows;  // 1: shadows of the light itself are left out
     float filterTexels;    // a side of what is averaged: 1, 3 or 5
-    float layerCount;      // of opacity
+    float layerCount;      // of opacity, or nodes of transmittance
     float layerGrowth;     // of their widths from one to the next; 0: early ends (opacity.hlsli)
     float unused0;
 };
@@ -232,7 +233,8 @@ struct RasterConstants {
     uint sorts;         // 1: hair is kept as each pixel's nearest fragments
     float sampleReach;  // farthest that a sample lies from the middle of its pixel along x or y, pixels
     float layerGrowth;  // of opacity: see LightConstants
-    float unused2, unused3;
+    uint fragments;     // that lists hold
+    uint square;        // number of the light's
     float4
         samplePositions[HAIRLOOM_MAX_SAMPLES / 2];  // of the samples from the middle, in pixels, two in each
 };
@@ -248,6 +250,14 @@ struct RasterConstants {
 // it.
 #define HAIRLOOM_PHASE_ITEM 2
 #define HAIRLOOM_PHASE_TELL 3
+
+// Where they list what a light's texels have: first they count it all, then they link it.
+#define HAIRLOOM_PHASE_COUNT 0
+#define HAIRLOOM_PHASE_LINK 1
+// Of a piece of hair in a texel: its depth as bits, how much of a fibre it is, and the number of what was
+// linked before it, from 1; 0: nothing.
+#define HAIRLOOM_LISTED_WORDS 3
+#define HAIRLOOM_MAX_SHADOW_NODES 16
 
 #define HAIRLOOM_NO_STRAND 0xffffffff
 struct SurfacePixel {
@@ -313,7 +323,7 @@ struct PackConstants {
     uint shadows;      // HAIRLOOM_SHADOWS_*
     float depthRange;  // see LightConstants
     float nearPlane;
-    uint layers;  // of opacity
+    uint layers;  // of opacity, or nodes
     uint words;   // of a texel's shares, two in each
 };
 

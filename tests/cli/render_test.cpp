@@ -166,6 +166,8 @@ TEST_F(RenderJob, ShadowsAreSavedInTheProjectAndViewsAndOptionsOverrideThem) {
         {"shadows.kind=absorption", "--shadow absorption"},
         {"shadows.kind=opacityMaps", "--shadow opacity"},
         {"shadows.kind=opacityMaps shadows.slices=9", "--shadow opacity --shadow-slices 9"},
+        {"shadows.kind=adaptive", "--shadow adaptive"},
+        {"shadows.kind=adaptive shadows.nodes=16", "--shadow adaptive --shadow-nodes 16"},
         {"shadows.filter=5x5", "--shadow-filter 5x5"},
         {"shadows.resolution=128", "--shadow-resolution 128"},
         {"shadows.layers=7", "--shadow-layers 7"},
@@ -191,14 +193,20 @@ TEST_F(RenderJob, ShadowsAreSavedInTheProjectAndViewsAndOptionsOverrideThem) {
         view("layered.json", R"({"layer_ends": "growing", "layer_growth": 3, "shadow_slices": 5})");
     EXPECT_EQ(drawn("shadows.kind=deepOpacity", layered).first,
               drawn("shadows.layerEnds=growing shadows.layerGrowth=3").first);
+    const std::string noded = view("noded.json", R"({"shadow": "adaptive", "shadow_nodes": 16})");
+    EXPECT_EQ(drawn("shadows.kind=deepOpacity", noded).first,
+              drawn("shadows.kind=adaptive shadows.nodes=16").first);
+    EXPECT_THAT(drawn("shadows.kind=adaptive").second["plan"].dump(),
+                HasSubstr("keeps 8 nodes of its transmittance"));
     const auto plan = drawn("shadows.layers=11").second["plan"].dump();
     EXPECT_THAT(plan, HasSubstr("counts hair in 11 layers"));
     for (const char* const wrong :
-         {"shadows.layers=2", "shadows.layers=12", "shadows.slices=0", "shadows.slices=17",
-          "shadows.layerGrowth=0.5", "shadows.kind=moon", "shadows.resolution=63"})
+         {"shadows.layers=2", "shadows.layers=12", "shadows.slices=0", "shadows.slices=17", "shadows.nodes=3",
+          "shadows.nodes=17", "shadows.layerGrowth=0.5", "shadows.kind=moon", "shadows.resolution=63"})
         EXPECT_NE(run(std::string("set hair.hairloom -o x.hairloom ") + wrong).exitCode, 0) << wrong;
-    for (const char* const wrong : {"--shadow-layers 2", "--shadow-layers 12", "--shadow-slices 17",
-                                    "--layer-growth 0.5", "--layer-ends late"})
+    for (const char* const wrong :
+         {"--shadow-layers 2", "--shadow-layers 12", "--shadow-slices 17", "--shadow-nodes 3",
+          "--shadow-nodes 17", "--layer-growth 0.5", "--layer-ends late"})
         EXPECT_EQ(run(std::string("render hair.hairloom -o x.png ") + wrong).exitCode, 2) << wrong;
 }
 

@@ -191,6 +191,13 @@ TEST_F(LookTest, ShadowsBelongToTheProjectAndHaveTheirCharts) {
     filter->setCurrentIndex(2);
     Q_EMIT filter->activated(2);
     EXPECT_EQ(groom().shadows.filter, ShadowFiltering::five);
+    auto* shadowKinds = find<QComboBox>("shadows");
+    const int adaptive = shadowKinds->findText("Adaptive");
+    ASSERT_GE(adaptive, 0);
+    shadowKinds->setCurrentIndex(adaptive);
+    Q_EMIT shadowKinds->activated(adaptive);
+    find<NumberBox>("shadowNodes")->spinBox().setValue(16);
+    EXPECT_EQ(groom().shadows.kind, ShadowKind::adaptive);
     const auto changed = hash();
     EXPECT_NE(changed, before);
     ASSERT_TRUE(window->saveTo(inFolder("shadows.hairloom")));
@@ -201,6 +208,8 @@ TEST_F(LookTest, ShadowsBelongToTheProjectAndHaveTheirCharts) {
     finishWork();
     EXPECT_EQ(hash(), changed) << "it belongs to the file";
     EXPECT_EQ(groom().shadows.layers, 9u);
+    EXPECT_EQ(groom().shadows.kind, ShadowKind::adaptive);
+    EXPECT_EQ(groom().shadows.nodes, 16u);
 }
 
 TEST_F(LookTest, LooksAreKeptInFilesAndFoundAgain) {

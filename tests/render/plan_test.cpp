@@ -82,6 +82,16 @@ TEST(RenderPlan, EachKindOfShadowHasItsPasses) {
     const RenderPlan deep = planRender(wholeScene(), options(), 1);
     EXPECT_EQ(deep.buffer(BufferId::opacity).bytes(), maps.buffer(BufferId::opacity).bytes());
     EXPECT_EQ(deep.buffer(BufferId::opacity).bytes(), 2u * 64u * 64u * 8u);
+    SceneFacts facts = wholeScene();
+    facts.fragments = 1000;
+    const RenderPlan adaptive = planRender(facts, options(Shadows::adaptive), 1);
+    EXPECT_FALSE(adaptive.runs(Pass::firstHair));
+    EXPECT_TRUE(adaptive.runs(Pass::opacity));
+    EXPECT_EQ(adaptive.buffer(BufferId::opacity).bytes(), 2u * 64u * 64u * 8u * 4u);
+    EXPECT_EQ(adaptive.buffer(BufferId::layerCounts).bytes(), 64u * 64u * 4u);
+    EXPECT_EQ(adaptive.buffer(BufferId::lightFragments).bytes(), 1000u * 12u);
+    EXPECT_EQ(adaptive.buffer(BufferId::fragmentCounts).bytes(), 2u * 2u * 4u);
+    EXPECT_FALSE(deep.has(BufferId::lightFragments) || maps.has(BufferId::fragmentCounts));
     // What counts them is there for one light after the other.
     EXPECT_EQ(deep.buffer(BufferId::layerCounts).bytes(), 64u * 64u * 3u * 4u);
 }
@@ -122,6 +132,18 @@ TEST(RenderPlan, MoreLayersTakeMoreTexturesAndFewerWhereThereIsNoRoom) {
     RenderOptions maps = options(Shadows::opacityMaps);
     maps.shadowSlices = 16;
     EXPECT_EQ(chooseWays(maps, 1, true, small).shadowSlices, 7u);
+    RenderOptions adaptive = options(Shadows::adaptive);
+    adaptive.shadowNodes = 16;
+    EXPECT_EQ(chooseWays(adaptive, 1, true, small).shadowNodes, 7u);
+    EXPECT_EQ(fragmentsThatFit(adaptive, small), 64u * 64u * 4u * 7u / 12u);
+    gpu::DeviceInfo large = small;
+    large.maxBufferBytes = std::uint64_t{1} << 32u;
+    EXPECT_EQ(fragmentsThatFit(adaptive, large), 1u << 22u) << "texels of small maps hold much hair";
+    adaptive.shadowResolution = 1024;
+    EXPECT_EQ(fragmentsThatFit(adaptive, large), 16u << 20u);
+    adaptive.shadowResolution = 4096;
+    EXPECT_EQ(fragmentsThatFit(adaptive, large), kMaxShadowFragments);
+    EXPECT_EQ(fragmentsThatFit(options(), large), 0u);
     for (RenderOptions* wrong : {&asked, &maps}) {
         wrong->shadowLayers = 12;
         EXPECT_FALSE(check(*wrong, small));
@@ -129,6 +151,12 @@ TEST(RenderPlan, MoreLayersTakeMoreTexturesAndFewerWhereThereIsNoRoom) {
         wrong->shadowSlices = 0;
         EXPECT_FALSE(check(*wrong, small));
         wrong->shadowSlices = 4;
+        wrong->shadowNodes = 17;
+        EXPECT_FALSE(check(*wrong, small));
+        wrong->shadowNodes = 8;
+        wrong->shadowFragments = 1000;
+        EXPECT_FALSE(check(*wrong, small));
+        wrong->shadowFragments = kMaxShadowFragments;
         wrong->layerGrowth = 0.5f;
         EXPECT_FALSE(check(*wrong, small));
         wrong->layerGrowth = 2;
@@ -208,8 +236,8 @@ TEST(RenderPlan, MarkersAndBlendingCostOnlyWhenUsed) {
 }
 
 TEST(RenderPlan, SaysWhy) {
-    for (const Shadows shadows :
-         {Shadows::none, Shadows::deepOpacity, Shadows::absorption, Shadows::opacityMaps}) {
+    for (const Shadows shadows : {Shadows::none, Shadows::deepOpacity, Shadows::absorption,
+                                  Shadows::opacityMaps, Shadows::adaptive}) {
         for (int bits = 0; bits < 8; ++bits) {
             SceneFacts facts;
             facts.meshes = (bits & 1) != 0;

@@ -15,7 +15,7 @@ constexpr const char* kShadingModels[] = {"kajiya", "marschner", "sadeghi"};
 constexpr const char* kColourSources[] = {"melanin", "colours"};
 constexpr const char* kEnergyRules[] = {"bounded", "published"};
 constexpr const char* kAzimuthalSolvers[] = {"exact", "cubic"};
-constexpr const char* kShadowKinds[] = {"deepOpacity", "absorption", "opacityMaps", "none"};
+constexpr const char* kShadowKinds[] = {"deepOpacity", "absorption", "opacityMaps", "adaptive", "none"};
 constexpr const char* kShadowFilters[] = {"off", "3x3", "5x5"};
 constexpr const char* kLayerEnds[] = {"early", "linear", "growing"};
 constexpr const char* kPlacementMethods[] = {"random", "poissonDisk"};
@@ -100,13 +100,14 @@ constexpr Field<I> kInterpolationFields[] = {
 };
 
 constexpr Field<S> kShadowFields[] = {
-    choiceField<&S::kind>("kind", "how hair shadows hair: deepOpacity, layers behind the first hair; absorption, depth behind the first hair alone; opacityMaps, slices at fixed depths; none", kShadowKinds),
+    choiceField<&S::kind>("kind", "how hair shadows hair: deepOpacity, layers behind the first hair; absorption, depth behind the first hair alone; opacityMaps, slices at fixed depths; adaptive, a curve of the light in each texel, with nodes where it changes most; none", kShadowKinds),
     choiceField<&S::filter>("filter", "texels of the shadow map that are averaged at each point of the hair: more give smoother shadows", kShadowFilters),
     field<&S::resolution>("resolution", "px", 64, 4096, "width and height of a light's shadow map"),
     field<&S::layers>("layers", "", 3, 11, "layers of deep opacity maps"),
     choiceField<&S::layerEnds>("layerEnds", "where layers end: early, most of them where hair begins; linear, evenly; growing, each as much wider as layerGrowth says", kLayerEnds),
     field<&S::layerGrowth>("layerGrowth", "", 1, 8, "ratio of the width of a layer to that of the layer before, for growing ends"),
     field<&S::slices>("slices", "", 1, 16, "slices of opacity maps, evenly spaced"),
+    field<&S::nodes>("nodes", "", 4, 16, "nodes of a texel's curve in adaptive shadow maps"),
     field<&S::headAbsorption>("headAbsorption", "1/m", 0, 10'000, "light on hair behind the head fades with depth, by this much per metre: 0 blocks all of it"),
     field<&S::blur>("blur", "px", 0, 32, "blurs shadows in the image by this standard deviation: 0 turns it off"),
 };
