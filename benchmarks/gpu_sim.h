@@ -14,7 +14,8 @@
 namespace hairloom::benchmarks {
 
 struct GpuBenchRow {
-    std::string hair;  ///< a sample's name, or "rods" or "springs" of the made-up head
+    std::string
+        hair;  ///< a sample's name, or "rods", "springs" or an integrator's springs of the made-up head
     std::uint32_t strands = 0;
     std::uint32_t points = 0;  ///< of all strands
     std::uint32_t substeps = 0;
@@ -31,9 +32,10 @@ struct GpuBench {
     Machine machine;
     double copyBandwidth = 0;  ///< GB/s
     std::vector<GpuBenchRow> samples;
-    std::vector<GpuBenchRow> rows;     ///< Figure 27: rods, every effect
-    std::vector<GpuBenchRow> effects;  ///< rods
-    std::vector<GpuBenchRow> layouts;  ///< rods, then springs in each layout
+    std::vector<GpuBenchRow> rows;      ///< Figure 27: rods, every effect
+    std::vector<GpuBenchRow> effects;   ///< rods
+    std::vector<GpuBenchRow> layouts;   ///< rods, then springs in each layout
+    std::vector<GpuBenchRow> backward;  ///< springs by backward Euler, with held lengths and as coils
     std::optional<double> crossesOne,
         crossesAll;  ///< strands from which the GPU is faster than one, all threads
 };

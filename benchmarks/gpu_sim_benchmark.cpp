@@ -54,6 +54,25 @@ class Rows {
         return row;
     }
 
+    /// Springs by backward Euler, beside the rest of the default settings.
+    Result<GpuBenchRow> measureBackward(std::uint32_t strands, runtime::LengthMethod lengths,
+                                        const NamedLayout& layout) {
+        runtime::SimulationSettings settings =
+            settingsWithout(LeftOut::nothing, runtime::StrandModel::springs);
+        settings.integrator = runtime::Integrator::implicitEuler;
+        settings.lengthMethod = lengths;
+        auto row = measure(turningHead(strands, kPoints, ActiveForces::windAndSpheres), settings, layout);
+        if (!row) return row;
+        const bool held = lengths == runtime::LengthMethod::constraint;
+        row->hair = held ? "springs, backward Euler" : "coil springs, backward Euler";
+        row->leftOut = leftOutName(LeftOut::nothing);
+        for (const bool allThreads : {false, true}) {
+            StepRun run(turningHead(strands, kPoints, ActiveForces::windAndSpheres), settings, allThreads);
+            (allThreads ? row->cpuAll : row->cpuOne) = run.milliseconds(run.framesFor(seconds_));
+        }
+        return row;
+    }
+
     Result<GpuBenchRow> measure(const Sample& sample) {
         auto strands = nodding(sample.groom);
         if (!strands) return tl::unexpected(strands.error());
@@ -146,6 +165,11 @@ Status measureDetails(Rows& rows, const Extent& extent, GpuBench& bench) {
             auto row = rows.measure(strands, LeftOut::nothing, runtime::StrandModel::springs, layout);
             if (!row) return tl::unexpected(row.error());
             bench.layouts.push_back(std::move(*row));
+        }
+        for (const auto lengths : {runtime::LengthMethod::constraint, runtime::LengthMethod::springs}) {
+            auto row = rows.measureBackward(strands, lengths, layouts.front());
+            if (!row) return tl::unexpected(row.error());
+            bench.backward.push_back(std::move(*row));
         }
     }
     return {};

@@ -100,7 +100,8 @@ Report reportOf(const GpuBench& bench) {
                   {"samples", rowsReport(bench.samples)},
                   {"rows", rowsReport(bench.rows)},
                   {"effects", rowsReport(bench.effects)},
-                  {"layouts", rowsReport(bench.layouts)}};
+                  {"layouts", rowsReport(bench.layouts)},
+                  {"backward_euler", rowsReport(bench.backward)}};
 }
 
 std::string csvOf(const GpuBench& bench) {
@@ -116,6 +117,7 @@ std::string csvOf(const GpuBench& bench) {
     csvRows(bench.rows, "figure", out);
     csvRows(bench.effects, "effects", out);
     csvRows(bench.layouts, "layouts", out);
+    csvRows(bench.backward, "backward_euler", out);
     return text;
 }
 
@@ -151,6 +153,15 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
     fmt::format_to(out, "\n## Layouts\n\n| strands | model | layout | GPU, ms |\n|---|---|---|---|\n");
     for (const GpuBenchRow& row : bench.layouts)
         fmt::format_to(out, "| {} | {} | {} | {:.3g} |\n", row.strands, row.hair, row.layout, row.gpu.device);
+    fmt::format_to(
+        out,
+        "\n## Backward Euler\n\nSprings with the default settings but for the integrator, in ms per "
+        "frame.\n\n| strands | model | GPU | GPU, wall | CPU, one thread | CPU, all threads |\n"
+        "|---|---|---|---|---|---|\n");
+    for (const GpuBenchRow& row : bench.backward) {
+        fmt::format_to(out, "| {} | {} | {:.3g} | {:.3g} | {} | {} |\n", row.strands, row.hair,
+                       row.gpu.device, row.gpu.wall, orDash(row.cpuOne, ""), orDash(row.cpuAll, ""));
+    }
     return text;
 }
 

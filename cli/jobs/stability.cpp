@@ -89,9 +89,6 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
         if (!made) return tl::unexpected(made.error());
         gpu = std::move(*made);
         suite.engines = gpuHardCaseEngines(gpu->device(), gpu->kernels());
-        // Backward Euler runs on the CPU only.
-        std::erase(suite.integrators, runtime::Integrator::implicitEuler);
-        std::erase(methods, springsWith(runtime::Integrator::implicitEuler));
     }
     suite.stepsAtRest = options.stepsAtRest;
     suite.storms = options.storms.value_or(suite.storms);

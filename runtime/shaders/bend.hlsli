@@ -118,11 +118,10 @@ float3 segmentForce(uint s) {
     return force;
 }
 
-/// Angular springs after position Verlet: the step of their force through (M + (¼ + q) h² K)⁻¹ by the LDLᵀ
-/// factors of the strand, stable for any stiffness (docs/engine.md). The slot of joint p − 1 is free once
-/// point p has its right side, and keeps it, then its move.
-void bendBack(bool frames) {
-    measureAhead(frames);
+/// Adds to the free points what the pulls of the joints do through (M + share·h² K)⁻¹, by the LDLᵀ factors of the strand,
+/// stable for any stiffness (docs/engine.md). The slot of joint p − 1 is free once point p has its right side, and keeps
+/// it, then its move.
+void solveBend() {
     float3 inner = segmentForce(FIRST_FREE - 1);
     float3 one = float3(0, 0, 0), two = float3(0, 0, 0);  // right sides of the last two points
     EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
@@ -148,6 +147,12 @@ void bendBack(bool frames) {
         lower2Next = lower2;
         lower2 = factors.z;
     }
+}
+
+/// Angular springs after position Verlet, with ¼ + q for the share.
+void bendBack(bool frames) {
+    measureAhead(frames);
+    solveBend();
 }
 #if HAIR_TARGETS
 void stageAngular() { bendBack(true); }

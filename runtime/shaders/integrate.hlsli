@@ -93,7 +93,7 @@ void stageVerletKick() {
 }
 #endif
 
-#if HAIR_EVALUATION >= 2
+#if HAIR_EVALUATION == 2
 /// The classical Runge-Kutta method. With A_k what the forces give at slope k, the velocities are u, u + A₁/2,
 /// u + A₂/2 and u + A₃, so the positions need only sums of A.
 void stageRungeKutta1() {

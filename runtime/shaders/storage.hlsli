@@ -200,10 +200,17 @@ SCRATCH_ARRAY(work, setWork, gWork, 0)
 SCRATCH_ARRAY(start, setStart, gStarts, 5)
 SCRATCH_ARRAY(stepDisplacement, setStepDisplacement, gStepDisplacements, 8)
 #endif
-#if HAIR_EVALUATION >= 2
+#if HAIR_EVALUATION == 2
 SCRATCH_ARRAY(kick, setKick, gKicks, 11)
 SCRATCH_ARRAY(sum, setSum, gSums, 14)
 SCRATCH_ARRAY(stepDisplacementSum, setStepDisplacementSum, gStepDisplacementSums, 17)
+#elif HAIR_EVALUATION == 3
+// Of the system of coil springs (implicit.hlsli): the inverse of each block of D, and the rows of that of L.
+SCRATCH_ARRAY(inverseFirst, setInverseFirst, gInverseFirst, 11)
+SCRATCH_ARRAY(inverseRest, setInverseRest, gInverseRest, 14)
+SCRATCH_ARRAY(lowerX, setLowerX, gLowerX, 17)
+SCRATCH_ARRAY(lowerY, setLowerY, gLowerY, 20)
+SCRATCH_ARRAY(lowerZ, setLowerZ, gLowerZ, 23)
 #endif
 
 float3 restVector(uint p) { return gRest[slotOf(0, p)].xyz; }

@@ -7,7 +7,7 @@
 //   HAIR_STORAGE     0 … 4: see storage.hlsli; HAIR_STRANDS: of a work group
 //   HAIR_TOGETHER, HAIR_PER_THREAD, HAIR_WAVE: see storage.hlsli, lanes.hlsli
 //   HAIR_CLAMPED     1, 2: clamped points
-//   HAIR_EVALUATION  0; 1: integrators that evaluate forces elsewhere; 2: RK4
+//   HAIR_EVALUATION  0; 1: integrators that evaluate forces elsewhere; 2: RK4; 3: backward Euler with coil springs
 //   HAIR_BEND        0; 1: with stiffness; 2: with the factors of the strand's matrix
 //   HAIR_TARGETS     1: rest directions; HAIR_TENSIONS 1: kept from substep to substep
 //   HAIR_SPHERES     0; 1: in a constant buffer; 2: in a buffer
@@ -21,6 +21,7 @@
 #include "integrate.hlsli"
 #include "springs.hlsli"
 #include "bend.hlsli"
+#include "implicit.hlsli"
 #include "length.hlsli"
 #include "collide.hlsli"
 #include "sleeping.hlsli"

@@ -96,7 +96,7 @@ TEST_F(EngineChoiceTest, WhatCannotBeMeasuredIsTheCpuAndTriedAgain) {
 
 TEST_F(EngineChoiceTest, SettingsWithoutKernelsAreTheCpu) {
     groom_.simulation.strandModel = runtime::StrandModel::springs;
-    groom_.simulation.integrator = runtime::Integrator::implicitEuler;
+    groom_.simulation.collisionSegments = true;
     const EngineChoice choice = choose(EngineWish::gpu, &gpu_, EngineTimes{4, 1});
     EXPECT_EQ(choice.kind, EngineKind::cpu);
     EXPECT_FALSE(choice.why.empty());

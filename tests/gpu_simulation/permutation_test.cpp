@@ -149,11 +149,7 @@ TEST_F(Permutation, RodsOfAllPointCountsShareAKernel) {
     EXPECT_EQ(key.defines(), keyOf(3, StrandStorage::wisps).defines());
     scene.settings.windSpeed = 3.0f;
     EXPECT_THAT(keyOf(16, StrandStorage::threads).defines(), testing::HasSubstr("HAIR_WIND 1"));
-    // Integrators are those of springs.
-    scene.settings.integrator = runtime::Integrator::implicitEuler;
-    EXPECT_EQ(kernelError(scene.settings), "");
     scene.settings.strandModel = runtime::StrandModel::springs;
-    EXPECT_THAT(kernelError(scene.settings), testing::HasSubstr("implicitEuler"));
     EXPECT_STREQ(keyOf(16, StrandStorage::threads).source(), "strands.hlsli");
 }
 
@@ -269,12 +265,35 @@ TEST_F(Permutation, PlansChangeWithoutWaiting) {
     EXPECT_FLOAT_EQ(engine.settings().gravity.y, 0.0f);
 }
 
-TEST_F(Permutation, BackwardEulerIsRefusedInWords) {
-    SimulationSettings s = springSettings();
-    s.integrator = runtime::Integrator::implicitEuler;
-    const auto made = StrandEngine::make(*device(), library(), strands.view(), s, options());
-    ASSERT_FALSE(made);
-    EXPECT_THAT(made.error().message(), testing::HasSubstr("implicitEuler"));
+/// Its system of coil springs has a thread for each strand, whatever the batch is laid out for; no other is
+/// compiled for its arrays.
+TEST_F(Permutation, BackwardEulerOfCoilsHasAThreadForEachStrand) {
+    runtime::PlanInput scene;
+    scene.settings = springSettings();
+    scene.strandCount = 1;
+    scene.longestPointCount = 16;
+    scene.longestStrand = 1.0f;
+    BatchShape lanes{16, true, true, StrandStorage::lanes};
+    lanes.strands = 2;
+    lanes.together = true;
+    lanes.perThread = 2;
+    lanes.wave = 8;
+    const auto definesOf = [&](runtime::Integrator integrator, runtime::LengthMethod lengths) {
+        scene.settings.integrator = integrator;
+        scene.settings.lengthMethod = lengths;
+        EXPECT_EQ(kernelError(scene.settings), "");
+        return keyFor(runtime::plan(scene), scene.settings, lanes, 0, false).defines();
+    };
+    using runtime::Integrator;
+    using runtime::LengthMethod;
+    const std::string coils = definesOf(Integrator::implicitEuler, LengthMethod::springs);
+    for (const char* line : {"HAIR_STORAGE 0", "HAIR_STRANDS 32", "HAIR_TOGETHER 1", "HAIR_PER_THREAD 1",
+                             "HAIR_WAVE 0", "HAIR_UNROLL 0", "HAIR_EVALUATION 3"})
+        EXPECT_THAT(coils, testing::HasSubstr(line));
+    const std::string held = definesOf(Integrator::implicitEuler, LengthMethod::constraint);
+    for (const char* line : {"HAIR_STORAGE 3", "HAIR_PER_THREAD 2", "HAIR_EVALUATION 1"})
+        EXPECT_THAT(held, testing::HasSubstr(line));
+    EXPECT_THAT(definesOf(Integrator::verlet, LengthMethod::springs), testing::HasSubstr("HAIR_STORAGE 3"));
 }
 
 TEST_F(Permutation, WhatTheCpuAloneHasIsRefusedInWords) {

@@ -4,6 +4,7 @@
 // integrators' own formulas with the forces of core/simulation/reference.
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
 
 #include "tests/gpu_simulation/reference_fixture.h"
 
@@ -85,6 +86,92 @@ TEST_F(ReferenceSolves, ImplicitSpringsByADenseMatrix) {
         }
     }
 }
+
+/// One linearised step of backward Euler (Rünz 2012, Eq. 9, as Baraff and Witkin 1998): (M − h² ∂f/∂x) d =
+/// M u + h² f, densely, without the part of a coil's Jacobian that pushes across it (Choi and Ko 2002).
+Positions backwardEuler(const Bodies& bodies, const Bodies& bending, std::size_t s, const Strand& before) {
+    const SimulationSettings& settings = bodies.settings();
+    const Positions& x = before.positions;
+    const std::vector<double>& masses = bodies.shape(s).masses;
+    const auto points = static_cast<Index>(x.size());
+    MatrixXd matrix = kStepSquared * bending.stiffness(s, x);
+    if (settings.lengthMethod != runtime::LengthMethod::constraint) {
+        const double rate = 2.0 * std::numbers::pi * static_cast<double>(settings.springFrequency);
+        for (Index j = 0; j + 1 < points; ++j) {
+            const auto a = static_cast<std::size_t>(j);
+            const Vector3d edge = x[a + 1] - x[a], along = edge.normalized();
+            const double k = kStepSquared * rate * rate * 2.0 / (1.0 / masses[a] + 1.0 / masses[a + 1]);
+            const double across = std::max(1.0 - bodies.shape(s).lengths[a] / edge.norm(), 0.0);
+            const Eigen::Matrix3d block =
+                k * (across * Eigen::Matrix3d::Identity() + (1.0 - across) * along * along.transpose());
+            matrix.block<3, 3>(3 * j, 3 * j) += block;
+            matrix.block<3, 3>(3 * j + 3, 3 * j + 3) += block;
+            matrix.block<3, 3>(3 * j, 3 * j + 3) -= block;
+            matrix.block<3, 3>(3 * j + 3, 3 * j) -= block;
+        }
+    }
+    for (Index row = 0; row < 3 * points; ++row)
+        matrix(row, row) += masses[static_cast<std::size_t>(row / 3)];
+    const Positions still(x.size(), Vector3d::Zero());
+    const Positions force = bodies.forces(s, x, still, reference::Physics(settings));
+    VectorXd right = kStepSquared * stacked(force);
+    for (Index row = 0; row < right.size(); ++row)
+        right(row) += masses[static_cast<std::size_t>(row / 3)] * stacked(before.moved)(row);
+    const Index first = 3 * static_cast<Index>(settings.clampedPoints), rows = 3 * points - first;
+    const VectorXd moved = matrix.bottomRightCorner(rows, rows).ldlt().solve(right.tail(rows));
+    Positions end = x;
+    for (std::size_t p = settings.clampedPoints; p < end.size(); ++p)
+        end[p] += moved.segment<3>(3 * static_cast<Index>(p) - first);
+    return end;
+}
+
+struct Backward {
+    const char* name;
+    runtime::LengthMethod lengths;
+    float springFrequency;  ///< Hz
+    float angularStiffness;
+    std::uint32_t clampedPoints;
+};
+void PrintTo(const Backward& printed, std::ostream* out) {
+    *out << printed.name;
+}
+using runtime::LengthMethod;
+constexpr Backward kBackward[] = {
+    {"nothingStiff", LengthMethod::constraint, 1.0f, 0.0f, 2},
+    {"angular", LengthMethod::constraint, 1.0f, 0.3f, 2},
+    {"angularStiff", LengthMethod::constraint, 1.0f, 0.95f, 1},
+    {"coils", LengthMethod::springs, 200.0f, 0.0f, 2},
+    {"coilsAndAngular", LengthMethod::springs, 200.0f, 0.3f, 2},
+    // (ω h)² = 17,000, the stiffest that settings allow.
+    {"coilsStiff", LengthMethod::springs, 10'000.0f, 0.95f, 1},
+};
+
+class ReferenceBackwardEuler : public Reference, public testing::WithParamInterface<Backward> {};
+
+TEST_P(ReferenceBackwardEuler, ByADenseMatrix) {
+    SimulationSettings settings = nothing();
+    settings.integrator = runtime::Integrator::implicitEuler;
+    settings.gravity = {1.0f, -9.81f, 0.5f};
+    settings.lengthMethod = GetParam().lengths;
+    settings.springFrequency = GetParam().springFrequency;
+    settings.angularStiffness = GetParam().angularStiffness;
+    settings.clampedPoints = GetParam().clampedPoints;
+    settings.angularMethod = runtime::AngularMethod::smallAngle;
+    settings.restGravity = 0.0f;
+    SimulationSettings bent = settings;
+    bent.lengthMethod = runtime::LengthMethod::constraint;
+    for (const Hair hair : {Hair::straight, Hair::curled}) {
+        SCOPED_TRACE(static_cast<int>(hair));
+        const Scene scene = sceneFor(settings, hair, false, 0);
+        const Bodies bodies(scene, settings), bending(scene, bent);
+        const auto end = [&](std::size_t s, const Strand& before) {
+            return backwardEuler(bodies, bending, s, before);
+        };
+        hold(scene, end, positionsOf, 0.0);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Systems, ReferenceBackwardEuler, testing::ValuesIn(kBackward),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 /// Where a substep ends.
 struct Ended {

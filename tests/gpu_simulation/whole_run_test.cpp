@@ -82,6 +82,73 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     EXPECT_NEAR(energyGpu, energyCpu, 0.05 * energyCpu);
 }
 
+/// Backward Euler of a turning head in wind, one substep a frame.
+SimulationSettings backwardEuler(runtime::LengthMethod lengths) {
+    SimulationSettings s =
+        scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
+    s.integrator = runtime::Integrator::implicitEuler;
+    s.angularMethod = runtime::AngularMethod::smallAngle;
+    s.lengthMethod = lengths;
+    s.substeps = 1;
+    return s;
+}
+
+/// Coil springs of (ω h)² = 1.1 million beside a mass of 1, with nothing else to hold them: they stay as long
+/// as the CPU's, and where the CPU's are.
+TEST_P(EachLayout, BackwardEulerHoldsTheStiffestSprings) {
+    const scenes::HeadOfHair head(64, 16);
+    SimulationSettings settings = backwardEuler(runtime::LengthMethod::springs);
+    settings.springFrequency = 10'000.0f;
+    settings.lengthIterations = 0;
+    StrandEngine gpu = engineOf(head.view(), settings, options(GetParam()));
+    runtime::Engine cpu = *runtime::Engine::make(head.view(), settings).engine;
+    std::vector<RootFrame> roots;
+    head.placeRoots(0.0, roots);
+    ASSERT_TRUE(gpu.reset(roots));
+    cpu.reset(roots);
+    std::vector<Float3> onCpu(cpu.pointCount());
+    for (int f = 1; f <= 60; ++f) {
+        const double time = f * static_cast<double>(kFrame);
+        head.placeRoots(time, roots);
+        const runtime::FrameInput input{kFrame, time, roots, head.spheres};
+        ASSERT_TRUE(gpu.step(input));
+        cpu.step(input);
+        const Measurements measured = gpu.measure().value(), other = cpu.measure();
+        EXPECT_EQ(measured.nanCount, 0u);
+        EXPECT_LE(measured.maxStretch, 1.5 * other.maxStretch + 0.01) << f;
+        cpu.readPositions(onCpu);
+        if (f == 5) {
+            EXPECT_LE(farthest(positionsOf(gpu), onCpu), 1e-3);
+        }
+    }
+    EXPECT_LE(meanDistance(positionsOf(gpu), onCpu), 2e-3);
+}
+
+/// Long strands have their system in a buffer. (The layouts of kHeldLayouts are compared above.)
+TEST_F(WholeRun, BackwardEulerIsTheSameInBuffersAndGroups) {
+    const scenes::HeadOfHair head(40, 8);
+    SimulationSettings settings =
+        scenes::settingsFor(scenes::ActiveForces::gravity, runtime::StrandModel::springs);
+    settings.integrator = runtime::Integrator::implicitEuler;
+    settings.lengthMethod = runtime::LengthMethod::springs;
+    settings.substeps = 1;
+    std::vector<Float3> first;
+    for (const StrandStorage storage :
+         {StrandStorage::threads, StrandStorage::groups, StrandStorage::buffers}) {
+        EngineOptions options;
+        options.layout = {storage, false};
+        StrandEngine engine = engineOf(head.view(), settings, options);
+        std::vector<RootFrame> roots;
+        for (int f = 1; f <= 6; ++f) {
+            const double time = f * static_cast<double>(kFrame);
+            head.placeRoots(time, roots);
+            ASSERT_TRUE(engine.step({kFrame, time, roots, {}}));
+        }
+        if (first.empty()) first = positionsOf(engine);
+        EXPECT_LE(farthest(positionsOf(engine), first), 1e-5) << nameOf(options.layout);
+    }
+}
+
 /// Its first step from rest is ½ a h², so that free points fall as the closed form says.
 TEST_P(EachLayout, VerletStartsAtTheHalfStep) {
     const scenes::HeadOfHair head(4, 8);

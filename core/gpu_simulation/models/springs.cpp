@@ -19,19 +19,38 @@ using runtime::Integrator;
 
 constexpr std::size_t kBlocksPerJob = 8;
 /// Floats a point that a kernel of StrandStorage::buffers works in, by kEvaluation: see storage.hlsli.
-constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
+constexpr std::array<std::size_t, 4> kScratchPlanes{5, 11, 20, 26};
 
 /// KernelKey::own.
 enum Own : std::size_t {
-    kEvaluation,  ///< arrays of the integrator: none, start and rate, those of RK4
+    kEvaluation,  ///< arrays of the integrator: none, start and rate, those of RK4, a system of coil springs
     kBend,        ///< none, stiffness, factors
     kTargets,     ///< 1: rest directions
     kTensions,    ///< 1: are kept from substep to substep
 };
 
-std::uint32_t evaluationOf(Integrator integrator) {
-    if (integrator == Integrator::verlet) return 0;
-    return integrator == Integrator::rk4 ? 2 : 1;
+std::uint32_t evaluationOf(const runtime::SimulationSettings& settings) {
+    const bool coils = settings.lengthMethod != runtime::LengthMethod::constraint;
+    switch (settings.integrator) {
+        case Integrator::verlet:
+            return 0;
+        case Integrator::rk4:
+            return 2;
+        case Integrator::implicitEuler:
+            return coils ? 3 : 1;
+        default:
+            return 1;
+    }
+}
+
+/// A thread eliminates 3×3 blocks from root to tip, of which registers hold a few.
+void giveStrandsToThreads(BatchShape& shape) {
+    shape.unrolled = false;
+    if (shape.storage != StrandStorage::lanes) return;
+    shape.storage = StrandStorage::threads;
+    shape.strands = runtime::kBlockLanes;
+    shape.perThread = 1;
+    shape.wave = 0;
 }
 
 void fillKey(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings, KernelKey& key) {
@@ -43,7 +62,8 @@ void fillKey(const runtime::EffectPlan& plan, const runtime::SimulationSettings&
         key.stages = callOf(runtime::StageId::roots);
         return;
     }
-    key.own[kEvaluation] = evaluationOf(settings.integrator);
+    key.own[kEvaluation] = evaluationOf(settings);
+    if (key.own[kEvaluation] == 3) giveStrandsToThreads(key.shape);
     if (plan.on(Effect::angular)) key.own[kBend] = plan.factored() ? 2 : 1;
     key.own[kTargets] = plan.on(Effect::torsion) ? 1 : 0;
     key.own[kTensions] = plan.keepsTensions() ? 1 : 0;
@@ -77,8 +97,7 @@ std::uint32_t velocitySlot(const KernelKey& key) {
 std::string error(const runtime::SimulationSettings& settings) {
     if (settings.collisionSegments)
         return "segments that meet spheres run on the CPU alone. Set collisionSegments to 0 to use the GPU";
-    if (settings.integrator != Integrator::implicitEuler) return {};
-    return "the integrator implicitEuler runs on the CPU only";
+    return {};
 }
 
 /// Of angular springs, a point.
