@@ -111,6 +111,7 @@ class Collector {
             }
         }
         result_.vertices.push_back(record);
+        result_.sources.push_back(vertex);
         return static_cast<std::uint32_t>(result_.vertices.size() - 1);
     }
 

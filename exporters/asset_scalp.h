@@ -14,6 +14,7 @@ namespace hairloom {
 struct AssetScalp {
     std::vector<asset::Root> roots;  ///< of the strands; empty without a scalp
     std::vector<asset::ScalpVertex> vertices;
+    std::vector<std::uint32_t> sources;  ///< of the vertices: which of the groom's scalp
     std::vector<asset::ScalpTriangle> triangles;
     std::vector<asset::Bone> bones;
     std::vector<asset::Sphere> spheres;

@@ -11,6 +11,7 @@
 #include "core/groom/point_width.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
+#include "exporters/asset_clip.h"
 #include "exporters/asset_extras.h"
 #include "exporters/asset_scalp.h"
 #include "exporters/prepared_strands.h"
@@ -198,6 +199,9 @@ Status checkOptions(const StrandExportOptions& options) {
     if (options.metresPerUnit != 1.0f || options.up != UpAxis::Y)
         return fail("a runtime asset with another unit or axis was requested",
                     "expected neither --unit nor --up: it is in metres, Y up");
+    if (options.clip && options.pointsPerStrand > 0)
+        return fail("a clip was requested of strands with other points than the groom's",
+                    "expected no --points");
     return {};
 }
 
@@ -209,6 +213,15 @@ Status checkPoints(const PreparedStrands& strands) {
                         fmt::format("expected {} or fewer: export with --points", runtime::kMaxPoints));
     }
     return {};
+}
+
+Finding clipFinding(const AssetClip& clip, std::size_t points, double error) {
+    const double frames = clip.record.frames;
+    const auto bytes = static_cast<double>(clip.frames.size() + clip.places.size() * sizeof(std::uint32_t));
+    return {Severity::Info,
+            fmt::format("the clip's {} frames take {:.2f} bytes a point, at most {:.2g} mm from the take",
+                        clip.record.frames, bytes / (frames * static_cast<double>(points)), error * 1e3),
+            "clip", ""};
 }
 
 Finding gridFinding(const runtime::Asset& asset) {
@@ -257,10 +270,16 @@ void addLayers(const Groom& groom, const PreparedStrands& strands, AssetBuilder&
     builder.add<std::uint16_t>(asset::kStrandLayers, ofStrands);
 }
 
+struct WrittenClip {
+    std::string name;
+    const AssetClip* encoded = nullptr;  ///< null: none
+};
+
 Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& strands,
                                           const FollowSections& follow,
                                           const std::optional<SafeLimits>& safeLimits,
-                                          const MeasuredLevels& levels) {
+                                          const MeasuredLevels& levels, const WrittenClip& clip,
+                                          std::vector<std::uint32_t>* scalpVertices = nullptr) {
     const auto encoded = encodeStrands(strands.offsets, strands.positions);
     if (!encoded) return tl::unexpected(encoded.error());
     AssetBuilder builder;
@@ -269,6 +288,7 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     const AssetScalp scalp = collectScalp(groom, strands.sources, builder);
     builder.add<asset::Root>(asset::kRoots, scalp.roots);
     builder.add<asset::ScalpVertex>(asset::kScalpVertices, scalp.vertices);
+    if (scalpVertices) *scalpVertices = scalp.sources;
     builder.add<asset::ScalpTriangle>(asset::kScalpTriangles, scalp.triangles);
     builder.add<asset::Bone>(asset::kBones, scalp.bones);
     builder.add<asset::Sphere>(asset::kSpheres, scalp.spheres);
@@ -287,6 +307,13 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     addAttributes(groom, strands, builder);
     builder.add<asset::MeasuredLevel>(asset::kLevelErrors, levels.paths);
     builder.add<asset::MeasuredLevel>(asset::kSeenErrors, levels.seen);
+    if (clip.encoded) {
+        asset::Clip record = clip.encoded->record;
+        record.name = builder.text(clip.name);
+        builder.add<asset::Clip>(asset::kClip, std::span(&record, 1));
+        builder.add<std::uint32_t>(asset::kClipPlaces, clip.encoded->places);
+        builder.add<std::byte>(asset::kClipFrames, clip.encoded->frames);
+    }
     builder.addSettings("simulation", groom.simulation);
     builder.addSettings("material", groom.material);
     builder.addSettings("interpolation", groom.interpolation);
@@ -307,16 +334,45 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
     if (!follow) return here(follow.error());
     // Levels are measured on the asset without them; findings are told once.
     PreparedStrands unmeasured = *strands;
-    const auto plain = buildAsset(groom, unmeasured, *follow, options.safeLimits, {});
+    std::vector<std::uint32_t> scalpVertices;
+    const auto plain = buildAsset(groom, unmeasured, *follow, options.safeLimits, {}, {}, &scalpVertices);
     if (!plain) return here(plain.error());
-    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits, measureLevels(*plain));
+    std::optional<AssetClip> encoded;
+    WrittenClip clip;
+    if (options.clip) {
+        auto made = encodeClip(*options.clip, *strands, groom, *runtime::Asset::open(*plain).asset,
+                               scalpVertices, options.watch.part(0, 0.3));
+        if (!made) return here(made.error());
+        encoded = std::move(*made);
+        clip = {options.clip->name, &*encoded};
+    }
+    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits, measureLevels(*plain), clip);
     if (!bytes) return here(bytes.error());
+    Finding ofClip;
+    double clipError = 0;
+    if (encoded) {
+        const auto error = playedClipError(*options.clip, *strands, groom, *bytes, scalpVertices,
+                                           options.watch.part(0.3, 0.5));
+        if (!error) return here(error.error());
+        clipError = *error;
+        const double stated{encoded->record.largestError};
+        if (!(clipError <= stated))
+            return failIn(path.string(), {},
+                          fmt::format("the clip is {:.3g} mm off when it is played", clipError * 1e3),
+                          fmt::format("expected at most the {:.3g} mm of its frames", stated * 1e3));
+        ofClip = clipFinding(*encoded, strands->positions.size(), clipError);
+    }
     auto report = writeAndCompare(groom, std::move(*strands), options, path, *bytes);
     if (!report) return report;
     const auto opened = runtime::Asset::open(*bytes);
     if (!opened.asset) return failIn(path.string(), Byte{opened.error.byte}, opened.error.words);
     if (auto status = addFindings(groom, *follow, *opened.asset, *report); !status)
         return here(status.error());
+    if (encoded) {
+        report->frames = static_cast<std::size_t>(options.clip->frames);
+        report->attributes.push_back({"clip", clipError});
+        report->findings.push_back(std::move(ofClip));
+    }
     return report;
 }
 
@@ -334,6 +390,10 @@ HairWriter runtimeWriter() {
         {{"game", "Game by Hairloom's runtime", ".hairrt in metres, Y up, for the library in runtime/", {}}},
         writeRuntime,
         "hairrt",
+        true,
+        false,
+        false,
+        false,
         true};
 }
 

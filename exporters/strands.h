@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,6 +55,21 @@ struct StrandFrames {
     }
 };
 
+/// Recorded motion for a game, relative to the head.
+struct ClipToWrite {
+    struct Frame {
+        std::vector<Vec3f> positions_ws;  ///< of all strands of the groom, metres
+        Eigen::Isometry3f head_ws = Eigen::Isometry3f::Identity();
+        std::vector<Vec3f> scalpPositions_ws;  ///< per vertex of the scalp; empty: it moves with head_ws
+    };
+    std::string name;
+    double framesPerSecond = 60;  ///< 1 to 1000
+    std::uint64_t frames = 0;
+    bool loops = false;  ///< behind the last frame comes the first
+    /// Asked for in order, and then once more. Errors end the export.
+    std::function<Result<Frame>(std::uint64_t)> frame;
+};
+
 struct StrandExportOptions {
     float metresPerUnit = 1.0f;  ///< > 0; metres in one unit of the file
     UpAxis up = UpAxis::Y;       ///< axis of the file that points up; Z up becomes (x, −z, y)
@@ -62,9 +78,10 @@ struct StrandExportOptions {
     TargetLimits limits;  ///< what goes beyond them is a finding with its fix
     /// Of strands that move: for writers that animate. The groom is at the first frame. Null: at rest.
     std::shared_ptr<const StrandFrames> frames = nullptr;
-    std::optional<SafeLimits> safeLimits{};  ///< for formats that carry them
-    bool physics = false;                    ///< of writers that hold them; of strands at rest
-    WorkWatch watch{};                       ///< of preparing, writing, reading back and comparing
+    std::shared_ptr<const ClipToWrite> clip = nullptr;  ///< of writers that hold clips; null: none
+    std::optional<SafeLimits> safeLimits{};             ///< for formats that carry them
+    bool physics = false;                               ///< of writers that hold them; of strands at rest
+    WorkWatch watch{};                                  ///< of preparing, writing, reading back and comparing
 };
 
 /// A program that reads a format, and what it wants of a file.
@@ -113,6 +130,7 @@ struct HairWriter {
     bool marksGuides = false;           ///< hairs go with the guides that they follow, and how much they do
     bool keepsGuides = false;           ///< likewise, where that is asked for
     bool animates = false;              ///< the file can hold StrandExportOptions::frames
+    bool holdsClips = false;            ///< the file can hold StrandExportOptions::clip
     bool holdsPhysics = false;          ///< what simulates curves may stand beside them
 
     std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }

@@ -172,6 +172,11 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
     if (!from.body().empty())
         raw.warnings.push_back(fileNote("the skin collider goes with its head, which the file does not have",
                                         "body", "fit it again on the head (colliders --fit field)"));
+    if (const asset::Clip* const clip = from.clip())
+        raw.warnings.push_back(
+            fileNote(fmt::format("the clip '{}' of {} frames is not read back, which games play",
+                                 from.text(clip->name), clip->frames),
+                     "clip", "keep the take that it was exported from"));
     return raw;
 }
 

@@ -59,11 +59,20 @@ Result<Report> assetReport(const std::string& path) {
     for (const runtime::AssetSection& section : asset.sections())
         sections.push_back(
             {{"kind", std::string(section.kind)}, {"records", section.count}, {"bytes", section.bytes}});
+    Report clip(nullptr);
+    if (const runtime::asset::Clip* const found = asset.clip())
+        clip = Report{{"name", std::string(asset.text(found->name))},
+                      {"frames", found->frames},
+                      {"fps", found->framesPerSecond},
+                      {"loops", found->loops != 0},
+                      {"bytes", asset.clipPlaces().size_bytes() + asset.clipFrames().size()},
+                      {"max_error_mm", 1e3 * static_cast<double>(found->largestError)}};
     return Report{{"version", fmt::format("{}.{}", asset.major(), asset.minor())},
                   {"bytes", asset.bytes()},
                   {"follow_hairs", asset.hairCount()},
                   {"bones", asset.bones.size()},
                   {"greatest_error_mm", asset.greatestError() * 1e3},
+                  {"clip", std::move(clip)},
                   {"sections", std::move(sections)}};
 }
 

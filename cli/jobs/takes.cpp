@@ -17,7 +17,7 @@
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/base/write_rules.h"
-#include "core/documents/hair_export.h"
+#include "core/documents/take_export.h"
 #include "core/documents/takes.h"
 #include "core/live/film.h"
 #include "core/simulation/frame_record.h"
@@ -27,7 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRecordFormat = "frames";
 constexpr const char* kWebpFormat = "webp";
 constexpr const char* kMp4Format = "mp4";
 
@@ -44,6 +43,7 @@ struct TakesOptions {
     std::vector<std::string> compared;
     std::string format;
     std::vector<std::uint64_t> range;  ///< first and last frame to export; empty: all
+    bool loops = false;
     std::string size = "640x640";
     std::string camera = "three-quarter";
     std::string output;
@@ -148,53 +148,15 @@ std::pair<std::uint64_t, std::uint64_t> rangeOf(const TakesOptions& options, con
     return {options.range[0], options.range[1]};
 }
 
-/// Each frame of the range, in order.
-Status visitRange(TakeReader& reader, std::pair<std::uint64_t, std::uint64_t> range,
-                  const std::function<Status(RecordedFrame)>& visit) {
-    Progress progress("reading", static_cast<std::size_t>(range.second - range.first + 1));
-    for (std::uint64_t number = range.first; number <= range.second; ++number) {
-        auto frame = reader.frame(number);
-        if (!frame) return tl::unexpected(frame.error());
-        if (auto status = visit(std::move(*frame)); !status) return status;
-        progress.done(static_cast<std::size_t>(number - range.first + 1));
-    }
-    return {};
-}
-
-Result<Report> exportRecord(TakeReader& reader, const Groom& groom,
-                            std::pair<std::uint64_t, std::uint64_t> range, const std::string& output) {
-    auto recorder = FrameRecorder::open(output, groom, reader.info().framesPerSecond);
-    if (!recorder) return tl::unexpected(recorder.error());
-    const auto status = visitRange(reader, range, [&](const RecordedFrame& frame) {
-        return recorder->add(frame.positions_ws, frame.pose);
-    });
-    if (!status) return tl::unexpected(status.error());
-    if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
-    return Report{{"frames", range.second - range.first + 1}, {"output", output}};
-}
-
-Result<Report> exportStrands(TakeReader& reader, const Groom& groom,
-                             std::pair<std::uint64_t, std::uint64_t> range, const TakesOptions& options) {
-    constexpr double kMost = 4e9;
-    // A frame holds the head's vertices and spheres, and bones as matrices.
-    const std::size_t vectors =
-        reader.info().points + (groom.scalp ? groom.scalp->vertexCount() : 0) + groom.spheres.size();
-    const double bytes =
-        static_cast<double>(range.second - range.first + 1) * static_cast<double>(vectors * sizeof(Vec3f));
-    if (bytes > kMost)
-        return fail(
-            fmt::format("frames {} to {} take {:.1f} GB of memory", range.first, range.second, bytes / 1e9),
-            fmt::format("expected at most {:.0f} GB: export parts by --range", kMost / 1e9));
-    const HairWriter& writer = strandWriter(options.format, hairWriters());
-    HairToExport wanted;
-    wanted.firstFrame = static_cast<double>(range.first);
-    const auto status = visitRange(reader, range, [&](RecordedFrame frame) -> Status {
-        wanted.frames.push_back(std::move(frame));
-        return {};
-    });
-    if (!status) return tl::unexpected(status.error());
-    const auto written = exportHair(groom, wanted, writer, options.output, writer.targets.front().options);
+Result<Report> exportFrames(TakeReader& reader, const Groom& groom,
+                            std::pair<std::uint64_t, std::uint64_t> range, const TakesOptions& options) {
+    Progress progress("exporting", 100);
+    TakeToExport wanted{options.exported, options.format, range.first, range.second, options.loops, {}};
+    wanted.watch.progress = [&](double share) { progress.done(static_cast<std::size_t>(100 * share)); };
+    const auto written = exportTake(reader, groom, wanted, options.output);
     if (!written) return tl::unexpected(written.error());
+    if (options.format == kRecordFormat)
+        return Report{{"frames", written->frames}, {"output", options.output}};
     tellFindings(written->findings);
     Report report = toJson(*written);
     report["frames"] = range.second - range.first + 1;
@@ -236,9 +198,11 @@ Result<Report> exportFilm(const TakeInfo& info, std::pair<std::uint64_t, std::ui
     return report;
 }
 
-Result<Report> exportTake(const TakesOptions& options) {
+Result<Report> exportNamed(const TakesOptions& options) {
     const auto groom = openGroom(options.simulation.input);
     if (!groom) return tl::unexpected(groom.error());
+    if (options.loops && options.format != "runtime")
+        throw WrongUsage("--loop with --format " + options.format, "expected it with --format runtime");
     const auto path = takeFor(options, options.exported, *groom);
     if (!path) return tl::unexpected(path.error());
     auto reader = TakeReader::open(*path);
@@ -246,26 +210,19 @@ Result<Report> exportTake(const TakesOptions& options) {
     if (auto status = reader->use(*groom); !status) return tl::unexpected(status.error());
     const auto range = rangeOf(options, reader->info());
     if (isFilmFormat(options.format)) return exportFilm(reader->info(), range, *path, options);
-    if (options.format == kRecordFormat) return exportRecord(*reader, *groom, range, options.output);
-    return exportStrands(*reader, *groom, range, options);
+    return exportFrames(*reader, *groom, range, options);
 }
 
-/// Throws WrongUsage for what takes cannot become.
 std::string_view kindOfExport(const std::string& format) {
     if (format == kRecordFormat) return content::kFrames;
     if (format == kMp4Format) return content::kMp4;
     if (format == kWebpFormat) return {};
-    if (format == "runtime")
-        throw WrongUsage("runtime assets hold no recorded motion: a game simulates",
-                         "expected --format abc, usdc, usda or frames");
     return contentKindOfSuffix(strandWriter(format, hairWriters()).suffix());
 }
 
 std::vector<std::string> takeFormats() {
-    std::vector<std::string> names{kRecordFormat, kWebpFormat, kMp4Format, "runtime"};
-    for (const HairWriter& writer : hairWriters()) {
-        if (writer.animates) names.push_back(writer.name);
-    }
+    std::vector<std::string> names = takeExportFormats();
+    names.insert(names.end(), {kWebpFormat, kMp4Format});
     return names;
 }
 
@@ -301,7 +258,7 @@ Result<Report> runTakes(TakesOptions& options) {
             throw WrongUsage("--export needs --format and -o", "--export NAME --format abc -o F.abc");
         const std::string_view kind = kindOfExport(options.format);
         return withOutputs(
-            {{options.output, kind}}, [&] { return exportTake(options); }, ReadBack::Yes);
+            {{options.output, kind}}, [&] { return exportNamed(options); }, ReadBack::Yes);
     }
     if (!options.removed.empty()) {
         if (auto status = removeTake(options.simulation.input, options.removed); !status)
@@ -339,15 +296,17 @@ JobRun declare(CLI::App& job) {
         }
     }
     for (CLI::Option* option : addSimulationOptions(job, options->simulation)) option->needs(record);
-    job.add_option(
-           "--format", options->format,
-           "frames is a record of simulate, webp an animated image, mp4 a video. The others are formats "
-           "of export with animation. There is no runtime")
+    job.add_option("--format", options->format,
+                   "frames is a record of simulate, runtime an asset whose clip a game plays without "
+                   "simulating, webp an "
+                   "animated image, mp4 a video. The others are formats of export with animation")
         ->check(CLI::IsMember(takeFormats()))
         ->needs(exported);
     job.add_option("--range", options->range, "FIRST,LAST frame of the take to export (default: all)")
         ->check(CLI::Range(0, 1'000'000'000))
         ->delimiter(',')
+        ->needs(exported);
+    job.add_flag("--loop", options->loops, "Of runtime: the clip loops, with its first frame after the last")
         ->needs(exported);
     job.add_option("--size", options->size, "Image size WxH of webp and mp4 in pixels")->needs(exported);
     job.add_option("--camera", options->camera, "Camera position of webp and mp4")

@@ -157,7 +157,10 @@ std::optional<AssetError> Asset::takeSection(const Section& section) {
         take(section, kText, texts, problem) || isSound<Attribute>(section, kAttributes, problem) ||
         isSound<std::byte>(section, kAttributeValues, problem) ||
         isSound<MeasuredLevel>(section, kLevelErrors, problem) ||
-        isSound<MeasuredLevel>(section, kSeenErrors, problem) || isSound<std::byte>(section, kBody, problem);
+        isSound<MeasuredLevel>(section, kSeenErrors, problem) ||
+        isSound<std::byte>(section, kBody, problem) || isSound<Clip>(section, kClip, problem) ||
+        isSound<std::uint32_t>(section, kClipPlaces, problem) ||
+        isSound<std::byte>(section, kClipFrames, problem);
     if (!problem.empty()) return wrong(problem);
     if (!known && (section.flags & kRequired) != 0) {
         AssetError error = wrong("is needed and not known to this library");
@@ -182,7 +185,13 @@ std::optional<AssetError> Asset::check() const {
         if (section.checksum != checksum(content))
             return damaged(section.offset, "the checksum of section " + kindOf(section) + " does not match");
     }
-    return checkContent();
+    if (auto problem = checkContent()) return problem;
+    return checkClipFrames();
+}
+
+std::array<std::uint64_t, 3> Asset::identity() const {
+    return {reinterpret_cast<std::uintptr_t>(bytes_.data()), bytes_.size(),
+            std::uint64_t{header().checksum} << 32u | header().tableChecksum};
 }
 
 }  // namespace hairloom::runtime

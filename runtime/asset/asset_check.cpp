@@ -41,9 +41,10 @@ constexpr float kLargestArea = 1e12f;
 }  // namespace
 
 Problem Asset::checkContent() const {
-    for (const auto& check : {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp,
-                              &Asset::checkFollowHairs, &Asset::checkLayers, &Asset::checkSettings,
-                              &Asset::checkAttributes, &Asset::checkLevels, &Asset::checkBody}) {
+    for (const auto& check :
+         {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp, &Asset::checkFollowHairs,
+          &Asset::checkLayers, &Asset::checkSettings, &Asset::checkAttributes, &Asset::checkLevels,
+          &Asset::checkBody, &Asset::checkClip}) {
         if (Problem problem = (this->*check)()) return problem;
     }
     return std::nullopt;

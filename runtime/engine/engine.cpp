@@ -33,11 +33,12 @@ bool Engine::reset(std::span<const RootFrame> roots_ws) {
 }
 
 bool Engine::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
-                   std::span<const Float3> velocities_ws) {
+                   std::span<const Float3> velocities_ws,
+                   const std::optional<std::array<double, 3>>& origin_ws) {
     if (roots_ws.size() != strandCount() || positions_ws.size() != pointCount() ||
         velocities_ws.size() != pointCount())
         return false;
-    impl_->place(roots_ws, positions_ws, velocities_ws);
+    impl_->place(roots_ws, positions_ws, velocities_ws, origin_ws);
     return true;
 }
 

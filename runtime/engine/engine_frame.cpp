@@ -100,8 +100,10 @@ void Engine::Impl::forBlocks(const std::function<void(std::size_t)>& each) {
 }
 
 void Engine::Impl::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
-                         std::span<const Float3> velocities_ws) {
+                         std::span<const Float3> velocities_ws,
+                         const std::optional<std::array<double, 3>>& origin_ws) {
     reset(roots_ws);
+    state_.origin_ws = origin_ws;
     state_.substep = kUsualFrame / static_cast<float>(substepsIn(settings_, kUsualFrame));
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         const Block& block = shape_->blocks[b];

@@ -30,7 +30,7 @@ struct Engine::Impl {
 
     void reset(std::span<const RootFrame> roots_ws);
     void place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
-               std::span<const Float3> velocities_ws);
+               std::span<const Float3> velocities_ws, const std::optional<std::array<double, 3>>& origin_ws);
     void placeLane(std::size_t block, std::uint32_t lane, const Float3* positions_ws,
                    const Float3* velocities_ws);
     std::string setSettings(const SimulationSettings& settings);

@@ -119,6 +119,29 @@ hl_code hl_asset_check(const hl_asset* asset, hl_error* error) {
     });
 }
 
+hl_code hl_asset_clip(const hl_asset* opened, hl_clip* out, hl_error* error) {
+    if (!opened || !out) return nullRefused(error, "no asset or no place for its clip");
+    if (const Outcome refused = checkSize<hl_clip>("hl_clip", out->size, kFirstClip))
+        return say(error, refused);
+    return withContent(opened, error, [&](const Asset& asset) {
+        hl_clip clip{};
+        clip.size = out->size;
+        if (const asset::Clip* const found = asset.clip()) {
+            const std::string_view name = asset.text(found->name);
+            clip.name = name.data();
+            clip.name_bytes = name.size();
+            clip.frames = found->frames;
+            clip.frames_per_second = found->framesPerSecond;
+            clip.loops = found->loops;
+            clip.largest_error = found->largestError;
+            clip.bytes = sizeof(asset::Clip) + asset.clipPlaces().size_bytes() + asset.clipFrames().size();
+            clip.memory = Instance::clipMemory(asset);
+        }
+        giveBack(clip, out, out->size);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
 hl_code hl_asset_describe_sized(const hl_asset* opened, hl_asset_info* out, size_t size, hl_error* error) {
     if (!opened || !out) return nullRefused(error, "no asset or no place for its description");
     if (const Outcome refused = checkSize<hl_asset_info>("hl_asset_info", size, kFirstAssetInfo))

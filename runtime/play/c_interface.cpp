@@ -142,6 +142,21 @@ hl_code hl_instance_step(hl_instance* instance, const hl_frame* frame, hl_error*
                      [](Instance& hair, const hl_frame& known) { return hair.step(known); });
 }
 
+void hl_play_init(hl_play* play) {
+    if (!play) return;
+    *play = {sizeof(hl_play), 0, 1, HL_LOOP_AS_AUTHORED};
+}
+
+hl_code hl_instance_play(hl_instance* instance, const hl_asset* asset, const hl_frame* frame,
+                         const hl_play* given, hl_error* error) {
+    if (!asset || !given) return nullRefused(error, "no asset or nothing to play");
+    return withFrame(instance, frame, error, [&](Instance& hair, const hl_frame& known) -> Outcome {
+        hl_play how{};
+        if (Outcome refused = takeIn(given, "hl_play", kFirstPlay, how)) return refused;
+        return hair.play(assetOf(asset), known, how);
+    });
+}
+
 hl_code hl_instance_set(hl_instance* instance, const char* name, const double* values, size_t count,
                         hl_error* error) {
     if (!instance || !name || (!values && count > 0))

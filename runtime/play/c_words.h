@@ -40,7 +40,7 @@ inline hl_code say(hl_error* error, const AssetError& problem) {
 }
 
 inline hl_code say(hl_error* error, const Outcome& refused) {
-    return refused ? say(error, refused->code, HL_NO_PLACE, refused->words)
+    return refused ? say(error, refused->code, refused->byte, refused->words)
                    : say(error, HL_OK, HL_NO_PLACE, "");
 }
 
@@ -119,7 +119,7 @@ Outcome takeIn(const Struct* given, const char* name, std::size_t least, Struct&
 // Bytes that structs had in their first version.
 inline constexpr std::size_t kFirstAssetInfo = 88, kFirstBone = 72, kFirstLayer = 24, kFirstInstanceInfo = 40,
                              kFirstEffect = 136, kFirstLevel = 28, kFirstViewed = 24, kFirstReport = 12,
-                             kFirstFrame = 128, kFirstLimits = 24;
+                             kFirstFrame = 128, kFirstLimits = 24, kFirstClip = 56, kFirstPlay = 24;
 
 /// A frame of any version.
 template <class Body>

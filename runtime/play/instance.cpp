@@ -148,8 +148,7 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     Engine::Result made = Engine::make({strands.offsets, strands.positions_ss}, asset.simulation(), host);
     if (!made.engine) return {std::nullopt, std::move(made.error)};
     Instance instance(std::move(*made.engine), RootPoses(asset, strands), std::move(host));
-    instance.asset_ = std::uint64_t{asset::checksum(std::as_bytes(asset.strands))} << 32u |
-                      asset::checksum(asset.residuals);
+    instance.asset_ = numberOf(asset);
     instance.gpuHairs_ = static_cast<std::uint32_t>(asset.hairCount());
     if (instance.gpuHairs_ > 0) instance.gpuPoints_ = asset.recipe[0].pointsPerHair;
     instance.gpuWisps_ = asset.wispMotion();
@@ -194,6 +193,12 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     }
     if (wantsLevels) instance.makeLevels(asset, strands);
     return {std::move(instance), {}};
+}
+
+/// Of its strands: clips of assets with others are refused.
+std::uint64_t Instance::numberOf(const Asset& asset) {
+    return std::uint64_t{asset::checksum(std::as_bytes(asset.strands))} << 32u |
+           asset::checksum(asset.residuals);
 }
 
 Outcome Instance::placeRoots(const hl_frame& frame) {
@@ -270,6 +275,7 @@ Outcome Instance::place(const hl_frame& frame, FrameInput& input) {
     // Last, since it is what read-outs look at: nothing is refused any more once it has begun to write.
     if (Outcome refused = placeSpheres(frame, input)) return refused;
     if (Outcome refused = placeRoots(frame)) return refused;
+    rootsKnown_ = true;
     placeBody(frame, input);
     input.dt = frame.dt;
     input.time = frame.time;
@@ -404,7 +410,9 @@ hl_instance_info Instance::describe() const {
                  hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
                  (body_ ? body_->bytes() : 0) + spheres_.size() * sizeof(Sphere) + bytesOfLevels() +
-                 (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3);
+                 (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3) +
+                 allStrands_.size() * sizeof(std::uint32_t) + rootsBefore_.size() * sizeof(Float3) +
+                 (clip_ ? clip_->bytes() : 0);
     return info;
 }
 

@@ -14,6 +14,7 @@
 #include "hairloom/asset.h"
 #include "hairloom/engine.h"
 #include "hairloom/hairloom.h"
+#include "play/clip_player.h"
 #include "play/gpu_guides.h"
 #include "play/levels.h"
 #include "play/root_poses.h"
@@ -24,6 +25,7 @@ namespace hairloom::runtime {
 struct Refusal {
     hl_code code;
     std::string words;
+    std::uint64_t byte = HL_NO_PLACE;  ///< of the asset
 };
 using Outcome = std::optional<Refusal>;
 
@@ -42,6 +44,11 @@ class Instance {
 
     Outcome reset(const hl_frame& frame);
     Outcome step(const hl_frame& frame);
+    /// The asset's clip at a time, on the frame's roots (instance_play.cpp).
+    Outcome play(const Asset& asset, const hl_frame& frame, const hl_play& how);
+    static std::uint64_t numberOf(const Asset& asset);
+    /// Bytes that play() adds.
+    static std::size_t clipMemory(const Asset& asset);
     Outcome set(std::string_view name, std::span<const double> values);
     Outcome read(hl_read& read, bool wantsBounds = true);
     /// What the kernels of hairs are given each frame (gpu.cpp): number HL_GPU_BUFFER_… into `bytes`.
@@ -112,6 +119,9 @@ class Instance {
     void resetLevel();
     void setSettingsOfLevels(const SimulationSettings& settings);
     void stepLevel(FrameInput& input);
+    void fadeLevel(float dt);
+    void placeCoarser(Engine& engine, std::span<const Float3> positions_ws,
+                      const std::optional<std::array<double, 3>>& origin_ws);
     void placeRootsOfLevels();
     void holdMotion(const FrameInput& input);
     Engine* engineOfLevel() { return engineAt(level()); }
@@ -133,6 +143,15 @@ class Instance {
     void readHairsInto(Reading& reading);
     std::size_t hairPoints() const;
 
+    /// What roots did since the last frame, for the speeds of points that are played.
+    struct HeadBefore {
+        Quat turn;
+        bool known = false;
+    };
+    HeadBefore headBefore(const hl_frame& frame);
+    void playOnto(const HeadBefore& before, const hl_frame& frame, float rate, float share,
+                  std::span<const std::uint32_t> strands);
+    void placePlayed();
     void grow(const hl_reserve& wanted);
     static Outcome checkStep(const hl_frame& frame);
     Outcome place(const hl_frame& frame, FrameInput& input);
@@ -171,7 +190,12 @@ class Instance {
     bool asleep_ = false;
     std::vector<Float3> positions_, velocities_;
     std::array<double, 3> origin_{};  // of the last frame
-    Float3 pivot_{};                  // that heads nod about where something is measured
+    // Of a clip, once one was played:
+    std::optional<ClipPlayer> clip_;
+    std::vector<std::uint32_t> allStrands_;
+    std::vector<Float3> rootsBefore_;
+    bool rootsKnown_ = true;  // roots_ are those of the state
+    Float3 pivot_{};          // that heads nod about where something is measured
     WispMotion gpuWisps_;
     std::uint32_t gpuHairs_ = 0, gpuPoints_ = 0;  // of the asset, read or not, and of each
     std::optional<GpuGuides> gpuGuides_;          // from hl_gpu_begin() until the CPU moves the hair

@@ -147,8 +147,14 @@ void Instance::stepLevel(FrameInput& input) {
         engine->step(input);
         if (engine->asleep() == engine->strandCount()) levels.motion = levels.wind = 0;
     }
+    fadeLevel(input.dt);
+}
+
+/// What a new level differs by goes away.
+void Instance::fadeLevel(float dt) {
+    Levels& levels = *levels_;
     if (!levels.fading) return;
-    const float kept = 1 / (1 + input.dt / kFade);
+    const float kept = 1 / (1 + dt / kFade);
     float greatest = 0;
     for (Float3& away : levels.fade) {
         away = away * kept;
@@ -228,21 +234,7 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
     if (Engine* const engine = engineOfLevel(); engine == &engine_) {
         engine_.place(levels.placed, levels.fade, velocities_);
     } else if (engine) {
-        const Level& level = levels.set->coarser[number - 1];
-        for (std::size_t s = 0; s < level.guides.size(); ++s) {
-            const std::size_t first = offsets_[level.guides[s]],
-                              count = offsets_[level.guides[s] + 1] - first;
-            const std::size_t points = level.offsets[s + 1] - level.offsets[s];
-            for (std::size_t p = 0; p < points; ++p) {
-                levels.simulated[level.offsets[s] + p] =
-                    sampleAt(std::span<const Float3>(levels.fade).subspan(first, count), p, points);
-                levels.moved[level.offsets[s] + p] =
-                    sampleAt(std::span<const Float3>(velocities_).subspan(first, count), p, points);
-            }
-        }
-        engine->place(std::span(levels.simulatedRoots).first(engine->strandCount()),
-                      std::span(levels.simulated).first(engine->pointCount()),
-                      std::span(levels.moved).first(engine->pointCount()));
+        placeCoarser(*engine, levels.fade, std::nullopt);
     }
     showPositions();
     for (std::size_t g = 0; g < roots_.size(); ++g) {
@@ -254,6 +246,25 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
     }
     levels.fading = true;
     return std::nullopt;
+}
+
+/// Of the level's engine: the points that it has of its guides, of the given positions and of velocities_.
+void Instance::placeCoarser(Engine& engine, std::span<const Float3> positions_ws,
+                            const std::optional<std::array<double, 3>>& origin_ws) {
+    Levels& levels = *levels_;
+    const Level& level = levels.set->coarser[levels.level - 1];
+    for (std::size_t s = 0; s < level.guides.size(); ++s) {
+        const std::size_t first = offsets_[level.guides[s]], count = offsets_[level.guides[s] + 1] - first;
+        const std::size_t points = level.offsets[s + 1] - level.offsets[s];
+        for (std::size_t p = 0; p < points; ++p) {
+            levels.simulated[level.offsets[s] + p] = sampleAt(positions_ws.subspan(first, count), p, points);
+            levels.moved[level.offsets[s] + p] =
+                sampleAt(std::span<const Float3>(velocities_).subspan(first, count), p, points);
+        }
+    }
+    engine.place(std::span(levels.simulatedRoots).first(engine.strandCount()),
+                 std::span(levels.simulated).first(engine.pointCount()),
+                 std::span(levels.moved).first(engine.pointCount()), origin_ws);
 }
 
 hl_level Instance::describeLevel(std::uint32_t number) const {

@@ -28,6 +28,7 @@ class RootPoses {
     std::size_t boneCount() const { return bones_; }
     std::size_t bytes() const;
     static std::size_t bytesFor(const Asset& asset);
+    std::span<const Float3> restRoots() const { return restRoots_; }
     /// Asset of a head that bones or vertices can move.
     bool hasScalp() const { return !roots_.empty(); }
 

@@ -223,7 +223,7 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
     leaveGpu();
     origin_ = origin;
     turns_.swap(turns);
-    asleep_ = last_.known = false;
+    asleep_ = last_.known = rootsKnown_ = false;
     ++changes_;
     for (Shown& shown : shown_) shown.state = 0;
     return std::nullopt;

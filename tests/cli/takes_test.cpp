@@ -77,6 +77,30 @@ TEST_F(CliTakes, ExportsAsOtherFormats) {
     EXPECT_GT(fs::file_size(folder / "all.abc"), fs::file_size(folder / "nod.abc"));
 }
 
+TEST_F(CliTakes, ExportsAClipForGames) {
+    runJson("takes hair.hairloom --record nod --motion nod --frames 40 --wind 3,0,0");
+    const auto report =
+        runJson("takes hair.hairloom --export nod --format runtime --range 4,33 --loop -o nod.hairrt");
+    EXPECT_EQ(report["frames"], 30);
+    const auto info = runJson("info nod.hairrt")["asset"];
+    EXPECT_EQ(info["version"], "1.3");
+    EXPECT_EQ(info["clip"]["name"], "nod");
+    EXPECT_EQ(info["clip"]["frames"], 30);
+    EXPECT_EQ(info["clip"]["fps"], 60);
+    EXPECT_EQ(info["clip"]["loops"], true);
+    EXPECT_LE(info["clip"]["max_error_mm"].get<double>(), 0.1);
+    EXPECT_LE(info["clip"]["bytes"].get<double>() / (30 * report["points"].get<double>()), 4);
+    EXPECT_THAT(run("validate nod.hairrt").output, HasSubstr("'nod' of 30 frames"));
+    // Without a clip nothing of the file has changed.
+    runJson("export hair.hairloom --format runtime -o plain.hairrt");
+    const auto plain = runJson("info plain.hairrt")["asset"];
+    EXPECT_EQ(plain["version"], "1.2");
+    EXPECT_TRUE(plain["clip"].is_null());
+    runJson(
+        "takes hair.hairloom --export nod --format runtime --range 4,33 --loop --threads 1 -o one.hairrt");
+    EXPECT_EQ(readText(folder / "one.hairrt"), readText(folder / "nod.hairrt"));
+}
+
 TEST_F(CliTakes, ExportsAFilm) {
     runJson("takes hair.hairloom --record nod --motion nod --frames 6");
     runJson("takes hair.hairloom --export nod --format webp --size 64x64 -o nod.webp");
@@ -192,7 +216,7 @@ TEST_F(CliTakes, SaysWhatIsWrong) {
     EXPECT_THAT(errors("--export none --format abc -o x.abc", 1), HasSubstr("expected one of: nod"));
     EXPECT_THAT(errors("--export nod --format abc", 2), HasSubstr("-o"));
     EXPECT_THAT(errors("--export nod --format mp4 -o x.webp", 2), HasSubstr("expected -o F.mp4"));
-    EXPECT_THAT(errors("--export nod --format runtime -o x.hairrt", 2), HasSubstr("no recorded motion"));
+    EXPECT_THAT(errors("--export nod --format abc --loop -o x.abc", 2), HasSubstr("--format runtime"));
     EXPECT_THAT(errors("--export nod --format abc --range 3,9 -o x.abc", 2), HasSubstr("has 9 frames"));
     EXPECT_THAT(errors("--export nod --format abc --range 5,3 -o x.abc", 2), HasSubstr("runs backwards"));
     EXPECT_THAT(errors("--delete none", 1), HasSubstr("there is no take 'none'"));

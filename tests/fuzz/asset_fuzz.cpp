@@ -27,6 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (std::size_t{info.hairs} * info.points_per_hair > 100'000) return 0;
     if (!hair.make(opened, HL_HAIRS, nullptr, &error)) return error.what().empty() ? std::abort(), 0 : 0;
     std::vector<float> points;
+    for (const double seconds : {0.0, 0.05, 0.4, 0.1}) hair.play(opened, Frame(), seconds, &error);
     for (int f = 0; f < 3; ++f) hair.step(Frame(), &error);
     hair.readGuides(points);
     if (info.hairs > 0) hair.readHairs(points);

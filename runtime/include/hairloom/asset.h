@@ -3,6 +3,7 @@
 // Reads runtime assets (.hairrt) where they lie in memory: a mapped file, say. hairloom/asset_format.h has
 // the layout. Any damage is refused or harmless: no call reads outside of the bytes, whatever they hold.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -152,10 +153,23 @@ class Asset {
         return recordsOf<asset::MeasuredLevel>(asset::kSeenErrors);
     }
 
+    /// Recorded motion that games play, or none: null.
+    const asset::Clip* clip() const {
+        const auto clips = recordsOf<asset::Clip>(asset::kClip);
+        return clips.empty() ? nullptr : clips.data();
+    }
+    std::span<const std::uint32_t> clipPlaces() const { return recordsOf<std::uint32_t>(asset::kClipPlaces); }
+    std::span<const std::byte> clipFrames() const { return recordsOf<std::byte>(asset::kClipFrames); }
+    /// Decodes all frames of the clip, as check() does. `host` lends threads.
+    std::optional<AssetError> checkClipFrames(const Host& host = {}) const;
+    /// Where in the file a record lies.
+    std::uint64_t placeOf(const void* record) const;
+    /// Of the bytes: where they lie, how many they are, and checksums of what they hold.
+    std::array<std::uint64_t, 3> identity() const;
+
   private:
     const asset::Header& header() const { return *reinterpret_cast<const asset::Header*>(bytes_.data()); }
     std::span<const asset::Section> table() const;
-    std::uint64_t placeOf(const void* record) const;
     template <class Record>
     bool take(const asset::Section& section, std::string_view kind, std::span<const Record>& records,
               std::string& problem);
@@ -178,6 +192,7 @@ class Asset {
     std::optional<AssetError> checkAttributes() const;
     std::optional<AssetError> checkLevels() const;
     std::optional<AssetError> checkBody() const;
+    std::optional<AssetError> checkClip() const;
 
     std::span<const std::byte> bytes_;
 };

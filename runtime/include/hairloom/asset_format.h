@@ -20,6 +20,8 @@ inline constexpr std::array<char, 8> kMagic{'\x89', 'H', 'R', 'T', '\r', '\n', '
 inline constexpr std::uint16_t kMajor = 1, kMinor = 2;
 /// From this minor version on, follow hairs cross neither partings near their roots nor borders of layers.
 inline constexpr std::uint16_t kMinorOfPartedRoots = 2;
+/// Written where there is a clip; other files stay at kMinor.
+inline constexpr std::uint16_t kMinorOfClips = 3;
 /// Sections begin at multiples of it, and so does the memory that the file lies in.
 inline constexpr std::size_t kAlignment = 16;
 inline constexpr std::uint32_t kMaxSections = 4096;
@@ -57,7 +59,7 @@ inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots
                                   kRadii = "RADI", kLayers = "LAYR", kStrandLayers = "SLYR",
                                   kSettings = "SETT", kValues = "VALS", kText = "TEXT", kAttributes = "ATTR",
                                   kAttributeValues = "ATTV", kLevelErrors = "LVLE", kSeenErrors = "LVLS",
-                                  kBody = "BODY";
+                                  kBody = "BODY", kClip = "CLIP", kClipPlaces = "CLPI", kClipFrames = "CLPD";
 
 /// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
 inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;
@@ -189,6 +191,31 @@ struct MeasuredLevel {
 };
 static_assert(sizeof(MeasuredLevel) == 16);
 inline constexpr std::uint32_t kLevels = 5;
+
+/// Recorded motion of the strands. Its frames are in blocks, each strand's bits of a block by themselves:
+/// those of strand s in block b begin at the byte of kClipFrames that kClipPlaces has at b · strands + s, and
+/// end at the next.
+struct Clip {
+    Text name;
+    float framesPerSecond;  ///< 1 to kMostClipRate
+    std::uint32_t frames;
+    std::uint16_t framesPerBlock;  ///< the last block may have fewer
+    std::uint8_t gridBits;         ///< points lie at multiples of 2^-gridBits metres from their roots
+    std::uint8_t loops;            ///< 1: behind the last frame comes the first
+    float largestError;            ///< metres, of a point behind its root
+};
+static_assert(sizeof(Clip) == 24);
+inline constexpr float kMostClipRate = 1000;
+inline constexpr std::uint32_t kMostClipFrames = 1u << 24u, kMostFramesPerBlock = 64;
+inline constexpr std::uint8_t kMinClipGridBits = 8, kMaxClipGridBits = 20;
+/// Of a coordinate, in cells.
+inline constexpr std::int32_t kFarthestClipCell = 1 << 23;
+/// A number from which on the unary part of a residual gives way to its 32 bits.
+inline constexpr std::uint32_t kMostClipOnes = 20;
+/// Low bits of a residual, of a frame that has residuals at all.
+inline constexpr std::uint32_t kMostClipLowBits = 14, kNoClipResiduals = 15;
+/// Orders of prediction, in time and along a strand.
+inline constexpr std::uint32_t kClipOrders = 3;
 
 /// Metres that 1 in the section of radii stands for.
 inline constexpr float kRadiusStep = 0x1p-24f;

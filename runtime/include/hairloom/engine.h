@@ -83,9 +83,11 @@ class Engine {
     bool reset(std::span<const RootFrame> roots_ws);
     /// Goes on from strands that something else has moved: points at these positions with these speeds (one
     /// of each point, in the order of make(); metres and m/s, world), on these roots, without twist beyond
-    /// that at rest. A strand with a value that is not finite is placed at rest.
+    /// that at rest. A strand with a value that is not finite is placed at rest. `origin_ws` is what they are
+    /// measured from; without, what the next step's frame is measured from.
     bool place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
-               std::span<const Float3> velocities_ws);
+               std::span<const Float3> velocities_ws,
+               const std::optional<std::array<double, 3>>& origin_ws = std::nullopt);
     /// Takes other settings from the next step on; empty, or why they are refused. May allocate; step() does
     /// not, but for more spheres than ever before and for effects that it has not met.
     std::string setSettings(const SimulationSettings& settings);

@@ -182,6 +182,21 @@ HL_API hl_code hl_asset_hairs(const hl_asset* asset, hl_hair* hairs, size_t byte
 HL_API hl_code hl_asset_numbers(const hl_asset* asset, const char* name, double* values, size_t count,
                                 size_t* written, hl_error* error);
 
+/* Recorded motion that an asset may hold: of guides, relative to the head, so that the game's own head moves
+ * it. hl_instance_play() plays it. */
+typedef struct hl_clip {
+    size_t size;      /* sizeof(hl_clip) */
+    const char* name; /* UTF-8, does not end in 0; null where there is no clip */
+    size_t name_bytes;
+    uint32_t frames; /* 0: the asset has no clip */
+    float frames_per_second;
+    uint32_t loops;      /* 1: behind the last frame comes the first */
+    float largest_error; /* metres, of a point behind its root, from where it was recorded */
+    uint64_t bytes;      /* of the asset that it takes */
+    size_t memory;       /* bytes that playing it adds to an instance, at most */
+} hl_clip;
+HL_API hl_code hl_asset_clip(const hl_asset* asset, hl_clip* clip, hl_error* error);
+
 /* --- Instances --- */
 
 typedef struct hl_instance hl_instance;
@@ -249,6 +264,28 @@ HL_API void hl_frame_init(hl_frame* frame);
 /* At rest on the frame's roots, without speed. dt is not looked at. */
 HL_API hl_code hl_instance_reset(hl_instance* instance, const hl_frame* frame, hl_error* error);
 HL_API hl_code hl_instance_step(hl_instance* instance, const hl_frame* frame, hl_error* error);
+
+/* How a clip is played. */
+enum { HL_LOOP_AS_AUTHORED = 0, HL_LOOP_NEVER = 1, HL_LOOP_ALWAYS = 2 };
+typedef struct hl_play {
+    size_t size; /* sizeof(hl_play), set by hl_play_init() */
+    double time; /* seconds from the clip's first frame, any finite number. A clip that does not loop stays at
+                    its first and last frame beyond them */
+    float speed; /* seconds of the clip in a second of the game, -1000 to 1000; 1. Speeds of points follow it;
+                    `time` is the caller's to advance */
+    uint32_t loop; /* HL_LOOP_AS_AUTHORED */
+} hl_play;
+HL_API void hl_play_init(hl_play* play);
+
+/* In place of a step: guides are where the asset's clip has them at that time, linearly between its frames,
+ * on the roots of the frame and turned as these have turned on the whole. Nothing is simulated. Follow hairs,
+ * levels and reads are as after a step, and a step goes on from these points with their speeds. At a coarser
+ * level the clip's motion is that of the level's guides, and none of the rigid one. The asset is of the
+ * instance's hairstyle, another file of it with another clip is one, too. It is read while it plays, so its
+ * bytes stay. HL_DAMAGED with a place where bits of the clip are none: all stays as it was. Asks for memory
+ * where an asset is played that the last call did not play. */
+HL_API hl_code hl_instance_play(hl_instance* instance, const hl_asset* asset, const hl_frame* frame,
+                                const hl_play* play, hl_error* error);
 
 /* Replaces a setting of the engine from the next step on: name without group, "windSpeed"; may ask for
  * memory. */

@@ -42,6 +42,13 @@ class Asset {
         return hl_asset_open(&asset_, bytes, size, error) == HL_OK;
     }
     bool check(hl_error* error = nullptr) const { return hl_asset_check(&asset_, error) == HL_OK; }
+    /// Of 0 frames where it has none.
+    hl_clip clip(hl_error* error = nullptr) const {
+        hl_clip found{};
+        found.size = sizeof found;
+        hl_asset_clip(&asset_, &found, error);
+        return found;
+    }
     /// All 0 where the content is damaged.
     hl_asset_info describe(hl_error* error = nullptr) const {
         hl_asset_info info{};
@@ -84,6 +91,16 @@ class Instance {
     }
     bool step(const hl_frame& frame, hl_error* error = nullptr) {
         return hl_instance_step(instance_.get(), &frame, error) == HL_OK;
+    }
+    /// The asset's clip at that many seconds, in place of a step; the asset's bytes stay.
+    bool play(const Asset& asset, const hl_frame& frame, double seconds, hl_error* error = nullptr) {
+        hl_play how;
+        hl_play_init(&how);
+        how.time = seconds;
+        return play(asset, frame, how, error);
+    }
+    bool play(const Asset& asset, const hl_frame& frame, const hl_play& how, hl_error* error = nullptr) {
+        return hl_instance_play(instance_.get(), asset.get(), &frame, &how, error) == HL_OK;
     }
     bool set(const char* name, double value, hl_error* error = nullptr) {
         return hl_instance_set(instance_.get(), name, &value, 1, error) == HL_OK;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The frames of an asset's clip: strands' bits, and the places of points that come out of them.
+// docs/formats/runtime.md says what each bit means.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "hairloom/asset.h"
+
+namespace hairloom::runtime {
+
+/// A coordinate of each point behind its root, in cells: x, y, z of one point after another.
+using ClipCells = std::span<std::int32_t>;
+using ConstClipCells = std::span<const std::int32_t>;
+
+/// Of all strands, strand after strand, without their roots: what frames that nothing comes before are
+/// predicted from.
+std::vector<std::int32_t> clipRest(const Asset& asset, const Asset::Strands& rest);
+
+/// A strand's bits of a block, from the front to the back. Behind their end there are zeros, and `good` is
+/// false.
+class ClipBits {
+  public:
+    explicit ClipBits(std::span<const std::byte> bytes, std::uint64_t at = 0) : bytes_(bytes), at_(at) {}
+    /// Up to 32 bits, the lowest first.
+    std::uint32_t take(std::uint32_t count);
+    /// A number by its quotient in ones, a zero, and `low` bits; by kMostClipOnes ones and 32 bits where it
+    /// is large.
+    std::uint32_t takeNumber(std::uint32_t low);
+    /// Of the bits that were taken.
+    std::uint64_t at() const { return at_; }
+    /// Whether no more than the rest of a byte is left, and that is zero.
+    bool isAtEnd() const;
+    bool good = true;
+
+  private:
+    std::span<const std::byte> bytes_;
+    std::uint64_t at_;
+};
+
+/// Frame `number` of a block, counted from 0, into `cells`, which may be `beforeLast`. False where the bits
+/// are no frame: then `cells` is of no use. `last` and `beforeLast` are the frames before, where the block
+/// has them.
+bool readClipFrame(ClipBits& bits, std::uint32_t number, ConstClipCells rest, ConstClipCells last,
+                   ConstClipCells beforeLast, ClipCells cells);
+
+/// The bits of a strand in a block of the clip. Empty where their places are not in the file.
+std::span<const std::byte> clipStrandBytes(const Asset& asset, std::size_t block, std::size_t strand);
+
+inline std::uint32_t clipBlocks(const asset::Clip& clip) {
+    return (clip.frames + clip.framesPerBlock - 1) / clip.framesPerBlock;
+}
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,461 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clips of runtime assets: what is recorded plays within the error that is stated, goes with the game's head,
+// and a step goes on from it.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "core/base/parallel.h"
+#include "hairloom/hairloom.hpp"
+#include "tests/exporters/asset_bytes.h"
+#include "tests/exporters/asset_samples.h"
+#include "tests/support/source_dir.h"
+
+namespace hairloom::test {
+namespace {
+
+namespace format = runtime::asset;
+using game::Error;
+using game::Frame;
+using game::Instance;
+using testing::HasSubstr;
+
+constexpr float kRate = 30;
+constexpr std::uint64_t kFrames = 40;
+
+/// The head of a frame: turned and moved.
+Eigen::Isometry3f headAt(std::uint64_t frame) {
+    const float t = static_cast<float>(frame) / kRate;
+    Eigen::Isometry3f head = Eigen::Isometry3f::Identity();
+    head.linear() = Eigen::AngleAxisf(0.4f * std::sin(3 * t), Vec3f(0.6f, 0.8f, 0)).toRotationMatrix();
+    head.translation() = Vec3f(0.2f * t, 0.1f * std::cos(2 * t), -0.3f * t);
+    return head;
+}
+
+/// Where a point of the hair is on a head that stands: it sways, more towards the tip, each strand its own
+/// way.
+Vec3f swayed(const Groom& groom, std::size_t strand, std::size_t point, std::uint64_t frame) {
+    const float t = static_cast<float>(frame) / kRate, share = static_cast<float>(point) / 11;
+    const float phase = 0.7f * static_cast<float>(strand);
+    const Vec3f away(0.05f * std::sin(5 * t + phase), 0.02f * std::sin(9 * t),
+                     0.04f * std::cos(4 * t + phase));
+    return groom.strand(strand)[point] + share * share * (away - Vec3f(0, 0, 0.04f * std::cos(phase)));
+}
+
+class RuntimeClip : public AssetTest {
+  protected:
+    RuntimeClip() {
+        clip_.name = "sway";
+        clip_.framesPerSecond = static_cast<double>(kRate);
+        clip_.frames = kFrames;
+        clip_.frame = [this](std::uint64_t number) -> Result<ClipToWrite::Frame> {
+            ClipToWrite::Frame frame;
+            frame.head_ws = headAt(number);
+            for (std::size_t s = 0; s < groom_.strandCount(); ++s) {
+                for (std::size_t p = 0; p < groom_.strand(s).size(); ++p)
+                    frame.positions_ws.push_back(frame.head_ws * swayed(groom_, s, p, number));
+            }
+            return frame;
+        };
+    }
+    std::vector<std::byte> writtenWithClip(ExportReport* report = nullptr) {
+        StrandExportOptions options;
+        options.clip = std::make_shared<const ClipToWrite>(clip_);
+        const auto path = folder / "clip.hairrt";
+        const auto made = strandWriter("runtime").write(groom_, path, options);
+        EXPECT_TRUE(made) << made.error().message();
+        if (!made) return {};
+        if (report) *report = *made;
+        return readFile(path).value();
+    }
+    /// The first and the last point of each strand that is not a root, largest distance in metres.
+    double error(const std::vector<float>& points, const Eigen::Isometry3f& head, double frame) const {
+        double largest = 0;
+        const auto before = static_cast<std::uint64_t>(frame);
+        const auto share = static_cast<float>(frame - static_cast<double>(before));
+        for (std::size_t s = 0; s < groom_.strandCount(); ++s) {
+            for (std::size_t p = 1; p < groom_.strand(s).size(); ++p) {
+                const Vec3f at = (1 - share) * swayed(groom_, s, p, before) +
+                                 share * swayed(groom_, s, p, (before + 1) % kFrames);
+                const float* const is = &points[3 * (groom_.offsets[s] + p)];
+                largest = std::max(largest, double{(Vec3f(is[0], is[1], is[2]) - head * at).norm()});
+            }
+        }
+        return largest;
+    }
+
+    Groom groom_ = wholeGroom();
+    ClipToWrite clip_;
+};
+
+TEST_F(RuntimeClip, PlaysWithinItsErrorOnAnyHead) {
+    ExportReport report;
+    const auto bytes = writtenWithClip(&report);
+    EXPECT_EQ(report.frames, kFrames);
+    game::Asset asset;
+    Error error;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size(), &error)) << error.what();
+    ASSERT_TRUE(asset.check(&error)) << error.what();
+    const hl_clip clip = asset.clip(&error);
+    EXPECT_EQ(std::string(clip.name, clip.name_bytes), "sway");
+    EXPECT_EQ(clip.frames, kFrames);
+    EXPECT_EQ(clip.frames_per_second, kRate);
+    EXPECT_EQ(clip.loops, 0u);
+    EXPECT_LE(clip.largest_error, 0.0001f);
+    EXPECT_LE(static_cast<double>(clip.bytes) / static_cast<double>(kFrames * groom_.pointCount()), 4.0);
+    EXPECT_EQ(asset.describe().minor, 3u);
+    Instance hair;
+    ASSERT_TRUE(hair.make(asset, HL_HAIRS));
+    std::vector<float> points;
+    // Forwards, backwards, at random, between frames, and beyond the ends.
+    std::vector<double> times{0, 1, 2, 3, 4.25, 5.5, 30, 29, 28.5, 15, 16, 31.75, 0.5, 38.9, 39};
+    for (const double frame : times) {
+        for (const std::uint64_t head : {std::uint64_t{0}, std::uint64_t{33}}) {
+            const auto matrix = rows(headAt(head).matrix());
+            Frame placed;
+            placed.head = matrix.data();
+            ASSERT_TRUE(hair.play(asset, placed, frame / static_cast<double>(kRate), &error)) << error.what();
+            ASSERT_TRUE(hair.readGuides(points));
+            EXPECT_LE(this->error(points, headAt(head), frame), double{clip.largest_error} + 1e-6) << frame;
+        }
+    }
+    for (const double seconds : {-5.0, 1e9}) {
+        ASSERT_TRUE(hair.play(asset, Frame(), seconds));
+        ASSERT_TRUE(hair.readGuides(points));
+        EXPECT_LE(this->error(points, Eigen::Isometry3f::Identity(), seconds < 0 ? 0 : kFrames - 1),
+                  double{clip.largest_error} + 1e-6);
+    }
+    // Follow hairs go with the guides.
+    std::vector<float> hairs, moved;
+    ASSERT_TRUE(hair.readHairs(hairs));
+    ASSERT_TRUE(hair.play(asset, Frame(), 0.5));
+    ASSERT_TRUE(hair.readHairs(moved));
+    EXPECT_NE(hairs, moved);
+    EXPECT_TRUE(std::ranges::all_of(moved, [](float value) { return std::isfinite(value); }));
+    EXPECT_LE(hair.describe().bytes,
+              asset.describe().guides_memory + asset.describe().hairs_memory + clip.memory);
+}
+
+TEST_F(RuntimeClip, LoopsWhereItIsToldTo) {
+    clip_.loops = true;
+    const auto bytes = writtenWithClip();
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    const hl_clip clip = asset.clip();
+    EXPECT_EQ(clip.loops, 1u);
+    Instance hair;
+    ASSERT_TRUE(hair.make(asset, HL_GUIDES));
+    std::vector<float> points;
+    const double frames = static_cast<double>(kFrames), rate = static_cast<double>(kRate);
+    for (const double frame : {39.5, frames + 3.25, -0.5, -frames * 7 + 12, 1e6 * frames + 8}) {
+        ASSERT_TRUE(hair.play(asset, Frame(), frame / rate));
+        ASSERT_TRUE(hair.readGuides(points));
+        const double within = std::fmod(std::fmod(frame, frames) + frames, frames);
+        EXPECT_LE(error(points, Eigen::Isometry3f::Identity(), within), double{clip.largest_error} + 2e-6)
+            << frame;
+    }
+    hl_play never;
+    hl_play_init(&never);
+    never.loop = HL_LOOP_NEVER;
+    never.time = 100;
+    ASSERT_TRUE(hair.play(asset, Frame(), never));
+    ASSERT_TRUE(hair.readGuides(points));
+    EXPECT_LE(error(points, Eigen::Isometry3f::Identity(), kFrames - 1), double{clip.largest_error} + 1e-6);
+}
+
+TEST_F(RuntimeClip, AStepGoesOnFromThePoseWithItsSpeed) {
+    groom_.simulation.windSpeed = 0;
+    groom_.spheres.clear();
+    const auto bytes = writtenWithClip();
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    const auto movedBy = [&](float speed, bool carried) {
+        Instance hair;
+        EXPECT_TRUE(hair.make(asset, HL_GUIDES));
+        hl_play play;
+        hl_play_init(&play);
+        play.speed = speed;
+        std::array<float, 12> head = rows(Eigen::Isometry3f::Identity().matrix());
+        Frame frame;
+        frame.head = head.data();
+        std::vector<float> before, after;
+        for (int f = 0; f < 2; ++f) {
+            head[3] = carried ? 0.01f * static_cast<float>(f) : 0;
+            play.time = 0.31;
+            EXPECT_TRUE(hair.play(asset, frame, play));
+        }
+        EXPECT_TRUE(hair.readGuides(before));
+        head[3] *= 2;
+        EXPECT_TRUE(hair.step(frame));
+        EXPECT_TRUE(hair.readGuides(after));
+        std::vector<Vec3f> moved;
+        for (std::size_t s = 0; s < groom_.strandCount(); ++s) {
+            const std::size_t tip = 3 * (groom_.offsets[s + 1] - 1);
+            moved.emplace_back(after[tip] - before[tip], after[tip + 1] - before[tip + 1],
+                               after[tip + 2] - before[tip + 2]);
+        }
+        return moved;
+    };
+    const auto still = movedBy(0, false), moving = movedBy(1, false), back = movedBy(-2, false),
+               carried = movedBy(0, true);
+    // Frame 9.3, between the 9th and the 10th.
+    double mean = 0;
+    for (std::size_t s = 0; s < still.size(); ++s) {
+        const Vec3f speed = (swayed(groom_, s, 11, 10) - swayed(groom_, s, 11, 9)) * kRate;
+        const Vec3f expected = speed / 60;
+        EXPECT_LT((moving[s] - still[s] - expected).norm(), 0.35f * expected.norm() + 2e-4f) << s;
+        EXPECT_LT((back[s] - still[s] + 2 * expected).norm(), 0.7f * expected.norm() + 4e-4f) << s;
+        EXPECT_LT((carried[s] - still[s] - Vec3f(0.01f, 0, 0)).norm(), 0.0035f) << s;
+        mean += double{expected.norm()};
+    }
+    EXPECT_GT(mean / static_cast<double>(still.size()), 0.002) << "the hair moves";
+}
+
+TEST_F(RuntimeClip, TheBitsAreThoseOfAnyThreadsAndAnyWayThere) {
+    const auto bytes = writtenWithClip();
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    const hl_jobs jobs{
+        nullptr, [](void*, std::size_t count, std::size_t grain,
+                    void (*body)(void*, std::size_t, std::size_t), void* context) {
+            parallelFor(count, grain, [&](std::size_t begin, std::size_t end) { body(context, begin, end); });
+        }};
+    Instance one, many, jumps, copy;
+    ASSERT_TRUE(one.make(asset, HL_GUIDES));
+    ASSERT_TRUE(many.make(asset, HL_GUIDES, &jobs));
+    for (int f = 0; f < 60; ++f) {
+        const double seconds = 0.02 * f;
+        ASSERT_TRUE(one.play(asset, Frame(), seconds));
+        ASSERT_TRUE(many.play(asset, Frame(), seconds));
+        ASSERT_EQ(one.hash(), many.hash()) << f;
+        if (f == 30) {
+            ASSERT_TRUE(copy.copy(one));
+        }
+    }
+    for (int f = 31; f < 60; ++f) ASSERT_TRUE(copy.play(asset, Frame(), 0.02 * f));
+    EXPECT_EQ(copy.hash(), one.hash());
+    ASSERT_TRUE(jumps.make(asset, HL_GUIDES));
+    for (const int f : {58, 3, 59, 58, 59}) ASSERT_TRUE(jumps.play(asset, Frame(), 0.02 * f));
+    EXPECT_EQ(jumps.hash(), one.hash());
+    EXPECT_EQ(writtenWithClip(), bytes);
+}
+
+TEST_F(RuntimeClip, LevelsPlayAsTheySimulate) {
+    const auto bytes = writtenWithClip();
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    Instance hair;
+    ASSERT_TRUE(hair.make(asset, HL_HAIRS | HL_LEVELS));
+    std::vector<float> points;
+    double last = 0;
+    for (std::uint32_t level = 0; level < HL_LEVEL_COUNT; ++level) {
+        ASSERT_TRUE(hair.setLevel(level));
+        for (int f = 0; f < 120; ++f) ASSERT_TRUE(hair.play(asset, Frame(), 0.31));
+        ASSERT_TRUE(hair.readGuides(points));
+        const double off = error(points, Eigen::Isometry3f::Identity(), 9.3);
+        if (level == 0) {
+            EXPECT_LE(off, double{asset.clip().largest_error} + 1e-6);
+        } else {
+            EXPECT_GE(off, last) << level;
+            EXPECT_LT(off, 0.12) << level;
+        }
+        last = off;
+    }
+    EXPECT_GT(last, 0.01) << "rigid hair does not sway";
+    ASSERT_TRUE(hair.setLevel(0));
+    for (int f = 0; f < 120; ++f) ASSERT_TRUE(hair.play(asset, Frame(), 0.31));
+    ASSERT_TRUE(hair.readGuides(points));
+    EXPECT_LE(error(points, Eigen::Isometry3f::Identity(), 9.3), double{asset.clip().largest_error} + 1.2e-5);
+}
+
+TEST_F(RuntimeClip, OtherClipsOfTheHairstylePlayAndOthersAreRefused) {
+    const auto first = writtenWithClip();
+    clip_.frames = 7;
+    clip_.name = "short";
+    const auto second = writtenWithClip();
+    const auto plain = written(groom_);
+    groom_ = helices({12, 12});
+    const auto other = writtenWithClip();
+    game::Asset sway, brief, none, foreign;
+    ASSERT_TRUE(sway.open(first.data(), first.size()));
+    ASSERT_TRUE(brief.open(second.data(), second.size()));
+    ASSERT_TRUE(none.open(plain.data(), plain.size()));
+    ASSERT_TRUE(foreign.open(other.data(), other.size()));
+    EXPECT_EQ(none.clip().frames, 0u);
+    EXPECT_EQ(none.describe().minor, 2u) << "files without a clip are as before";
+    Instance hair;
+    Error error;
+    ASSERT_TRUE(hair.make(none, HL_GUIDES));
+    EXPECT_TRUE(hair.play(sway, Frame(), 0.4));
+    EXPECT_TRUE(hair.play(brief, Frame(), 0.4));
+    const std::uint64_t before = hair.hash();
+    EXPECT_FALSE(hair.play(none, Frame(), 0, &error));
+    EXPECT_THAT(std::string(error.what()), HasSubstr("no clip"));
+    EXPECT_FALSE(hair.play(foreign, Frame(), 0, &error));
+    EXPECT_THAT(std::string(error.what()), HasSubstr("another hairstyle"));
+    EXPECT_FALSE(hair.play(sway, Frame(), std::numeric_limits<double>::quiet_NaN(), &error));
+    EXPECT_THAT(std::string(error.what()), HasSubstr("play.time"));
+    EXPECT_FALSE(hair.play(sway, Frame(-1), 0, &error));
+    hl_play wrong;
+    hl_play_init(&wrong);
+    wrong.loop = 3;
+    EXPECT_FALSE(hair.play(sway, Frame(), wrong, &error));
+    EXPECT_TRUE(hair.play(sway, Frame(0), 0)) << "a paused game: nothing moves";
+    EXPECT_EQ(hair.hash(), before);
+}
+
+TEST_F(RuntimeClip, DamageIsRefusedWithItsPlaceAndChangesNothing) {
+    clip_.frames = 20;
+    const auto bytes = writtenWithClip();
+    const auto damaged = [&](std::string_view kind, std::size_t byte, std::uint32_t value, std::size_t size) {
+        AssetBytes copy(bytes);
+        std::uint64_t place = 0;
+        for (const format::Section& section : copy.table()) {
+            if (std::string_view(section.kind.data(), 4) == kind) place = section.offset;
+        }
+        std::memcpy(copy.span().data() + place + byte, &value, size);
+        copy.seal();
+        game::Asset asset;
+        Error error;
+        EXPECT_TRUE(asset.open(copy.span().data(), copy.span().size(), &error)) << error.what();
+        EXPECT_FALSE(asset.check(&error)) << kind << " " << byte;
+        EXPECT_EQ(error.code, HL_DAMAGED);
+        EXPECT_GE(error.byte, place);
+        EXPECT_LT(error.byte, bytes.size());
+        return std::string(error.what());
+    };
+    const auto bits = [](float value) {
+        std::uint32_t word = 0;
+        std::memcpy(&word, &value, sizeof word);
+        return word;
+    };
+    EXPECT_THAT(damaged("CLIP", 0, 0xffffff, 4), HasSubstr("no name"));
+    EXPECT_THAT(damaged("CLIP", 8, bits(0), 4), HasSubstr("a rate"));
+    EXPECT_THAT(damaged("CLIP", 8, bits(std::numeric_limits<float>::quiet_NaN()), 4), HasSubstr("a rate"));
+    EXPECT_THAT(damaged("CLIP", 12, 0, 4), HasSubstr("0 frames; expected 1 to"));
+    EXPECT_THAT(damaged("CLIP", 12, 0xffffffff, 4), HasSubstr("4294967295 frames"));
+    EXPECT_THAT(damaged("CLIP", 12, 200, 4), HasSubstr("places of bits; expected"));
+    EXPECT_THAT(damaged("CLIP", 16, 0, 2), HasSubstr("blocks of 0 frames"));
+    EXPECT_THAT(damaged("CLIP", 16, 65, 2), HasSubstr("blocks of 65 frames"));
+    EXPECT_THAT(damaged("CLIP", 18, 30, 1), HasSubstr("a grid of 30 bits"));
+    EXPECT_THAT(damaged("CLIP", 19, 2, 1), HasSubstr("loops"));
+    EXPECT_THAT(damaged("CLIP", 20, bits(-1), 4), HasSubstr("an error"));
+    EXPECT_THAT(damaged("CLPI", 0, 1, 4), HasSubstr("not all of their section"));
+    EXPECT_THAT(damaged("CLPI", 8, 0xfffffff0, 4), HasSubstr("end before they begin"));
+    EXPECT_THAT(damaged("CLPD", 0, 0xff, 1), HasSubstr("bits of strand 0 from frame 0 on are no motion"));
+
+    // Damage that an asset has which was not checked: the call that meets it says so.
+    AssetBytes copy(bytes);
+    for (const format::Section& section : copy.table()) {
+        if (std::string_view(section.kind.data(), 4) == "CLPD")
+            std::memset(copy.span().data() + section.offset + section.bytes / 2, 0xff, 40);
+    }
+    copy.seal();
+    game::Asset asset;
+    Error error;
+    ASSERT_TRUE(asset.open(copy.span().data(), copy.span().size()));
+    Instance hair;
+    ASSERT_TRUE(hair.make(asset, HL_GUIDES, nullptr, &error)) << error.what();
+    ASSERT_TRUE(hair.step(Frame()));
+    std::size_t refused = 0;
+    for (int f = 0; f < 20; ++f) {
+        const std::uint64_t before = hair.hash();
+        if (hair.play(asset, Frame(), f / static_cast<double>(kRate), &error)) continue;
+        ++refused;
+        EXPECT_EQ(error.code, HL_DAMAGED);
+        EXPECT_THAT(std::string(error.what()), HasSubstr("of strand"));
+        EXPECT_LT(error.byte, bytes.size());
+        EXPECT_EQ(hair.hash(), before);
+        EXPECT_TRUE(hair.step(Frame()));
+    }
+    EXPECT_GT(refused, 0u);
+}
+
+TEST_F(RuntimeClip, RandomBitsPlayAsHairOrNotAtAll) {
+    clip_.frames = 20;
+    const auto bytes = writtenWithClip();
+    std::size_t refused = 0, played = 0;
+    for (std::uint32_t seed = 0; seed < 400; ++seed) {
+        std::mt19937 random(seed);
+        AssetBytes copy(bytes);
+        for (const format::Section& section : copy.table()) {
+            if (std::string_view(section.kind.data(), 3) != "CLP" &&
+                section.kind != std::array{'C', 'L', 'I', 'P'})
+                continue;
+            if (random() % 3 == 0) continue;
+            for (std::uint32_t change = 0; change < 1 + random() % 3; ++change)
+                copy.span()[section.offset + random() % section.bytes] ^=
+                    static_cast<std::byte>(1u << random() % 8);
+        }
+        copy.seal();
+        game::Asset asset;
+        Instance hair;
+        ASSERT_TRUE(asset.open(copy.span().data(), copy.span().size()));
+        if (!hair.make(asset, HL_HAIRS)) {
+            ++refused;
+            continue;
+        }
+        std::vector<float> guides, hairs;
+        for (const double seconds : {0.0, 0.1, 0.55, 0.3}) {
+            if (!hair.play(asset, Frame(), seconds)) {
+                ++refused;
+                continue;
+            }
+            ++played;
+            ASSERT_TRUE(hair.readGuides(guides) && hair.readHairs(hairs));
+            const auto isNumber = [](float value) { return std::isfinite(value); };
+            ASSERT_TRUE(std::ranges::all_of(guides, isNumber) && std::ranges::all_of(hairs, isNumber))
+                << seed;
+        }
+    }
+    EXPECT_GT(refused, 100u);
+    EXPECT_GT(played, 100u);
+}
+
+TEST_F(RuntimeClip, FramesThatCannotBeHadEndTheExport) {
+    const auto path = folder / "none.hairrt";
+    const auto refusal = [&](const StrandExportOptions& options) {
+        const auto made = strandWriter("runtime").write(groom_, path, options);
+        EXPECT_FALSE(made);
+        EXPECT_FALSE(std::filesystem::exists(path));
+        return made ? std::string() : made.error().message();
+    };
+    StrandExportOptions options;
+    const auto with = [&](const auto& change) {
+        ClipToWrite clip = clip_;
+        change(clip);
+        options.clip = std::make_shared<const ClipToWrite>(std::move(clip));
+        return refusal(options);
+    };
+    EXPECT_THAT(with([](ClipToWrite& clip) { clip.frames = 0; }), HasSubstr("0 frames"));
+    EXPECT_THAT(with([](ClipToWrite& clip) { clip.framesPerSecond = 0; }), HasSubstr("frames a second"));
+    EXPECT_THAT(with([](ClipToWrite& clip) {
+                    clip.frame = [](std::uint64_t) -> Result<ClipToWrite::Frame> { return fail("is torn"); };
+                }),
+                HasSubstr("is torn"));
+    EXPECT_THAT(with([this](ClipToWrite& clip) {
+                    clip.frame = [this](std::uint64_t number) {
+                        auto frame = clip_.frame(number);
+                        frame->positions_ws[5].x() = std::numeric_limits<float>::quiet_NaN();
+                        return frame;
+                    };
+                }),
+                HasSubstr("far from its root"));
+    EXPECT_THAT(with([this](ClipToWrite& clip) {
+                    clip.frame = [this](std::uint64_t number) {
+                        auto frame = clip_.frame(number);
+                        frame->positions_ws.pop_back();
+                        return frame;
+                    };
+                }),
+                HasSubstr("points"));
+    options.pointsPerStrand = 5;
+    EXPECT_THAT(with([](ClipToWrite&) {}), HasSubstr("--points"));
+}
+
+}  // namespace
+}  // namespace hairloom::test
