@@ -64,7 +64,7 @@ class Rows {
         auto row = measure(turningHead(strands, kPoints, ActiveForces::windAndSpheres), settings, layout);
         if (!row) return row;
         const bool held = lengths == runtime::LengthMethod::constraint;
-        row->hair = held ? "springs, backward Euler" : "coil springs, backward Euler";
+        row->hair = held ? "springs by backward Euler" : "coil springs by backward Euler";
         row->leftOut = leftOutName(LeftOut::nothing);
         for (const bool allThreads : {false, true}) {
             StepRun run(turningHead(strands, kPoints, ActiveForces::windAndSpheres), settings, allThreads);

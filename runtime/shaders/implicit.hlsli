@@ -73,12 +73,25 @@ Symmetric coilJacobian(uint s) {
     return jacobian;
 }
 
-/// h² K of the angular springs in the row of point p: its own entry, to the point before and to the one before that.
+// The compiler evaluates both sides of a choice: what may be out of range is read under an if.
+
+/// h² K of the angular springs between point p and the one two before; 0 without.
+float bendCoupling(uint p) {
+    float coupling = 0.0;
+#if HAIR_BEND == 1
+    if (p > 1 && p < POINTS) coupling = stiffness(p - 1) * inverseLength(p - 1) * inverseLength(p - 2);
+#endif
+    return coupling;
+}
+
+/// Of the row of point p: its own entry, to the point before and to the one before that.
 float3 bendRow(uint p) {
 #if HAIR_BEND == 1
-    const float outerBefore = inverseLength(p - 1), innerBefore = p > 1 ? inverseLength(p - 2) : 0.0;
+    const float outerBefore = inverseLength(p - 1);
+    float innerBefore = 0.0;
+    if (p > 1) innerBefore = inverseLength(p - 2);
     const float before = stiffness(p - 1) * outerBefore;
-    float3 row = float3(before * outerBefore, -before * (outerBefore + innerBefore), before * innerBefore);
+    float3 row = float3(before * outerBefore, -before * (outerBefore + innerBefore), bendCoupling(p));
     if (p + 1 < POINTS) {
         const float outer = inverseLength(p), middle = outer + outerBefore;
         row.x += stiffness(p) * middle * middle;
@@ -157,7 +170,7 @@ void solveSprings(bool angular) {
     float3 next = float3(0, 0, 0), second = float3(0, 0, 0);           // of the next two points
     float3 x = float3(0, 0, 0), y = float3(0, 0, 0), z = float3(0, 0, 0);  // rows of L of the next
     EACH for (int q = int(POINTS) - 1; q >= FIRST_FREE; --q) {
-        const float coupling = angular && q + 2 < int(POINTS) ? bendRow(q + 2).z : 0.0;
+        const float coupling = angular ? bendCoupling(uint(q) + 2) : 0.0;
         const float3 moved = times(savedInverse(q), work(q) - second * coupling) - (x * next.x + y * next.y + z * next.z);
         x = lowerX(q);
         y = lowerY(q);

@@ -144,8 +144,11 @@ TEST_F(WholeRun, BackwardEulerIsTheSameInBuffersAndGroups) {
             head.placeRoots(time, roots);
             ASSERT_TRUE(engine.step({kFrame, time, roots, {}}));
         }
-        if (first.empty()) first = positionsOf(engine);
-        EXPECT_LE(farthest(positionsOf(engine), first), 1e-5) << nameOf(options.layout);
+        const std::vector<Float3> positions = positionsOf(engine);
+        for (const Float3& p : positions)
+            ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+        if (first.empty()) first = positions;
+        EXPECT_LE(farthest(positions, first), 1e-5) << nameOf(options.layout);
     }
 }
 
