@@ -252,7 +252,7 @@ TEST_F(AdaptiveTest, ListsThatAreFullTakeAPartForTheWholeAndSaySo) {
 }
 
 // As the other kinds of shadows, over hair combed down from a crown.
-TEST_F(AdaptiveTest, NodesBringLightNearerToCountedFibres) {
+TEST_F(AdaptiveTest, IsNearerToCountedFibresThanThreeLayersOrFourSlices) {
     const TestHead head(1500);
     RenderScene scene = head.scene();
     scene.meshes.clear();
@@ -271,8 +271,8 @@ TEST_F(AdaptiveTest, NodesBringLightNearerToCountedFibres) {
     };
     const double four = error(Shadows::adaptive, 4), eight = error(Shadows::adaptive, 8),
                  sixteen = error(Shadows::adaptive, 16);
-    EXPECT_LT(eight, four);
-    // More no longer matters: what is left is that a texel is not a beam of 5 mm.
+    // More nodes no longer matter: what is left is that a texel is not a beam of 5 mm.
+    EXPECT_NEAR(four, eight, 0.1 * eight);
     EXPECT_NEAR(sixteen, eight, 0.05 * eight);
     EXPECT_LT(eight, error(Shadows::deepOpacity, 8));
     EXPECT_LT(eight, error(Shadows::opacityMaps, 8));
