@@ -430,8 +430,9 @@ std::optional<gpu::PassCounts> hairCounts(const RenderCase& which) {
                                          &std::pair<std::string, gpu::PassCounts>::first);
     if (found == which.counts.end()) return std::nullopt;
     gpu::PassCounts counts = found->second;
-    counts.primitives -= which.meshTriangles;
-    counts.vertices -= 3 * which.meshTriangles;
+    // Devices may clip before they count.
+    counts.primitives -= std::min(counts.primitives, which.meshTriangles);
+    counts.vertices -= std::min(counts.vertices, 3 * which.meshTriangles);
     counts.vertexRuns -= std::min(counts.vertexRuns, 3 * which.meshTriangles);
     return counts;
 }

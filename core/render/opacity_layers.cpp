@@ -45,8 +45,10 @@ std::uint32_t fragmentsThatFit(const RenderOptions& options, const gpu::DeviceIn
     const std::uint64_t texels = std::uint64_t{options.shadowResolution} * options.shadowResolution;
     const std::uint64_t wanted =
         std::min<std::uint64_t>(std::max(kOfTexel * texels, kOfSmallMap), options.shadowFragments);
-    return static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(wanted, device.maxBufferBytes / (4 * HAIRLOOM_LISTED_WORDS)));
+    constexpr std::uint64_t kShareOfMemory = 16;
+    std::uint64_t bytes = device.maxBufferBytes;
+    if (device.memoryBytes > 0) bytes = std::min(bytes, device.memoryBytes / kShareOfMemory);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, bytes / (4 * HAIRLOOM_LISTED_WORDS)));
 }
 
 std::uint32_t opacityWords(Shadows shadows, std::uint32_t layers) {

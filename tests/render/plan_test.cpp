@@ -143,6 +143,8 @@ TEST(RenderPlan, MoreLayersTakeMoreTexturesAndFewerWhereThereIsNoRoom) {
     EXPECT_EQ(fragmentsThatFit(adaptive, large), 16u << 20u);
     adaptive.shadowResolution = 4096;
     EXPECT_EQ(fragmentsThatFit(adaptive, large), kMaxShadowFragments);
+    large.memoryBytes = std::uint64_t{16} * 12'000'000;
+    EXPECT_EQ(fragmentsThatFit(adaptive, large), 1'000'000u) << "a sixteenth of the memory";
     EXPECT_EQ(fragmentsThatFit(options(), large), 0u);
     for (RenderOptions* wrong : {&asked, &maps}) {
         wrong->shadowLayers = 12;

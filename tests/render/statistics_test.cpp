@@ -70,10 +70,11 @@ TEST_F(StatisticsTest, PatchesThatAreCutFTimesHave3FPlus1Vertices) {
             drawn(straightHairs(strands, {segments, segments, segments}), Ribbons::tessellated);
         const auto f = static_cast<std::uint64_t>(segments);
         EXPECT_EQ(counts.patches, 3u);
-        EXPECT_EQ(counts.evaluations, 3 * (3 * f + 1)) << segments;
+        // Some GPUs evaluate a vertex again for another of its triangles.
+        EXPECT_GE(counts.evaluations, 3 * (3 * f + 1)) << segments;
         EXPECT_EQ(counts.primitives, 3 * (4 * f - 2)) << segments;
-        if (f > 1) {
-            EXPECT_NE(counts.evaluations, 3 * 2 * (f + 1)) << "not the perimeter alone";
+        if (device->info().type == gpu::DeviceType::Cpu) {
+            EXPECT_EQ(counts.evaluations, 3 * (3 * f + 1)) << segments;
         }
         EXPECT_GT(counts.fragments, 0u);
     }
@@ -81,7 +82,7 @@ TEST_F(StatisticsTest, PatchesThatAreCutFTimesHave3FPlus1Vertices) {
     TestStrands strands;
     const gpu::PassCounts counts = drawn(straightHairs(strands, {70}), Ribbons::tessellated);
     EXPECT_EQ(counts.patches, 4u);
-    EXPECT_EQ(counts.evaluations, 3u * 70u + 4u);
+    EXPECT_GE(counts.evaluations, 3u * 70u + 4u);
 }
 
 TEST_F(StatisticsTest, StripsHaveTwoVerticesAPointOfTheCurve) {
