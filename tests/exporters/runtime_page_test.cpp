@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -223,6 +225,131 @@ TEST_F(RuntimePage, IsEnoughToReadAFileBy) {
     }
     EXPECT_EQ(settings.at("simulation.windSpeed"), 3.5);
     EXPECT_EQ(settings.at("interpolation.followPerGuide"), 6);
+}
+
+/// Bits of CLPD, as the page has them.
+class PageBits {
+  public:
+    PageBits(const std::byte* at, std::size_t bytes) : at_(at), bits_(8 * bytes) {}
+    std::uint64_t take(std::size_t count) {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < count; ++i, ++next_) {
+            EXPECT_LT(next_, bits_);
+            if (next_ >= bits_) return 0;
+            const auto byte = static_cast<unsigned>(at_[next_ / 8]);
+            value |= std::uint64_t{(byte >> (next_ % 8)) & 1u} << i;
+        }
+        return value;
+    }
+    double residual(std::size_t k) {
+        std::uint64_t ones = 0;
+        while (ones < 20 && take(1) == 1) ++ones;
+        const std::uint64_t u = ones == 20 ? take(32) : (ones << k) + take(k);
+        return u % 2 == 0 ? static_cast<double>(u / 2) : -static_cast<double>((u + 1) / 2);
+    }
+    std::size_t left() const { return bits_ - next_; }
+
+  private:
+    const std::byte* at_;
+    std::size_t bits_, next_ = 0;
+};
+
+TEST_F(RuntimePage, IsEnoughToReadAClipBy) {
+    Groom groom = helices({2, 5, 12, 40});
+    ClipToWrite clip;
+    clip.name = "wave";
+    clip.framesPerSecond = 24;
+    clip.frames = 37;
+    clip.frame = [&](std::uint64_t frame) -> Result<ClipToWrite::Frame> {
+        ClipToWrite::Frame made;
+        for (std::size_t p = 0; p < groom.pointCount(); ++p) {
+            Vec3f at = groom.positions()[p];
+            const float t = static_cast<float>(frame), drop = 1.7f - at.y();
+            at += drop * Vec3f(0.3f * std::sin(0.3f * t), 0, 0.1f * std::cos(0.8f * t + at.x()));
+            if (p == 30 && frame == 20) at.z() += 90;  // a number of 32 bits
+            made.positions_ws.push_back(at);
+        }
+        return made;
+    };
+    StrandExportOptions options;
+    options.clip = std::make_shared<const ClipToWrite>(clip);
+    const auto path = folder / "clip.hairrt";
+    const auto report = strandWriter("runtime").write(groom, path, options);
+    ASSERT_TRUE(report) << report.error().message();
+    const auto bytes = readFile(path).value();
+    const Page page = readPage();
+    const PageReader reader(page, bytes);
+    EXPECT_EQ(reader.header("minor"), 3);
+    ASSERT_EQ(reader.count("CLIP"), 1u);
+    EXPECT_EQ(reader.recordBytes("CLIP"), reader.table("CLIP", "recordBytes"));
+    EXPECT_EQ(reader.text(reader.record("CLIP", 0, "nameAt"), reader.record("CLIP", 0, "nameBytes")), "wave");
+    EXPECT_EQ(reader.record("CLIP", 0, "framesPerSecond"), 24);
+    EXPECT_EQ(reader.record("CLIP", 0, "loops"), 0);
+    const auto frames = static_cast<std::size_t>(reader.record("CLIP", 0, "frames"));
+    const auto perBlock = static_cast<std::size_t>(reader.record("CLIP", 0, "framesPerBlock"));
+    const double cell = std::ldexp(1.0, -static_cast<int>(reader.record("CLIP", 0, "gridBits")));
+    const double stated = reader.record("CLIP", 0, "largestError");
+    EXPECT_EQ(frames, 37u);
+    EXPECT_LE(stated, 0.0001);
+    const std::size_t strands = reader.count("STRD"), blocks = (frames + perBlock - 1) / perBlock;
+    ASSERT_EQ(reader.count("CLPI"), blocks * strands + 1);
+    const auto placeAt = [&](std::size_t record) {
+        return static_cast<std::size_t>(valueAt(reader.at("CLPI") + 4 * record, "u32"));
+    };
+    EXPECT_EQ(placeAt(blocks * strands), reader.table("CLPD", "bytes"));
+    const auto rest = positionsBy(reader);
+    double largest = 0;
+    for (std::size_t s = 0, first = 0; s < strands; ++s) {
+        const auto points = static_cast<std::size_t>(reader.record("STRD", s, "points"));
+        // By frame of the block, axis and point; the root has zeros.
+        using Cells = std::array<std::vector<double>, 3>;
+        Cells none;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t p = 0; p < points; ++p)
+                none[axis].push_back(std::round((double{rest[first + p][static_cast<int>(axis)]} -
+                                                 double{rest[first][static_cast<int>(axis)]}) /
+                                                cell));
+        }
+        for (std::size_t b = 0; b < blocks; ++b) {
+            const std::size_t from = placeAt(b * strands + s), to = placeAt(b * strands + s + 1);
+            PageBits bits(reader.at("CLPD") + from, to - from);
+            std::vector<Cells> block;
+            for (std::size_t f = 0; f < std::min(perBlock, frames - b * perBlock); ++f) {
+                const auto way = static_cast<std::size_t>(bits.take(4));
+                const std::size_t time = way / 3, along = way % 3;
+                ASSERT_LE(time, std::min<std::size_t>(f, 2));
+                std::array<std::size_t, 3> k{};
+                for (std::size_t& low : k) low = static_cast<std::size_t>(bits.take(4));
+                Cells now;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    now[axis].assign(points, 0);
+                    std::vector<double> d(points, 0);
+                    for (std::size_t p = 1; p < points; ++p) {
+                        d[p] = k[axis] == 15 ? 0 : bits.residual(k[axis]);
+                        if (along == 1) d[p] += d[p - 1];
+                        if (along == 2) d[p] += 2 * d[p - 1] - (p > 1 ? d[p - 2] : 0);
+                        now[axis][p] =
+                            d[p] + (time == 0   ? none[axis][p]
+                                    : time == 1 ? block[f - 1][axis][p]
+                                                : 2 * block[f - 1][axis][p] - block[f - 2][axis][p]);
+                    }
+                }
+                const auto given = clip.frame(b * perBlock + f)->positions_ws;
+                for (std::size_t p = 1; p < points; ++p) {
+                    // The head stands.
+                    const Vec3d at =
+                        rest[first].cast<double>() + cell * Vec3d(now[0][p], now[1][p], now[2][p]);
+                    largest = std::max(largest, (at - given[first + p].cast<double>()).norm());
+                }
+                block.push_back(std::move(now));
+            }
+            EXPECT_LT(bits.left(), 8u);
+            EXPECT_EQ(bits.take(bits.left()), 0u);
+        }
+        first += points;
+    }
+    EXPECT_LE(largest, stated);
+    EXPECT_GT(largest, 0.2 * stated) << "the stated error is that of the file";
 }
 
 }  // namespace
