@@ -82,23 +82,23 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     EXPECT_NEAR(energyGpu, energyCpu, 0.05 * energyCpu);
 }
 
-/// Backward Euler of a turning head in wind, one substep a frame.
+/// Backward Euler of a turning head in wind.
 SimulationSettings backwardEuler(runtime::LengthMethod lengths) {
     SimulationSettings s =
         scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
     s.integrator = runtime::Integrator::implicitEuler;
     s.angularMethod = runtime::AngularMethod::smallAngle;
     s.lengthMethod = lengths;
-    s.substeps = 1;
+    s.substeps = 4;
     return s;
 }
 
-/// Coil springs of (ω h)² = 1.1 million beside a mass of 1, with nothing else to hold them: they stay as long
-/// as the CPU's, and where the CPU's are.
-TEST_P(EachLayout, BackwardEulerHoldsTheStiffestSprings) {
+/// Coil springs of 40 million N/m at a mass of 1 kg, and nothing else to hold them: they stay as long as the
+/// CPU's, and where the CPU's are.
+TEST_P(EachLayout, BackwardEulerHoldsStiffSprings) {
     const scenes::HeadOfHair head(64, 16);
     SimulationSettings settings = backwardEuler(runtime::LengthMethod::springs);
-    settings.springFrequency = 10'000.0f;
+    settings.springFrequency = 1'000.0f;
     settings.lengthIterations = 0;
     StrandEngine gpu = engineOf(head.view(), settings, options(GetParam()));
     runtime::Engine cpu = *runtime::Engine::make(head.view(), settings).engine;
@@ -115,7 +115,7 @@ TEST_P(EachLayout, BackwardEulerHoldsTheStiffestSprings) {
         cpu.step(input);
         const Measurements measured = gpu.measure().value(), other = cpu.measure();
         EXPECT_EQ(measured.nanCount, 0u);
-        EXPECT_LE(measured.maxStretch, 1.5 * other.maxStretch + 0.01) << f;
+        EXPECT_LE(measured.maxStretch, 1.5 * other.maxStretch + 0.001) << f;
         cpu.readPositions(onCpu);
         if (f == 5) {
             EXPECT_LE(farthest(positionsOf(gpu), onCpu), 1e-3);
