@@ -153,11 +153,10 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
     fmt::format_to(out, "\n## Layouts\n\n| strands | model | layout | GPU, ms |\n|---|---|---|---|\n");
     for (const GpuBenchRow& row : bench.layouts)
         fmt::format_to(out, "| {} | {} | {} | {:.3g} |\n", row.strands, row.hair, row.layout, row.gpu.device);
-    fmt::format_to(
-        out,
-        "\n## Backward Euler\n\nSprings with the default settings but for the integrator, in ms per "
-        "frame.\n\n| strands | model | GPU | GPU, wall | CPU, one thread | CPU, all threads |\n"
-        "|---|---|---|---|---|---|\n");
+    fmt::format_to(out,
+                   "\n## Backward Euler\n\nSprings with the default settings and this integrator, in ms per "
+                   "frame.\n\n| strands | model | GPU | GPU, wall | CPU, one thread | CPU, all threads |\n"
+                   "|---|---|---|---|---|---|\n");
     for (const GpuBenchRow& row : bench.backward) {
         fmt::format_to(out, "| {} | {} | {:.3g} | {:.3g} | {} | {} |\n", row.strands, row.hair,
                        row.gpu.device, row.gpu.wall, orDash(row.cpuOne, ""), orDash(row.cpuAll, ""));
