@@ -148,7 +148,8 @@ TEST_F(WholeRun, BackwardEulerIsTheSameInBuffersAndGroups) {
         for (const Float3& p : positions)
             ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
         if (first.empty()) first = positions;
-        EXPECT_LE(farthest(positions, first), 1e-5) << nameOf(options.layout);
+        // Compilers of devices fuse the products of each layout in their own way: 0.03 mm apart on an H200.
+        EXPECT_LE(farthest(positions, first), 1e-4) << nameOf(options.layout);
     }
 }
 
