@@ -60,15 +60,6 @@ run("${WORK}/player/player" "${WORK}/g.hairrt" --frames 20 --crowd 24 --budget 0
 expect("${crowd}")
 run("${WORK}/player/player" "${WORK}/g.hairrt" --frames 5 --crowd 3 --resting --wind 0)
 expect("crowd of 3 at rest")
-# A take as a clip, played by what is installed on the head that was recorded.
-run("${CLI}" takes "${WORK}/g.hairloom" --record turn --motion clip:nod_and_turn --frames 50 --wind 2,0,0)
-run("${CLI}" takes "${WORK}/g.hairloom" --export turn --format runtime --loop -o "${WORK}/turn.hairrt")
-run("${CLI}" takes "${WORK}/g.hairloom" --export turn --format frames -o "${WORK}/turn.frames")
-run(${CMAKE_COMMAND} -S "${SOURCE}/tests/cli/packaged" -B "${WORK}/clip" "-DPROGRAM=${SOURCE}/tests/runtime/installed/play_clip.c"
-    "-DCMAKE_C_COMPILER=${CC}" ${options})
-run(${CMAKE_COMMAND} --build "${WORK}/clip")
-run("${WORK}/clip/game" "${WORK}/turn.hairrt" "${WORK}/turn.frames")
-expect("clip turn of 50 frames at 60 a second, loops")
 # The single header: the same program, in C99, and one file of C++ that has the rest. It comes to the same point.
 run("${WORK}/game/game" "${WORK}/g.hairrt")
 set(expected "${output}")
