@@ -66,9 +66,10 @@ struct ExportReport {
 
 /// Keys: format, strands, points, frames (where strands move), samples (where these are more), bytes,
 /// max_error_mm (null where nothing was measured), attributes (name, max_error), names, left_behind
-/// (what, fix), findings (severity, what, where, fix); certificate (the fields of SafeLimits, where it was made);
-/// companions (names, where there are some); of cards levels (name, cards, triangles, bytes, distance_m,
-/// coverage, flip, light) and springs (hz, rates: hz, error_mm, largest_mm; where the file has fitted ones).
+/// (what, fix), findings (severity, what, where, fix); certificate (the fields of SafeLimits, where it was
+/// made); companions (names, where there are some); of cards levels (name, cards, triangles, bytes,
+/// distance_m, coverage, flip, light) and springs (hz, rates: hz, error_mm, largest_mm; where the file has
+/// fitted ones).
 nlohmann::json toJson(const ExportReport& report);
 
 }  // namespace hairloom

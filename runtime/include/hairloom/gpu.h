@@ -152,9 +152,10 @@ HL_API hl_code hl_gpu_fill_frame(hl_instance* instance, uint32_t buffer, void* d
                                  hl_error* error);
 
 /* From here on the pass GUIDES moves the hair, from where the CPU has it. hl_instance_reset(), _load(),
- * _step(), _play(), _set() and another level end it, and copies are on the CPU: begin again. What hl_instance_read()
- * gives stays as it was. The hair meets spheres, not the skin. HL_BAD_VALUE where strandModel is springs,
- * clampedPoints is not 2, or the level is not the finest. Takes memory, as hl_gpu_step() does. */
+ * _step(), _play(), _set() and another level end it, and copies are on the CPU: begin again. What
+ * hl_instance_read() gives stays as it was. The hair meets spheres, not the skin. HL_BAD_VALUE where
+ * strandModel is springs, clampedPoints is not 2, or the level is not the finest. Takes memory, as
+ * hl_gpu_step() does. */
 HL_API hl_code hl_gpu_begin(hl_instance* instance, hl_error* error);
 /* Takes a frame as hl_instance_step() does; HL_WRONG_SIZE where it has more spheres than HL_GPU_SPHERES and
  * than the asset. With dt 0 nothing moves: run no pass GUIDES. HL_BAD_VALUE without hl_gpu_begin(). */
