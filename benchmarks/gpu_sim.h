@@ -14,8 +14,7 @@
 namespace hairloom::benchmarks {
 
 struct GpuBenchRow {
-    std::string
-        hair;  ///< a sample's name, or "rods", "springs" or an integrator's springs of the made-up head
+    std::string hair;  ///< a sample's name, or rods or springs of the made-up head
     std::uint32_t strands = 0;
     std::uint32_t points = 0;  ///< of all strands
     std::uint32_t substeps = 0;

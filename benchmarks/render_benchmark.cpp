@@ -40,8 +40,8 @@ struct RenderCase {
     Measurement frame;  ///< all passes on the device, ms; wall time where it has no clock
     Measurement wall;   ///< from recording to the end on the device, ms, with the upload of positions
     std::vector<Measurement> passes;  ///< ms
-    std::vector<std::pair<std::string, gpu::PassCounts>>
-        counts;  ///< of a frame's passes, where they are counted
+    /// Of a frame's passes, where they are counted.
+    std::vector<std::pair<std::string, gpu::PassCounts>> counts;
     std::uint64_t meshTriangles = 0;
     std::uint64_t targetBytes = 0;
     bool software = false;        ///< by the software renderer

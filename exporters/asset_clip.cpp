@@ -248,23 +248,6 @@ class ClipGrid {
     double largest_ = 0;
 };
 
-/// As clipRest() has it of a file that has the clip.
-Cells restCells(const runtime::Asset::Strands& rest) {
-    const double perMetre = std::ldexp(1.0, kClipGridBits);
-    Cells cells;
-    for (std::size_t s = 0; s + 1 < rest.offsets.size(); ++s) {
-        const runtime::Float3 root = rest.positions_ss[rest.offsets[s]];
-        for (std::size_t p = rest.offsets[s] + 1; p < rest.offsets[s + 1]; ++p) {
-            const runtime::Float3 at = rest.positions_ss[p];
-            for (const double away : {double{at.x} - double{root.x}, double{at.y} - double{root.y},
-                                      double{at.z} - double{root.z}})
-                cells.push_back(static_cast<std::int32_t>(std::llround(std::clamp(
-                    away * perMetre, -double{asset::kFarthestClipCell}, double{asset::kFarthestClipCell}))));
-        }
-    }
-    return cells;
-}
-
 Status checkClipToWrite(const ClipToWrite& clip) {
     if (clip.frames == 0 || clip.frames > asset::kMostClipFrames)
         return fail(fmt::format("{} frames", clip.frames),
@@ -282,7 +265,7 @@ Result<AssetClip> encodeClip(const ClipToWrite& clip, const PreparedStrands& str
                              const WorkWatch& watch) {
     if (auto status = checkClipToWrite(clip); !status) return tl::unexpected(status.error());
     ClipGrid grid(strands, groom, plain, scalpVertices);
-    const Cells rest = restCells(grid.rest());
+    const Cells rest = runtime::clipRest(grid.rest(), kClipGridBits);
     AssetClip encoded;
     encoded.places.push_back(0);
     std::vector<std::vector<std::byte>> bits(strands.strandCount());

@@ -54,9 +54,9 @@ bool ClipBits::isAtEnd() const {
     return (std::to_integer<std::uint32_t>(bytes_.back()) >> (8 - (end - at_))) == 0;
 }
 
-std::vector<std::int32_t> clipRest(const Asset& asset, const Asset::Strands& rest) {
+std::vector<std::int32_t> clipRest(const Asset::Strands& rest, std::uint32_t gridBits) {
     std::vector<std::int32_t> cells;
-    const double perMetre = std::ldexp(1.0, asset.clip()->gridBits);
+    const double perMetre = std::ldexp(1.0, static_cast<int>(gridBits));
     for (std::size_t s = 0; s + 1 < rest.offsets.size(); ++s) {
         const Float3 root = rest.positions_ss[rest.offsets[s]];
         for (std::size_t p = rest.offsets[s] + 1; p < rest.offsets[s + 1]; ++p) {
@@ -144,7 +144,7 @@ std::optional<AssetError> Asset::checkClipFrames(const Host& host) const {
     const Clip* const c = clip();
     if (!c) return std::nullopt;
     const Strands rest = strandsAtRest();
-    const std::vector<std::int32_t> cells = clipRest(*this, rest);
+    const std::vector<std::int32_t> cells = clipRest(rest, c->gridBits);
     const std::uint32_t blocks = clipBlocks(*c);
     // The lowest one, whichever thread finds one first.
     std::atomic<std::uint64_t> first = kNoStrand;

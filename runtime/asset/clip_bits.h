@@ -17,9 +17,9 @@ namespace hairloom::runtime {
 using ClipCells = std::span<std::int32_t>;
 using ConstClipCells = std::span<const std::int32_t>;
 
-/// Of all strands, strand after strand, without their roots: what frames that nothing comes before are
-/// predicted from.
-std::vector<std::int32_t> clipRest(const Asset& asset, const Asset::Strands& rest);
+/// Of all strands, strand after strand, without their roots, in cells of 1 / 2^gridBits metres: what frames
+/// that nothing comes before are predicted from.
+std::vector<std::int32_t> clipRest(const Asset::Strands& rest, std::uint32_t gridBits);
 
 /// A strand's bits of a block, from the front to the back. Behind their end there are zeros, and `good` is
 /// false.

@@ -43,7 +43,7 @@ std::size_t ClipPlayer::bytes() const {
 void ClipPlayer::take(const Asset& asset) {
     identity_ = {};
     Asset::Strands rest = asset.strandsAtRest();
-    rest_ = clipRest(asset, rest);
+    rest_ = clipRest(rest, asset.clip()->gridBits);
     offsets_ = std::move(rest.offsets);
     for (auto& cells : cells_) cells.assign(rest_.size(), 0);
     bits_.assign(asset.strands.size(), 0);
