@@ -354,9 +354,10 @@ TEST_F(LookPictureTest, TwoLooksStandSideBySideAndTheLineIsDragged) {
 TEST_F(LookPictureTest, QualityChangesThePicture) {
     const QImage before = shot();
     auto* shadows = find<QComboBox>("shadows");
-    ASSERT_EQ(shadows->itemText(3), "None");
-    shadows->setCurrentIndex(3);
-    Q_EMIT shadows->activated(3);
+    const int none = shadows->findText("None");
+    ASSERT_GE(none, 0);
+    shadows->setCurrentIndex(none);
+    Q_EMIT shadows->activated(none);
     EXPECT_EQ(groom().shadows.kind, ShadowKind::none);
     const QImage bright = shot();
     EXPECT_GT(difference(before, bright, before.rect()), 0.1);
