@@ -37,6 +37,8 @@ SimulationOptions methodOf(const SimulateOptions& options) {
     if (options.method == "projective") result.method = SimulationMethod::projective;
     if (options.method == "chain") result.method = SimulationMethod::chain;
     if (options.method == "lattice") result.method = SimulationMethod::lattice;
+    if (options.method == "particles") result.method = SimulationMethod::particles;
+    if (options.method == "hybrid") result.method = SimulationMethod::hybrid;
     return result;
 }
 
@@ -210,7 +212,9 @@ Result<Report> simulate(const SimulateOptions& options) {
         recorder.emplace(std::move(*opened));
     }
 
-    std::vector<std::string> notes = bodyNotes(*groom, pose, options.method == "strands");
+    std::vector<std::string> notes =
+        bodyNotes(*groom, pose,
+                  options.method == "strands" || options.method == "particles" || options.method == "hybrid");
     std::optional<RecordComparison> comparison;
     if (!options.against.empty()) comparison.emplace(options.against);
 
@@ -318,9 +322,10 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
                    "File with skeleton and clips, if other than the scalp's file");
     job.add_option(
            "--method", options.method,
-           "Simulation method: the strand engine, projective equations, chains of rigid segments, or a "
-           "lattice around the head")
-        ->check(CLI::IsMember({"strands", "projective", "chain", "lattice"}));
+           "Simulation method: the strand engine, projective equations, chains of rigid segments, a "
+           "lattice around the head, or the strand engine with hair as particles or on a flow grid in place "
+           "of simulation.hairHair")
+        ->check(CLI::IsMember({"strands", "projective", "chain", "lattice", "particles", "hybrid"}));
     job.add_flag("--hair-hair", options.hairHair, "Turns on simulation.hairHair, hair-hair collision");
     std::vector<CLI::Option*> added = job.get_options();
     added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <functional>
 
 #include "core/base/parallel.h"
 #include "core/simulation/effect_switch.h"
 #include "core/simulation/strand_method.h"
+#include "hairloom/alternatives/hair_flow.h"
+#include "hairloom/alternatives/hair_particles.h"
 
 namespace hairloom {
 namespace {
@@ -13,20 +18,30 @@ namespace {
 using runtime::Effect;
 using runtime::StageId;
 
-/// False where the solver takes no velocities.
-template <class Solver>
-bool push(Solver& solver, runtime::HairVolume& volume, float dt) {
-    if constexpr (TakesVelocities<Solver>) {
-        pushHairApart(solver, volume, dt);
-        return true;
-    }
-    return false;
+/// Hair-hair collision between the frames of the engine.
+struct Between {
+    std::string name, why;
+    std::function<void(runtime::Engine& engine, float dt)> push;
+    std::function<std::size_t()> bytes;
+    bool keepsSettings = false;  ///< it was made for those of the start
+};
+
+/// `Medium`: HairVolume, HairParticles, HairFlow.
+template <class Medium>
+Between between(std::string name, std::string why, Medium made) {
+    auto medium = std::make_shared<Medium>(std::move(made));
+    // Without velocities from outside, makeEngineMethod() refuses.
+    return {std::move(name), std::move(why),
+            [medium](runtime::Engine& engine, float dt) {
+                if constexpr (TakesVelocities<runtime::Engine>) pushHairApart(engine, *medium, dt);
+            },
+            [medium] { return medium->bytes(); }};
 }
 
 class EngineMethod : public StrandMethod {
   public:
-    EngineMethod(runtime::Engine engine, std::optional<runtime::HairVolume> volume)
-        : engine_(std::move(engine)), volume_(std::move(volume)), host_(applicationHost()) {}
+    EngineMethod(runtime::Engine engine, std::optional<Between> between)
+        : engine_(std::move(engine)), between_(std::move(between)), host_(applicationHost()) {}
 
     void reset(const SceneInput& scene, const HeadPose& pose) override { engine_.reset(scene.rootsAt(pose)); }
 
@@ -40,15 +55,16 @@ class EngineMethod : public StrandMethod {
             (effect ? effectMilliseconds_[static_cast<std::size_t>(*effect)] : solveMilliseconds_) +=
                 report.stageMilliseconds[stage];
         }
-        if (!volume_) return;
+        if (!between_) return;
         const std::uint64_t begin = host_.nanoseconds();
-        push(engine_, *volume_, input.dt);
+        between_->push(engine_, input.dt);
         const double spent = 1e-6 * static_cast<double>(host_.nanoseconds() - begin);
         milliseconds_ += spent;
-        volumeMilliseconds_ += spent;
+        betweenMilliseconds_ += spent;
     }
 
     Status setSettings(const runtime::SimulationSettings& settings) override {
+        if (between_ && between_->keepsSettings) return StrandMethod::setSettings(settings);
         if (const std::string problem = engine_.setSettings(settings); !problem.empty()) return fail(problem);
         return {};
     }
@@ -85,21 +101,48 @@ class EngineMethod : public StrandMethod {
                            solveMilliseconds_ / frames, 0});
         if (const std::size_t bytes = engine_.bodyBytes(); bytes > 0)
             effects.push_back({std::string(kBodyEffect), true, "on, the skin of the head", {}, bytes});
-        if (volume_) {
+        if (between_) {
             effects.push_back(
-                {"hair-hair", true, "on, asked for", volumeMilliseconds_ / frames, volume_->bytes()});
+                {between_->name, true, between_->why, betweenMilliseconds_ / frames, between_->bytes()});
         }
         return effects;
     }
 
   private:
     runtime::Engine engine_;
-    std::optional<runtime::HairVolume> volume_;
+    std::optional<Between> between_;
     runtime::Host host_;
     std::uint64_t frames_ = 0;
-    double milliseconds_ = 0, volumeMilliseconds_ = 0, solveMilliseconds_ = 0;
+    double milliseconds_ = 0, betweenMilliseconds_ = 0, solveMilliseconds_ = 0;
     std::array<double, runtime::kEffectCount> effectMilliseconds_{};
 };
+
+Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene,
+                                                 const runtime::SimulationSettings& settings,
+                                                 std::optional<Between> between) {
+    if (between && !TakesVelocities<runtime::Engine>) {
+        return fail("the strand engine does not take external velocities, which hair-hair collision needs",
+                    "expected a run without it");
+    }
+    auto made = runtime::Engine::make(scene.strands(), settings, applicationHost());
+    if (!made.engine) return fail(made.error);
+    const auto& body = scene.groom().body;
+    if (body) {
+        if (const std::string problem = made.engine->setBody(body); !problem.empty()) return fail(problem);
+    }
+    return std::make_unique<EngineMethod>(std::move(*made.engine), std::move(between));
+}
+
+/// A continuum in place of the engine's own hair-hair collision.
+Result<std::unique_ptr<StrandMethod>> makeContinuum(const SceneInput& scene, Between between) {
+    runtime::SimulationSettings settings = scene.groom().simulation;
+    settings.hairHair = false;
+    between.keepsSettings = true;
+    return makeMethod(scene, settings, std::move(between));
+}
+
+/// Of `simulation.hairHairStrength`: m²/s² of particles, and 1/s of the grid's spreading, at 1.
+constexpr float kStiffest = 2.0f, kFastestSpreading = 4.0f;
 
 }  // namespace
 
@@ -120,24 +163,36 @@ runtime::Host applicationHost() {
 
 Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
     const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume) {
-    auto made = runtime::Engine::make(scene.strands(), scene.groom().simulation, applicationHost());
-    if (!made.engine) return fail(made.error);
-    std::optional<runtime::HairVolume> volume;
+    std::optional<Between> volume;
     if (hairVolume) {
-        if (!TakesVelocities<runtime::Engine>) {
-            return fail(
-                "the strand engine does not take external velocities, which hair-hair collision needs",
-                "expected a run without it");
-        }
         auto grid = runtime::HairVolume::make(*hairVolume, applicationHost());
         if (!grid.volume) return fail(grid.error);
-        volume.emplace(std::move(*grid.volume));
+        volume = between("hair-hair", "on, asked for", std::move(*grid.volume));
     }
-    const auto& body = scene.groom().body;
-    if (body) {
-        if (const std::string problem = made.engine->setBody(body); !problem.empty()) return fail(problem);
-    }
-    return std::make_unique<EngineMethod>(std::move(*made.engine), std::move(volume));
+    return makeMethod(scene, scene.groom().simulation, std::move(volume));
+}
+
+Result<std::unique_ptr<StrandMethod>> makeParticleMethod(const SceneInput& scene) {
+    const runtime::SimulationSettings& settings = scene.groom().simulation;
+    runtime::HairParticleSettings wanted;
+    wanted.radius = settings.hairHairCell;
+    wanted.stiffness = settings.hairHairStrength * kStiffest;
+    wanted.friction = settings.hairHairCohesion;
+    auto made = runtime::HairParticles::make(scene.strands(), wanted, applicationHost());
+    if (!made.particles) return fail(made.error);
+    const std::string why = fmt::format("on, a reach of {:.1f} mm", made.particles->radius() * 1e3f);
+    return makeContinuum(scene, between("particles", why, std::move(*made.particles)));
+}
+
+Result<std::unique_ptr<StrandMethod>> makeHybridMethod(const SceneInput& scene) {
+    const runtime::SimulationSettings& settings = scene.groom().simulation;
+    runtime::HairFlowSettings wanted;
+    wanted.cellSize = settings.hairHairCell;
+    wanted.spreading = settings.hairHairStrength * kFastestSpreading;
+    wanted.friction = settings.hairHairCohesion;
+    auto made = runtime::HairFlow::make(scene.strands(), wanted, applicationHost());
+    if (!made.flow) return fail(made.error);
+    return makeContinuum(scene, between("hybrid", "on, a grid between the frames", std::move(*made.flow)));
 }
 
 }  // namespace hairloom

@@ -18,9 +18,12 @@ Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const 
     if (options.method == SimulationMethod::strands) return makeEngineMethod(scene, options.hairVolume);
     if (options.hairVolume) {
         return fail(
-            "hair-hair collision needs a method with external velocities, which this one does not have",
+            "hair-hair collision needs a method with external velocities and none of its own, which this one "
+            "is not",
             "expected the method 'strands'");
     }
+    if (options.method == SimulationMethod::particles) return makeParticleMethod(scene);
+    if (options.method == SimulationMethod::hybrid) return makeHybridMethod(scene);
     if (options.method == SimulationMethod::projective) return makeProjectiveMethod(scene);
     if (options.method == SimulationMethod::chain) return makeChainMethod(scene);
     return makeLatticeMethod(scene);

@@ -53,6 +53,8 @@ enum class SimulationMethod {
     projective,  ///< runtime/alternatives/projective_equations.h
     chain,       ///< runtime/alternatives/rigid_chains.h
     lattice,     ///< runtime/alternatives/lattice.h: lengths are not held
+    particles,   ///< the strand engine, and hair_particles.h between its frames
+    hybrid,      ///< likewise, with hair_flow.h
 };
 
 class SceneInput;

@@ -62,6 +62,10 @@ class StrandMethod {
 /// The strand engine.
 Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
     const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume);
+/// The strand engine with hair as a continuum between its frames, in place of simulation.hairHair: particles
+/// or a hybrid of grid and strands.
+Result<std::unique_ptr<StrandMethod>> makeParticleMethod(const SceneInput& scene);
+Result<std::unique_ptr<StrandMethod>> makeHybridMethod(const SceneInput& scene);
 Result<std::unique_ptr<StrandMethod>> makeProjectiveMethod(const SceneInput& scene);
 Result<std::unique_ptr<StrandMethod>> makeChainMethod(const SceneInput& scene);
 Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene);
@@ -81,9 +85,9 @@ concept TakesVelocities = requires(Solver& solver, const Solver& reads, std::spa
     solver.addVelocities(changes_ws);
 };
 
-/// Hair against hair between the frames of a solver.
-template <TakesVelocities Solver>
-runtime::HairVolume::Report pushHairApart(Solver& solver, runtime::HairVolume& volume, float dt) {
+/// Hair against hair between the frames of a solver. `Medium`: HairVolume, HairParticles or HairFlow.
+template <TakesVelocities Solver, class Medium>
+typename Medium::Report pushHairApart(Solver& solver, Medium& volume, float dt) {
     std::vector<runtime::Float3> positions(solver.pointCount()), before(positions.size());
     solver.readPositions(positions);
     solver.readVelocities(before);

@@ -98,7 +98,9 @@ QWidget* makeMethods(Player& player) {
         {QString("Strand engine (rods or springs)"), SimulationMethod::strands},
         {QString("Projective equations"), SimulationMethod::projective},
         {QString("Rigid chains"), SimulationMethod::chain},
-        {QString("Lattice, for distant hair"), SimulationMethod::lattice}};
+        {QString("Lattice, for distant hair"), SimulationMethod::lattice},
+        {QString("Strand engine and particles"), SimulationMethod::particles},
+        {QString("Strand engine and a flow grid"), SimulationMethod::hybrid}};
     for (const auto& [name, method] : methods) box->addItem(name, static_cast<int>(method));
     QObject::connect(box, &QComboBox::currentIndexChanged, box, [&player, box] {
         player.setMethod({static_cast<SimulationMethod>(box->currentData().toInt())});

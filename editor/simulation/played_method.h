@@ -17,6 +17,8 @@ struct PlayedMethod {
         if (method == SimulationMethod::projective) return "projective equations run there";
         if (method == SimulationMethod::chain) return "rigid chains run there";
         if (method == SimulationMethod::lattice) return "lattices run there";
+        if (method == SimulationMethod::particles) return "particles run there";
+        if (method == SimulationMethod::hybrid) return "hybrids of grid and strands run there";
         return {};
     }
     friend bool operator==(const PlayedMethod&, const PlayedMethod&) = default;

@@ -42,7 +42,8 @@ TEST_F(Cli, UsageErrorsSayWhatWouldWork) {
          "error: there is no option --frobnicate=3; see hairloom-cli simulate --help\n"},
         {"simulate x y", "error: unexpected argument 'y'; see hairloom-cli simulate --help\n"},
         {"simulate x --method strand",
-         "error: --method is 'strand'; expected one of strands, projective, chain, lattice (did you mean "
+         "error: --method is 'strand'; expected one of strands, projective, chain, lattice, particles, "
+         "hybrid (did you mean "
          "strands?)\n"},
         {"simulate x --frames 0", "error: --frames is '0'; expected 1 to 1000000\n"},
         {"simulate x --frames", "error: --frames has no value; expected 1 to 1000000\n"},

@@ -124,7 +124,7 @@ TEST_F(CliMotion, OtherMethodsReportAndRecordAlike) {
     const auto engine = runJson(scene + "--record strands.frames");
     EXPECT_EQ(engine["method"], "strands");
     EXPECT_EQ(runJson(scene + "--against strands.frames")["error_mm"], 0.0) << "the same run again";
-    for (const std::string method : {"projective", "chain", "lattice"}) {
+    for (const std::string method : {"projective", "chain", "lattice", "particles", "hybrid"}) {
         const auto other =
             runJson(scene + "--method " + method + " --against strands.frames --record o.frames");
         EXPECT_EQ(other["method"], method);

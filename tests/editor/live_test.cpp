@@ -109,6 +109,12 @@ TEST_F(LiveTest, OtherMethodsMoveTheHairAndSayWhatTheyCost) {
     simulateOn(SimulateOn::Gpu);
     ASSERT_TRUE(played(now() + 0.2));
     EXPECT_EQ(engine(), EngineKind::cpu) << "lattices are of the CPU";
+    method->setCurrentIndex(4);
+    EXPECT_TRUE(costs("particles"));
+    EXPECT_TRUE(goesOn());
+    method->setCurrentIndex(5);
+    EXPECT_TRUE(costs("hybrid"));
+    EXPECT_TRUE(goesOn());
     method->setCurrentIndex(0);
     ASSERT_TRUE(played(now() + 0.3));
     EXPECT_EQ(engine(), EngineKind::gpu);

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "core/base/parallel.h"
 #include "core/simulation/simulation.h"
@@ -31,8 +33,9 @@ Groom hangingHair(std::uint32_t strands = 6, std::uint32_t points = 10) {
     return makeGroom(std::move(offsets), std::move(positions));
 }
 
-constexpr SimulationMethod kMethods[] = {SimulationMethod::strands, SimulationMethod::projective,
-                                         SimulationMethod::chain, SimulationMethod::lattice};
+constexpr SimulationMethod kMethods[] = {SimulationMethod::strands,   SimulationMethod::projective,
+                                         SimulationMethod::chain,     SimulationMethod::lattice,
+                                         SimulationMethod::particles, SimulationMethod::hybrid};
 
 struct Outcome {
     std::vector<Vec3f> positions;
@@ -101,6 +104,47 @@ TEST(Methods, TheLatticeStaysOutOfSpheres) {
     const Outcome met = run(groom, "nod", SimulationMethod::lattice, 30);
     EXPECT_LT(met.stats.maxPenetrationMm, 0.01);
     EXPECT_GT(largestDistance(met.positions, open.positions), 0.02f);
+}
+
+/// Strands that stand out from a ball in all directions.
+Groom ballOfHair(std::uint32_t strands) {
+    constexpr std::uint32_t kPoints = 10;
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> positions;
+    for (std::uint32_t s = 0; s < strands; ++s) {
+        const float height = 1 - 2 * (static_cast<float>(s) + 0.5f) / static_cast<float>(strands);
+        const float angle = 2.39996f * static_cast<float>(s), across = std::sqrt(1 - height * height);
+        const Vec3f out(across * std::cos(angle), height, across * std::sin(angle));
+        for (std::uint32_t p = 0; p < kPoints; ++p)
+            positions.push_back(Vec3f(0, 1.6f, 0) + out * (0.06f + 0.015f * static_cast<float>(p)));
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    Groom groom = makeGroom(std::move(offsets), std::move(positions));
+    groom.spheres.push_back({"ball", Vec3f(0, 1.6f, 0), 0.058f, ""});
+    return groom;
+}
+
+/// Litres: boxes of 15 mm that have a point.
+double volumeOf(std::span<const Vec3f> points) {
+    std::set<std::array<long, 3>> boxes;
+    for (const Vec3f& p : points)
+        boxes.insert({std::lround(p.x() / 0.015f), std::lround(p.y() / 0.015f), std::lround(p.z() / 0.015f)});
+    return static_cast<double>(boxes.size()) * 0.015 * 0.015 * 0.015 * 1e3;
+}
+
+/// Soft hair that was never authored to hang falls onto itself. As a continuum it resists.
+TEST(Methods, ContinuaKeepTheVolumeOfABallOfHair) {
+    Groom groom = ballOfHair(400);
+    groom.simulation.angularStiffness = 0.02f;
+    groom.simulation.restGravity = 0;
+    const double start = volumeOf(groom.positions());
+    const double alone = volumeOf(run(groom, "none", SimulationMethod::strands, 90).positions);
+    for (const SimulationMethod method : {SimulationMethod::particles, SimulationMethod::hybrid}) {
+        const Outcome kept = run(groom, "none", method, 90);
+        EXPECT_GT(volumeOf(kept.positions), 1.1 * alone) << static_cast<int>(method) << ", from " << start;
+        EXPECT_EQ(kept.stats.nanCount, 0u);
+        EXPECT_LT(kept.stats.maxStretch, 1e-3) << "strands keep their lengths";
+    }
 }
 
 TEST(Methods, AlternativesDoNotDependOnThreads) {
@@ -181,7 +225,8 @@ TEST(HairHair, FrictionBringsNeighboursTogetherAndKeepsTheirMomentum) {
 TEST(HairHair, MethodsThatTakeNoVelocitiesRefuseIt) {
     const Groom groom = hangingHair();
     for (const SimulationMethod method :
-         {SimulationMethod::projective, SimulationMethod::chain, SimulationMethod::lattice}) {
+         {SimulationMethod::projective, SimulationMethod::chain, SimulationMethod::lattice,
+          SimulationMethod::particles, SimulationMethod::hybrid}) {
         const auto made = Simulation::make(groom, {}, {method, runtime::HairVolumeSettings{}});
         ASSERT_FALSE(made.has_value());
         EXPECT_THAT(made.error().message(), HasSubstr("velocities"));
