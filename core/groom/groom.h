@@ -32,6 +32,8 @@ struct CollisionSphere {
     Vec3f centre = Vec3f::Zero();  ///< metres, in the scalp's rest space
     float radius = 0.1f;           ///< metres, > 0
     std::string bone;              ///< bone it moves with; empty: with the scalp as a rigid whole
+    /// Number of another sphere of the groom, with which it makes a tapered capsule; −1: it stays a sphere.
+    std::int32_t joined = -1;
 };
 
 /// Strands that are shown, locked, coloured and edited together.

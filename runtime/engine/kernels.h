@@ -79,6 +79,12 @@ struct MovingSphere {
     float stepLength = length(step);  ///< metres in one substep
 };
 
+/// The hull of two moving spheres.
+struct MovingCapsule {
+    MovingSphere ends[2];
+    MovingSphere around;  ///< holds it all through the frame
+};
+
 class MovingBody;  // engine/moving_body.h
 
 /// What the strands move through.
@@ -94,6 +100,7 @@ struct alignas(64) LaneFrame {
     float rotation[4][kBlockLanes];          ///< of now; kept by the stage `roots`
     std::uint32_t guarded = 0;  ///< a bit for each lane whose speeds the model took back in this frame
     std::vector<MovingSphere> touchable;  ///< spheres that can reach the block, where its model lists them
+    std::vector<MovingCapsule> touchableCapsules;  ///< likewise
     /// What the model keeps for a block through a frame: Model::laneFloats of them, on a cache line.
     float* own = nullptr;
     /// What the solvers along a strand work in: for each point what Model::solverFloats says of the stages,
@@ -134,6 +141,7 @@ struct SubstepContext : shaders::SubstepNumbers {
     float airDrag = 0.0f;  ///< 1/s
     std::uint32_t lengthIterations = 0;
     std::span<const MovingSphere> spheres;
+    std::span<const MovingCapsule> capsules;
     float stepRatio = 1.0f;     ///< h over that of the substep before, or kFirstStepRatio
     bool sweeps = false;        ///< spheres are met where fast points come in
     bool conservative = false;  ///< nothing but motion of roots and spheres adds energy

@@ -145,6 +145,8 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_frame, sphere_count, 88, 8),
         MEMBER(hl_frame, wind, 96, 8),
         MEMBER(hl_frame, origin, 104, 24),
+        MEMBER(hl_frame, capsules, 128, 8),
+        MEMBER(hl_frame, capsule_count, 136, 8),
         MEMBER(hl_instance_info, guides, 0, 4),
         MEMBER(hl_instance_info, guide_points, 4, 4),
         MEMBER(hl_instance_info, hairs, 8, 4),

@@ -114,7 +114,7 @@ struct Sphere {
     float radius;
     std::int32_t bone;  ///< −1: goes with the head as a whole
     Text name;
-    std::uint32_t unused;
+    std::uint32_t joined;  ///< 1 + the number of the sphere with which it makes a capsule; 0: with none
 };
 static_assert(sizeof(Sphere) == 32);
 

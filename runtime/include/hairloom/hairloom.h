@@ -258,6 +258,9 @@ typedef struct hl_frame {
     size_t sphere_count;
     const float* wind; /* 3: the mean wind, m/s, in place of the authored one; null: as authored */
     double origin[3];  /* that roots, bones' results, spheres and what is read are measured from, world */
+    const uint32_t* capsules; /* 2 of each: numbers of two of the frame's spheres, whose hull is a tapered
+                                 capsule. Without `spheres` the asset's own capsules count instead */
+    size_t capsule_count;     /* up to 256 */
 } hl_frame;
 HL_API void hl_frame_init(hl_frame* frame);
 

@@ -33,11 +33,18 @@ struct StrandsView {
 };
 
 inline constexpr std::uint32_t kMaxPoints = 512;
+inline constexpr std::size_t kMaxCapsules = 256;
 
 /// A collision sphere. A radius that is not above 0, or anything not finite, takes it out of the frame.
 struct Sphere {
     Float3 center_ws;
     float radius = 0.0f;  ///< metres
+};
+
+/// A tapered capsule: the hull of two spheres of a frame, by their numbers. One whose sphere is left out, or
+/// that joins a sphere with itself, is left out.
+struct Capsule {
+    std::uint32_t first, second;
 };
 
 /// Everything that changes from frame to frame.
@@ -48,6 +55,7 @@ struct FrameInput {
     /// At the end of the frame; sphere i is the sphere i of the frame before, and its speed follows from
     /// that.
     std::span<const Sphere> spheres = {};
+    std::span<const Capsule> capsules = {};  ///< between spheres of this frame; at most kMaxCapsules count
     std::optional<Float3> wind_ws = {};  ///< m/s, a script's mean wind of this frame, in place of the
                                          ///< authored one; ignored unless finite and within 1000 m/s
     /// m/s, of an actor that the caller does not move in world space; WindKind::vehicle blows against it.
