@@ -121,6 +121,7 @@ class Collector {
             record.centre = {sphere.centre.x(), sphere.centre.y(), sphere.centre.z()};
             record.radius = sphere.radius;
             record.name = builder_.text(sphere.name);
+            record.joined = static_cast<std::uint32_t>(sphere.joined + 1);
             record.bone = -1;
             if (!sphere.bone.empty()) {
                 const auto bone = scene_ ? scene_->skeleton.find(sphere.bone) : std::nullopt;

@@ -61,6 +61,7 @@ std::shared_ptr<const Groom> readAuthored(const runtime::Asset& from) {
         read.name = from.text(sphere.name);
         read.centre = Vec3f(sphere.centre[0], sphere.centre[1], sphere.centre[2]);
         read.radius = sphere.radius;
+        read.joined = static_cast<std::int32_t>(sphere.joined) - 1;
         if (sphere.bone >= 0) read.bone = from.text(from.bones[static_cast<std::size_t>(sphere.bone)].name);
         authored->spheres.push_back(std::move(read));
     }

@@ -14,6 +14,7 @@
 #include "core/editing/sphere_fit.h"
 #include "core/editing/sphere_parts.h"
 #include "core/groom/file/project_file.h"
+#include "core/groom/spheres.h"
 
 namespace hairloom::cli {
 namespace {
@@ -46,7 +47,7 @@ Status fitField(Groom& groom, const Actor* actor, const CollidersOptions& option
 }
 
 /// As many as were asked for, else as few as come as close as was asked for, but not more than a fit may
-/// have.
+/// have; joined in capsules where these are wanted.
 Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& options, Report& report) {
     if (!groom.scalp) return failIn(options.input, {}, "there is no head to fit spheres to");
     editing::SphereFitOptions wanted;
@@ -56,8 +57,12 @@ Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& o
          wanted.count = std::min(2 * wanted.count, editing::kMaxSpheres)) {
         auto fit = editing::fitSpheres(*groom.scalp, wanted);
         if (!fit) return tl::unexpected(inFile(fit.error(), options.input));
-        if (options.count == 0 && fit->worstGap > error && wanted.count < editing::kMaxSpheres) continue;
         if (actor) attachSpheres(*actor, fit->spheres);
+        if (options.fit == "capsules") {
+            editing::joinSpheres(*groom.scalp, wanted.region, error, fit->spheres);
+            *fit = editing::measureSpheres(*groom.scalp, wanted.region, std::move(fit->spheres));
+        }
+        if (options.count == 0 && fit->worstGap > error && wanted.count < editing::kMaxSpheres) continue;
         addFit(report, *fit);
         Report notes = Report::array();
         if (options.count == 0 && fit->worstGap > error)
@@ -65,22 +70,33 @@ Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& o
         for (const Report& note : notes) log::warning("{}", note.get<std::string>());
         report["notes"] = std::move(notes);
         groom.spheres = editing::spheresOfParts(groom.spheres);
-        groom.spheres.insert(groom.spheres.end(), fit->spheres.begin(), fit->spheres.end());
+        appendSpheres(groom.spheres, fit->spheres);
         return {};
     }
 }
 
-/// What hair meets, a row for each sphere and each bone that moves skin; without bones the whole head moves
-/// it.
+/// What hair meets, a row for each capsule, each sphere that is the end of none, and each bone that moves
+/// skin; without bones the whole head moves it.
 Report rowsOf(const Groom& groom) {
     Report rows = Report::array();
     const auto bone = [](const std::string& name) { return name.empty() ? Report(nullptr) : Report(name); };
-    for (const CollisionSphere& sphere : groom.spheres) {
-        rows.push_back(Report{{"kind", "sphere"},
-                              {"name", sphere.name},
-                              {"bone", bone(sphere.bone)},
-                              {"centre", {sphere.centre.x(), sphere.centre.y(), sphere.centre.z()}},
-                              {"radius", sphere.radius}});
+    const auto rowOf = [&](const char* kind, const CollisionSphere& sphere) {
+        return Report{{"kind", kind},
+                      {"name", sphere.name},
+                      {"bone", bone(sphere.bone)},
+                      {"centre", {sphere.centre.x(), sphere.centre.y(), sphere.centre.z()}},
+                      {"radius", sphere.radius}};
+    };
+    std::vector<bool> isEnd(groom.spheres.size());
+    for (const auto& [first, second] : capsulesOf(groom.spheres)) {
+        isEnd[first] = isEnd[second] = true;
+        Report row = rowOf("capsule", groom.spheres[first]);
+        row["end"] = rowOf("sphere", groom.spheres[second]);
+        row["end"].erase("kind");
+        rows.push_back(std::move(row));
+    }
+    for (std::size_t s = 0; s < groom.spheres.size(); ++s) {
+        if (!isEnd[s]) rows.push_back(rowOf("sphere", groom.spheres[s]));
     }
     if (!groom.body) return rows;
     if (groom.body->bones.empty()) rows.push_back(Report{{"kind", "field"}, {"bone", nullptr}});
@@ -113,6 +129,7 @@ Result<Report> listColliders(const CollidersOptions& options) {
     measureColliders(*groom, options, report);
     report["colliders"] = rowsOf(*groom);
     report["spheres"] = groom->spheres.size();
+    report["capsules"] = capsulesOf(groom->spheres).size();
     report["body"] = groom->body != nullptr;
     return report;
 }
@@ -126,7 +143,8 @@ Result<Report> fitColliders(const CollidersOptions& options) {
     Report report;
     Status fitted;
     if (options.fit == "field") fitted = fitField(*groom, actor->get(), options, report);
-    if (options.fit == "spheres") fitted = fitFewSpheres(*groom, actor->get(), options, report);
+    if (options.fit == "spheres" || options.fit == "capsules")
+        fitted = fitFewSpheres(*groom, actor->get(), options, report);
     if (options.fit == "none") groom->body.reset();
     if (!fitted) return tl::unexpected(fitted.error());
     if (!options.output.empty()) {
@@ -135,6 +153,7 @@ Result<Report> fitColliders(const CollidersOptions& options) {
     report["fit"] = options.fit;
     report["colliders"] = rowsOf(*groom);
     report["spheres"] = groom->spheres.size();
+    report["capsules"] = capsulesOf(groom->spheres).size();
     report["body"] = groom->body != nullptr;
     report["seconds"] = watch.seconds();
     if (!options.output.empty()) report["output"] = options.output;
@@ -145,11 +164,12 @@ JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<CollidersOptions>();
     job.add_option("groom", options->input, "Groom on a head")->required();
     CLI::Option* fit =
-        job.add_option("--fit", options->fit,
-                       "What hair collides with: field bakes the skin of the head, spheres replaces the "
-                       "fitted spheres, none removes the baked skin. Without it, colliders are listed and "
-                       "measured")
-            ->check(CLI::IsMember({"field", "spheres", "none"}));
+        job.add_option(
+               "--fit", options->fit,
+               "What hair collides with: field bakes the skin of the head, capsules and spheres replace "
+               "the fitted ones, none removes the baked skin. Without it, colliders are listed and "
+               "measured")
+            ->check(CLI::IsMember({"field", "capsules", "spheres", "none"}));
     job.add_option("--error", options->error, "Skin may lie this far outside the colliders, in millimetres")
         ->check(CLI::Range(0.1, 100.0))
         ->needs(fit);
@@ -158,11 +178,13 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::Range(50, 10'000))
         ->needs(fit);
     job.add_option("--count", options->count,
-                   "With --fit spheres: this number of them, in place of as few as --error takes")
+                   "With --fit spheres or capsules: this number of spheres, in place of as few as --error "
+                   "takes")
         ->check(CLI::Range(1u, editing::kMaxSpheres))
         ->needs(fit);
     job.add_option("--near", options->near,
-                   "Spheres are fitted and measured to skin within this distance of hair, in metres. 0 uses "
+                   "Spheres and capsules are fitted and measured to skin within this distance of hair, in "
+                   "metres. 0 uses "
                    "all of it")
         ->check(CLI::Range(0.0, 10.0));
     job.add_option("--character", options->character,
@@ -173,8 +195,8 @@ JobRun declare(CLI::App& job) {
         ->needs(fit);
     return [options](const std::string&) {
         if (options->fit.empty()) return listColliders(*options);
-        if (options->count > 0 && options->fit != "spheres")
-            throw WrongUsage("--count counts spheres", "expected it with --fit spheres");
+        if (options->count > 0 && options->fit != "spheres" && options->fit != "capsules")
+            throw WrongUsage("--count counts spheres", "expected it with --fit spheres or --fit capsules");
         return withOutputs({{options->output, content::kProject}}, [&] { return fitColliders(*options); });
     };
 }

@@ -10,6 +10,7 @@
 #include "core/documents/body_fit.h"
 #include "core/editing/sphere_parts.h"
 #include "core/groom/file/project_file.h"
+#include "core/groom/spheres.h"
 
 namespace hairloom::cli {
 namespace {
@@ -53,7 +54,7 @@ Result<Report> placeSpheres(const SpheresOptions& options) {
         groom->spheres =
             options.fit > 0 ? editing::spheresOfParts(groom->spheres) : std::vector<CollisionSphere>{};
     }
-    groom->spheres.insert(groom->spheres.end(), spheres->begin(), spheres->end());
+    appendSpheres(groom->spheres, *spheres);
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
     report["added"] = spheres->size();
     report["spheres"] = groom->spheres.size();
@@ -65,8 +66,10 @@ JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SpheresOptions>();
     job.add_option("groom", options->input, "Groom to add spheres to")->required();
     CLI::App& source = *job.add_option_group("source");
-    source.add_option("--from", options->from,
-                      R"(JSON list of {"name", "centre": [x, y, z], "radius", "bone"}, metres)");
+    source.add_option(
+        "--from", options->from,
+        R"(JSON list of {"name", "centre": [x, y, z], "radius", "bone"}, metres. "joined", the number in )"
+        R"(the list of another sphere, from 0, makes a tapered capsule with it)");
     source.add_option("--fit", options->fit, "Fit this number of spheres to the skin near the hair")
         ->check(CLI::Range(1, 64));
     source.require_option(1);

@@ -8,6 +8,7 @@
 
 #include "core/accuracy/ground_truth.h"
 #include "core/base/parallel.h"
+#include "core/groom/spheres.h"
 #include "core/simulation/reference/converge.h"
 #include "core/simulation/scene_input.h"
 
@@ -76,10 +77,31 @@ StrandScene strandScene(const Groom& groom, const SceneFrames& frames, std::uint
     const runtime::SimulationSettings& settings = groom.simulation;
     const double collisionRadius =
         static_cast<double>(std::max(settings.collisionRadiusRoot, settings.collisionRadiusTip));
+    // Both ends of a capsule are near where one is, or what lies between.
+    const std::vector<runtime::Capsule> capsules = capsulesOf(groom.spheres);
+    std::vector<double> between(groom.spheres.size(), 0);
+    for (const auto& [first, second] : capsules) {
+        for (const auto& at : frames.spheres) {
+            const double apart = (toDouble(at[first].center_ws) - toDouble(at[second].center_ws)).norm() +
+                                 static_cast<double>(std::max(at[first].radius, at[second].radius));
+            between[first] = std::max(between[first], apart);
+            between[second] = std::max(between[second], apart);
+        }
+    }
     std::vector<std::size_t> near;
+    std::vector<std::size_t> numbers(groom.spheres.size(), groom.spheres.size());
     for (std::size_t i = 0; i < groom.spheres.size(); ++i) {
-        const double reach = length + collisionRadius + static_cast<double>(groom.spheres[i].radius);
-        if (comesNear(frames, strand, i, reach)) near.push_back(i);
+        const double reach =
+            length + collisionRadius + static_cast<double>(groom.spheres[i].radius) + between[i];
+        if (!comesNear(frames, strand, i, reach)) continue;
+        numbers[i] = near.size();
+        near.push_back(i);
+    }
+    std::vector<runtime::Capsule> nearCapsules;
+    for (const auto& [first, second] : capsules) {
+        if (std::max(numbers[first], numbers[second]) < near.size())
+            nearCapsules.push_back(
+                {static_cast<std::uint32_t>(numbers[first]), static_cast<std::uint32_t>(numbers[second])});
     }
     scene.meetsSpheres = !near.empty();
     double time = 0;
@@ -91,6 +113,7 @@ StrandScene strandScene(const Groom& groom, const SceneFrames& frames, std::uint
         std::vector<runtime::Sphere> spheres;
         for (const std::size_t i : near) spheres.push_back(frames.spheres[f][i]);
         input.spheres = spheres;
+        input.capsules = nearCapsules;
         if (f == 0) {
             scene.start = reference::frameOf(input).roots_ws.front();
         } else {

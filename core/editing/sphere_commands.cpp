@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/editing/settings_commands.h"
+#include "core/groom/spheres.h"
 
 namespace hairloom::editing {
 namespace {
@@ -52,7 +53,7 @@ std::unique_ptr<Command> placeSphere(const Model& model, const SurfacePoint& pla
     const Vec3f centre = head.pointAt(place.triangle, place.barycentric) -
                          bounded * head.normalAt(place.triangle, place.barycentric);
     return edited(model, "Place sphere", [&](Spheres& spheres) {
-        spheres.push_back({freshName(spheres), centre, bounded, std::move(bone)});
+        spheres.push_back({freshName(spheres), centre, bounded, std::move(bone), -1});
     });
 }
 
@@ -78,7 +79,18 @@ std::unique_ptr<Command> renameSphere(const Model& model, std::size_t index, std
 
 std::unique_ptr<Command> removeSphere(const Model& model, std::size_t index) {
     return edited(model, "Remove sphere", [&](Spheres& spheres) {
-        spheres.erase(spheres.begin() + static_cast<std::ptrdiff_t>(index));
+        spheres = keptSpheres(spheres, [&](std::size_t s) { return s != index; });
+    });
+}
+
+std::unique_ptr<Command> joinSphere(const Model& model, std::size_t index, std::int32_t other) {
+    const bool isOther = other >= 0 && static_cast<std::size_t>(other) != index &&
+                         static_cast<std::size_t>(other) < model.groom.spheres.size();
+    return edited(model, isOther ? "Join spheres" : "Unjoin sphere", [&](Spheres& spheres) {
+        spheres[index].joined = isOther ? other : -1;
+        // One capsule between two spheres is enough.
+        if (isOther && spheres[static_cast<std::size_t>(other)].joined == static_cast<std::int32_t>(index))
+            spheres[static_cast<std::size_t>(other)].joined = -1;
     });
 }
 
@@ -86,14 +98,23 @@ std::unique_ptr<Command> mirrorSphere(const Model& model, std::size_t index, con
                                       const Vec3f& planeNormal) {
     const Vec3f normal = planeNormal.normalized();
     return edited(model, "Mirror sphere", [&](Spheres& spheres) {
-        CollisionSphere mirror = spheres[index];
-        mirror.centre -= 2 * (mirror.centre - planePoint).dot(normal) * normal;
-        std::string name = otherSide(mirror.name);
-        const auto same = [&](const CollisionSphere& sphere) { return sphere.name == name; };
-        const bool isTaken = std::any_of(spheres.begin(), spheres.end(), same);
-        mirror.name = isTaken ? freshName(spheres) : std::move(name);
-        mirror.bone = otherSide(mirror.bone);
-        spheres.push_back(std::move(mirror));
+        const auto mirrored = [&](std::size_t of) {
+            CollisionSphere mirror = spheres[of];
+            mirror.centre -= 2 * (mirror.centre - planePoint).dot(normal) * normal;
+            std::string name = otherSide(mirror.name);
+            const auto same = [&](const CollisionSphere& sphere) { return sphere.name == name; };
+            const bool isTaken = std::any_of(spheres.begin(), spheres.end(), same);
+            mirror.name = isTaken ? freshName(spheres) : std::move(name);
+            mirror.bone = otherSide(mirror.bone);
+            mirror.joined = -1;
+            spheres.push_back(std::move(mirror));
+        };
+        const std::int32_t joined = spheres[index].joined;
+        mirrored(index);
+        if (joined < 0) return;
+        const auto end = static_cast<std::int32_t>(spheres.size());
+        mirrored(static_cast<std::size_t>(joined));
+        spheres[static_cast<std::size_t>(end) - 1].joined = end;
     });
 }
 

@@ -17,6 +17,7 @@
 #include "core/editing/sphere_commands.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
+#include "core/groom/spheres.h"
 
 namespace hairloom::editing {
 namespace {
@@ -245,7 +246,8 @@ Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& opti
         spheres.push_back({fmt::format("Fit {}", spheres.size() + 1),
                            ball.centre.cast<float>(),
                            static_cast<float>(ball.radius),
-                           {}});
+                           {},
+                           -1});
     }
     return measureSpheres(mesh, options.region, std::move(spheres));
 }
@@ -264,14 +266,13 @@ SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vect
     for (const std::uint32_t face : facesOf(mesh, region)) {
         for (const std::uint32_t v : mesh.triangles()[face]) isIn[v] = 1;
     }
+    const ColliderDistance distance(fit.spheres);
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t v = 0; v < isIn.size(); ++v) {
         if (!isIn[v]) continue;
         const Vec3f& point = mesh.positions()[v];
-        float nearest = std::numeric_limits<float>::infinity();
-        for (const CollisionSphere& sphere : fit.spheres)
-            nearest = std::min(nearest, (point - sphere.centre).norm() - sphere.radius);
+        const float nearest = distance(point);
         ++count;
         sum += static_cast<double>(std::max(0.0f, nearest));
         fit.worstBulge = std::max(fit.worstBulge, -nearest);

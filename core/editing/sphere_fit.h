@@ -34,7 +34,13 @@ Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& opti
 /// or 0.2 m where that is more.
 float largestSphereIn(const Box3f& bounds);
 
-/// How well spheres cover the vertices of a region (all where it is empty).
+/// Joins spheres of one bone in tapered capsules, one after the other, where that covers most of the region
+/// (all skin where it is empty) that lies outside. No capsule holds hair farther off the skin than `error`
+/// metres, or than the spheres do already.
+void joinSpheres(const ScalpMesh& mesh, const FaceSet& region, float error,
+                 std::vector<CollisionSphere>& spheres);
+
+/// How well spheres, and capsules between them, cover the vertices of a region (all where it is empty).
 SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vector<CollisionSphere> spheres);
 
 /// Faces whose middle is within `distance` metres of hair: where spheres matter.

@@ -7,6 +7,7 @@
 
 #include "core/editing/sphere_commands.h"
 #include "core/geometry/selection.h"
+#include "core/groom/spheres.h"
 
 namespace hairloom::editing {
 namespace {
@@ -51,7 +52,7 @@ Result<std::vector<CollisionSphere>> fitPart(const ScalpMesh& mesh, const Sphere
     // than the sheet.
     options.largestRadius = std::clamp(box.diagonal().norm() / 2, kSmallestSphere, largestSphereIn(box));
     if (selectionArea(mesh, part.faces) < kTooSmallToSample) {
-        return std::vector<CollisionSphere>{{{}, box.center(), options.largestRadius, {}}};
+        return std::vector<CollisionSphere>{{{}, box.center(), options.largestRadius, {}, -1}};
     }
     options.count = count;
     options.region = part.faces;
@@ -85,10 +86,7 @@ Result<SphereFit> fitSpheresToParts(const ScalpMesh& mesh, std::span<const Spher
 }
 
 std::vector<CollisionSphere> spheresOfParts(std::span<const CollisionSphere> spheres) {
-    std::vector<CollisionSphere> found;
-    std::ranges::copy_if(spheres, std::back_inserter(found),
-                         [](const CollisionSphere& one) { return one.name.starts_with(kPrefix); });
-    return found;
+    return keptSpheres(spheres, [&](std::size_t s) { return spheres[s].name.starts_with(kPrefix); });
 }
 
 }  // namespace hairloom::editing

@@ -193,7 +193,8 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     const Float3 lowBefore = placed.min_ws, highBefore = placed.max_ws;
     const bool found = deviceRoots != nullptr;
     const bool moves = found ? takeRoots(*deviceRoots) : takeRoots(input);
-    runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, frameSpheres);
+    runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, input.capsules,
+                         frameSpheres);
     const Float3 low{std::min(placed.min_ws.x, lowBefore.x), std::min(placed.min_ws.y, lowBefore.y),
                      std::min(placed.min_ws.z, lowBefore.z)};
     const Float3 high{std::max(placed.max_ws.x, highBefore.x), std::max(placed.max_ws.y, highBefore.y),
@@ -222,7 +223,8 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     for (const StrandBatch& batch : batches) dispatch(list, batch, constants(context, input, batch), context);
     list.endPass();
     if (volume) volume->record(list, batches, run.settings.clampedPoints, input.dt, context.h);
-    spheresBefore = frameSpheres.usable;
+    const auto given = std::span(frameSpheres.usable).first(frameSpheres.given);
+    spheresBefore.assign(given.begin(), given.end());
     substep = context.h;
     wakeAll = false;
     model->closeFrame();

@@ -252,7 +252,7 @@ Result<double> StrandEngine::wait() {
 Result<runtime::Measurements> StrandEngine::measure() {
     const auto state = readState();
     if (!state) return tl::unexpected(state.error());
-    return runtime::measureState(*impl_->shape, *state, settings());
+    return runtime::measureState(*impl_->shape, *state, settings(), impl_->frameSpheres.capsules);
 }
 
 Status StrandEngine::readPositions(std::span<Float3> positions_ws) {

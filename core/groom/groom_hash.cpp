@@ -82,6 +82,8 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
         hasher.vector(sphere.centre);
         hasher.real(static_cast<double>(sphere.radius));
         hasher.text(sphere.bone);
+        // None hashes as before there were capsules.
+        if (sphere.joined >= 0) hasher.number(static_cast<std::uint64_t>(sphere.joined));
     }
     hasher.number(groom.cardEdits.size());
     if (groom.body) hasher.array(std::span<const std::uint8_t>(groom.body->toBytes()));

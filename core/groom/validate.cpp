@@ -6,6 +6,7 @@
 
 #include "core/groom/file/fields.h"
 #include "core/groom/findings.h"
+#include "core/groom/spheres.h"
 #include "core/groom/time_line.h"
 
 namespace hairloom {
@@ -20,6 +21,21 @@ void findSpheres(const Groom& groom, std::vector<Finding>& findings) {
     places.report(findings, Severity::Error,
                   "a collision sphere has no finite position or no positive radius",
                   "delete the sphere or set its centre and radius");
+    Places joints;
+    for (std::size_t s = 0; s < groom.spheres.size(); ++s) {
+        const std::int32_t joined = groom.spheres[s].joined;
+        if (joined < 0) continue;
+        const auto other = static_cast<std::size_t>(joined);
+        if (other >= groom.spheres.size() || other == s)
+            joints.named(fmt::format("sphere '{}' (joined to sphere {} of {})", groom.spheres[s].name, joined,
+                                     groom.spheres.size()));
+    }
+    joints.report(findings, Severity::Error, "a capsule has no second sphere",
+                  "join the sphere to another one, or to none");
+    const std::size_t capsules = capsulesOf(groom.spheres).size();
+    if (capsules > runtime::kMaxCapsules)
+        findings.push_back({Severity::Error, fmt::format("there are {} capsules", capsules), "spheres",
+                            fmt::format("use at most {}", runtime::kMaxCapsules)});
 }
 
 void findLayers(const Groom& groom, std::vector<Finding>& findings) {

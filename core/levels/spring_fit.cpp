@@ -6,8 +6,10 @@
 #include <set>
 
 #include "core/geometry/curve.h"
+#include "core/groom/spheres.h"
 #include "core/groom/strand_subset.h"
 #include "core/simulation/simulation.h"
+#include "hairloom/capsules.h"
 
 namespace hairloom {
 namespace {
@@ -102,6 +104,19 @@ std::vector<cards::Collider> collidersOf(const Groom& groom) {
     std::vector<cards::Collider> colliders;
     for (const CollisionSphere& sphere : groom.spheres)
         colliders.push_back({sphere.centre, sphere.radius, sphere.bone});
+    // Springs of avatars know capsules of one radius and one bone alone.
+    for (const auto& [from, to] : capsulesOf(groom.spheres)) {
+        const CollisionSphere &first = groom.spheres[from], &second = groom.spheres[to];
+        const auto toRuntime = [](const CollisionSphere& s) {
+            return runtime::Sphere{{s.centre.x(), s.centre.y(), s.centre.z()}, s.radius};
+        };
+        const std::size_t count = runtime::countAlongCapsule(toRuntime(first), toRuntime(second));
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto [at, radius] =
+                runtime::sphereAlongCapsule(toRuntime(first), toRuntime(second), k, count);
+            colliders.push_back({{at.x, at.y, at.z}, radius, 2 * k < count ? first.bone : second.bone});
+        }
+    }
     return colliders;
 }
 

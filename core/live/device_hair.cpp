@@ -6,6 +6,8 @@
 #include <cstring>
 
 #include "core/gpu_simulation/compiled_kernel.h"
+#include "core/groom/spheres.h"
+#include "hairloom/capsules.h"
 #include "runtime/shaders/live_types.h"
 
 namespace hairloom {
@@ -163,11 +165,13 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
     listen();
     ++frame_;
     head_.record(list, bonesOf(pose));
-    const auto spheres = spheresAt(spheres_, pose);
+    auto spheres = spheresAt(spheres_, pose);
     runtime::FrameInput input;
     input.dt = dt;
     input.time = time;
+    const auto capsules = capsulesOf(spheres_);
     input.spheres = spheres;
+    input.capsules = capsules;
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
     if (auto recorded = engine_.record(list, input, head_.roots()); !recorded) return recorded;
@@ -176,6 +180,7 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
         guides.roots_ws = head_.roots().frames_ws;
         follow_->record(list, guides);
     }
+    runtime::appendCapsules(capsules, spheres);
     recordMeasures(list, spheres);
     recordExtent(list);
     recordReadback(list);

@@ -12,6 +12,7 @@
 #include "core/simulation/strand_method.h"
 #include "hairloom/alternatives/projective_equations.h"
 #include "hairloom/alternatives/rigid_chains.h"
+#include "hairloom/capsules.h"
 #include "hairloom/wind.h"
 
 namespace hairloom {
@@ -30,6 +31,7 @@ class MeasuredPoints {
     std::vector<runtime::Float3>& startStep(const runtime::FrameInput& input) {
         before_.swap(now_);
         spheres_.assign(input.spheres.begin(), input.spheres.end());
+        runtime::appendCapsules(input.capsules, spheres_);
         dt_ = static_cast<double>(input.dt);
         return now_;
     }
@@ -175,7 +177,9 @@ class LatticeMethod : public AlternativeMethod {
         pose_ = pose;
     }
     void advance(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) override {
-        solver_.step(scene.headAt(pose), input.dt, input.spheres);
+        std::vector<runtime::Sphere> spheres(input.spheres.begin(), input.spheres.end());
+        runtime::appendCapsules(input.capsules, spheres);
+        solver_.step(scene.headAt(pose), input.dt, spheres);
         pose_ = pose;
     }
 

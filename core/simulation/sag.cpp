@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/groom/carried_weight.h"
+#include "core/groom/spheres.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom {
@@ -43,12 +44,12 @@ Sag distances(const Groom& groom, std::span<const Vec3f> positions_ws) {
 float depthOf(const Groom& groom, std::uint32_t strand) {
     const runtime::SimulationSettings& s = groom.simulation;
     const auto points = groom.strand(strand);
+    const ColliderDistance distance(groom.spheres);
     float deepest = -1e30f;
     for (std::size_t p = s.clampedPoints; p < points.size(); ++p) {
         const float along = static_cast<float>(p) / static_cast<float>(points.size() - 1);
         const float radius = s.collisionRadiusRoot + along * (s.collisionRadiusTip - s.collisionRadiusRoot);
-        for (const CollisionSphere& sphere : groom.spheres)
-            deepest = std::max(deepest, sphere.radius + radius - (points[p] - sphere.centre).norm());
+        deepest = std::max(deepest, radius - distance(points[p]));
     }
     return deepest;
 }
@@ -89,7 +90,7 @@ std::vector<SaggingStrand> strandsThatSag(const Groom& groom, const Sag& sag, do
         if (limp) {
             reason = "its stiffness is zero";
         } else if (depth > 0) {
-            reason = "it is inside a collision sphere, which pushes it out";
+            reason = "it is inside a collision sphere or capsule, which pushes it out";
         } else if (groom.simulation.restGravity < 1) {
             reason = "its rest shape carries only part of its weight";
         }

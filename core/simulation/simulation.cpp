@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "core/base/profiler.h"
+#include "core/groom/spheres.h"
 #include "core/simulation/strand_method.h"
 
 namespace hairloom {
@@ -108,6 +109,8 @@ void Simulation::step(float dt, const HeadPose& given) {
     input.time = impl_->time;
     input.roots_ws = roots;
     input.spheres = spheres;
+    const auto capsules = capsulesOf(impl_->scene.groom().spheres);
+    input.capsules = capsules;
     input.origin_ws = {pose.origin_ws.x(), pose.origin_ws.y(), pose.origin_ws.z()};
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};

@@ -4,6 +4,7 @@
 // within reach of a sphere.
 #include <algorithm>
 
+#include "core/groom/spheres.h"
 #include "editor/overlays/overlay_mode.h"
 
 namespace hairloom::editor {
@@ -26,13 +27,11 @@ bool isAwake(const Groom& groom, std::size_t strand, const PlayedFrame& frame) {
 }
 
 /// At rest: the head carries its spheres along.
-bool reachesSphere(const Groom& groom, std::size_t strand) {
+bool reachesSphere(const Groom& groom, const ColliderDistance& distance, std::size_t strand) {
     const auto points = groom.strand(strand);
     float length = 0;
     for (std::size_t p = 1; p < points.size(); ++p) length += (points[p] - points[p - 1]).norm();
-    return std::ranges::any_of(groom.spheres, [&](const CollisionSphere& sphere) {
-        return (points.front() - sphere.centre).norm() < sphere.radius + length;
-    });
+    return distance(points.front()) < length;
 }
 
 void drawEffectCost(const OverlayView& view, Marks& marks) {
@@ -43,12 +42,13 @@ void drawEffectCost(const OverlayView& view, Marks& marks) {
     for (const EffectReport& effect : frame->stats.effects) {
         (isAboutSpheres(effect.name) ? spheres : all) += effect.milliseconds.value_or(0);
     }
+    const ColliderDistance distance(groom.spheres);
     std::vector<float> points(groom.strandCount()), near(groom.strandCount());
     double awake = 0, reached = 0;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         if (!isAwake(groom, s, *frame)) continue;
         points[s] = static_cast<float>(groom.offsets[s + 1] - groom.offsets[s]);
-        if (reachesSphere(groom, s)) near[s] = points[s];
+        if (reachesSphere(groom, distance, s)) near[s] = points[s];
         awake += static_cast<double>(points[s]);
         reached += static_cast<double>(near[s]);
     }

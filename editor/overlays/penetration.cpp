@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/groom/spheres.h"
 #include "editor/overlays/overlay_mode.h"
 
 namespace hairloom::editor {
@@ -16,11 +17,9 @@ void drawPenetration(const OverlayView& view, Marks& marks) {
                           : pose ? Vec3f(pose->head.head_ws * rest)
                                  : rest);
     }
+    const ColliderDistance distance(groom.spheres, centres);
     for (const Vec3f& point : shownPositions(view)) {
-        float deepest = 0;
-        for (std::size_t s = 0; s < centres.size(); ++s) {
-            deepest = std::max(deepest, groom.spheres[s].radius - (point - centres[s]).norm());
-        }
+        const float deepest = -distance(point);
         if (deepest > 0) marks.point(point, heat(deepest / kMax), 5, Marks::Depth::OnTop);
     }
 }
@@ -29,7 +28,8 @@ void drawPenetration(const OverlayView& view, Marks& marks) {
 
 OverlayMode penetrationOverlay() {
     return {"penetration", "Penetration",
-            "Shows points inside a sphere. A deeper red is a deeper penetration", drawPenetration, 80};
+            "Shows points inside a sphere or capsule. A deeper red is a deeper penetration", drawPenetration,
+            80};
 }
 
 }  // namespace hairloom::editor

@@ -17,6 +17,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
 #include "core/editing/sphere_parts.h"
+#include "core/groom/spheres.h"
 #include "editor/fields/length_text.h"
 #include "editor/fields/option_form.h"
 #include "editor/panels/panel.h"
@@ -24,7 +25,8 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr float kNearHair = 0.04f;  // metres: skin that spheres have to cover
+constexpr float kNearHair = 0.04f;       // metres: skin that spheres have to cover
+constexpr float kCapsuleError = 0.001f;  // metres that skin may lie inside capsules, or as deep as in spheres
 
 /// A column whose texts cannot be edited.
 class ShownOnly : public QStyledItemDelegate {
@@ -47,6 +49,8 @@ class SpheresPanel : public QWidget {
           viewport_(viewport),
           list_(new QTreeWidget),
           bone_(new QComboBox),
+          joined_(new QComboBox),
+          shapes_(new QComboBox),
           count_(new QSpinBox),
           fit_(new QLabel),
           skin_(new QCheckBox("Collide with the skin")),
@@ -57,15 +61,18 @@ class SpheresPanel : public QWidget {
         layout->setSpacing(8);
         makeSkin(*layout);
         list_->setObjectName("spheres");
-        list_->setHeaderLabels({"Sphere", "Radius", "Bone"});
+        list_->setHeaderLabels({"Sphere", "Radius", "Bone", "Capsule with"});
         list_->setRootIsDecorated(false);
         list_->setMinimumHeight(200);
         list_->header()->setStretchLastSection(false);
         list_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
         list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
-        list_->setToolTip("Spheres that hair collides with. Double-click a name, or press F2, to change it");
+        list_->setToolTip(
+            "Spheres that hair collides with. Joined ones make a capsule. Double-click a name, or press F2, "
+            "to "
+            "change it");
         list_->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed);
-        for (const int column : {1, 2}) list_->setItemDelegateForColumn(column, new ShownOnly(list_));
+        for (const int column : {1, 2, 3}) list_->setItemDelegateForColumn(column, new ShownOnly(list_));
         connect(list_, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { rename(*item); });
         layout->addWidget(list_, 1);
 
@@ -91,10 +98,14 @@ class SpheresPanel : public QWidget {
         count_->setValue(12);
         count_->setSuffix(" spheres");
         count_->setToolTip("Number of spheres. More spheres fit closer to the skin and cost more");
+        shapes_->setObjectName("sphereShapes");
+        shapes_->addItems({"Spheres", "Capsules"});
+        shapes_->setToolTip("Capsules join spheres of one bone. They close gaps that spheres leave");
         auto* fit = pushButton("sphereFit", "Fit",
                                "Replaces the spheres with ones that cover head, neck and shoulders near "
                                "the hair. Spheres of colliding groups stay",
                                [this] { this->fit(); });
+        fitRow->addWidget(shapes_);
         fitRow->addWidget(count_, 1);
         fitRow->addWidget(fit);
         layout->addLayout(fitRow);
@@ -221,6 +232,15 @@ class SpheresPanel : public QWidget {
             });
         });
         numbers_->addWidget("Bone", bone_);
+        joined_->setObjectName("sphereJoined");
+        joined_->setToolTip("Another sphere, with which this one makes a tapered capsule");
+        connect(joined_, &QComboBox::activated, this, [this](int index) {
+            const std::int32_t other = joined_->itemData(index).toInt();
+            onSelected([other](const editing::Model& model, std::size_t at) {
+                return editing::joinSphere(model, at, other);
+            });
+        });
+        numbers_->addWidget("Capsule with", joined_);
         layout.addWidget(numbers_);
     }
 
@@ -253,7 +273,8 @@ class SpheresPanel : public QWidget {
             auto* item = new QTreeWidgetItem(
                 {QString::fromStdString(sphere.name),
                  lengthText(static_cast<double>(sphere.radius), preferences_),
-                 sphere.bone.empty() ? QStringLiteral("–") : QString::fromStdString(sphere.bone)});
+                 sphere.bone.empty() ? QStringLiteral("–") : QString::fromStdString(sphere.bone),
+                 joinedName(sphere)});
             item->setFlags(item->flags() | Qt::ItemIsEditable);
             list_->addTopLevelItem(item);
         }
@@ -261,6 +282,13 @@ class SpheresPanel : public QWidget {
             list_->setCurrentItem(list_->topLevelItem(std::clamp(row, 0, list_->topLevelItemCount() - 1)));
         }
         showNumbers();
+    }
+
+    QString joinedName(const CollisionSphere& sphere) const {
+        const bool isJoined =
+            sphere.joined >= 0 && static_cast<std::size_t>(sphere.joined) < spheres().size();
+        if (!isJoined) return QStringLiteral("–");
+        return QString::fromStdString(spheres()[static_cast<std::size_t>(sphere.joined)].name);
     }
 
     void rename(QTreeWidgetItem& item) {
@@ -283,8 +311,16 @@ class SpheresPanel : public QWidget {
             for (const Bone& bone : actor->skeleton().bones())
                 bone_->addItem(QString::fromStdString(bone.name));
         }
+        joined_->clear();
+        joined_->addItem("none", -1);
         if (!selected()) return;
-        const QString bone = QString::fromStdString(spheres()[*selected()].bone);
+        const CollisionSphere& shown = spheres()[*selected()];
+        for (std::size_t s = 0; s < spheres().size(); ++s) {
+            if (s != *selected())
+                joined_->addItem(QString::fromStdString(spheres()[s].name), static_cast<int>(s));
+        }
+        joined_->setCurrentIndex(std::max(joined_->findData(shown.joined), 0));
+        const QString bone = QString::fromStdString(shown.bone);
         // Named in the document, though no skeleton has it here.
         if (!bone.isEmpty() && bone_->findText(bone) < 0) bone_->addItem(bone);
         bone_->setCurrentIndex(bone.isEmpty() ? 0 : bone_->findText(bone));
@@ -295,13 +331,17 @@ class SpheresPanel : public QWidget {
         if (!groom.scalp) return;
         tasks_.run<editing::SphereFit>(
             "Fitting spheres",
-            [groom, count = count_->value(), actor = player_.actor()](TaskControl&) {
+            [groom, count = count_->value(), joins = shapes_->currentIndex() == 1,
+             actor = player_.actor()](TaskControl&) {
                 editing::SphereFitOptions options;
                 options.count = static_cast<std::uint32_t>(count);
                 if (groom.strandCount() > 0) options.region = editing::facesNearHair(groom, kNearHair);
                 auto fit = editing::fitSpheres(*groom.scalp, options);
-                if (!fit || !actor) return fit;
-                attachSpheres(*actor, fit->spheres);
+                if (!fit) return fit;
+                if (actor) attachSpheres(*actor, fit->spheres);
+                if (!joins) return fit;
+                editing::joinSpheres(*groom.scalp, options.region, kCapsuleError, fit->spheres);
+                *fit = editing::measureSpheres(*groom.scalp, options.region, std::move(fit->spheres));
                 return fit;
             },
             [this](editing::SphereFit fit) {
@@ -311,7 +351,7 @@ class SpheresPanel : public QWidget {
                 fit_->setText(QString("Worst gap %1, mean %2, largest bulge %3")
                                   .arg(length(fit.worstGap), length(fit.meanGap), length(fit.worstBulge)));
                 auto all = editing::spheresOfParts(spheres());
-                all.insert(all.end(), fit.spheres.begin(), fit.spheres.end());
+                appendSpheres(all, fit.spheres);
                 document_.perform(
                     editing::setSpheres(document_.editing().model(), std::move(all), "Fit spheres"));
             });
@@ -326,6 +366,8 @@ class SpheresPanel : public QWidget {
     QTreeWidget* list_;
     OptionForm* numbers_ = nullptr;
     QComboBox* bone_;
+    QComboBox* joined_;
+    QComboBox* shapes_;
     QSpinBox* count_;
     QLabel* fit_;
     QCheckBox* skin_;

@@ -6,6 +6,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -25,6 +26,12 @@ struct Element {
 template <int N>
 struct Element<Eigen::Matrix<float, N, 1>> {
     using Scalar = float;
+    static constexpr std::size_t kCount = N;
+};
+
+template <std::size_t N>
+struct Element<std::array<std::uint32_t, N>> {
+    using Scalar = std::uint32_t;
     static constexpr std::size_t kCount = N;
 };
 

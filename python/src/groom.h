@@ -38,7 +38,8 @@ void bindLiveOf(nb::class_<PyGroom>& groom);
 void bindScene(nb::class_<PyGroom>& groom);
 
 /// Of rows of centre and radius. Throws hairloom.ArgumentError.
-std::vector<CollisionSphere> spheresOf(const char* name, nb::handle values);
+std::vector<CollisionSphere> spheresOf(const char* name, nb::handle values,
+                                       std::span<const CollisionSphere> before);
 nb::dict statsOf(const SimulationStats& stats);
 
 /// A frame of a simulation, hairloom.Frame.

@@ -89,7 +89,7 @@ HeadPose poseOf(PyLive& live, const LiveScene& scene) {
             pose.body_ws.push_back(matrixOf(rows.values().subspan(4 * bone, 4)));
     }
     if (!scene.spheres.is_none()) {
-        live.groom.spheres = spheresOf("spheres", scene.spheres);
+        live.groom.spheres = spheresOf("spheres", scene.spheres, live.groom.spheres);
         for (const CollisionSphere& ball : live.groom.spheres) pose.sphereCentres_ws.push_back(ball.centre);
         if (live.simulation) live.simulation->setSpheres(live.groom.spheres);
     }

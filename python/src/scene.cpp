@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/groom/spheres.h"
 #include "core/groom/validate.h"
 #include "core/simulation/bake_body.h"
 #include "python/src/arrays.h"
@@ -191,23 +192,53 @@ nb::object spheres(PyGroom& groom) {
 
 void setSpheres(PyGroom& groom, nb::handle values) {
     const Use use(groom.inUse, kTheGroom);
-    auto balls = spheresOf("spheres", values);
-    for (std::size_t i = 0; i < balls.size() && i < groom.groom.spheres.size(); ++i) {
-        balls[i].name = groom.groom.spheres[i].name;
-        balls[i].bone = groom.groom.spheres[i].bone;
+    groom.groom.spheres = spheresOf("spheres", values, groom.groom.spheres);
+}
+
+nb::object capsules(PyGroom& groom) {
+    const Use use(groom.inUse, kTheGroom);
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    for (const auto& [first, second] : capsulesOf(groom.groom.spheres)) pairs.push_back({first, second});
+    return arrayOf(std::move(pairs));
+}
+
+void setCapsules(PyGroom& groom, nb::handle values) {
+    const Use use(groom.inUse, kTheGroom);
+    const Input<std::array<std::uint32_t, 2>> given("capsules", values);
+    std::vector<CollisionSphere> joined = groom.groom.spheres;
+    for (CollisionSphere& ball : joined) ball.joined = -1;
+    for (const auto& [first, second] : given.values()) {
+        if (std::max(first, second) >= joined.size() || first == second)
+            raiseArgument("capsules", fmt::format("joins the spheres {} and {}", first, second),
+                          fmt::format("two different ones of the {} spheres", joined.size()));
+        // Each sphere is joined to one other; others may be joined to it.
+        const bool isTaken = joined[first].joined >= 0;
+        CollisionSphere& ball = joined[isTaken ? second : first];
+        if (ball.joined >= 0)
+            raiseArgument("capsules",
+                          fmt::format("joins the spheres {} and {}, each to several", first, second),
+                          "as many capsules as spheres among any that they join, at most");
+        ball.joined = static_cast<std::int32_t>(isTaken ? first : second);
     }
-    groom.groom.spheres = std::move(balls);
+    groom.groom.spheres = std::move(joined);
 }
 
 }  // namespace
 
-std::vector<CollisionSphere> spheresOf(const char* name, nb::handle values) {
+std::vector<CollisionSphere> spheresOf(const char* name, nb::handle values,
+                                       std::span<const CollisionSphere> before) {
     const Input<Vec4f> given(name, values);
     std::vector<CollisionSphere> balls;
     for (const Vec4f& ball : given.values()) {
         if (!(ball.w() > 0))
             raiseArgument(name, fmt::format("has the radius {}", ball.w()), "radii above 0 m");
-        balls.push_back({fmt::format("sphere {}", balls.size() + 1), ball.head<3>(), ball.w(), {}});
+        balls.push_back({fmt::format("sphere {}", balls.size() + 1), ball.head<3>(), ball.w(), {}, -1});
+    }
+    for (std::size_t i = 0; i < balls.size() && i < before.size(); ++i) {
+        balls[i].name = before[i].name;
+        balls[i].bone = before[i].bone;
+        const std::int32_t joined = before[i].joined;
+        if (joined >= 0 && static_cast<std::size_t>(joined) < balls.size()) balls[i].joined = joined;
     }
     return balls;
 }
@@ -256,7 +287,14 @@ void bindScene(nb::class_<PyGroom>& groom) {
             nb::for_getter(nb::sig("def spheres(self) -> numpy.typing.NDArray[numpy.float32]")),
             nb::for_setter(nb::sig("def spheres(self, values: object) -> None")),
             nb::for_setter("values"_a.none()),
-            "float32 (k, 4), centre and radius > 0 of what strands collide with, metres, at rest. A copy.");
+            "float32 (k, 4), centre and radius > 0 of what strands collide with, metres, at rest. A copy.")
+        .def_prop_rw(
+            "capsules", &capsules, &setCapsules,
+            nb::for_getter(nb::sig("def capsules(self) -> numpy.typing.NDArray[numpy.uint32]")),
+            nb::for_setter(nb::sig("def capsules(self, values: object) -> None")),
+            nb::for_setter("values"_a.none()),
+            "uint32 (k, 2), the numbers of two spheres each, whose hull is a tapered capsule. A copy. "
+            "Spheres that are set anew keep theirs.");
 }
 
 }  // namespace hairloom::python

@@ -130,7 +130,13 @@ Problem Asset::checkScalp() const {
         if (std::uint32_t{root.b} + root.c > 65535u)
             return damaged(placeOf(&root), "a root beside its triangle");
     }
+    std::size_t capsules = 0;
     for (const asset::Sphere& sphere : spheres) {
+        if (sphere.joined > 0 && ++capsules > kMaxCapsules)
+            return damaged(placeOf(&sphere), "more than " + number(kMaxCapsules) + " capsules");
+        if (sphere.joined > spheres.size() || &spheres[0] + sphere.joined == &sphere + 1)
+            return damaged(placeOf(&sphere), "a capsule to sphere " + number(sphere.joined) + " of " +
+                                                 number(spheres.size()) + ", or to itself");
         const bool boned =
             sphere.bone >= -1 && (sphere.bone < 0 || static_cast<std::size_t>(sphere.bone) < bones.size());
         if (!boned || !inside(sphere.name, texts) || !allWithin(sphere.centre) || !(sphere.radius > 0) ||

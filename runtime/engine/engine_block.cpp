@@ -23,6 +23,7 @@ void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& fr
     BlockView& blockView = view(block, room);
     lanes.guarded = 0;
     lanes.touchable.clear();
+    lanes.touchableCapsules.clear();
     enterFrame(block, blockView, lanes, frame);
     strands_->enterBlock(*shape_, settings_, frame, block, blockView, lanes);
     runStages(block, blockView, lanes, frame);
@@ -169,19 +170,24 @@ void listTouchable(const RestShape& shape, const SimulationSettings& settings, c
                    std::size_t block, LaneFrame& lanes) {
     const float hair = hairReach(settings, shape.longestStrand);
     const auto substeps = static_cast<float>(context.count);
-    for (const MovingSphere& sphere : context.spheres) {
+    const auto reaches = [&](const MovingSphere& sphere) {
         const Float3 middle = sphere.from_ws + sphere.step * (0.5f * substeps);
-        const float reach = hair + sphere.radius + 0.5f * substeps * length(sphere.step);
+        const float reach = hair + sphere.radius + 0.5f * substeps * sphere.stepLength;
         for (std::uint32_t lane = 0; lane < shape.blocks[block].strands; ++lane) {
             const Float3 root{lanes.root[0][lane], lanes.root[1][lane], lanes.root[2][lane]};
             const Float3 displacement{lanes.rootDisplacement[0][lane], lanes.rootDisplacement[1][lane],
                                       lanes.rootDisplacement[2][lane]};
-            if (length(root + displacement * (0.5f * substeps) - middle) >
+            if (length(root + displacement * (0.5f * substeps) - middle) <=
                 reach + 0.5f * substeps * length(displacement))
-                continue;
-            lanes.touchable.push_back(sphere);
-            break;
+                return true;
         }
+        return false;
+    };
+    for (const MovingSphere& sphere : context.spheres) {
+        if (reaches(sphere)) lanes.touchable.push_back(sphere);
+    }
+    for (const MovingCapsule& capsule : context.capsules) {
+        if (reaches(capsule.around)) lanes.touchableCapsules.push_back(capsule);
     }
 }
 

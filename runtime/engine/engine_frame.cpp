@@ -350,7 +350,7 @@ void Engine::Impl::wakeBlocks() {
 Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     Frame frame{};
     frame.input = &input;
-    frame.context = substepContext(settings_, plan_, input.dt, substeps_, movingSpheres_);
+    frame.context = substepContext(settings_, plan_, input.dt, substeps_, movingSpheres_, movingCapsules_);
     if (!movingBody_.empty()) {
         frame.context.body = &movingBody_;
         frame.context.spheresRest = frame.context.spheresRest && !bodyMoves_;
@@ -390,7 +390,7 @@ void Engine::Impl::step(const FrameInput& input) {
     const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
     takeRoots(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
-    takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
+    takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, input.capsules, spheres_);
     report_.rejectedSpheres = spheres_.rejected;
     report_.rejectedWinds = takeWind(settings_, input, wind_);
     report_.substeps = substeps_ = substepsOf(input);
@@ -400,18 +400,22 @@ void Engine::Impl::step(const FrameInput& input) {
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
            {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
            input.dt);
-    if (plan_.on(Effect::collision)) {
-        moveSpheres(spheres_, substeps_, movingSpheres_);
-        if (model().listsSpheres) scratch_.reserveSpheres(movingSpheres_.size());
-    } else {
+    if (!plan_.on(Effect::collision)) {
         movingSpheres_ = {};
+        movingCapsules_ = {};
+    } else if (model().listsSpheres) {
+        moveCapsules(spheres_, substeps_, movingSpheres_, movingCapsules_);
+        scratch_.reserveSpheres(movingSpheres_.size(), movingCapsules_.size());
+    } else {
+        moveSpheres(spheres_, substeps_, movingSpheres_);
     }
 
     const Frame frame = makeFrame(input);
     if (hairGrid_.isOn() && !plan_.stages().empty())
         hairGrid_.update(*shape_, state_, nextRoots_, settings_, frame.context.h, substeps_, host_);
     runBlocks(frame);
-    state_.spheres.assign(spheres_.usable.begin(), spheres_.usable.end());
+    const std::span<const Sphere> given = std::span(spheres_.usable).first(spheres_.given);
+    state_.spheres.assign(given.begin(), given.end());
     state_.substep = frame.context.h;
     strands_->closeFrame(frame);
     sumReports();

@@ -98,6 +98,7 @@ struct Engine::Impl {
     Floats nextRoots_;  // as State::roots, at the frame's end
     FrameSpheres spheres_;
     std::vector<MovingSphere> movingSpheres_;
+    std::vector<MovingCapsule> movingCapsules_;
     MovingBody movingBody_;
     bool bodyMoves_ = false;
     std::uint32_t substeps_ = 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/engine_impl.h"
+#include "hairloom/capsules.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -69,7 +70,8 @@ void readVelocities(const RestShape& shape, const State& state, std::span<Float3
                  });
 }
 
-Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings) {
+Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings,
+                          std::span<const Capsule> capsules) {
     Measurements result;
     const double rate = state.substep > 0.0f ? 1.0 / static_cast<double>(state.substep) : 0.0;
     const SimulationSettings& s = settings;
@@ -100,11 +102,17 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
             const double collisionRadius =
                 static_cast<double>(s.collisionRadiusRoot) +
                 along * static_cast<double>(s.collisionRadiusTip - s.collisionRadiusRoot);
-            for (const Sphere& sphere : state.spheres) {
-                if (!(sphere.radius > 0.0f)) continue;
+            const auto meet = [&](const Sphere& sphere) {
+                if (!(sphere.radius > 0.0f)) return;
                 const double depth =
                     static_cast<double>(sphere.radius) + collisionRadius - lengthOf(at_ws - sphere.center_ws);
                 result.maxPenetration = std::max(result.maxPenetration, depth);
+            };
+            for (const Sphere& sphere : state.spheres) meet(sphere);
+            for (const Capsule& capsule : capsules) {
+                if (isCapsule(capsule, state.spheres))
+                    meet(
+                        nearestOfCapsule(state.spheres[capsule.first], state.spheres[capsule.second], at_ws));
             }
         });
     return result;
@@ -123,7 +131,8 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
     std::size_t shared = 0;
     if (effect == Effect::wind && plan_.on(effect)) shared = sizeof(Wind);
     if (effect == Effect::collision && plan_.on(effect))
-        shared = movingSpheres_.size() * sizeof(MovingSphere);
+        shared =
+            movingSpheres_.size() * sizeof(MovingSphere) + movingCapsules_.size() * sizeof(MovingCapsule);
     if (effect == Effect::hairHair) shared = hairGrid_.bytes();
     return shared + strands_->effectBytes(effect, state_);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/strand_model.h"
+#include "hairloom/capsules.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -15,19 +16,86 @@ bool isWind(Float3 velocity) {
     return isFinite(velocity) && length(velocity) <= kMax;
 }
 
+/// Around two spheres and all that lies between them.
+Sphere sphereAround(const Sphere& first, const Sphere& second) {
+    const float half = 0.5f * length(second.center_ws - first.center_ws);
+    return {(first.center_ws + second.center_ws) * 0.5f, half + std::max(first.radius, second.radius)};
+}
+
 void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& spheres) {
-    const std::size_t count = std::max(spheres.usable.size(), before.size());
+    const std::size_t count = std::max(spheres.given, before.size());
     spheres.waking.clear();
-    spheres.waking.reserve(2 * count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Sphere then = i < before.size() ? before[i] : Sphere{};
-        const Sphere now = i < spheres.usable.size() ? spheres.usable[i] : Sphere{};
-        if (then.center_ws == now.center_ws && then.radius == now.radius) continue;
-        const bool moved = then.radius > 0.0f && now.radius > 0.0f;
-        const float distance = moved ? length(now.center_ws - then.center_ws) : 0.0f;
+    spheres.waking.reserve(2 * (count + spheres.capsules.size()));
+    const auto changed = [](const Sphere& then, const Sphere& now) {
+        return !(then.center_ws == now.center_ws && then.radius == now.radius);
+    };
+    const auto wakes = [&](const Sphere& then, const Sphere& now, float distance) {
         for (const Sphere& sphere : {then, now}) {
             if (sphere.radius > 0.0f)
                 spheres.waking.push_back({sphere.center_ws, hair + sphere.radius + distance});
+        }
+    };
+    const auto thenOf = [&](std::size_t i) { return i < before.size() ? before[i] : Sphere{}; };
+    for (std::size_t i = 0; i < count; ++i) {
+        const Sphere then = thenOf(i), now = i < spheres.given ? spheres.usable[i] : Sphere{};
+        if (!changed(then, now)) continue;
+        const bool moved = then.radius > 0.0f && now.radius > 0.0f;
+        wakes(then, now, moved ? length(now.center_ws - then.center_ws) : 0.0f);
+    }
+    for (const Capsule& capsule : spheres.capsules) {
+        const Sphere &first = spheres.usable[capsule.first], &second = spheres.usable[capsule.second];
+        const Sphere firstThen = thenOf(capsule.first), secondThen = thenOf(capsule.second);
+        if (!changed(firstThen, first) && !changed(secondThen, second)) continue;
+        const bool moved = firstThen.radius > 0.0f && secondThen.radius > 0.0f;
+        wakes(moved ? sphereAround(firstThen, secondThen) : Sphere{}, sphereAround(first, second),
+              moved ? std::max(length(first.center_ws - firstThen.center_ws),
+                               length(second.center_ws - secondThen.center_ws))
+                    : 0.0f);
+    }
+}
+
+MovingSphere movingOf(const FrameSpheres& spheres, std::size_t i, float share) {
+    const Sphere& sphere = spheres.usable[i];
+    return {sphere.center_ws - spheres.motion[i], spheres.motion[i] * share, sphere.radius};
+}
+
+/// Its ends go evenly, so that they are farthest apart at the start or the end of the frame.
+MovingCapsule movingOf(const FrameSpheres& spheres, const Capsule& capsule, std::uint32_t substeps) {
+    const float share = 1.0f / static_cast<float>(substeps);
+    MovingCapsule moving{{movingOf(spheres, capsule.first, share), movingOf(spheres, capsule.second, share)},
+                         {}};
+    const auto& [first, second] = moving.ends;
+    const auto widest = std::max(first.radius, second.radius);
+    const float apart =
+        std::max(length(second.from_ws - first.from_ws),
+                 length(spheres.usable[capsule.second].center_ws - spheres.usable[capsule.first].center_ws));
+    moving.around = {(first.from_ws + second.from_ws) * 0.5f, (first.step + second.step) * 0.5f,
+                     0.5f * apart + widest, std::max(first.stepLength, second.stepLength)};
+    return moving;
+}
+
+/// Capsules between usable spheres, and spheres along them.
+void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
+    spheres.capsules.clear();
+    spheres.ends.assign(spheres.given, 0);
+    capsules = capsules.first(std::min(capsules.size(), kMaxCapsules));
+    // However long they get: the next frame asks for no memory.
+    spheres.usable.reserve(spheres.given + kMaxAlongCapsule * capsules.size());
+    spheres.motion.reserve(spheres.given + kMaxAlongCapsule * capsules.size());
+    for (const Capsule& capsule : capsules) {
+        if (!isCapsule(capsule, std::span<const Sphere>(spheres.usable).first(spheres.given))) {
+            ++spheres.rejected;
+            continue;
+        }
+        spheres.capsules.push_back(capsule);
+        spheres.ends[capsule.first] = spheres.ends[capsule.second] = 1;
+        const Sphere first = spheres.usable[capsule.first], second = spheres.usable[capsule.second];
+        const Float3 motion = spheres.motion[capsule.first], other = spheres.motion[capsule.second];
+        const std::size_t count = countAlongCapsule(first, second);
+        for (std::size_t k = 0; k < count; ++k) {
+            const float share = static_cast<float>(k + 1) / static_cast<float>(count + 1);
+            spheres.usable.push_back(sphereAlongCapsule(first, second, k, count));
+            spheres.motion.push_back(motion + (other - motion) * share);
         }
     }
 }
@@ -46,8 +114,9 @@ float slowestSwept(const SubstepContext& context) {
 }  // namespace
 
 void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
-                 std::span<const Sphere> given, FrameSpheres& spheres) {
+                 std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres) {
     spheres.usable.assign(given.begin(), given.end());
+    spheres.given = given.size();
     spheres.motion.assign(given.size(), Float3{});
     spheres.rejected = 0;
     for (std::size_t i = 0; i < given.size(); ++i) {
@@ -62,17 +131,29 @@ void takeSpheres(const SimulationSettings& settings, float longestStrand, std::s
             if (length(motion) <= settings.teleportDistance) spheres.motion[i] = motion;
         }
     }
+    takeCapsules(capsules, spheres);
     findWaking(hairReach(settings, longestStrand), before, spheres);
 }
 
 void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving) {
     moving.clear();
+    moving.reserve(spheres.given + kMaxAlongCapsule * spheres.capsules.size());
     const float share = 1.0f / static_cast<float>(substeps);
     for (std::size_t i = 0; i < spheres.usable.size(); ++i) {
-        const Sphere& sphere = spheres.usable[i];
-        if (!(sphere.radius > 0.0f)) continue;
-        moving.push_back({sphere.center_ws - spheres.motion[i], spheres.motion[i] * share, sphere.radius});
+        if (spheres.usable[i].radius > 0.0f) moving.push_back(movingOf(spheres, i, share));
     }
+}
+
+void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving,
+                  std::vector<MovingCapsule>& capsules) {
+    moving.clear();
+    capsules.clear();
+    const float share = 1.0f / static_cast<float>(substeps);
+    for (std::size_t i = 0; i < spheres.given; ++i) {
+        if (spheres.usable[i].radius > 0.0f && spheres.ends[i] == 0)
+            moving.push_back(movingOf(spheres, i, share));
+    }
+    for (const Capsule& capsule : spheres.capsules) capsules.push_back(movingOf(spheres, capsule, substeps));
 }
 
 std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& input, FrameWind& wind) {
@@ -136,7 +217,8 @@ Float3 shiftOfOrigin(const std::array<double, 3>& from_ws, const std::array<doub
 }
 
 SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
-                              std::uint32_t substeps, std::span<const MovingSphere> spheres) {
+                              std::uint32_t substeps, std::span<const MovingSphere> spheres,
+                              std::span<const MovingCapsule> capsules) {
     const float h = dt / static_cast<float>(substeps);
     SubstepContext context;
     context.count = substeps;
@@ -150,11 +232,15 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.airDrag = settings.airDrag;
     context.gravityStep = settings.gravity * (h * h);
     context.spheresRest = std::all_of(spheres.begin(), spheres.end(),
-                                      [](const MovingSphere& sphere) { return sphere.stepLength == 0.0f; });
+                                      [](const MovingSphere& sphere) { return sphere.stepLength == 0.0f; }) &&
+                          std::all_of(capsules.begin(), capsules.end(), [](const MovingCapsule& capsule) {
+                              return capsule.around.stepLength == 0.0f;
+                          });
     context.sweeps = plan.on(Effect::continuousCollision);
     context.friction = settings.friction;
     context.restitution = settings.restitution;
     context.spheres = spheres;
+    context.capsules = capsules;
     context.windShelter = settings.windShelter;
     context.segmentsTouch = settings.collisionSegments;
     context.slowestSwept = slowestSwept(context);

@@ -16,18 +16,24 @@ namespace hairloom::runtime {
 
 /// The spheres of a frame. Those that cannot be used stay in their place at radius 0.
 struct FrameSpheres {
-    std::vector<Sphere> usable;
-    std::vector<Float3> motion;  ///< each one's displacement during the frame; none for a cut
-    std::uint32_t rejected = 0;  ///< not finite or without radius
+    std::vector<Sphere> usable;      ///< those of the frame, then those along capsules
+    std::size_t given = 0;           ///< of the frame
+    std::vector<Capsule> capsules;   ///< between usable ones
+    std::vector<std::uint8_t> ends;  ///< 1 for a sphere that is the end of a capsule
+    std::vector<Float3> motion;      ///< each one's displacement during the frame; none for a cut
+    std::uint32_t rejected = 0;      ///< not finite or without radius
     /// Around a root within `radius` of which a sphere that has changed since the last frame may touch the
     /// hair: what sleeps there wakes up.
     std::vector<Sphere> waking;
 };
-/// `before` are the usable ones of the last frame. Keeps the memory of `spheres`.
+/// `before` are the usable ones that the last frame gave. Keeps the memory of `spheres`.
 void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
-                 std::span<const Sphere> given, FrameSpheres& spheres);
-/// Those with a radius, on their way through the frame's substeps.
+                 std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres);
+/// Those with a radius, on their way through the frame's substeps, capsules as spheres along them.
 void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving);
+/// Likewise, for what meets capsules as they are: their ends are none of the spheres.
+void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving,
+                  std::vector<MovingCapsule>& capsules);
 
 /// The wind of a frame.
 struct FrameWind {
@@ -63,6 +69,7 @@ inline bool isFinite(const std::array<double, 3>& position) {
 
 /// Of the first of `substeps` of a frame of `dt` seconds.
 SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
-                              std::uint32_t substeps, std::span<const MovingSphere> spheres);
+                              std::uint32_t substeps, std::span<const MovingSphere> spheres,
+                              std::span<const MovingCapsule> capsules = {});
 
 }  // namespace hairloom::runtime

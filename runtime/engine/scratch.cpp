@@ -32,8 +32,11 @@ void Scratch::make(std::size_t count, std::size_t own, std::size_t floats) {
     floats_ = floats;
 }
 
-void Scratch::reserveSpheres(std::size_t count) {
-    for (std::size_t i = 0; i < count_; ++i) pieces_[i].lanes.touchable.reserve(count);
+void Scratch::reserveSpheres(std::size_t count, std::size_t capsules) {
+    for (std::size_t i = 0; i < count_; ++i) {
+        pieces_[i].lanes.touchable.reserve(count);
+        pieces_[i].lanes.touchableCapsules.reserve(capsules);
+    }
 }
 
 Scratch::Piece& Scratch::take() {

@@ -32,8 +32,8 @@ class Scratch {
     /// Has `count` pieces with `own` floats for LaneFrame::own and at least `floats` for its solver each.
     /// Only while none is taken.
     void grow(std::size_t count, std::size_t own, std::size_t floats);
-    /// LaneFrame::touchable of each piece can take so many without asking for memory.
-    void reserveSpheres(std::size_t count);
+    /// LaneFrame::touchable and touchableCapsules of each piece can take so many without asking for memory.
+    void reserveSpheres(std::size_t count, std::size_t capsules);
     /// A free piece, the calling thread's own where it can be: its memory is then in that core's cache. Waits
     /// where all are taken. The caller gives it back: `taken = false`.
     Piece& take();

@@ -54,6 +54,49 @@ HWY_INLINE V3 acrossStrand(V3 offset, V3 edge) {
     return select(squared > tiny, select(centred, other, across), offset);
 }
 
+/// A sphere of a capsule, for each lane.
+struct CapsuleSphere {
+    V3 centre_ws, step;
+    V radius;
+};
+
+/// The one that a point meets, so many substeps after the start of the frame: whose surface is nearest to it,
+/// by signed distance; of one that goes farther in this substep than a quarter of the thinner end's radius,
+/// where its way, which ends at the position, comes nearest to the capsule's axis.
+HWY_INLINE CapsuleSphere sphereOfCapsule(const MovingCapsule& capsule, float substeps, V3 position_ws,
+                                         V3 displacement) {
+    const auto& [first, second] = capsule.ends;
+    const Float3 from_ws = first.from_ws + first.step * substeps;
+    const Float3 axis = second.from_ws + second.step * substeps - from_ws;
+    const float size = length(axis), narrows = first.radius - second.radius;
+    const V zero = hn::Zero(D()), one = all(1.0f);
+    V share;
+    if (!(size > std::abs(narrows))) {  // one end holds the other
+        share = narrows > 0.0f ? zero : one;
+    } else {
+        const V3 along = all3(axis * (1.0f / size)), to = position_ws - all3(from_ws);
+        const V place = dot(to, along);
+        // The surface's normal leans by the cone's angle, of sine `lean`, off the perpendicular.
+        const float lean = narrows / size;
+        const V off = hn::Sqrt(hn::Max(dot(to, to) - place * place, zero));
+        share = hn::NegMulAdd(off, all(lean / std::sqrt(1.0f - lean * lean)), place) * all(1.0f / size);
+        const float slow = kUnsweptShare * std::min(first.radius, second.radius);
+        const auto fast = dot(displacement, displacement) > all(slow * slow);
+        if (HWY_UNLIKELY(!hn::AllFalse(D(), fast))) {
+            // Of the line through the way the place nearest to the axis, held to the way itself.
+            const V3 across = displacement - along * dot(displacement, along);
+            const V3 end = to - along * place;
+            const V back = dot(end, across) / hn::Max(dot(across, across), all(1e-20f));
+            const V3 met = negMulAdd(displacement, hn::Min(hn::Max(back, zero), one), to);
+            share = hn::IfThenElse(fast, dot(met, along) * all(1.0f / size), share);
+        }
+        share = hn::Min(hn::Max(share, zero), one);
+    }
+    return {mulAdd(all3(axis), share, all3(from_ws)),
+            mulAdd(all3(second.step - first.step), share, all3(first.step)),
+            hn::NegMulAdd(all(narrows), share, all(first.radius))};
+}
+
 /// Collision radius at each point ("pearls" in the thesis), growing linearly to the tip.
 HWY_INLINE void fillCollisionRadii(const BlockView& block, const SubstepContext& context,
                                    float* collisionRadii) {

@@ -133,7 +133,7 @@ struct Model {
     std::unique_ptr<ModelStrands> (*make)();
     std::array<OwnArray, kOwnArrays> own;
     std::size_t laneFloats;  ///< of LaneFrame::own
-    bool listsSpheres;       ///< fills LaneFrame::touchable
+    bool listsSpheres;       ///< fills LaneFrame::touchable, and meets capsules as they are
     bool meetsBody;          ///< SubstepContext::body
     bool keepsVelocities;    ///< in State::own; else what a point went in the last substep is its velocity
     std::size_t mostPlanes;  ///< floats of each point and lane that it can take, with those of `own`
@@ -162,7 +162,7 @@ class OwnedStrands {
     std::unique_ptr<ModelStrands> strands_;
 };
 
-/// Sets LaneFrame::touchable to the spheres of the frame that can touch the block's strands in it.
+/// Sets LaneFrame::touchable and touchableCapsules to what of the frame can touch the block's strands in it.
 void listTouchable(const RestShape& shape, const SimulationSettings& settings, const SubstepContext& context,
                    std::size_t block, LaneFrame& lanes);
 

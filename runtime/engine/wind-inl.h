@@ -12,6 +12,7 @@
 
 #include "engine/kernels.h"
 #include "engine/lanes-inl.h"
+#include "engine/spheres-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -85,6 +86,10 @@ HWY_INLINE V3 shelteredWindAt(const Wind& wind, const float* phases, V3 position
         if (sphere.radius < 1e-6f) continue;  // no air stands behind a point
         const V3 centre = all3(sphere.from_ws + sphere.step * steps);
         air = airPastSphere(air, position_ws - centre, all(sphere.radius), along);
+    }
+    for (const MovingCapsule& capsule : context.capsules) {
+        const CapsuleSphere sphere = sphereOfCapsule(capsule, steps, position_ws, zero3());
+        air = airPastSphere(air, position_ws - sphere.centre_ws, hn::Max(sphere.radius, all(1e-6f)), along);
     }
     return open + (air - open) * all(context.windShelter);
 }

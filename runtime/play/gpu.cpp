@@ -7,6 +7,7 @@
 #include <map>
 
 #include "follow/follow_gpu.h"
+#include "hairloom/capsules.h"
 #include "play/c_words.h"
 #include "play/gpu_guides.h"
 #include "shaders/ribbon_types.h"
@@ -32,18 +33,20 @@ struct GpuCounts {
 };
 /// Adds what the pass GUIDES is measured by.
 GpuCounts withGuides(GpuCounts counts, const std::map<std::uint32_t, std::size_t>& strandsOf,
-                     std::size_t spheres) {
+                     std::size_t spheres, std::size_t capsules) {
     counts.blocks = gpuBlocksOf(strandsOf);
     counts.longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
-    counts.spheres = gpuSpheresOf(spheres);
+    counts.spheres = gpuSpheresOf(spheres, capsules);
     return counts;
 }
 GpuCounts gpuCountsOf(const Asset& asset) {
     std::map<std::uint32_t, std::size_t> strandsOf;
     for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
+    std::size_t capsules = 0;
+    for (const asset::Sphere& sphere : asset.spheres) capsules += sphere.joined > 0 ? 1 : 0;
     return withGuides(
         {asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair, 0, 0, 0},
-        strandsOf, asset.spheres.size());
+        strandsOf, asset.spheres.size(), capsules);
 }
 
 struct GpuBuffer {
@@ -163,7 +166,7 @@ std::size_t Instance::gpuBytes(std::uint32_t buffer) const {
     if (fill == HL_GPU_BEGIN || fill == HL_GPU_STEP) {
         std::map<std::uint32_t, std::size_t> strandsOf;
         for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) ++strandsOf[offsets_[s + 1] - offsets_[s]];
-        counts = withGuides(counts, strandsOf, restSpheres_.size());
+        counts = withGuides(counts, strandsOf, restSpheres_.size(), restCapsules_.size());
     }
     return static_cast<std::size_t>(kGpuBuffers[buffer].count(counts)) * kGpuBuffers[buffer].element;
 }
@@ -174,7 +177,7 @@ Outcome Instance::beginGpu() {
     if (std::string why = gpuGuidesRefused(engine_.settings()); !why.empty())
         return Refusal{HL_BAD_VALUE, std::move(why)};
     gpuGuides_.emplace(engine_.restShape(), engine_.settings(), engine_.state(),
-                       gpuSpheresOf(restSpheres_.size()));
+                       gpuSpheresOf(restSpheres_.size(), restCapsules_.size()));
     return std::nullopt;
 }
 
@@ -182,8 +185,12 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
     if (!gpuGuides_) return Refusal{HL_BAD_VALUE, "hl_gpu_begin() comes before the first hl_gpu_step()"};
     if (frame.dt == 0) return std::nullopt;
     if (Outcome refused = checkStep(frame)) return refused;
-    if (frame.spheres && frame.sphere_count > gpuGuides_->mostSpheres())
-        return Refusal{HL_WRONG_SIZE, std::to_string(frame.sphere_count) + " spheres; expected at most " +
+    const std::size_t spheres =
+        frame.sphere_count + (frame.capsules ? kMaxAlongCapsule * frame.capsule_count : 0);
+    if (frame.spheres && spheres > gpuGuides_->mostSpheres())
+        return Refusal{HL_WRONG_SIZE, std::to_string(spheres) + " spheres, " +
+                                          std::to_string(kMaxAlongCapsule) +
+                                          " of them for each capsule; expected at most " +
                                           std::to_string(gpuGuides_->mostSpheres())};
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "hairloom/capsules.h"
 #include "hairloom/gpu.h"
 #include "models/rods/rod_slots.h"
 
@@ -42,8 +43,8 @@ std::size_t gpuBlocksOf(const std::map<std::uint32_t, std::size_t>& strandsOf) {
     return blocks;
 }
 
-std::size_t gpuSpheresOf(std::size_t ofAsset) {
-    return std::max<std::size_t>(ofAsset, HL_GPU_SPHERES);
+std::size_t gpuSpheresOf(std::size_t spheresOfAsset, std::size_t capsulesOfAsset) {
+    return std::max<std::size_t>(spheresOfAsset + kMaxAlongCapsule * capsulesOfAsset, HL_GPU_SPHERES);
 }
 
 std::string gpuGuidesRefused(const SimulationSettings& settings) {
@@ -107,7 +108,7 @@ void GpuGuides::take(const FrameInput& input) {
     const Float3 shift = moveOrigin(input.origin_ws);
     const Float3 lowBefore = roots_.min_ws, highBefore = roots_.max_ws;
     takeFrameRoots(input.roots_ws, settings_.teleportDistance, true, roots_);
-    takeSpheres(settings_, shape_->longestStrand, spheresBefore_, input.spheres, spheres_);
+    takeSpheres(settings_, shape_->longestStrand, spheresBefore_, input.spheres, input.capsules, spheres_);
     takeWind(settings_, input, wind_);
     FramePlanInput planInput;
     planInput.strandCount = static_cast<std::uint32_t>(shape_->restRoots.size());
@@ -138,7 +139,8 @@ void GpuGuides::take(const FrameInput& input) {
     frame.waking = wakingOf(spheres_);
     frame_ = std::move(frame);
     state_.reset();
-    spheresBefore_ = spheres_.usable;
+    spheresBefore_.assign(spheres_.usable.begin(),
+                          spheres_.usable.begin() + static_cast<std::ptrdiff_t>(spheres_.given));
     substep_ = context.h;
 }
 

@@ -18,7 +18,7 @@ namespace hairloom::runtime {
 /// Blocks of 32 that strands fill at most, by their numbers of points.
 std::size_t gpuBlocksOf(const std::map<std::uint32_t, std::size_t>& strandsOf);
 /// Spheres that the kernel has room for, of so many in the asset.
-std::size_t gpuSpheresOf(std::size_t ofAsset);
+std::size_t gpuSpheresOf(std::size_t spheresOfAsset, std::size_t capsulesOfAsset);
 
 /// Empty, or why the kernel does not know such hair.
 std::string gpuGuidesRefused(const SimulationSettings& settings);

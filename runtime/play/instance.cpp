@@ -11,6 +11,7 @@
 #include "engine/state.h"
 #include "engine/strand_model.h"
 #include "follow/follow_kernels.h"
+#include "hairloom/capsules.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -95,6 +96,15 @@ std::map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset) {
     return strandsOf;
 }
 
+/// Of spheres and capsules, at rest and in a frame.
+std::size_t sphereBytes(const Asset& asset) {
+    const auto capsules = static_cast<std::size_t>(std::count_if(
+        asset.spheres.begin(), asset.spheres.end(), [](const auto& sphere) { return sphere.joined > 0; }));
+    const std::size_t along = kMaxAlongCapsule * (sizeof(Sphere) + sizeof(Float3) + 2 * sizeof(MovingSphere));
+    return asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
+           capsules * (along + 4 * sizeof(Capsule) + 3 * sizeof(MovingCapsule));
+}
+
 /// What HL_LEVELS adds; strands of a level have at most the points of the longest.
 std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread, std::size_t bodyTable) {
     const std::size_t strands = asset.strandCount(), points = asset.pointCount();
@@ -111,7 +121,7 @@ std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t th
                  blocksMore * engineBytes({{longest, 1}}, hasBody) + strands * sizeof(Level::Sources) +
                  guides * 2 * sizeof(std::uint32_t) + 3 * std::size_t{guides} * longest * sizeof(Float3) +
                  sizeof(Level) + sizeof(Engine);
-        bytes += asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere));
+        bytes += sphereBytes(asset);
     }
     return bytes;
 }
@@ -128,10 +138,10 @@ InstanceMemory instanceMemory(const Asset& asset) {
     const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
     const BodyFieldRead body = asset.readBody();
     const std::size_t bodyTable = body.field ? BodyTable::bytesFor(*body.field) : 0;
-    const std::size_t guides =
-        engineBytes(strandsOf, bodyTable > 0) + bodyTable + thread + (body.field ? body.field->bytes() : 0) +
-        asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
-        ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) + RootPoses::bytesFor(asset);
+    const std::size_t guides = engineBytes(strandsOf, bodyTable > 0) + bodyTable + thread +
+                               (body.field ? body.field->bytes() : 0) + sphereBytes(asset) +
+                               ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) +
+                               RootPoses::bytesFor(asset);
     // Speeds are kept for follow hairs and for levels.
     const std::size_t levels = levelBytes(asset, longest, thread, bodyTable) + points * sizeof(Float3);
     if (hairs == 0) return {guides, 0, levels, thread};
@@ -158,6 +168,11 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     instance.turns_.resize(asset.strands.size());
     instance.restSpheres_.assign(asset.spheres.begin(), asset.spheres.end());
     instance.spheres_.resize(asset.spheres.size());
+    for (const asset::Sphere& sphere : asset.spheres) {
+        if (sphere.joined > 0)
+            instance.restCapsules_.push_back(
+                {static_cast<std::uint32_t>(&sphere - asset.spheres.data()), sphere.joined - 1});
+    }
     instance.last_.bones.reserve(12 * asset.bones.size());
     instance.positions_.resize(strands.positions_ss.size());
     for (const std::uint16_t radius : asset.radii)
@@ -239,7 +254,7 @@ Outcome Instance::placeSpheres(const hl_frame& frame, FrameInput& input) {
             spheres_[s] = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
         }
         input.spheres = std::span(spheres_).first(frame.sphere_count);
-        return std::nullopt;
+        return placeCapsules(frame, input);
     }
     const Matrix34 head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
     for (std::size_t s = 0; s < restSpheres_.size(); ++s) {
@@ -250,6 +265,27 @@ Outcome Instance::placeSpheres(const hl_frame& frame, FrameInput& input) {
                        sphere.radius};
     }
     input.spheres = std::span(spheres_).first(restSpheres_.size());
+    input.capsules = restCapsules_;
+    return std::nullopt;
+}
+
+Outcome Instance::placeCapsules(const hl_frame& frame, FrameInput& input) {
+    if (!frame.capsules) return std::nullopt;
+    if (frame.capsule_count > kMaxCapsules) return wrongSize("capsules", frame.capsule_count, kMaxCapsules);
+    capsules_.clear();
+    for (std::size_t c = 0; c < frame.capsule_count; ++c) {
+        const Capsule capsule{frame.capsules[2 * c], frame.capsules[2 * c + 1]};
+        const std::uint32_t farther = std::max(capsule.first, capsule.second);
+        if (farther >= frame.sphere_count)
+            return Refusal{HL_BAD_VALUE, "capsule " + std::to_string(c) + " ends at sphere " +
+                                             std::to_string(farther) + " of " +
+                                             std::to_string(frame.sphere_count)};
+        if (capsule.first == capsule.second)
+            return Refusal{HL_BAD_VALUE, "capsule " + std::to_string(c) + " joins sphere " +
+                                             std::to_string(farther) + " with itself; expected two spheres"};
+        capsules_.push_back(capsule);
+    }
+    input.capsules = capsules_;
     return std::nullopt;
 }
 
@@ -409,7 +445,8 @@ hl_instance_info Instance::describe() const {
                  ownBytes(roots_.size(), positions_.size(), hairs_ || !levels_ ? velocities_.size() : 0) +
                  hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
-                 (body_ ? body_->bytes() : 0) + spheres_.size() * sizeof(Sphere) + bytesOfLevels() +
+                 restCapsules_.size() * sizeof(Capsule) + (body_ ? body_->bytes() : 0) +
+                 spheres_.size() * sizeof(Sphere) + bytesOfLevels() +
                  (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3) +
                  allStrands_.size() * sizeof(std::uint32_t) + rootsBefore_.size() * sizeof(Float3) +
                  (clip_ ? clip_->bytes() : 0);

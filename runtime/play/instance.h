@@ -158,6 +158,7 @@ class Instance {
     Outcome placeRoots(const hl_frame& frame);
     void placeBody(const hl_frame& frame, FrameInput& input);
     Outcome placeSpheres(const hl_frame& frame, FrameInput& input);
+    Outcome placeCapsules(const hl_frame& frame, FrameInput& input);
     void takeTurns();
     void takeOrigin(const hl_frame& frame);
     bool asBefore(const hl_frame& frame) const;
@@ -172,6 +173,7 @@ class Instance {
     Radii radii_{};
     std::vector<std::uint32_t> offsets_;
     std::vector<asset::Sphere> restSpheres_;
+    std::vector<Capsule> restCapsules_, capsules_;
     std::vector<Sphere> spheres_;
     std::shared_ptr<const BodyField> body_;  ///< null: none
     std::vector<std::size_t> bodyBones_;     // of a frame's bones

@@ -208,7 +208,7 @@ struct CpuFrame {
     explicit CpuFrame(const Scene& scene) {
         const runtime::RestShape& shape = *scene.shape;
         const float dt = scene.input().dt;
-        runtime::takeSpheres(scene.settings, shape.longestStrand, scene.state.spheres, scene.spheres,
+        runtime::takeSpheres(scene.settings, shape.longestStrand, scene.state.spheres, scene.spheres, {},
                              spheres);
         wind.wind = runtime::makeWind(scene.settings);
         runtime::FramePlanInput planInput;

@@ -54,6 +54,7 @@ Json toJson(const std::vector<CollisionSphere>& spheres) {
                         {"centre", valueToJson(sphere.centre)},
                         {"radius", readableDecimal(sphere.radius)},
                         {"bone", sphere.bone}});
+        if (sphere.joined >= 0) list.back()["joined"] = sphere.joined;
     }
     return list;
 }
@@ -82,6 +83,7 @@ CollisionSphere readSphere(JsonReader& reader) {
     sphere.centre = reader.vector("centre", -kAnyFloat, kAnyFloat, "m");
     sphere.radius = static_cast<float>(reader.number("radius", 0, kAnyFloat, "m"));
     sphere.bone = reader.string("bone");
+    if (reader.has("joined")) sphere.joined = static_cast<std::int32_t>(reader.count("joined", 0, 1u << 30));
     if (reader.ok() && !(sphere.radius > 0)) reader.complain("radius", "is 0", "expected more than 0 m");
     reader.finish();
     return sphere;

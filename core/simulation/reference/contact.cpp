@@ -32,10 +32,11 @@ Vec3d normalAt(const Vec3d& x, const SphereNow& sphere) {
 }
 
 std::vector<Contact> findContacts(const Physics& physics, const StrandShape& shape,
-                                  std::span<const SphereNow> spheres, const StrandState& state) {
+                                  std::span<const ColliderNow> colliders, const StrandState& state) {
     std::vector<Contact> contacts;
-    for (const SphereNow& sphere : spheres) {
+    for (const ColliderNow& collider : colliders) {
         for (std::size_t p = shape.firstFree; p < shape.points(); ++p) {
+            const SphereNow sphere = collider.at(state.x[p]);
             if ((state.x[p] - sphere.center).norm() >= reach(physics, shape, p, sphere.radius)) continue;
             Contact contact{p, normalAt(state.x[p], sphere), sphere.velocity, 0.0};
             const double speed = contact.normal.dot(state.v[p] - sphere.velocity);
@@ -93,11 +94,12 @@ bool solveVelocities(const Physics& physics, const StrandShape& shape, std::vect
 }
 
 /// Deepest penetration, before the points that are inside go to the surface.
-double pushOut(const Physics& physics, const StrandShape& shape, std::span<const SphereNow> spheres,
+double pushOut(const Physics& physics, const StrandShape& shape, std::span<const ColliderNow> colliders,
                std::vector<Vec3d>& x, bool move) {
     double deepest = 0.0;
-    for (const SphereNow& sphere : spheres) {
+    for (const ColliderNow& collider : colliders) {
         for (std::size_t p = shape.firstFree; p < shape.points(); ++p) {
+            const SphereNow sphere = collider.at(x[p]);
             const double keep = reach(physics, shape, p, sphere.radius);
             const double depth = keep - (x[p] - sphere.center).norm();
             deepest = std::max(deepest, depth);
@@ -109,13 +111,14 @@ double pushOut(const Physics& physics, const StrandShape& shape, std::span<const
 
 /// Moves the points from `moved` to the surfaces, with their lengths. Where that would take them too far they
 /// stay at `x`, which has its lengths.
-void resolvePositions(const Physics& physics, const StrandShape& shape, std::span<const SphereNow> spheres,
-                      const std::vector<Vec3d>& moved, std::vector<Vec3d>& x) {
+void resolvePositions(const Physics& physics, const StrandShape& shape,
+                      std::span<const ColliderNow> colliders, const std::vector<Vec3d>& moved,
+                      std::vector<Vec3d>& x) {
     std::vector<Vec3d> next = moved;
     const double maximum =
-        kMaxGain * std::max(pushOut(physics, shape, spheres, x, false), largestChange(x, moved));
+        kMaxGain * std::max(pushOut(physics, shape, colliders, x, false), largestChange(x, moved));
     for (int pass = 0; pass < kMaxSweeps; ++pass) {
-        const double deepest = pushOut(physics, shape, spheres, next, true);
+        const double deepest = pushOut(physics, shape, colliders, next, true);
         if (physics.lengthHeld && !projectLengths(shape, next)) return;
         if (!(largestChange(x, next) <= maximum)) return;
         if (deepest < kSmallDistance) break;
@@ -126,9 +129,9 @@ void resolvePositions(const Physics& physics, const StrandShape& shape, std::spa
 }  // namespace
 
 ContactReport resolveContacts(const Physics& physics, const StrandShape& shape, double h,
-                              std::span<const SphereNow> spheres, StrandState& state) {
+                              std::span<const ColliderNow> colliders, StrandState& state) {
     ContactReport report;
-    std::vector<Contact> contacts = findContacts(physics, shape, spheres, state);
+    std::vector<Contact> contacts = findContacts(physics, shape, colliders, state);
     report.points = contacts.size();
     if (contacts.empty()) return report;
 
@@ -142,9 +145,9 @@ ContactReport resolveContacts(const Physics& physics, const StrandShape& shape, 
     std::vector<Vec3d> moved = state.x;
     for (std::size_t p = shape.firstFree; p < shape.points(); ++p)
         moved[p] += 0.5 * h * (state.v[p] - before[p]);
-    resolvePositions(physics, shape, spheres, moved, state.x);
+    resolvePositions(physics, shape, colliders, moved, state.x);
     if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
-    report.penetration = pushOut(physics, shape, spheres, state.x, false);
+    report.penetration = pushOut(physics, shape, colliders, state.x, false);
     report.approach = fastestApproach(contacts, state.v);
     return report;
 }

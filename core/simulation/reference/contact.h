@@ -17,6 +17,6 @@ struct ContactReport {
 /// points out along the radius (p_a of Eq. 21, the centre added) and lengths in turn until both hold.
 /// Contacts last the whole step: of order 1.
 ContactReport resolveContacts(const Physics& physics, const StrandShape& shape, double h,
-                              std::span<const SphereNow> spheres, StrandState& state);
+                              std::span<const ColliderNow> colliders, StrandState& state);
 
 }  // namespace hairloom::reference

@@ -137,7 +137,8 @@ struct Inside {
 template <class Visit>  // visit(Inside)
 void forEachSphereAround(const Physics& physics, const StrandShape& shape, const Vec3d& x, std::size_t p,
                          const Environment& around, Visit&& visit) {
-    for (const SphereNow& sphere : around.spheres) {
+    for (const ColliderNow& collider : around.colliders) {
+        const SphereNow sphere = collider.at(x);
         const Vec3d offset = x - sphere.center;
         const double distance = offset.norm(), r = reach(physics, shape, p, sphere.radius);
         if (distance >= r) continue;

@@ -61,7 +61,8 @@ PointForce pointForce(const Physics& physics, const StrandShape& body, std::size
         rate += drag;
     }
     result.speed = mass * rate * Eigen::Matrix3d::Identity();
-    for (const SphereNow& sphere : around.spheres) addContact(physics, body, p, x, v, sphere, h, result);
+    for (const ColliderNow& collider : around.colliders)
+        addContact(physics, body, p, x, v, collider.at(x), h, result);
     return result;
 }
 

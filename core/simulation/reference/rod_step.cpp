@@ -32,7 +32,7 @@ struct Stage {
     Quaterniond root;
     Vec3d rootVelocity;
     double time;
-    std::vector<SphereNow> spheres;
+    std::vector<ColliderNow> colliders;
     std::vector<Vec3d> x, v;            // of points
     std::vector<Quaterniond> rotation;  // of segments
     std::vector<Vec3d> tension;
@@ -137,7 +137,7 @@ class RodStep {
         stage.root = path.rotation(share);
         stage.rootVelocity = path.velocity();
         stage.time = path.time(share);
-        stage.spheres = path.spheres(share);
+        stage.colliders = path.colliders(share);
         stage.x = path.clamped(body_, share).x;
         stage.tension = motion_.tension;
         stage.relative = start_;
@@ -172,7 +172,7 @@ class RodStep {
         fillRates();
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             Stage& stage = stages_[i];
-            const Environment around{stage.time, stage.root, stage.rootVelocity, stage.spheres};
+            const Environment around{stage.time, stage.root, stage.rootVelocity, stage.colliders};
             stage.moments.clear();
             stage.forces.clear();
             for (std::size_t j = first_; j < segments_; ++j) {

@@ -14,7 +14,7 @@ struct RootPath {
     Vec3d from, to;
     Quaterniond turnFrom, turnTo;  // in the same half
     double dt, endTime;
-    std::vector<SphereNow> spheresAtEnd;
+    std::vector<ColliderNow> collidersAtEnd;
 
     Vec3d velocity() const { return (to - from) / dt; }
     Vec3d position(double share) const { return from + (to - from) * share; }
@@ -27,9 +27,13 @@ struct RootPath {
         const Quaterniond rate(Eigen::Vector4d(straight - q * q.dot(straight)));
         return 2.0 * (rate * Quaterniond(q).conjugate()).vec();
     }
-    std::vector<SphereNow> spheres(double share) const {
-        std::vector<SphereNow> now = spheresAtEnd;
-        for (SphereNow& sphere : now) sphere.center -= sphere.velocity * ((1.0 - share) * dt);
+    std::vector<ColliderNow> colliders(double share) const {
+        std::vector<ColliderNow> now = collidersAtEnd;
+        const double left = (1.0 - share) * dt;
+        for (ColliderNow& collider : now) {
+            collider.sphere.center -= collider.sphere.velocity * left;
+            if (collider.other) collider.other->center -= collider.other->velocity * left;
+        }
         return now;
     }
     ClampedEnd clamped(const StrandShape& shape, double share) const {

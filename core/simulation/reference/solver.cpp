@@ -88,6 +88,8 @@ Frame frameOf(const runtime::FrameInput& input) {
         frame.roots_ws.push_back({toDouble(root.position), toDouble(root.rotation)});
     for (const runtime::Sphere& sphere : input.spheres)
         frame.spheres.push_back({toDouble(sphere.center_ws), static_cast<double>(sphere.radius)});
+    for (const runtime::Capsule& capsule : input.capsules)
+        frame.capsules.push_back({capsule.first, capsule.second});
     return frame;
 }
 
@@ -153,21 +155,40 @@ void Solver::setMotion(std::span<const Vec3d> positions_ws, std::span<const Vec3
     }
 }
 
-StepReport Solver::step(const Frame& frame, const StepOptions& options) {
-    assert(frame.roots_ws.size() == strands_.size() && options.substeps > 0);
-    StepReport report;
-    if (!(frame.dt > 0.0)) return report;
-    physics_.takeWind(settings_, frame.wind);
-    std::vector<SphereNow> spheres;
+/// Spheres, and capsules in place of those that are their ends.
+std::vector<ColliderNow> Solver::collidersOf(const Frame& frame) const {
+    std::vector<std::optional<SphereNow>> spheres;
     for (std::size_t i = 0; i < frame.spheres.size(); ++i) {
+        spheres.emplace_back();
         if (!usable(frame.spheres[i])) continue;
         SphereNow now{frame.spheres[i].center_ws, Vec3d::Zero(), frame.spheres[i].radius};
         if (i < spheres_.size() && usable(spheres_[i])) {
             const Vec3d motion = now.center - spheres_[i].center_ws;
             if (motion.norm() <= physics_.teleportDistance) now.velocity = motion / frame.dt;
         }
-        spheres.push_back(now);
+        spheres.back() = now;
     }
+    std::vector<ColliderNow> colliders;
+    std::vector<bool> isEnd(spheres.size());
+    for (const auto& [first, second] : frame.capsules) {
+        const bool both = first < spheres.size() && second < spheres.size() && first != second &&
+                          spheres[first] && spheres[second];
+        if (!both) continue;
+        colliders.push_back({*spheres[first], spheres[second]});
+        isEnd[first] = isEnd[second] = true;
+    }
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        if (spheres[i] && !isEnd[i]) colliders.push_back({*spheres[i]});
+    }
+    return colliders;
+}
+
+StepReport Solver::step(const Frame& frame, const StepOptions& options) {
+    assert(frame.roots_ws.size() == strands_.size() && options.substeps > 0);
+    StepReport report;
+    if (!(frame.dt > 0.0)) return report;
+    physics_.takeWind(settings_, frame.wind);
+    const std::vector<ColliderNow> colliders = collidersOf(frame);
     spheres_ = frame.spheres;
 
     for (std::size_t s = 0; s < strands_.size(); ++s) {
@@ -181,7 +202,7 @@ StepReport Solver::step(const Frame& frame, const StepOptions& options) {
             strand.root = to;
         }
         RootPath path{strand.root.position, to.position, strand.root.rotation, to.rotation, frame.dt,
-                      frame.time,           spheres};
+                      frame.time,           colliders};
         if (path.turnFrom.dot(path.turnTo) < 0.0) path.turnTo.coeffs() *= -1.0;
         stepStrand(strand, path, options, report);
         strand.root = to;
@@ -198,7 +219,7 @@ void Solver::stepStrand(Strand& strand, const RootPath& path, const StepOptions&
     if (physics_.lengthHeld && shape.firstFree < shape.points())
         projectVelocities(shape, strand.state.x, strand.state.v);
 
-    const bool impulses = !physics_.penalty && !path.spheresAtEnd.empty();
+    const bool impulses = !physics_.penalty && !path.collidersAtEnd.empty();
     const double share = 1.0 / static_cast<double>(options.substeps);
     for (std::uint32_t i = 0; i < options.substeps; ++i) {
         const double from = static_cast<double>(i) * share, to = static_cast<double>(i + 1) * share;
@@ -223,9 +244,9 @@ void Solver::stepStrand(Strand& strand, const RootPath& path, const StepOptions&
 
 bool Solver::trySubstep(Strand& strand, const RootPath& path, double from, double to, double weight) const {
     const double within = from + weight * (to - from), h = (to - from) * path.dt;
-    const std::vector<SphereNow> spheres = path.spheres(within);
+    const std::vector<ColliderNow> colliders = path.colliders(within);
     const Environment around{path.endTime - (1.0 - within) * path.dt, path.rotation(within), path.velocity(),
-                             spheres};
+                             colliders};
     StrandState next = strand.state;
     const bool converged =
         substep(physics_, strand.shape, h, weight, around, path.clamped(strand.shape, to), next, strand.work);
@@ -296,10 +317,10 @@ void Solver::advance(Strand& strand, const RootPath& path, double from, double t
     ++report.steps;
     report.failed += solved ? 0 : 1;
     if (!solved) carryAlong(strand, path, from, to);
-    const std::vector<SphereNow> spheres = path.spheres(to);
-    if (physics_.penalty || spheres.empty()) return;
+    const std::vector<ColliderNow> colliders = path.colliders(to);
+    if (physics_.penalty || colliders.empty()) return;
     const ContactReport contact =
-        resolveContacts(physics_, strand.shape, (to - from) * path.dt, spheres, strand.state);
+        resolveContacts(physics_, strand.shape, (to - from) * path.dt, colliders, strand.state);
     report.contacts += contact.points;
     report.deepestPenetration = std::max(report.deepestPenetration, contact.penetration);
     report.fastestApproach = std::max(report.fastestApproach, contact.approach);

@@ -51,10 +51,11 @@ struct Sphere {
 
 /// As runtime::FrameInput.
 struct Frame {
-    double dt = 1.0 / 60.0;        ///< s, above 0
-    double time = 0.0;             ///< s, at the end of the frame
-    std::vector<Root> roots_ws;    ///< one per strand
-    std::vector<Sphere> spheres;   ///< of radius 0 or less: left out
+    double dt = 1.0 / 60.0;                                 ///< s, above 0
+    double time = 0.0;                                      ///< s, at the end of the frame
+    std::vector<Root> roots_ws;                             ///< one per strand
+    std::vector<Sphere> spheres;                            ///< of radius 0 or less: left out
+    std::vector<std::array<std::size_t, 2>> capsules = {};  ///< hulls of two of the spheres
     runtime::WindInput wind = {};  ///< what the frame gives in place of the settings' air
 };
 
@@ -131,6 +132,7 @@ class Solver {
 
     Solver(const runtime::SimulationSettings& settings, BendingForce bendingForce)
         : settings_(settings), physics_(settings, bendingForce) {}
+    std::vector<ColliderNow> collidersOf(const Frame& frame) const;
     void stepStrand(Strand& strand, const RootPath& path, const StepOptions& options,
                     StepReport& report) const;
     bool trySubstep(Strand& strand, const RootPath& path, double from, double to, double weight) const;

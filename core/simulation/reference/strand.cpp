@@ -145,6 +145,21 @@ StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authored
     return shape;
 }
 
+SphereNow ColliderNow::at(const Vec3d& x) const {
+    if (!other) return sphere;
+    // f(s) = |x − c(s)| − r(s) is convex; with x at (a, b) along and across the axis, f'(s) = 0 where
+    // a − s = b k / √(1 − k²), k the change of r per metre.
+    const Vec3d axis = other->center - sphere.center;
+    const double size = axis.norm(), change = other->radius - sphere.radius;
+    if (size <= std::abs(change)) return change > 0.0 ? *other : sphere;
+    const double a = axis.dot(x - sphere.center) / size;
+    const double b = axis.cross(x - sphere.center).norm() / size;
+    const double k = change / size;
+    const double share = std::clamp((a + b * k / std::sqrt((1.0 - k) * (1.0 + k))) / size, 0.0, 1.0);
+    return {sphere.center + share * axis, sphere.velocity + share * (other->velocity - sphere.velocity),
+            sphere.radius + share * change};
+}
+
 double reach(const Physics& physics, const StrandShape& shape, std::size_t p, double radius) {
     const double along = static_cast<double>(p) / static_cast<double>(shape.segments());
     return radius + physics.collisionRadiusAtRoot +

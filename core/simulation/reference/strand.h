@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -97,12 +98,22 @@ struct SphereNow {
     double radius;
 };
 
+/// A sphere, or the hull of two.
+struct ColliderNow {
+    SphereNow sphere;
+    std::optional<SphereNow> other = {};
+
+    /// The sphere of the hull that meets x: of all those between the two the one whose surface is lowest
+    /// there.
+    SphereNow at(const Vec3d& x) const;
+};
+
 /// The world at one moment.
 struct Environment {
     double time;           ///< s, of the wind
     Quaterniond rotation;  ///< R, of the root less its rest rotation
     Vec3d rootVelocity;    ///< m/s
-    std::span<const SphereNow> spheres;
+    std::span<const ColliderNow> colliders;
 };
 
 /// Distance that point p keeps from the centre of a sphere of that radius.

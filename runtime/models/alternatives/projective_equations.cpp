@@ -107,7 +107,7 @@ bool ProjectiveEquations::reset(std::span<const RootFrame> roots_ws) {
 bool ProjectiveEquations::step(const FrameInput& input) {
     if (input.roots_ws.size() != strandCount()) return false;
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
-    spheres_.take(input.spheres, settings_.teleportDistance);
+    spheres_.take(input, settings_.teleportDistance);
     const WindyFrame frame(wind_, input);
     const auto strands = [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) runStrand(static_cast<std::uint32_t>(s), frame);

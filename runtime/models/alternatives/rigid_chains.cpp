@@ -150,7 +150,7 @@ bool RigidChains::reset(std::span<const RootFrame> roots_ws) {
 bool RigidChains::step(const FrameInput& input) {
     if (input.roots_ws.size() != strandCount()) return false;
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
-    spheres_.take(input.spheres, settings_.teleportDistance);
+    spheres_.take(input, settings_.teleportDistance);
     const WindyFrame frame(wind_, input);
     const auto strands = [&](std::size_t begin, std::size_t end) {
         thread_local std::vector<Body> bodies;

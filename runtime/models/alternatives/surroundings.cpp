@@ -6,6 +6,7 @@
 
 #include "engine/checks.h"
 #include "hairloom/alternatives/moving_spheres.h"
+#include "hairloom/capsules.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -82,10 +83,12 @@ AirPath::AirPath(const Wind& wind, const WindyFrame& frame, const RootPath& path
       tipFrom(airAt(wind, frame.windFrom, path.from.position + tip)),
       tipTo(airAt(wind, frame.windTo, path.to.position + tip)) {}
 
-void MovingSpheres::take(std::span<const Sphere> spheres, float teleportDistance) {
+void MovingSpheres::take(const FrameInput& input, float teleportDistance) {
     moving_.clear();
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
-        const Sphere& now = spheres[i];
+    now_.assign(input.spheres.begin(), input.spheres.end());
+    appendCapsules(input.capsules, now_);
+    for (std::size_t i = 0; i < now_.size(); ++i) {
+        const Sphere& now = now_[i];
         if (!isFinite(now.center_ws) || !std::isfinite(now.radius) || !(now.radius > 0.0f)) continue;
         Float3 motion;
         if (i < last_.size() && isFinite(last_[i].center_ws)) {
@@ -94,7 +97,7 @@ void MovingSpheres::take(std::span<const Sphere> spheres, float teleportDistance
         }
         moving_.push_back({now.center_ws - motion, motion, now.radius});
     }
-    last_.assign(spheres.begin(), spheres.end());
+    last_.swap(now_);
 }
 
 }  // namespace hairloom::runtime

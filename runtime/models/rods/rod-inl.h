@@ -461,7 +461,7 @@ void stepRodsIn(const RodBlock& block, LaneFrame& lanes, const SubstepContext& c
 /// Each block pays for what its strands need.
 void stepRods(const BlockView& view, LaneFrame& lanes, const SubstepContext& context) {
     const auto& block = static_cast<const RodBlock&>(view);
-    const bool contacts = !lanes.touchable.empty() || context.body;
+    const bool contacts = !lanes.touchable.empty() || !lanes.touchableCapsules.empty() || context.body;
     contacts ? stepRodsIn<true>(block, lanes, context) : stepRodsIn<false>(block, lanes, context);
 }
 

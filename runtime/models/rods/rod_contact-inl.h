@@ -36,8 +36,8 @@ HWY_INLINE RodContact rodChosen(RodMask which, const RodContact& yes, const RodC
     return contact;
 }
 
-/// Calls visit(touch, near) for each shape that is near the node in some lane; `root` is where its root is at
-/// the end of the substep. Other lanes are outside of the shape, and were.
+/// Calls visit(touch, near) for each sphere and capsule that is near the node in some lane; `root` is where
+/// its root is at the end of the substep. Other lanes are outside of the shape, and were.
 template <class Visit>
 HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& node,
                              const SubstepContext& context, Visit&& visit) {
@@ -53,6 +53,19 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
         if (HWY_LIKELY(hn::AllFalse(D(), near))) continue;
         visit(rodTouchSphere(node, all3(centre_ws) - root, all3(sphere.step), all(sphere.radius),
                              context.sweeps),
+              near);
+    }
+    for (const MovingCapsule& capsule : lanes.touchableCapsules) {
+        const MovingSphere& around = capsule.around;
+        const auto substeps = static_cast<float>(context.index + 1);
+        const V3 to = position_ws - all3(around.from_ws + around.step * substeps);
+        const V farthest = away + all(1.001f * (around.radius + around.stepLength) +
+                                      static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
+        const auto near = dot(to, to) <= farthest * farthest;
+        if (HWY_LIKELY(hn::AllFalse(D(), near))) continue;
+        const V3 moved = context.sweeps ? node.displacement : zero3();
+        const CapsuleSphere sphere = sphereOfCapsule(capsule, substeps, position_ws, moved);
+        visit(rodTouchSphere(node, sphere.centre_ws - root, sphere.step, sphere.radius, context.sweeps),
               near);
     }
 }

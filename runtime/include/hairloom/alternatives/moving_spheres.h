@@ -18,15 +18,15 @@ class MovingSpheres {
         Float3 from_ws, motion;  ///< metres
         float radius = 0.0f;     ///< metres
     };
-    /// Allocates only for more spheres than ever before.
-    void take(std::span<const Sphere> spheres, float teleportDistance);
+    /// Of capsules the spheres along them. Allocates only for more than ever before.
+    void take(const FrameInput& input, float teleportDistance);
     /// The next spheres do not move.
     void forget() { last_.clear(); }
     std::span<const Moving> all() const { return moving_; }
 
   private:
     std::vector<Moving> moving_;
-    std::vector<Sphere> last_;
+    std::vector<Sphere> now_, last_;
 };
 
 }  // namespace hairloom::runtime
