@@ -152,8 +152,8 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
     planInput.rootsMax_ws = high;
     planInput.rootMotion = placed.motion;
     planInput.fastest = std::numeric_limits<float>::infinity();
-    next.plan = runtime::planFrame(settings, planInput, next.wind, frameSpheres.usable, frameSpheres.motion,
-                                   input.dt);
+    next.plan = runtime::planFrame(settings, planInput, next.wind, frameSpheres.planned,
+                                   frameSpheres.plannedMotion, input.dt);
     return next;
 }
 

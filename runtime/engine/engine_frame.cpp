@@ -396,7 +396,7 @@ void Engine::Impl::step(const FrameInput& input) {
     report_.substeps = substeps_ = substepsOf(input);
     takeBody(input);
     wakeBlocks();
-    replan(spheres_.usable, spheres_.motion,
+    replan(spheres_.planned, spheres_.plannedMotion,
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
            {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
            input.dt);

@@ -82,6 +82,8 @@ void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
     // However long they get: the next frame asks for no memory.
     spheres.usable.reserve(spheres.given + kMaxAlongCapsule * capsules.size());
     spheres.motion.reserve(spheres.given + kMaxAlongCapsule * capsules.size());
+    spheres.planned.reserve(spheres.given + (kMaxAlongCapsule + 1) * capsules.size());
+    spheres.plannedMotion.reserve(spheres.given + (kMaxAlongCapsule + 1) * capsules.size());
     for (const Capsule& capsule : capsules) {
         if (!isCapsule(capsule, std::span<const Sphere>(spheres.usable).first(spheres.given))) {
             ++spheres.rejected;
@@ -97,6 +99,17 @@ void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
             spheres.usable.push_back(sphereAlongCapsule(first, second, k, count));
             spheres.motion.push_back(motion + (other - motion) * share);
         }
+    }
+    spheres.planned.assign(spheres.usable.begin(), spheres.usable.end());
+    spheres.plannedMotion.assign(spheres.motion.begin(), spheres.motion.end());
+    for (const Capsule& capsule : spheres.capsules) {
+        const Sphere first = spheres.usable[capsule.first], second = spheres.usable[capsule.second];
+        if (countAlongCapsule(first, second) < kMaxAlongCapsule) continue;
+        const Float3 motion = spheres.motion[capsule.first], other = spheres.motion[capsule.second];
+        Sphere around = sphereAround(first, second);
+        around.radius += 0.5f * length(other - motion);
+        spheres.planned.push_back(around);
+        spheres.plannedMotion.push_back((motion + other) * 0.5f);
     }
 }
 

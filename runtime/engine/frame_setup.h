@@ -21,7 +21,10 @@ struct FrameSpheres {
     std::vector<Capsule> capsules;   ///< between usable ones
     std::vector<std::uint8_t> ends;  ///< 1 for a sphere that is the end of a capsule
     std::vector<Float3> motion;      ///< each one's displacement during the frame; none for a cut
-    std::uint32_t rejected = 0;      ///< not finite or without radius
+    /// What a plan looks at: the usable ones, and what holds capsules that few spheres along them stand for.
+    std::vector<Sphere> planned;
+    std::vector<Float3> plannedMotion;
+    std::uint32_t rejected = 0;  ///< not finite or without radius
     /// Around a root within `radius` of which a sphere that has changed since the last frame may touch the
     /// hair: what sleeps there wakes up.
     std::vector<Sphere> waking;

@@ -123,7 +123,7 @@ void GpuGuides::take(const FrameInput& input) {
     // How fast hair is, the device alone knows.
     planInput.fastest = std::numeric_limits<float>::infinity();
     const EffectPlan plan =
-        planFrame(settings_, planInput, wind_, spheres_.usable, spheres_.motion, input.dt);
+        planFrame(settings_, planInput, wind_, spheres_.planned, spheres_.plannedMotion, input.dt);
     std::vector<MovingSphere> moving;
     if (plan.on(Effect::collision)) moveSpheres(spheres_, substepsIn(settings_, input.dt), moving);
     const SubstepContext context =

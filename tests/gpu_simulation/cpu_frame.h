@@ -219,7 +219,8 @@ struct CpuFrame {
         planInput.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
         planInput.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         planInput.fastest = std::numeric_limits<float>::infinity();
-        plan = runtime::planFrame(scene.settings, planInput, wind, spheres.usable, spheres.motion, dt);
+        plan =
+            runtime::planFrame(scene.settings, planInput, wind, spheres.planned, spheres.plannedMotion, dt);
         if (plan.on(runtime::Effect::collision)) runtime::moveSpheres(spheres, scene.substeps, moving);
         context = runtime::substepContext(scene.settings, plan, dt, scene.substeps, moving);
     }
