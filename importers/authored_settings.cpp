@@ -30,7 +30,7 @@ Result<std::shared_ptr<const Groom>> readSettingsText(const std::string& file, c
     if (reader.has("shadows")) readSettings(reader.object("shadows"), authored->shadows);
     readSettings(reader.object("interpolation"), authored->interpolation);
     readSettings(reader.object("placement"), authored->placement);
-    for (JsonReader& sphere : reader.objects("spheres")) authored->spheres.push_back(readSphere(sphere));
+    authored->spheres = readSphereList(reader);
     authored->layers = readLayers(reader);
     authored->operators = readOperatorList(reader, readOperatorShape);
     if (auto status = reader.status(); !status) {

@@ -111,8 +111,7 @@ Result<std::vector<CollisionSphere>> readSpheres(const std::string& path) {
     if (!parsed) return tl::unexpected(parsed.error());
     const nlohmann::json document{{"spheres", std::move(*parsed)}};
     JsonReader reader(document, path);
-    std::vector<CollisionSphere> spheres;
-    for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
+    std::vector<CollisionSphere> spheres = readSphereList(reader);
     if (auto status = reader.status(); !status) return tl::unexpected(status.error());
     return spheres;
 }

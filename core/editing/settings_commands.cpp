@@ -303,9 +303,7 @@ MakeCommand readSettingsStep(JsonReader& reader) {
 }
 
 MakeCommand readSpheres(JsonReader& reader) {
-    std::vector<CollisionSphere> spheres;
-    for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
-    return [spheres](const Document& document) -> CommandResult {
+    return [spheres = readSphereList(reader)](const Document& document) -> CommandResult {
         return setSpheres(document.model(), spheres, "Spheres");
     };
 }

@@ -88,11 +88,48 @@ TEST_F(Colliders, FewSpheresComeAsCloseAsWasAskedFor) {
     EXPECT_THAT(fine.errors, HasSubstr("--fit field"));
     EXPECT_EQ(fine.json()["notes"].size(), 1u);
     EXPECT_EQ(run("colliders hair.hairloom -o x.hairloom").exitCode, 2);
-    EXPECT_EQ(run("colliders hair.hairloom --fit capsules -o x.hairloom").exitCode, 2);
+    EXPECT_EQ(run("colliders hair.hairloom --fit boxes -o x.hairloom").exitCode, 2);
     EXPECT_EQ(run("colliders hair.hairloom --fit field --count 9 -o x.hairloom").exitCode, 2);
     const Outcome lost = run("colliders hair.hairloom --fit field --character none.glb -o x.hairloom");
     EXPECT_EQ(lost.exitCode, 1);
     EXPECT_THAT(lost.errors, HasSubstr("none.glb"));
+    EXPECT_FALSE(fs::exists(folder / "x.hairloom"));
+}
+
+TEST_F(Colliders, CapsulesCoverMoreThanAsManySpheres) {
+    runJson(createArguments());
+    const std::string how = " --count 10 --near 0.05 -o ";
+    const auto spheres = runJson("colliders hair.hairloom --fit spheres" + how + "spheres.hairloom");
+    const auto capsules = runJson("colliders hair.hairloom --fit capsules" + how + "capsules.hairloom");
+    EXPECT_EQ(spheres["capsules"], 0);
+    EXPECT_EQ(capsules["spheres"], 10);
+    ASSERT_GE(capsules["capsules"], 3);
+    EXPECT_LE(capsules["worst_gap_mm"], spheres["worst_gap_mm"]);
+    EXPECT_LT(capsules["mean_gap_mm"], spheres["mean_gap_mm"]);
+    const auto listed = runJson("colliders capsules.hairloom --near 0.05");
+    EXPECT_EQ(listed["colliders"], capsules["colliders"]);
+    EXPECT_EQ(listed["worst_gap_mm"], capsules["worst_gap_mm"]);
+    std::size_t found = 0;
+    for (const auto& row : listed["colliders"]) {
+        if (row["kind"] != "capsule") continue;
+        ++found;
+        EXPECT_EQ(row["bone"], row["end"]["bone"]);
+        EXPECT_GT(row["end"]["radius"], 0);
+    }
+    EXPECT_EQ(found, listed["capsules"]);
+    // They hold hair, on any engine that meets spheres.
+    runJson(
+        "set capsules.hairloom simulation.angularStiffness=0.01 simulation.restGravity=0 -o soft.hairloom "
+        "--force");
+    for (const char* model : {"rods", "springs"}) {
+        const auto moved = runJson(std::string("simulate soft.hairloom --frames 60 --model ") + model);
+        EXPECT_LT(moved["max_penetration_mm"], 1) << model;
+    }
+    // One that has no second sphere is no project.
+    EXPECT_EQ(run("validate capsules.hairloom").exitCode, 0);
+    std::ofstream(folder / "wrong.json")
+        << R"([{"name": "a", "centre": [0, 1, 0], "radius": 0.1, "bone": "", "joined": 5}])";
+    EXPECT_EQ(run("spheres hair.hairloom --from wrong.json -o x.hairloom").exitCode, 1);
     EXPECT_FALSE(fs::exists(folder / "x.hairloom"));
 }
 

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 
 #include "core/editing/penetration.h"
+#include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
 #include "core/editing/sphere_fit.h"
+#include "core/groom/spheres.h"
 #include "tests/editing/editing_samples.h"
 #include "tests/geometry/test_meshes.h"
 
@@ -173,6 +175,108 @@ TEST(SphereCommands, PlaceMoveResizeAttachMirrorRenameRemove) {
     EXPECT_EQ(moveSphere(document.model(), 0, Vec3f::Constant(std::numeric_limits<float>::infinity())),
               nullptr);
     EXPECT_FALSE(hasErrors(validate(document.groom())));
+}
+
+TEST(SphereCommands, JoinSpheresInCapsules) {
+    Document document(hairOnHead(20));
+    const auto spheres = [&]() -> const std::vector<CollisionSphere>& { return document.groom().spheres; };
+    const std::vector<CollisionSphere> three{{"A", Vec3f(0, 0, 0), 0.1f, ""},
+                                             {"Arm.L", Vec3f(0.3f, 0, 0), 0.05f, "arm_L"},
+                                             {"Hand.L", Vec3f(0.5f, 0, 0), 0.03f, "hand_L"}};
+    document.perform(setSpheres(document.model(), three, "Three"));
+    EXPECT_TRUE(capsulesOf(spheres()).empty());
+    document.perform(joinSphere(document.model(), 1, 2));
+    ASSERT_EQ(capsulesOf(spheres()).size(), 1u);
+    EXPECT_EQ(joinSphere(document.model(), 1, 2), nullptr) << "nothing would change";
+    // The other way round it is the same capsule, not a second one.
+    document.perform(joinSphere(document.model(), 2, 1));
+    EXPECT_EQ(capsulesOf(spheres()).size(), 1u);
+    document.perform(joinSphere(document.model(), 1, 2));
+    document.perform(mirrorSphere(document.model(), 1));
+    ASSERT_EQ(spheres().size(), 5u);
+    EXPECT_EQ(spheres()[3].name, "Arm.R");
+    EXPECT_EQ(spheres()[4].name, "Hand.R");
+    EXPECT_EQ(spheres()[3].joined, 4);
+    EXPECT_EQ(spheres()[1].joined, 2);
+    // What is behind one that goes keeps its partner.
+    document.perform(removeSphere(document.model(), 0));
+    EXPECT_EQ(spheres()[0].joined, 1);
+    EXPECT_EQ(spheres()[2].joined, 3);
+    document.perform(removeSphere(document.model(), 1));
+    EXPECT_EQ(spheres()[0].joined, -1) << "its partner has gone";
+    EXPECT_EQ(capsulesOf(spheres()).size(), 1u);
+    document.perform(joinSphere(document.model(), 1, -1));
+    EXPECT_TRUE(capsulesOf(spheres()).empty());
+    document.perform(joinSphere(document.model(), 1, 99));
+    EXPECT_TRUE(capsulesOf(spheres()).empty());
+    EXPECT_FALSE(hasErrors(validate(document.groom())));
+    document.undo();
+    Groom wrong = document.groom();
+    wrong.spheres[0].joined = 7;
+    EXPECT_TRUE(hasErrors(validate(wrong)));
+    wrong.spheres[0].joined = 0;
+    EXPECT_TRUE(hasErrors(validate(wrong)));
+}
+
+TEST(CapsuleFit, ClosesAGapBetweenSpheresAndBulgesNoFarther) {
+    // A bar with round ends, 40 cm long: two spheres cover its ends alone.
+    PolygonSoup soup = test::icosphereSoup(5, 0.05f);
+    for (Vec3f& at : soup.positions) at.x() += at.x() > 0 ? 0.15f : -0.15f;
+    const ScalpMesh bar = test::meshOf(soup);
+    std::vector<CollisionSphere> ends{{"a", Vec3f(-0.15f, 0, 0), 0.05f, ""},
+                                      {"b", Vec3f(0.15f, 0, 0), 0.05f, ""}};
+    // The rows of faces between the halves are long: the vertices alone lie on the ends' own spheres.
+    FaceSet all;
+    for (std::uint32_t face = 0; face < bar.triangleCount(); ++face) all.push_back(face);
+    std::vector<CollisionSphere> apart = ends;
+    joinSpheres(bar, all, 0.001f, apart);
+    EXPECT_TRUE(capsulesOf(apart).empty()) << "no vertex lies outside, so that nothing is gained";
+
+    const ScalpMesh three = threeBalls();
+    SphereFitOptions options;
+    options.count = 8;
+    // A stretched ball: spheres leave scallops that capsules fill.
+    PolygonSoup egg = test::icosphereSoup(5, 0.05f);
+    for (Vec3f& at : egg.positions) at.x() *= 4;
+    const ScalpMesh stretched = test::meshOf(egg);
+    for (const ScalpMesh* mesh : {&three, &stretched}) {
+        auto fit = fitSpheres(*mesh, options);
+        ASSERT_TRUE(fit);
+        std::vector<CollisionSphere> joined = fit->spheres;
+        joinSpheres(*mesh, {}, 0.001f, joined);
+        const SphereFit after = measureSpheres(*mesh, {}, joined);
+        EXPECT_LE(after.worstGap, fit->worstGap);
+        EXPECT_LE(after.meanGap, fit->meanGap);
+        EXPECT_LE(after.worstBulge, std::max(fit->worstBulge, 0.001f) + 1e-4f);
+        if (mesh == &stretched) {
+            EXPECT_LT(after.meanGap, 0.7f * fit->meanGap);
+            EXPECT_GE(capsulesOf(joined).size(), 3u);
+        }
+        // Those on different bones stay apart: a capsule would stretch with the pose.
+        std::vector<CollisionSphere> boned = fit->spheres;
+        for (std::size_t s = 0; s < boned.size(); ++s) boned[s].bone = std::to_string(s);
+        joinSpheres(*mesh, {}, 0.001f, boned);
+        EXPECT_TRUE(capsulesOf(boned).empty());
+    }
+}
+
+TEST(ColliderDistance, IsThatOfTheDeepestSphereOfAHull) {
+    const std::vector<CollisionSphere> pair{{"a", Vec3f(0, 0, 0), 0.1f, "", 1},
+                                            {"b", Vec3f(0.5f, 0, 0), 0.02f, ""}};
+    const ColliderDistance distance(pair);
+    for (int i = 0; i < 50; ++i) {
+        const float f = static_cast<float>(i);
+        const Vec3f at(0.3f + 0.3f * std::sin(f), 0.15f * std::cos(1.3f * f), 0.1f * std::sin(2.1f * f));
+        float nearest = 1e9f;
+        for (int k = 0; k <= 4000; ++k) {
+            const float share = static_cast<float>(k) / 4000;
+            nearest = std::min(nearest, (at - Vec3f(0.5f * share, 0, 0)).norm() - (0.1f - 0.08f * share));
+        }
+        EXPECT_NEAR(distance(at), nearest, 2e-6f);
+    }
+    const std::vector<Vec3f> moved{Vec3f(0, 1, 0), Vec3f(0.5f, 1, 0)};
+    EXPECT_NEAR(ColliderDistance(pair, moved)(Vec3f(0.25f, 1.2f, 0)), distance(Vec3f(0.25f, 0.2f, 0)), 1e-6f);
+    EXPECT_TRUE(std::isinf(ColliderDistance({})(Vec3f::Zero())));
 }
 
 TEST(SphereCommands, KnowOtherSides) {

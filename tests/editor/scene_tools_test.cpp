@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/editing/settings_commands.h"
+#include "core/groom/spheres.h"
 #include "hairloom/body_field.h"
 #include "tests/editor/tools_fixture.h"
 
@@ -62,6 +63,27 @@ TEST_F(ToolsTest, SpheresAreFittedToTheHead) {
     EXPECT_EQ(bone->currentText().toStdString(), groom().spheres[0].bone);
     find<QPushButton>("sphereMirror")->click();
     EXPECT_EQ(groom().spheres.size(), 13u);
+}
+
+TEST_F(ToolsTest, SpheresAreJoinedInCapsules) {
+    find<QComboBox>("sphereShapes")->setCurrentIndex(1);
+    find<QPushButton>("sphereFit")->click();
+    finishWork();
+    EXPECT_EQ(groom().spheres.size(), 12u);
+    ASSERT_FALSE(capsulesOf(groom().spheres).empty());
+    auto* joined = find<QComboBox>("sphereJoined");
+    auto* list = find<QTreeWidget>("spheres");
+    const auto first = static_cast<int>(capsulesOf(groom().spheres).front().first);
+    list->setCurrentItem(list->topLevelItem(first));
+    EXPECT_EQ(joined->currentData().toInt(), groom().spheres[static_cast<std::size_t>(first)].joined);
+    EXPECT_EQ(list->topLevelItem(first)->text(3), joined->currentText());
+    joined->setCurrentIndex(0);
+    Q_EMIT joined->activated(0);
+    EXPECT_EQ(groom().spheres[static_cast<std::size_t>(first)].joined, -1);
+    EXPECT_EQ(list->topLevelItem(first)->text(3), QStringLiteral("–"));
+    EXPECT_EQ(document().stepName(1), "Unjoin sphere");
+    document().undo();
+    EXPECT_GE(groom().spheres[static_cast<std::size_t>(first)].joined, 0);
 }
 
 TEST_F(ToolsTest, ASphereIsRenamedInTheList) {

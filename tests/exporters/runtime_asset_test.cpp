@@ -97,7 +97,8 @@ TEST_F(RuntimeAsset, CarriesEverySettingAndSphere) {
     groom.material = otherThanDefault<HairMaterial>();
     groom.interpolation = otherThanDefault<InterpolationSettings>();
     groom.interpolation.followPerGuide = 3;
-    groom.spheres = {{"left", Vec3f(1, 2, 3), 0.25f, ""}, {"right", Vec3f(-1, 2, 3), 0.5f, "no such bone"}};
+    groom.spheres = {{"left", Vec3f(1, 2, 3), 0.25f, "", 1},
+                     {"right", Vec3f(-1, 2, 3), 0.5f, "no such bone"}};
     ExportReport report;
     const auto bytes = written(groom, &report);
     const auto opened = Asset::open(bytes);
@@ -113,6 +114,8 @@ TEST_F(RuntimeAsset, CarriesEverySettingAndSphere) {
     ASSERT_EQ(back->groom.spheres.size(), 2u);
     EXPECT_EQ(back->groom.spheres[0].name, "left");
     EXPECT_EQ(back->groom.spheres[0].centre, Vec3f(1, 2, 3));
+    EXPECT_EQ(back->groom.spheres[0].joined, 1);
+    EXPECT_EQ(back->groom.spheres[1].joined, -1);
     EXPECT_EQ(back->groom.spheres[1].bone, "") << "a bone that the head does not have";
     const auto warned =
         std::ranges::find_if(report.findings, [](const Finding& f) { return f.where == "sphere 'right'"; });

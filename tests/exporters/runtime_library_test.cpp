@@ -212,7 +212,7 @@ TEST_F(RuntimeLibrary, StepsAndReadOutAskForNoMemoryAndWhatIsHeldWasSaidBefore) 
     Groom groom = helices(std::vector<std::uint32_t>(3000, 24));
     groom.interpolation.followPerGuide = 2;
     groom.simulation.windSpeed = 2;
-    groom.spheres = {{"near", Vec3f(0.5f, 1.5f, 0), 0.1f, ""}};
+    groom.spheres = {{"near", Vec3f(0.5f, 1.5f, 0), 0.1f, "", 1}, {"far", Vec3f(0.5f, 1.1f, 0), 0.05f, ""}};
     const Asset asset = opened(groom);
     const hl_asset_info info = asset.describe();
     for (const std::uint32_t what : {HL_GUIDES, HL_HAIRS}) {
@@ -384,6 +384,16 @@ TEST_F(RuntimeLibrary, WrongWordsAreRefusedAndChangeNothing) {
     wrong.spheres = values;
     wrong.sphere_count = 1u << 30u;
     refused(wrong, HL_WRONG_SIZE, "spheres");
+    wrong.sphere_count = 2;
+    std::vector<std::uint32_t> ends{0, 1, 1, 2};
+    wrong.capsules = ends.data();
+    wrong.capsule_count = 2;
+    refused(wrong, HL_BAD_VALUE, "capsule 1 ends at sphere 2 of 2");
+    ends = {1, 1};
+    wrong.capsule_count = 1;
+    refused(wrong, HL_BAD_VALUE, "joins sphere 1 with itself");
+    wrong.capsule_count = 1u << 20u;
+    refused(wrong, HL_WRONG_SIZE, "capsules");
     EXPECT_FALSE(hair.set("windSped", 1, &error));
     EXPECT_FALSE(hair.set("windSpeed", kNaN, &error));
     EXPECT_FALSE(hair.set("angularCurve", 1, &error));
@@ -455,6 +465,39 @@ TEST_F(RuntimeLibrary, NumbersThatAreNoneAndAnyStepAreSurvived) {
             sound(std::to_string(dt).c_str());
         }
     }
+}
+
+TEST_F(RuntimeLibrary, AnAssetsCapsuleAndTheSameOneOfAFrameMoveHairAlike) {
+    Groom groom = helices(std::vector<std::uint32_t>(40, 16));
+    const Vec3f tip = groom.strand(7).back();
+    groom.spheres = {{"from", tip + Vec3f(0, 0, 0.2f), 0.05f, "", 1},
+                     {"to", tip - Vec3f(0, 0, 0.2f), 0.04f, ""}};
+    const Asset with = opened(groom);
+    groom.spheres[0].joined = -1;
+    const Asset without = opened(groom);
+    Instance own, given, apart;
+    ASSERT_TRUE(own.make(with, HL_GUIDES));
+    ASSERT_TRUE(given.make(without, HL_GUIDES));
+    ASSERT_TRUE(apart.make(without, HL_GUIDES));
+    std::vector<float> spheres;
+    for (const CollisionSphere& sphere : groom.spheres) {
+        for (const float value : {sphere.centre.x(), sphere.centre.y(), sphere.centre.z(), sphere.radius})
+            spheres.push_back(value);
+    }
+    const std::uint32_t ends[] = {0, 1};
+    for (int f = 1; f < 30; ++f) {
+        Frame frame;
+        frame.time = f / 60.0;
+        ASSERT_TRUE(own.step(frame));
+        ASSERT_TRUE(apart.step(frame));
+        frame.spheres = spheres.data();
+        frame.sphere_count = 2;
+        frame.capsules = ends;
+        frame.capsule_count = 1;
+        ASSERT_TRUE(given.step(frame));
+        ASSERT_EQ(own.hash(), given.hash()) << f;
+    }
+    EXPECT_NE(own.hash(), apart.hash()) << "spheres alone miss the hair between them";
 }
 
 TEST_F(RuntimeLibrary, ShortAndLonelyStrandsPlay) {

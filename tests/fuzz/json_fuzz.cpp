@@ -62,9 +62,7 @@ void settings(std::string_view text) {
         if (reader.has("material")) readSettings(reader.object("material"), material);
         if (reader.has("interpolation")) readSettings(reader.object("interpolation"), interpolation);
         if (reader.has("layers")) readLayers(reader);
-        if (reader.has("spheres")) {
-            for (JsonReader& sphere : reader.objects("spheres")) readSphere(sphere);
-        }
+        if (reader.has("spheres")) readSphereList(reader);
     });
 }
 

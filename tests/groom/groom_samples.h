@@ -139,7 +139,7 @@ inline Groom fullGroom() {
     groom.layers = {{"Top", true, false, 1, {}}, {"Fringe \"β\"", false, true, 0.3f, ofFringe}};
     groom.groupNames = {"front", "back"};
     groom.spheres = {{"head", Vec3f(0, 1.6f, 0), 0.095f, "Head"},
-                     {"neck", Vec3f(0.01f, 1.45f, 0), 0.06f, ""}};
+                     {"neck", Vec3f(0.01f, 1.45f, 0), 0.06f, "", 0}};
     groom.material.shadingModel = ShadingModel::marschner;
     groom.material.rootRadius = 0.00003f;
     groom.material.tipColour = Vec3f(0.1f, 0.7f, 0.3f);

@@ -23,12 +23,13 @@ class Counted {
     }
     /// Allocations of as many steps. `still` keeps the roots where they are.
     std::size_t steps(Engine& engine, int frames, std::span<const Sphere> spheres,
-                      std::optional<Float3> wind = {}, bool still = false) {
+                      std::optional<Float3> wind = {}, bool still = false,
+                      std::span<const Capsule> capsules = {}) {
         const std::size_t before = allocationCount();
         for (int f = 0; f < frames; ++f) {
             if (!still) ++frame_;
             time_ += static_cast<double>(kFrame);
-            engine.step({kFrame, time_, roots_[frame_ % roots_.size()], spheres, wind});
+            engine.step({kFrame, time_, roots_[frame_ % roots_.size()], spheres, capsules, wind});
         }
         return allocationCount() - before;
     }
@@ -59,6 +60,24 @@ TEST(StepMemory, NoStepOfAnyIntegratorAsksForAny) {
         EXPECT_EQ(counted.steps(engine, 20, kNear), 0u);
         EXPECT_TRUE(engine.plan().on(Effect::collision));
         EXPECT_TRUE(engine.plan().on(Effect::wind));
+    }
+}
+
+TEST(StepMemory, CapsulesThatGrowAskForNone) {
+    for (const StrandModel model : {StrandModel::rods, StrandModel::springs}) {
+        const Strands strands = tuft(100, true);
+        SimulationSettings s = settingsOf(Integrator::verlet);
+        s.strandModel = model;
+        Engine engine = makeEngine(strands, s);
+        Counted counted(strands);
+        const std::vector<Capsule> capsules{{0, 1}};
+        std::vector<Sphere> spheres{{{0.0f, -0.05f, -0.02f}, 0.02f}, {{0.05f, -0.05f, 0.02f}, 0.02f}};
+        counted.steps(engine, 1, spheres, {}, false, capsules);
+        EXPECT_TRUE(engine.plan().on(Effect::collision));
+        for (int i = 0; i < 10; ++i) {
+            spheres[1].center_ws.x += 0.05f;
+            EXPECT_EQ(counted.steps(engine, 2, spheres, {}, false, capsules), 0u) << i;
+        }
     }
 }
 

@@ -59,6 +59,10 @@ inline std::vector<std::vector<Vec3d>> engineRun(const Swing& swing, const runti
             spheres.push_back({toFloat3(sphere.center_ws), static_cast<float>(sphere.radius)});
         runtime::FrameInput input{static_cast<float>(frame.dt), frame.time, {&root, 1}};
         input.spheres = spheres;
+        std::vector<runtime::Capsule> capsules;
+        for (const auto& [first, second] : frame.capsules)
+            capsules.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second)});
+        input.capsules = capsules;
         made.engine->step(input);
         made.engine->readPositions(points);
         result.emplace_back();

@@ -94,5 +94,40 @@ TEST(RodsConverge, Wind) {
     expectConvergence(rodErrors(swing(curl(), 40), windy), 2.0, 2.9);
 }
 
+/// A level strand falls on a capsule that lies across it, slanted and tapered, and moves.
+Swing fallOnACapsule(std::size_t frames, bool joined) {
+    Swing result{straightStrand(16, 0.2), {}};
+    for (std::size_t f = 1; f <= frames; ++f) {
+        const double t = static_cast<double>(f) * static_cast<double>(kFrameTime);
+        reference::Frame frame{static_cast<double>(kFrameTime), t, {reference::Root{}}, {}};
+        const double lift = 0.01 * std::sin(4.0 * t);
+        frame.spheres = {{Vec3d(0.09, -0.08 + lift, -0.2), 0.05}, {Vec3d(0.13, -0.06, 0.15), 0.02}};
+        if (joined) frame.capsules = {{0, 1}};
+        result.frames.push_back(frame);
+    }
+    return result;
+}
+
+TEST(RodsConverge, OnACapsule) {
+    runtime::SimulationSettings s = rods();
+    s.angularStiffness = 0.3f;
+    s.friction = 0.0f;
+    s.collisionRadiusRoot = s.collisionRadiusTip = 0.0f;
+    const Swing scene = fallOnACapsule(40, true);
+    const reference::Root start;
+    const auto right = reference::converged(scene.strands, s, {&start, 1}, scene.frames, {2e-5, 4, 256, 2});
+    ASSERT_TRUE(right && right->report.failed == 0);
+    EXPECT_GT(right->report.contacts, 0u);
+    const auto errorOf = [&](const Swing& swing, std::uint32_t substeps) {
+        return rmsMm(engineRun(swing, withSteps(s, runtime::Integrator::verlet, substeps)),
+                     right->positions_ws);
+    };
+    EXPECT_GT(errorOf(fallOnACapsule(40, false), 16), 10.0) << "spheres alone miss it";
+    const double two = errorOf(scene, 2), eight = errorOf(scene, 8), thirtyTwo = errorOf(scene, 32);
+    EXPECT_LT(two, 4.0);
+    EXPECT_LT(thirtyTwo, 1.0);
+    EXPECT_LT(thirtyTwo, 0.7 * eight);
+}
+
 }  // namespace
 }  // namespace hairloom

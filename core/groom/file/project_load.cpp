@@ -43,7 +43,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     if (groom.layers.empty()) head.complain("layers", "is empty", "expected at least one layer");
     if (version >= kFirstWithOperators) groom.operators = readOperatorList(head, readOperatorShape);
     groom.groupNames = head.strings("groups");
-    for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));
+    groom.spheres = readSphereList(head);
     readSettings(head.object("material"), groom.material);
     if (head.has("shadows")) readSettings(head.object("shadows"), groom.shadows);
     readSettings(head.object("simulation"), groom.simulation);

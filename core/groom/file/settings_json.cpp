@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/groom/file/settings_json.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 
 namespace hairloom {
@@ -77,6 +79,8 @@ void readSettings(JsonReader reader, runtime::SimulationSettings& settings) {
     readFields(std::move(reader), settings);
 }
 
+namespace {
+
 CollisionSphere readSphere(JsonReader& reader) {
     CollisionSphere sphere;
     sphere.name = reader.string("name");
@@ -87,6 +91,24 @@ CollisionSphere readSphere(JsonReader& reader) {
     if (reader.ok() && !(sphere.radius > 0)) reader.complain("radius", "is 0", "expected more than 0 m");
     reader.finish();
     return sphere;
+}
+
+}  // namespace
+
+std::vector<CollisionSphere> readSphereList(JsonReader& reader) {
+    std::vector<CollisionSphere> spheres;
+    std::vector<JsonReader> entries = reader.objects("spheres");
+    for (JsonReader& entry : entries) spheres.push_back(readSphere(entry));
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+        const std::int32_t joined = spheres[s].joined;
+        if (joined < 0 ||
+            (static_cast<std::size_t>(joined) < spheres.size() && static_cast<std::size_t>(joined) != s))
+            continue;
+        entries[s].complain(
+            "joined", fmt::format("is {}", joined),
+            fmt::format("expected the number of another sphere, 0 to {}", spheres.size() - 1));
+    }
+    return spheres;
 }
 
 }  // namespace hairloom

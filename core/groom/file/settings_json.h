@@ -23,7 +23,8 @@ void readSettings(JsonReader reader, InterpolationSettings& settings);
 void readSettings(JsonReader reader, PlacementSettings& settings);
 void readSettings(JsonReader reader, runtime::SimulationSettings& settings);
 
-/// An object of "name", "centre", "radius" (> 0) and "bone".
-CollisionSphere readSphere(JsonReader& reader);
+/// The member "spheres": objects of "name", "centre", "radius" (> 0), "bone" and, where it makes a capsule,
+/// "joined", the number of another one of the list.
+std::vector<CollisionSphere> readSphereList(JsonReader& reader);
 
 }  // namespace hairloom

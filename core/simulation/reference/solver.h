@@ -51,12 +51,12 @@ struct Sphere {
 
 /// As runtime::FrameInput.
 struct Frame {
-    double dt = 1.0 / 60.0;                                 ///< s, above 0
-    double time = 0.0;                                      ///< s, at the end of the frame
-    std::vector<Root> roots_ws;                             ///< one per strand
-    std::vector<Sphere> spheres;                            ///< of radius 0 or less: left out
-    std::vector<std::array<std::size_t, 2>> capsules = {};  ///< hulls of two of the spheres
+    double dt = 1.0 / 60.0;        ///< s, above 0
+    double time = 0.0;             ///< s, at the end of the frame
+    std::vector<Root> roots_ws;    ///< one per strand
+    std::vector<Sphere> spheres;   ///< of radius 0 or less: left out
     runtime::WindInput wind = {};  ///< what the frame gives in place of the settings' air
+    std::vector<std::array<std::size_t, 2>> capsules = {};  ///< hulls of two of the spheres
 };
 
 Strands strandsOf(const runtime::StrandsView& view);
