@@ -105,7 +105,8 @@ class MadeFolders {
     }
     Status status() const {
         if (failed_.empty()) return {};
-        return failIn(failed_, {}, "the folder cannot be made: " + why_);
+        return failIn(failed_, {}, "the folder cannot be made: " + why_,
+                      "expected a folder that can be written");
     }
     void keep() { isKept_ = true; }
 

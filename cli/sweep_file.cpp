@@ -135,7 +135,7 @@ Result<std::string> filledIn(const std::string& text, const SweepPart& part) {
             const char* const end = name.data() + name.size();
             const auto read = std::from_chars(name.data() + colon + 2, end, width);
             if (read.ptr != end || width > 20)
-                return fail("the width in {" + name + "} is no number up to 20");
+                return fail("the width in {" + name + "} is no number up to 20", "expected one as {turn:04}");
             name.resize(colon);
         }
         if (name == "out") {

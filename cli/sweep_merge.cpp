@@ -204,7 +204,9 @@ Status gather(const SweepFolder& folder, const Parts& parts) {
         fs::create_directories(to.parent_path(), code);
         fs::create_hard_link(from, to, code);
         if (code) fs::copy_file(from, to, code);
-        if (code) return failIn(to.string(), {}, "cannot be made: " + code.message());
+        if (code)
+            return failIn(to.string(), {}, "cannot be made: " + code.message(),
+                          "expected a folder that can be written");
     }
     return {};
 }

@@ -54,7 +54,8 @@ Result<std::vector<fs::path>> filesBelow(const fs::path& folder) {
             return failIn(folder.string(), {}, fmt::format("holds more than {} files", kMaxFiles),
                           "expected fewer outputs of one part");
     }
-    if (code) return failIn(folder.string(), {}, "cannot be read: " + code.message());
+    if (code)
+        return failIn(folder.string(), {}, "cannot be read: " + code.message(), "expected a readable folder");
     std::ranges::sort(files);
     return files;
 }
@@ -67,7 +68,9 @@ Result<std::vector<PartFile>> describedFiles(const fs::path& folder) {
         std::error_code code;
         PartFile file{path.lexically_relative(folder).generic_string(), fs::file_size(path, code),
                       hashText(path)};
-        if (code || file.hash.empty()) return failIn(path.string(), {}, "cannot be read back");
+        if (code || file.hash.empty())
+            return failIn(path.string(), {}, "cannot be read back",
+                          "expected what the part wrote: run it again");
         files.push_back(std::move(file));
     }
     return files;
@@ -118,11 +121,12 @@ Result<Report> runWords(const Job& job, std::vector<std::string> words) {
     } catch (const WrongUsage& error) {
         return tl::unexpected(error.error());
     } catch (const CLI::Error& error) {
-        return fail(error.what());
+        return fail(error.what(), fmt::format("see hairloom-cli {} --help", job.name));
     } catch (const std::bad_alloc&) {
         return fail("the job ran out of memory", "expected a smaller input, or more memory");
     } catch (const std::exception& error) {
-        return fail(fmt::format("the job stopped with an unexpected error ({})", error.what()));
+        return fail(fmt::format("the job stopped with an unexpected error ({})", error.what()),
+                    "please report it with the command and its input");
     }
 }
 
@@ -147,7 +151,9 @@ Result<SweepFolder> SweepFolder::open(const Sweep& sweep, fs::path folder) {
         return failIn(folder.string(), {}, "is no folder of a sweep", "expected a new name after -o");
     fs::create_directories(folder / "parts", code);
     if (!code) fs::create_directories(folder / "state", code);
-    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    if (code)
+        return failIn(folder.string(), {}, "the folder cannot be made: " + code.message(),
+                      "expected a folder that can be written");
     const Report content{{"sweep_of", sweep.name}, {"job", sweep.job}, {"parts", sweep.parts.size()}};
     // The results of another one would be replaced part by part.
     if (const Report there = contentOf(mark); there.contains("sweep_of")) {
@@ -278,7 +284,9 @@ Result<DonePart> SweepFolder::runJob(const SweepPart& part) const {
     if (!code) fs::create_directories(folder, code);
     // Names in the file start at its folder.
     if (!code) fs::current_path(sweep_->folder, code);
-    if (code) return failIn(folder.string(), {}, "the folder cannot be replaced: " + code.message());
+    if (code)
+        return failIn(folder.string(), {}, "the folder cannot be replaced: " + code.message(),
+                      "expected a folder that can be written");
     const Stopwatch watch;
     const KeptWarnings warnings;
     const auto job = std::ranges::find(jobs(), sweep_->job, &Job::name);

@@ -153,7 +153,7 @@ Result<FarthestHair> followError(const Groom& groom, const FollowBindings& bindi
     runtime::Host host;
     host.parallelFor = parallelFor;
     auto played = asset.followHairs(strands, host);
-    if (!played.hairs) return fail(played.error);
+    if (!played.hairs) return tl::unexpected(errorOfWords(played.error));
     const std::size_t points = played.hairs->pointsPerHair(), shownPoints = bindings.pointsPerHair;
     std::vector<Vec3f> positions(played.hairs->hairCount() * points);
     runtime::GuideMotion motion;

@@ -12,6 +12,8 @@
 namespace hairloom {
 namespace {
 
+constexpr const char* kWholeFile = "expected a whole file: export it again";
+
 template <class T>
 double as(const std::array<char, 8>& bytes) {
     T value;
@@ -28,8 +30,9 @@ tl::unexpected<Error> PlyRows::wrong(std::string problem, std::string expected) 
 
 Status PlyRows::checkCount(const PlyElement& element) const {
     if (element.count <= remaining()) return {};
-    return wrong(fmt::format("{} rows of '{}' were announced", element.count, element.name),
-                 fmt::format("only {} bytes are left", remaining()));
+    return wrong(fmt::format("{} rows of '{}' were announced, and {} bytes are left", element.count,
+                             element.name, remaining()),
+                 kWholeFile);
 }
 
 Result<double> PlyRows::nextWord() {
@@ -37,15 +40,15 @@ Result<double> PlyRows::nextWord() {
     const std::size_t begin = position_;
     while (position_ < text_.size() && !isBlank(text_[position_])) ++position_;
     const std::string_view word = text_.substr(begin, position_ - begin);
-    if (word.empty()) return wrong("the file ends early");
+    if (word.empty()) return wrong("the file ends early", kWholeFile);
     const auto number = parseNumber(word);
-    if (!number) return wrong(fmt::format("'{}' is not a number", shortened(word)));
+    if (!number) return wrong(fmt::format("'{}' is not a number", shortened(word)), "expected a number");
     return *number;
 }
 
 Result<double> PlyRows::nextBinary(PlyType type) {
     const std::size_t size = sizeOf(type);
-    if (remaining() < size) return wrong("the file ends early");
+    if (remaining() < size) return wrong("the file ends early", kWholeFile);
     std::array<char, 8> bytes{};
     std::memcpy(bytes.data(), text_.data() + position_, size);
     if (encoding_ == PlyEncoding::BigEndian) std::reverse(bytes.begin(), bytes.begin() + size);
@@ -68,7 +71,7 @@ Result<double> PlyRows::nextBinary(PlyType type) {
         case PlyType::Float64:
             return as<double>(bytes);
     }
-    return wrong("a value of an unknown type");
+    return wrong("a value of an unknown type", "expected a type of PLY, as float");
 }
 
 Status PlyRows::row(const PlyElement& element, PlyRow& row) {
@@ -85,8 +88,8 @@ Status PlyRows::row(const PlyElement& element, PlyRow& row) {
         const auto count = next(*property.listSize);
         if (!count) return tl::unexpected(count.error());
         if (!(*count >= 0) || *count > static_cast<double>(remaining())) {
-            return wrong(fmt::format("a list of {} values", *count),
-                         fmt::format("only {} bytes are left", remaining()));
+            return wrong(fmt::format("a list of {} values, and {} bytes are left", *count, remaining()),
+                         kWholeFile);
         }
         row.lists[index].clear();
         for (double entry = 0; entry < *count; ++entry) {

@@ -147,7 +147,10 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
     }
     const auto opened = runtime::Asset::open(bytes);
     const auto refuse = [&](const runtime::AssetError& error) {
-        return failIn(file, Byte{error.byte}, error.words);
+        Error said = expecting(errorOfWords(error.words), "expected a whole asset: export it again");
+        said.file = file;
+        said.place = Byte{error.byte};
+        return tl::unexpected(std::move(said));
     };
     if (!opened.asset) return refuse(opened.error);
     if (const auto problem = opened.asset->check()) return refuse(*problem);

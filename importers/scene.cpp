@@ -30,6 +30,9 @@ std::string expectedFormats() {
     return fmt::format("expected a mesh in {} format", labelsOf(meshFormats()));
 }
 
+/// Where a reader says no more than what is wrong.
+constexpr const char* kReadableMesh = "expected a whole file that can be read: export it again";
+
 struct FileHead {
     std::vector<std::byte> bytes;
     std::uint64_t fileSize;
@@ -44,7 +47,9 @@ Result<FileHead> readHead(const std::filesystem::path& path) {
         return failIn(file, {}, "is not a regular file", "expected a mesh file");
     FileHead head;
     head.fileSize = std::filesystem::file_size(path, code);
-    if (code) return failIn(file, {}, fmt::format("cannot be read: {}", code.message()));
+    if (code)
+        return failIn(file, {}, fmt::format("cannot be read: {}", code.message()),
+                      "expected a readable file");
     if (head.fileSize == 0) return failIn(file, {}, "is empty", expectedFormats());
     if (head.fileSize > kLargestFile) {
         return failIn(file, {}, fmt::format("is {} bytes long", head.fileSize),
@@ -163,9 +168,9 @@ Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshI
     const auto format = meshFormatOf(head->bytes, head->fileSize);
     if (!format) return failIn(file, {}, "is not in a supported mesh format", expectedFormats());
     auto raw = readRaw(path, *format, head->fileSize);
-    if (!raw) return tl::unexpected(inFile(raw.error(), file));
+    if (!raw) return tl::unexpected(expecting(inFile(raw.error(), file), kReadableMesh));
     auto scene = finishScene(std::move(*raw), *format, options);
-    if (!scene) return tl::unexpected(inFile(scene.error(), file));
+    if (!scene) return tl::unexpected(expecting(inFile(scene.error(), file), kReadableMesh));
     return scene;
 }
 

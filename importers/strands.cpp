@@ -404,6 +404,9 @@ Status checkUnit(const StrandImportOptions& asked) {
     return fail(fmt::format("{} metres per unit", asked.metresPerUnit), "expected a positive number");
 }
 
+/// Where a reader says no more than what is wrong.
+constexpr const char* kReadableFile = "expected a whole file that can be read: export it again";
+
 Result<ImportedStrands> importRaw(const std::string& file, Result<RawStrands> raw,
                                   const StrandImportOptions& asked) {
     if (!raw) return tl::unexpected(raw.error());
@@ -458,10 +461,10 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
 Result<ImportedStrands> importStrands(const std::filesystem::path& path, const StrandImportOptions& options) {
     if (auto status = checkUnit(options); !status) return tl::unexpected(status.error());
     auto imported = importRaw(path.string(), readStrandsInChild(path, options), options);
-    if (!imported) return imported;
+    if (!imported) return tl::unexpected(expecting(imported.error(), kReadableFile));
     // The parts fit each other, and no process but this one says so.
     if (auto status = checkStructure(imported->groom); !status)
-        return tl::unexpected(inFile(status.error(), path.string()));
+        return tl::unexpected(expecting(inFile(status.error(), path.string()), kReadableFile));
     return imported;
 }
 

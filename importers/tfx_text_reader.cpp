@@ -126,8 +126,8 @@ class Parser {
         if (!count || *count < 0) return wrong("a strand without numVerts", "expected 'strand I numVerts N'");
         // A vertex takes six bytes of text at the least.
         if (static_cast<std::uint64_t>(*count) > text_.size() / 6 + 1)
-            return wrong(fmt::format("a strand of {} vertices", *count),
-                         fmt::format("only {} bytes are left", text_.size()));
+            return wrong(fmt::format("a strand of {} vertices, and {} bytes are left", *count, text_.size()),
+                         "expected a whole file: export it again");
         for (std::int64_t i = 0; i < *count; ++i) {
             std::array<double, 3> position{};
             if (!nextLine())

@@ -189,7 +189,8 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     } else {
         playing.engine = chooseEngine(wish, &gpu.device(), gpu.kernels(), groom, EngineMemory::ofUser());
     }
-    if (wish == EngineWish::gpu && playing.engine.kind != EngineKind::gpu) return fail(playing.engine.why);
+    if (wish == EngineWish::gpu && playing.engine.kind != EngineKind::gpu)
+        return fail(playing.engine.why, "expected a groom that the engine can run on a GPU, or --engine cpu");
     const runtime::SimulationSettings authored = groom.simulation;
     groom.simulation = KeyedSettings(*playing.motion, authored).first();
     auto scene = GroomScene::make(groom, view, options.hiddenGroups);

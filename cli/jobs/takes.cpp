@@ -118,7 +118,9 @@ Result<Report> recordTake(TakesOptions& options) {
                       "expected another name, or --force");
     const fs::path folder = takesFolder(options.simulation.input);
     fs::create_directory(folder, code);
-    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    if (code)
+        return failIn(folder.string(), {}, "the folder cannot be made: " + code.message(),
+                      "expected a folder that can be written");
     options.simulation.record = path->string();
     auto report =
         withOutputs({{path->string(), content::kTake}}, [&] { return simulate(options.simulation); });

@@ -41,7 +41,9 @@ Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t max
     const std::filesystem::path place = whereWritten(path);
     if (auto status = checkIsFile(place); !status) return tl::unexpected(status.error());
     const FileHandle file = openFile(place, "rb");
-    if (!file) return failIn(name, {}, fmt::format("cannot be read: {}", systemMessage(errno)));
+    if (!file)
+        return failIn(name, {}, fmt::format("cannot be read: {}", systemMessage(errno)),
+                      "expected a readable file");
     const std::uint64_t size = std::filesystem::file_size(place, code);
     if (code)
         return failIn(name, {}, fmt::format("has no size: {}", code.message()), "expected a regular file");

@@ -39,7 +39,8 @@ Result<HeldFile> HeldFile::hold(const std::filesystem::path& path) {
     for (int i = 0; i < kTries; ++i) {
         Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
         if (!file)
-            return failIn(path.string(), {}, "cannot be made: " + std::generic_category().message(errno));
+            return failIn(path.string(), {}, "cannot be made: " + std::generic_category().message(errno),
+                          "expected a folder that can be written");
         if (flock(file.number(), LOCK_EX | LOCK_NB) != 0) return failIn(path.string(), {}, "is held");
         struct stat held {
         }, named{};

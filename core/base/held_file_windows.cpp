@@ -38,7 +38,8 @@ Result<HeldFile> HeldFile::hold(const std::filesystem::path& path) {
         const DWORD code = GetLastError();
         if (code == ERROR_SHARING_VIOLATION) return failIn(path.string(), {}, "is held");
         return failIn(path.string(), {},
-                      "cannot be made: " + std::system_category().message(static_cast<int>(code)));
+                      "cannot be made: " + std::system_category().message(static_cast<int>(code)),
+                      "expected a folder that can be written");
     }
     return HeldFile(std::move(impl));
 }

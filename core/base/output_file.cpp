@@ -298,7 +298,9 @@ Result<std::vector<std::string>> writeFiles(const fs::path& folder,
                                             const std::vector<std::pair<std::string, std::string>>& files) {
     std::error_code code;
     fs::create_directories(folder, code);
-    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    if (code)
+        return failIn(folder.string(), {}, "the folder cannot be made: " + code.message(),
+                      "expected a folder that can be written");
     OutputBatch batch;
     std::vector<std::string> names;
     for (const auto& [name, text] : files) {
@@ -333,7 +335,8 @@ Status removeLeftOver(const LeftOver& leftOver) {
         return failIn(name, {}, "is being written", "wait until the other program is done");
     std::error_code code;
     if (!fs::remove(leftOver.file, code) || code)
-        return failIn(name, {}, fmt::format("cannot be removed: {}", code.message()));
+        return failIn(name, {}, fmt::format("cannot be removed: {}", code.message()),
+                      "expected a folder that can be written");
     return {};
 }
 

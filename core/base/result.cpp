@@ -28,4 +28,15 @@ Error inFile(Error error, const std::string& file) {
     return error;
 }
 
+Error errorOfWords(const std::string& words) {
+    const auto end = words.find("; ");
+    if (end == std::string::npos) return {{}, {}, words, {}};
+    return {{}, {}, words.substr(0, end), words.substr(end + 2)};
+}
+
+Error expecting(Error error, const std::string& expected) {
+    if (error.expected.empty()) error.expected = expected;
+    return error;
+}
+
 }  // namespace hairloom

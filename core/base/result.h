@@ -43,4 +43,10 @@ tl::unexpected<Error> failIn(std::string file, Place place, std::string problem,
 /// The same error, told of `file` when it names none yet.
 Error inFile(Error error, const std::string& file);
 
+/// Of words "problem; expected", as the runtime's are.
+Error errorOfWords(const std::string& words);
+
+/// The same error, with what would have been right when it names nothing yet.
+Error expecting(Error error, const std::string& expected);
+
 }  // namespace hairloom

@@ -17,7 +17,8 @@ Result<ColourConfig> ColourConfig::read(const std::filesystem::path& path) {
 
 Result<std::shared_ptr<const render::ColourTransform>> ColourConfig::view(const std::string&,
                                                                           const std::string&) const {
-    return fail("this program was built without OpenColorIO");
+    return fail("this program was built without OpenColorIO",
+                "expected one that was built with it, or no --color-config");
 }
 
 }  // namespace hairloom::colour

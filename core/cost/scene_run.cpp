@@ -46,7 +46,7 @@ class TimedFollowers {
   public:
     static Result<TimedFollowers> make(const StrandFollow& follow) {
         auto made = runtime::FollowHairs::make(follow.view());
-        if (!made.hairs) return fail(made.error);
+        if (!made.hairs) return tl::unexpected(errorOfWords(made.error));
         return TimedFollowers(std::move(*made.hairs));
     }
 

@@ -41,10 +41,12 @@ Result<std::vector<float>> fromAttribute(const std::string& name, float most, co
     if (!take<float>(attributes, name, most, mask) && !take<std::uint8_t>(attributes, name, most, mask) &&
         !take<std::uint32_t>(attributes, name, most, mask) &&
         !take<std::int32_t>(attributes, name, most, mask)) {
-        return fail(fmt::format("there is no strand attribute '{}' of numbers", name));
+        return fail(fmt::format("there is no strand attribute '{}' of numbers", name),
+                    "expected one that `info` lists as float");
     }
     if (std::ranges::any_of(mask, [](float value) { return std::isnan(value); }))
-        return fail(fmt::format("strand attribute '{}' has a value that is no number", name));
+        return fail(fmt::format("strand attribute '{}' has a value that is no number", name),
+                    "expected finite numbers");
     return mask;
 }
 

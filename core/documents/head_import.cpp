@@ -120,7 +120,9 @@ Result<editing::SphereFit> fitColliders(const ScalpMesh& mesh, const Skeleton& s
     for (const std::string& name : options.collideWith) {
         const auto faces = facesOfGroups(mesh, {&name, 1});
         if (!faces) return tl::unexpected(faces.error());
-        if (faces->empty()) return fail(fmt::format("the group '{}' has no faces to collide with", name));
+        if (faces->empty())
+            return fail(fmt::format("the group '{}' has no faces to collide with", name),
+                        "expected a group with faces");
     }
     const auto faces = facesOfGroups(mesh, options.collideWith);
     if (!faces) return tl::unexpected(faces.error());

@@ -131,7 +131,9 @@ Result<std::vector<float>> valuesAtRoots(const MaskImage& image, const Groom& gr
         return fail("the strands have no root UVs to read an image at", "bind them to a scalp with UVs");
     std::vector<float> values(uvs.size());
     for (std::size_t s = 0; s < uvs.size(); ++s) {
-        if (!uvs[s].allFinite()) return fail(fmt::format("the root UV of strand {} is not finite", s));
+        if (!uvs[s].allFinite())
+            return fail(fmt::format("the root UV of strand {} is not finite", s),
+                        "expected UVs that are numbers");
         values[s] = image.at(uvs[s]);
     }
     return values;

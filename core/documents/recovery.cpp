@@ -146,7 +146,9 @@ Result<RecoveryPlace> RecoveryPlace::take() {
     if (folder.empty()) return fail("the system names no folder for data of programs", "set HOME");
     std::error_code code;
     fs::create_directories(folder, code);
-    if (code) return failIn(folder.string(), {}, "cannot be made: " + code.message());
+    if (code)
+        return failIn(folder.string(), {}, "cannot be made: " + code.message(),
+                      "expected a folder that can be written");
     // Others have no business in it, whatever the umask says.
     fs::permissions(folder, fs::perms::owner_all, code);
     std::random_device random;
@@ -214,7 +216,9 @@ std::vector<RecoveryCopy> recoveryCopies() {
 Status removeRecoveryCopy(const RecoveryCopy& copy) {
     std::error_code code;
     fs::remove(copy.file, code);
-    if (code) return failIn(copy.file.string(), {}, "cannot be removed: " + code.message());
+    if (code)
+        return failIn(copy.file.string(), {}, "cannot be removed: " + code.message(),
+                      "expected a folder that can be written");
     fs::remove(withSuffix(copy.file, kNote), code);
     return {};
 }

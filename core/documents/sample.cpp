@@ -41,11 +41,12 @@ template <class T>
 Result<T> number(const std::map<std::string, std::string>& values, const std::string& key,
                  const fs::path& file) {
     const auto found = values.find(key);
-    if (found == values.end()) return failIn(file.string(), {}, "has no " + key);
+    if (found == values.end()) return failIn(file.string(), {}, "has no " + key, "expected it with a value");
     T value{};
     const char* const end = found->second.data() + found->second.size();
     const auto [last, code] = std::from_chars(found->second.data(), end, value);
-    if (code != std::errc() || last != end) return failIn(file.string(), {}, key + " is not a number");
+    if (code != std::errc() || last != end)
+        return failIn(file.string(), {}, key + " is not a number", "expected a number");
     return value;
 }
 
@@ -65,7 +66,8 @@ Result<Groom> growOnBust(const fs::path& mesh, const fs::path& description) {
     const auto length = number<float>(*values, "length", description);
     if (!length) return tl::unexpected(length.error());
     const auto scalp = values->find("scalp");
-    if (scalp == values->end()) return failIn(description.string(), {}, "has no scalp");
+    if (scalp == values->end())
+        return failIn(description.string(), {}, "has no scalp", "expected it with a selection, as all");
 
     auto scene = importSceneLoud(mesh.string(), {});
     if (!scene) return tl::unexpected(scene.error());

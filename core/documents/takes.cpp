@@ -121,7 +121,9 @@ Status removeTake(const fs::path& project, const std::string& name) {
     if (!path) return tl::unexpected(path.error());
     std::error_code code;
     fs::remove(*path, code);
-    if (code) return failIn(path->string(), {}, "cannot be removed: " + code.message());
+    if (code)
+        return failIn(path->string(), {}, "cannot be removed: " + code.message(),
+                      "expected a folder that can be written");
     fs::remove(takesFolder(project), code);  // where it is empty
     return {};
 }
@@ -135,7 +137,9 @@ Status renameTake(const fs::path& project, const std::string& from, const std::s
     if (fs::exists(*target, code))
         return fail(fmt::format("there is a take '{}' already", to), "expected another name");
     fs::rename(*source, *target, code);
-    if (code) return failIn(source->string(), {}, "cannot be renamed: " + code.message());
+    if (code)
+        return failIn(source->string(), {}, "cannot be renamed: " + code.message(),
+                      "expected a folder that can be written");
     return {};
 }
 
@@ -166,7 +170,8 @@ Result<TakeDifference> compareTakes(const fs::path& a, const fs::path& b, const 
         return failIn(b.string(), {}, fmt::format("has {:g} frames a second", other),
                       fmt::format("{} has {:g}", a.string(), rate));
     const std::uint64_t count = std::min(first->info().frames, second->info().frames);
-    if (count == 0 || groom.pointCount() == 0) return fail("the takes have no frame in common");
+    if (count == 0 || groom.pointCount() == 0)
+        return fail("the takes have no frame in common", "expected takes of a frame or more");
     TakeDifference difference;
     double sum = 0;
     for (std::uint64_t number = 0; number < count; ++number) {

@@ -45,10 +45,11 @@ Status checkParameters(const BrushInfo& info, const BrushSettings& settings) {
         const auto known = std::find_if(info.parameters.begin(), info.parameters.end(),
                                         [&key = name](const BrushParameter& p) { return p.name == key; });
         if (known == info.parameters.end())
-            return fail(fmt::format("{} has no parameter '{}'", info.name, name));
+            return fail(fmt::format("{} has no parameter '{}'", info.name, name),
+                        "expected one that `groom --list` lists");
         if (!withinRange(static_cast<double>(value), known->min, known->max))
-            return fail(fmt::format(
-                "{} {}", name, outOfRangeText(readableDecimal(value), known->min, known->max, known->unit)));
+            return tl::unexpected(errorOfWords(fmt::format(
+                "{} {}", name, outOfRangeText(readableDecimal(value), known->min, known->max, known->unit))));
     }
     return {};
 }

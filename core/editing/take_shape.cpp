@@ -70,7 +70,8 @@ MakeCommand readTakeShape(JsonReader& reader) {
     std::vector<Vec3f> points(numbers.size() / 3);
     for (std::size_t i = 0; i < points.size(); ++i)
         points[i] = Vec3d(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]).cast<float>();
-    if (numbers.size() % 3 != 0) reader.complain("points", "has numbers that are not points");
+    if (numbers.size() % 3 != 0)
+        reader.complain("points", "has numbers that are not points", "expected three numbers for each point");
     return [points, carriesWeight](const Document& document) -> CommandResult {
         return takeShape(document.model(), points, carriesWeight);
     };

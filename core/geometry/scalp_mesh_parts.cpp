@@ -21,7 +21,7 @@ Status checkLengths(const ScalpMeshParts& parts) {
         if (found == wanted || (mayBeEmpty && found == 0)) return {};
         return fail(fmt::format("the scalp mesh has {} {}", found, what), fmt::format("expected {}", wanted));
     };
-    if (triangles == 0) return fail("the scalp mesh has no triangles");
+    if (triangles == 0) return fail("the scalp mesh has no triangles", "expected a mesh with faces");
     Status status = expect("normals", parts.normals.size(), vertices, false);
     if (status) status = expect("corner UVs", parts.cornerUvs.size(), 3 * triangles, true);
     if (status) status = expect("source faces", parts.sourceFaces.size(), triangles, false);
@@ -86,7 +86,7 @@ Result<ScalpMesh> ScalpMesh::fromParts(ScalpMeshParts parts) {
     if (status) status = checkManifold(parts);
     if (!status) return tl::unexpected(status.error());
     if (!allFinite(parts.positions) || !allFinite(parts.normals) || !allFinite(parts.cornerUvs)) {
-        return fail("the scalp mesh has a coordinate that is not finite");
+        return fail("the scalp mesh has a coordinate that is not finite", "expected finite numbers");
     }
     ScalpMesh mesh;
     mesh.connectivity_.reserve(parts.positions.size(), 3 * parts.triangles.size() / 2,

@@ -168,7 +168,8 @@ Result<FaceSet> applyWithArgument(const ScalpMesh& mesh, const FaceSet& current,
     const Result<double> rings = numberBetween(term, argument, 0, kMaxRings);
     if (!rings) return tl::unexpected(rings.error());
     if (*rings != std::floor(*rings))
-        return fail(fmt::format("selection '{}': '{}' is not a whole number", term, argument));
+        return fail(fmt::format("selection '{}': '{}' is not a whole number", term, argument),
+                    "expected a whole number of rings");
     return word == "grow" ? growSelection(mesh, current, static_cast<int>(*rings))
                           : shrinkSelection(mesh, current, static_cast<int>(*rings));
 }

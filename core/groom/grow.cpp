@@ -15,7 +15,9 @@ constexpr std::size_t kGrain = 1024;
 
 Status checkRequest(const ScalpMesh* scalp, std::span<const SurfacePoint> roots, float length,
                     std::uint32_t points) {
-    if (!scalp) return fail("there is no scalp to grow hair on");
+    if (!scalp)
+        return fail("there is no scalp to grow hair on",
+                    "expected a head, which `create` and `import --mesh` set");
     if (!(length > 0) || !std::isfinite(length))
         return fail(fmt::format("length is {} m", length), "expected more than 0");
     if (points < 2) return fail(fmt::format("{} points per strand", points), "expected at least 2");

@@ -59,7 +59,7 @@ Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& sta
         offsets[guide] = static_cast<std::uint32_t>(guide * bindings.pointsPerHair);
     }
     auto made = runtime::FollowHairs::make(followView(bindings, offsets));
-    if (!made.hairs) return fail(made.error);
+    if (!made.hairs) return tl::unexpected(errorOfWords(made.error));
     runtime::GuideMotion guides;
     guides.positions_ws = viewAs<runtime::Float3>(state.positions);
     guides.velocities_ws = viewAs<runtime::Float3>(state.velocities);

@@ -261,7 +261,7 @@ class DrawnFollowHairs {
         if (!bindings) return tl::unexpected(bindings.error());
         const StrandFollow follow(groom, *bindings);
         auto made = runtime::FollowHairs::make(follow.view());
-        if (!made.hairs) return fail(made.error);
+        if (!made.hairs) return tl::unexpected(errorOfWords(made.error));
         return DrawnFollowHairs(std::move(*made.hairs));
     }
 
@@ -353,7 +353,9 @@ struct DrawnDepthMeter::Impl {
 };
 
 Result<DrawnDepthMeter> DrawnDepthMeter::make(const Groom& groom) {
-    if (!groom.scalp) return fail("there is no head to measure depth in");
+    if (!groom.scalp)
+        return fail("there is no head to measure depth in",
+                    "expected a head, which `create` and `import --mesh` set");
     auto impl = std::make_unique<Impl>(groom);
     if (!impl->rest.solid.enclosesAnything())
         return fail("the head encloses no space in which hair could be",

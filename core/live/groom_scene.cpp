@@ -74,7 +74,9 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         scene.posed_.pointAttributes.erase(attribute::kRadius);
     }
     scene.matte_ = view.headAlbedo.has_value();
-    if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
+    if (!groom.scalp && !hiddenGroups.empty())
+        return fail("there is no head to hide groups of",
+                    "expected a head, which `create` and `import --mesh` set");
     if (groom.scalp) {
         const auto hidden = facesOfGroups(*groom.scalp, hiddenGroups);
         if (!hidden) return tl::unexpected(hidden.error());
@@ -103,7 +105,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
     }
     scene.follow_.emplace(groom, *bindings);
     auto made = runtime::FollowHairs::make(scene.follow_->view());
-    if (!made.hairs) return fail(made.error);
+    if (!made.hairs) return tl::unexpected(errorOfWords(made.error));
     scene.followHairs_ = std::move(made.hairs);
     scene.bindings_ = std::move(*bindings);
     scene.materials_.ofStrands = materialsOfFollowHairs(groom, *scene.bindings_);

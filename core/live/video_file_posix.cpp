@@ -57,7 +57,8 @@ class Encoder {
         posix_spawn_file_actions_destroy(&actions);
         if (code != 0) {
             encoder.process_ = -1;
-            return fail("the video writer cannot be started: " + std::generic_category().message(code));
+            return fail("the video writer cannot be started: " + std::generic_category().message(code),
+                        "expected the program hairloom-video-writer beside this one");
         }
         return encoder;
     }
@@ -172,7 +173,7 @@ Result<VideoFile> VideoFile::open(const std::filesystem::path& path, std::uint32
 Status VideoFile::add(const render::Image& frame) {
     if (frame.width != impl_->width || frame.height != impl_->height ||
         frame.rgba.size() != std::size_t{4} * frame.width * frame.height)
-        return failIn(impl_->name, {}, "a video of frames of different sizes");
+        return failIn(impl_->name, {}, "a video of frames of different sizes", "expected frames of one size");
     if (!isOpaque(frame))
         return failIn(impl_->name, {}, "a video has no transparency",
                       "expected an opaque background, or images as PNG or WebP");
@@ -184,7 +185,7 @@ Status VideoFile::add(const render::Image& frame) {
 }
 
 Status VideoFile::finish() {
-    if (impl_->frames == 0) return failIn(impl_->name, {}, "a video without frames");
+    if (impl_->frames == 0) return failIn(impl_->name, {}, "a video without frames", "expected at least one");
     const auto bytes = impl_->answer();
     if (!bytes) return tl::unexpected(bytes.error());
     return writeFileAtomically(impl_->path, *bytes);

@@ -78,7 +78,8 @@ Result<Script> parseScript(const std::string& file, std::string_view text,
     if (reader.ok() && version > kScriptVersion) {
         return failIn(file, {},
                       fmt::format("the script is version {}, but this program reads versions up to {}",
-                                  version, kScriptVersion));
+                                  version, kScriptVersion),
+                      "expected a newer Hairloom to read it");
     }
     Script script;
     const auto names = operationNames(extensions);

@@ -127,10 +127,11 @@ Status completeOperators(const std::string& file, Groom& groom) {
 }
 
 Result<Groom> openProject(const std::filesystem::path& path) {
+    constexpr const char* kExpected = "expected a whole project: save it again, or restore a copy";
     auto groom = readProjectFile(path);
-    if (!groom) return groom;
+    if (!groom) return tl::unexpected(expecting(groom.error(), kExpected));
     if (auto status = completeOperators(path.string(), *groom); !status)
-        return tl::unexpected(status.error());
+        return tl::unexpected(expecting(status.error(), kExpected));
     return groom;
 }
 
@@ -203,7 +204,8 @@ std::string formulaOf(const Operator& one, std::string_view field) {
 Status setFormulaOf(Operator& one, std::string_view field, const std::string& formula) {
     const StackOperator* const known = findStackOperator(one.op);
     if (!known || std::ranges::find(known->formulaFields, field) == known->formulaFields.end())
-        return fail(fmt::format("'{}' of '{}' takes no formula", field, one.op));
+        return fail(fmt::format("'{}' of '{}' takes no formula", field, one.op),
+                    "expected a setting that `groom --list` has among its formulas");
     if (!formula.empty()) {
         if (const auto read = readSettingFormula(formula); !read) return tl::unexpected(read.error());
     }

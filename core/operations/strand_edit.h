@@ -72,7 +72,7 @@ template <class S>
 Status checkFields(std::string_view operation, const S& settings) {
     const auto problems = fieldsOutOfRange(settings);
     if (problems.empty()) return {};
-    return fail(std::string(operation) + ": " + problems.front());
+    return tl::unexpected(errorOfWords(std::string(operation) + ": " + problems.front()));
 }
 
 }  // namespace hairloom

@@ -142,7 +142,8 @@ Result<Transfer> transferTo(Groom& target, std::shared_ptr<const ScalpMesh> head
     const std::vector<SurfacePoint> from = groom.rootBindings();
     if (!groom.scalp || from.size() != groom.strandCount() || from.empty())
         return fail("the strands are not bound to a head", "expected hair that grows on one");
-    if (!head || head->triangleCount() == 0) return fail("the head has no triangles");
+    if (!head || head->triangleCount() == 0)
+        return fail("the head has no triangles", "expected a mesh with faces");
     Transfer transfer;
     const SurfaceTree tree(*head);
     if (auto status = watch.at(0); !status) return tl::unexpected(status.error());

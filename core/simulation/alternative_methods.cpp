@@ -150,7 +150,7 @@ class SegmentMethod : public AlternativeMethod {
 template <class Solver>
 Result<std::unique_ptr<StrandMethod>> makeSegmentMethod(const SceneInput& scene, std::string name) {
     auto made = Solver::make(scene.strands(), scene.groom().simulation, applicationHost());
-    if (!made.engine) return fail(made.error);
+    if (!made.engine) return tl::unexpected(errorOfWords(made.error));
     return std::make_unique<SegmentMethod<Solver>>(scene, std::move(name), std::move(*made.engine));
 }
 
@@ -220,9 +220,10 @@ Result<std::unique_ptr<StrandMethod>> makeChainMethod(const SceneInput& scene) {
 
 Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene) {
     const runtime::SimulationSettings& settings = scene.groom().simulation;
-    for (const std::string& problem : runtime::validate(settings)) return fail(problem);
+    for (const std::string& problem : runtime::validate(settings))
+        return tl::unexpected(errorOfWords(problem));
     auto made = runtime::Lattice::make(scene.strands(), latticeSettings(settings), applicationHost());
-    if (!made.lattice) return fail(made.error);
+    if (!made.lattice) return tl::unexpected(errorOfWords(made.error));
     return std::make_unique<LatticeMethod>(scene, std::move(*made.lattice));
 }
 

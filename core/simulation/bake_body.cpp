@@ -488,7 +488,9 @@ Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
 }
 
 Result<BakedBody> bakeBodyOf(const Groom& groom, const Actor* actor, const BakeBodyOptions& given) {
-    if (!groom.scalp) return fail("there is no head to keep hair out of");
+    if (!groom.scalp)
+        return fail("there is no head to keep hair out of",
+                    "expected a head, which `create` and `import --mesh` set");
     BakeBodyOptions options = given;
     if (options.where.isEmpty()) options.where = reachOfHair(groom);
     if (!actor || actor->skin().vertexCount() == 0) return bakeBody(*groom.scalp, {}, {}, options);

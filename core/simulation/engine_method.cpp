@@ -65,7 +65,8 @@ class EngineMethod : public StrandMethod {
 
     Status setSettings(const runtime::SimulationSettings& settings) override {
         if (between_ && between_->keepsSettings) return StrandMethod::setSettings(settings);
-        if (const std::string problem = engine_.setSettings(settings); !problem.empty()) return fail(problem);
+        if (const std::string problem = engine_.setSettings(settings); !problem.empty())
+            return tl::unexpected(errorOfWords(problem));
         return {};
     }
 
@@ -125,10 +126,11 @@ Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene,
                     "expected a run without it");
     }
     auto made = runtime::Engine::make(scene.strands(), settings, applicationHost());
-    if (!made.engine) return fail(made.error);
+    if (!made.engine) return tl::unexpected(errorOfWords(made.error));
     const auto& body = scene.groom().body;
     if (body) {
-        if (const std::string problem = made.engine->setBody(body); !problem.empty()) return fail(problem);
+        if (const std::string problem = made.engine->setBody(body); !problem.empty())
+            return tl::unexpected(errorOfWords(problem));
     }
     return std::make_unique<EngineMethod>(std::move(*made.engine), std::move(between));
 }
@@ -166,7 +168,7 @@ Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
     std::optional<Between> volume;
     if (hairVolume) {
         auto grid = runtime::HairVolume::make(*hairVolume, applicationHost());
-        if (!grid.volume) return fail(grid.error);
+        if (!grid.volume) return tl::unexpected(errorOfWords(grid.error));
         volume = between("hair-hair", "on, asked for", std::move(*grid.volume));
     }
     return makeMethod(scene, scene.groom().simulation, std::move(volume));
@@ -179,7 +181,7 @@ Result<std::unique_ptr<StrandMethod>> makeParticleMethod(const SceneInput& scene
     wanted.stiffness = settings.hairHairStrength * kStiffest;
     wanted.friction = settings.hairHairCohesion;
     auto made = runtime::HairParticles::make(scene.strands(), wanted, applicationHost());
-    if (!made.particles) return fail(made.error);
+    if (!made.particles) return tl::unexpected(errorOfWords(made.error));
     const std::string why = fmt::format("on, a reach of {:.1f} mm", made.particles->radius() * 1e3f);
     return makeContinuum(scene, between("particles", why, std::move(*made.particles)));
 }
@@ -191,7 +193,7 @@ Result<std::unique_ptr<StrandMethod>> makeHybridMethod(const SceneInput& scene) 
     wanted.spreading = settings.hairHairStrength * kFastestSpreading;
     wanted.friction = settings.hairHairCohesion;
     auto made = runtime::HairFlow::make(scene.strands(), wanted, applicationHost());
-    if (!made.flow) return fail(made.error);
+    if (!made.flow) return tl::unexpected(errorOfWords(made.error));
     return makeContinuum(scene, between("hybrid", "on, a grid between the frames", std::move(*made.flow)));
 }
 

@@ -474,7 +474,8 @@ Result<RecordedFrame> TakeReader::frame(std::uint64_t index) {
         if (!values) {
             impl.raw.clear();
             return failIn(impl.name, Byte{impl.blocks[wanted].at},
-                          fmt::format("frame {} is damaged: {}", impl.next, values.error().problem));
+                          fmt::format("frame {} is damaged: {}", impl.next, values.error().problem),
+                          "expected a whole take: record it again");
         }
         if (impl.next++ < index) continue;
         RecordedFrame frame = frameFrom(*values, impl.header.counts, *impl.groom);

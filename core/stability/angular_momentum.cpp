@@ -63,7 +63,7 @@ Result<MomentumLoss> angularMomentumLoss(const runtime::SimulationSettings& auth
     StrandSet strand;
     strand.add({}, {1.0f, 0.0f, 0.0f}, kSpinLength / (kSpinPoints - 1), kSpinPoints);
     auto made = runtime::Engine::make(strand.view(), settings);
-    if (!made.engine) return fail(made.error);
+    if (!made.engine) return tl::unexpected(errorOfWords(made.error));
     runtime::Engine& engine = *made.engine;
     const std::vector<runtime::RootFrame> roots = strand.roots();
     double time = 0;
@@ -73,7 +73,8 @@ Result<MomentumLoss> angularMomentumLoss(const runtime::SimulationSettings& auth
     };
     run(kSpinFalls);
     settings.gravity = {};
-    if (const std::string why = engine.setSettings(settings); !why.empty()) return fail(why);
+    if (const std::string why = engine.setSettings(settings); !why.empty())
+        return tl::unexpected(errorOfWords(why));
     run(time + static_cast<double>(kSpinFrame));  // velocities of the last substep know no gravity then
     const Spin before = spinOf(engine);
     run(time + seconds);

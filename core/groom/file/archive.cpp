@@ -50,6 +50,9 @@ bool allZero(std::span<const std::byte> bytes) {
     return std::all_of(bytes.begin(), bytes.end(), [](std::byte byte) { return byte == std::byte{0}; });
 }
 
+constexpr const char* kNewerProgram = "expected a newer Hairloom to read it";
+constexpr const char* kWholeFile = "expected a whole file: save it again, or restore a copy";
+
 std::string newerVersion(std::string_view what, std::uint64_t found, std::uint32_t newest) {
     return fmt::format("{} is version {}, but this program reads versions up to {}", what, found, newest);
 }
@@ -73,7 +76,8 @@ Result<std::vector<std::byte>> ArchiveWriter::finish(const nlohmann::ordered_jso
     std::uint64_t offset = 0;
     for (std::size_t i = 0; i < arrays_.size(); ++i) {
         const Array& array = arrays_[i];
-        if (!isUtf8(array.name)) return fail(fmt::format("the name of array {} is not UTF-8", i));
+        if (!isUtf8(array.name))
+            return fail(fmt::format("the name of array {} is not UTF-8", i), "expected UTF-8");
         table[array.name] = {{"type", array.type},
                              {"count", array.count},
                              {"offset", offset},
@@ -132,7 +136,8 @@ Status ArchiveReader::readPreamble() {
         return failIn(file_, Byte{0}, "is not a Hairloom file", "expected it to begin with HAIRLOOM");
     if (!preamble) return tl::unexpected(preamble.error());
     if (preamble->version > kArchiveVersion || preamble->version == 0) {
-        return failIn(file_, Byte{8}, newerVersion("container", preamble->version, kArchiveVersion));
+        return failIn(file_, Byte{8}, newerVersion("container", preamble->version, kArchiveVersion),
+                      kNewerProgram);
     }
     if (preamble->reserved != 0) return failIn(file_, Byte{12}, "preamble is damaged", "expected zeros");
     if (preamble->headBytes > reader.remaining() || preamble->headBytes > kMaxJsonBytes) {
@@ -143,7 +148,8 @@ Status ArchiveReader::readPreamble() {
     headBytes_ = preamble->headBytes;
     const auto head = std::span(bytes_).subspan(sizeof(Preamble), headBytes_);
     if (!isChecksum(hashBytes(head), preamble->headChecksum)) {
-        return failIn(file_, Byte{sizeof(Preamble)}, "JSON head is damaged: it does not match its checksum");
+        return failIn(file_, Byte{sizeof(Preamble)}, "JSON head is damaged: it does not match its checksum",
+                      kWholeFile);
     }
     return {};
 }
@@ -161,7 +167,8 @@ Status ArchiveReader::readHead(std::string_view kind, std::uint32_t newestVersio
     }
     const auto version = reader.count("version", 1, std::numeric_limits<std::uint32_t>::max());
     if (auto status = reader.status(); !status) return status;
-    if (version > newestVersion) return failIn(file_, {}, newerVersion(kind, version, newestVersion));
+    if (version > newestVersion)
+        return failIn(file_, {}, newerVersion(kind, version, newestVersion), kNewerProgram);
     version_ = static_cast<std::uint32_t>(version);
     return {};
 }
@@ -259,7 +266,8 @@ std::vector<std::string> ArchiveReader::names() const {
 
 Result<const ArchiveReader::Array*> ArchiveReader::find(std::string_view name, std::string_view type) const {
     const auto found = arrays_.find(name);
-    if (found == arrays_.end()) return failIn(file_, {}, fmt::format("array '{}' is missing", name));
+    if (found == arrays_.end())
+        return failIn(file_, {}, fmt::format("array '{}' is missing", name), kWholeFile);
     if (found->second.type != type) {
         return tl::unexpected(errorAt(name, fmt::format("is of type {}", found->second.type),
                                       fmt::format("expected {}", type)));
@@ -269,7 +277,8 @@ Result<const ArchiveReader::Array*> ArchiveReader::find(std::string_view name, s
 
 Result<AttributeData> ArchiveReader::readAny(std::string_view name) const {
     const auto found = arrays_.find(name);
-    if (found == arrays_.end()) return failIn(file_, {}, fmt::format("array '{}' is missing", name));
+    if (found == arrays_.end())
+        return failIn(file_, {}, fmt::format("array '{}' is missing", name), kWholeFile);
     auto data = emptyOfType(found->second.type);
     if (!data) return data;
     std::visit(

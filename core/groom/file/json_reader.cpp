@@ -132,13 +132,13 @@ std::string JsonReader::rest(std::span<const std::string_view> known) {
     return others.dump();
 }
 
-const json* JsonReader::member(std::string_view key) {
+const json* JsonReader::member(std::string_view key, const std::string& expected) {
     asked_.emplace(key);
     if (value_->is_object()) {
         const auto found = value_->find(written(key));
         if (found != value_->end()) return &currentValue(former_, key, *found);
     }
-    complain(key, "is missing");
+    complain(key, "is missing", expected);
     return nullptr;
 }
 
@@ -161,37 +161,43 @@ Status JsonReader::status() const {
 }
 
 std::string JsonReader::string(std::string_view key) {
-    const json* value = member(key);
+    constexpr const char* kExpected = "expected text in quotes";
+    const json* value = member(key, kExpected);
     if (!value) return {};
     if (value->is_string()) return value->get<std::string>();
-    complain(key, "is " + quoted(*value), "expected text in quotes");
+    complain(key, "is " + quoted(*value), kExpected);
     return {};
 }
 
 bool JsonReader::boolean(std::string_view key) {
-    const json* value = member(key);
+    constexpr const char* kExpected = "expected true or false";
+    const json* value = member(key, kExpected);
     if (!value) return false;
     if (value->is_boolean()) return value->get<bool>();
-    complain(key, "is " + quoted(*value), "expected true or false");
+    complain(key, "is " + quoted(*value), kExpected);
     return false;
 }
 
 double JsonReader::number(std::string_view key, double min, double max, std::string_view unit) {
-    const json* value = member(key);
+    const std::string expected = "expected a number from " + rangeText(min, max, unit);
+    const json* value = member(key, expected);
     if (!value) return 0;
     if (value->is_number() && withinRange(value->get<double>(), min, max)) return value->get<double>();
-    complain(key, "is " + quoted(*value), "expected a number from " + rangeText(min, max, unit));
+    complain(key, "is " + quoted(*value), expected);
     return 0;
 }
 
 std::uint64_t JsonReader::count(std::string_view key, std::uint64_t min, std::uint64_t max) {
-    const json* value = member(key);
+    const bool hasEnd = max != ~std::uint64_t{0};
+    const std::string expected = hasEnd ? fmt::format("expected a whole number from {} to {}", min, max)
+                                        : fmt::format("expected a whole number from {}", min);
+    const json* value = member(key, expected);
     if (!value) return 0;
     if (value->is_number_unsigned()) {
         const auto number = value->get<std::uint64_t>();
         if (number >= min && number <= max) return number;
     }
-    complain(key, "is " + quoted(*value), fmt::format("expected a whole number from {} to {}", min, max));
+    complain(key, "is " + quoted(*value), expected);
     return 0;
 }
 
@@ -200,7 +206,8 @@ Vec3f JsonReader::vector(std::string_view key, double min, double max, std::stri
 }
 
 Vec3d JsonReader::exactVector(std::string_view key, double min, double max, std::string_view unit) {
-    const json* value = member(key);
+    const std::string expected = "expected an array of three numbers from " + rangeText(min, max, unit);
+    const json* value = member(key, expected);
     if (!value) return Vec3d::Zero();
     Vec3d result = Vec3d::Zero();
     bool good = value->is_array() && value->size() == 3;
@@ -210,12 +217,13 @@ Vec3d JsonReader::exactVector(std::string_view key, double min, double max, std:
         if (good) result[static_cast<Eigen::Index>(i)] = part.get<double>();
     }
     if (good) return result;
-    complain(key, "is not a vector", "expected an array of three numbers from " + rangeText(min, max, unit));
+    complain(key, "is not a vector", expected);
     return Vec3d::Zero();
 }
 
 std::vector<std::string> JsonReader::strings(std::string_view key) {
-    const json* value = member(key);
+    constexpr const char* kExpected = "expected an array of strings";
+    const json* value = member(key, kExpected);
     if (!value) return {};
     std::vector<std::string> result;
     bool good = value->is_array();
@@ -224,13 +232,15 @@ std::vector<std::string> JsonReader::strings(std::string_view key) {
         if (good) result.push_back((*value)[i].get<std::string>());
     }
     if (good) return result;
-    complain(key, "is not a list of names", "expected an array of strings");
+    complain(key, "is not a list of names", kExpected);
     return {};
 }
 
 std::vector<double> JsonReader::numbers(std::string_view key, double min, double max, std::size_t maximum,
                                         std::string_view unit) {
-    const json* value = member(key);
+    const std::string expected =
+        fmt::format("expected an array of up to {} numbers from {}", maximum, rangeText(min, max, unit));
+    const json* value = member(key, expected);
     if (!value) return {};
     std::vector<double> result;
     bool good = value->is_array() && value->size() <= maximum;
@@ -239,15 +249,15 @@ std::vector<double> JsonReader::numbers(std::string_view key, double min, double
         if (good) result.push_back((*value)[i].get<double>());
     }
     if (good) return result;
-    complain(
-        key, "is not a list of numbers",
-        fmt::format("expected an array of up to {} numbers from {}", maximum, rangeText(min, max, unit)));
+    complain(key, "is not a list of numbers", expected);
     return {};
 }
 
 std::vector<std::pair<double, double>> JsonReader::pairs(std::string_view key, double min, double max,
                                                          std::size_t maximum) {
-    const json* value = member(key);
+    const std::string expected = fmt::format("expected an array of up to {} pairs of numbers from {}",
+                                             maximum, rangeText(min, max, {}));
+    const json* value = member(key, expected);
     if (!value) return {};
     const auto isNumber = [&](const json& entry) {
         return entry.is_number() && withinRange(entry.get<double>(), min, max);
@@ -260,14 +270,14 @@ std::vector<std::pair<double, double>> JsonReader::pairs(std::string_view key, d
         if (good) result.emplace_back(pair[0].get<double>(), pair[1].get<double>());
     }
     if (good) return result;
-    complain(key, "is not a list of pairs",
-             fmt::format("expected an array of up to {} pairs of numbers from {}", maximum,
-                         rangeText(min, max, {})));
+    complain(key, "is not a list of pairs", expected);
     return {};
 }
 
 std::vector<Vec3f> JsonReader::vectors(std::string_view key, double min, double max, std::size_t maximum) {
-    const json* value = member(key);
+    const std::string expected = fmt::format("expected an array of up to {} arrays of three numbers from {}",
+                                             maximum, rangeText(min, max, {}));
+    const json* value = member(key, expected);
     if (!value) return {};
     std::vector<Vec3f> result;
     bool good = value->is_array() && value->size() <= maximum;
@@ -282,33 +292,33 @@ std::vector<Vec3f> JsonReader::vectors(std::string_view key, double min, double 
         result.push_back(read);
     }
     if (good) return result;
-    complain(key, "is not a list of vectors",
-             fmt::format("expected an array of up to {} arrays of three numbers from {}", maximum,
-                         rangeText(min, max, {})));
+    complain(key, "is not a list of vectors", expected);
     return {};
 }
 
 std::size_t JsonReader::choice(std::string_view key, std::span<const std::string_view> choices) {
-    const std::string name = string(key);
-    if (!ok()) return 0;
-    for (std::size_t i = 0; i < choices.size(); ++i) {
-        if (choices[i] == name) return i;
+    const std::string expected = fmt::format("expected one of {}", fmt::join(choices, ", "));
+    const json* value = member(key, expected);
+    if (!value || !ok()) return 0;
+    for (std::size_t i = 0; value->is_string() && i < choices.size(); ++i) {
+        if (choices[i] == value->get_ref<const std::string&>()) return i;
     }
-    complain(key, "is " + quoted(json(name)), fmt::format("expected one of {}", fmt::join(choices, ", ")));
+    complain(key, "is " + quoted(*value), expected);
     return 0;
 }
 
 JsonReader JsonReader::object(std::string_view key) {
     static const json nothing = json::object();
-    const json* value = member(key);
+    const json* value = member(key, "expected an object");
     return JsonReader(value ? *value : nothing, path_ + pathPart(key), context_);
 }
 
 std::vector<JsonReader> JsonReader::objects(std::string_view key) {
-    const json* value = member(key);
+    constexpr const char* kExpected = "expected an array of objects";
+    const json* value = member(key, kExpected);
     std::vector<JsonReader> result;
     if (!value) return result;
-    if (!value->is_array()) complain(key, "is " + quoted(*value), "expected an array of objects");
+    if (!value->is_array()) complain(key, "is " + quoted(*value), kExpected);
     for (std::size_t i = 0; value->is_array() && i < value->size() && ok(); ++i) {
         result.push_back(JsonReader((*value)[i], fmt::format("{}{}/{}", path_, pathPart(key), i), context_));
     }
@@ -325,11 +335,11 @@ void JsonReader::finish() {
 }
 
 double JsonReader::wholeNumber(const FieldInfo& field) {
-    const json* value = member(field.name);
+    const std::string expected = "expected a whole number from " + rangeText(field.min, field.max, {});
+    const json* value = member(field.name, expected);
     if (!value) return 0;
     if (value->is_number() && field.holds(value->get<double>())) return value->get<double>();
-    complain(field.name, "is " + quoted(*value),
-             "expected a whole number from " + rangeText(field.min, field.max, {}));
+    complain(field.name, "is " + quoted(*value), expected);
     return 0;
 }
 
@@ -360,8 +370,11 @@ void JsonReader::ramp(std::string_view key, runtime::Ramp& ramp) {
         keys.push_back({static_cast<float>(at), static_cast<float>(value)});
     if (!ok()) return;
     const auto read = runtime::Ramp::of(keys);
-    const std::string problem = runtime::validationError(read);
-    if (!problem.empty()) return complain(key, problem);
+    const std::string words = runtime::validationError(read);
+    if (!words.empty()) {
+        const Error error = errorOfWords(words);
+        return complain(key, error.problem, error.expected);
+    }
     ramp = read;
 }
 

@@ -71,7 +71,7 @@ class JsonReader {
 
     /// Complains about the first member that nobody asked for, naming those that were.
     void finish();
-    void complain(std::string_view key, const std::string& problem, const std::string& expected = {});
+    void complain(std::string_view key, const std::string& problem, const std::string& expected);
     /// The same of a place further below: "keys/3/t".
     void complainBelow(std::string_view path, const std::string& problem, const std::string& expected);
     bool ok() const { return !context_->error; }
@@ -84,7 +84,8 @@ class JsonReader {
         std::optional<Error> error;
     };
     JsonReader(const nlohmann::json& value, std::string path, std::shared_ptr<Context> context);
-    const nlohmann::json* member(std::string_view key);
+    /// Null and a complaint where it is absent; `expected` is what it should have been.
+    const nlohmann::json* member(std::string_view key, const std::string& expected);
     /// Complains where a member stands beside its former name.
     void alsoReadFormer(std::span<const FormerMember> members);
     /// As the object has it: the former name where that stands there.

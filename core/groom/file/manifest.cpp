@@ -34,7 +34,8 @@ Result<Json> rowOf(const fs::path& folder, const fs::path& file, const fs::path&
     std::error_code code;
     const std::uint64_t bytes = fs::file_size(content, code);
     const std::string hash = hashText(content);
-    if (code || hash.empty()) return failIn(file.string(), {}, "cannot be read for the manifest");
+    if (code || hash.empty())
+        return failIn(file.string(), {}, "cannot be read for the manifest", "expected a readable file");
     return manifestRow(nameFrom(folder, file), bytes, hash);
 }
 

@@ -40,7 +40,8 @@ bool leaps(const StrandShape& shape, const std::vector<Vec3d>& from, const std::
 }
 
 Status check(const Strands& strands, const runtime::SimulationSettings& settings) {
-    for (const std::string& problem : runtime::validate(settings)) return fail(problem);
+    for (const std::string& problem : runtime::validate(settings))
+        return tl::unexpected(errorOfWords(problem));
     const bool springs = settings.strandModel == runtime::StrandModel::springs;
     if (springs && !(greatestStiffness(settings) < 1.0f))
         return fail("angularStiffness 1 has no finite stiffness", "less than 1");
