@@ -12,15 +12,12 @@
 #include "importers/length_unit.h"
 
 namespace hairloom::cli {
-namespace {
 
 std::vector<std::string> unitNames() {
     std::vector<std::string> names;
     for (const LengthUnit& unit : lengthUnits()) names.emplace_back(unit.name);
     return names;
 }
-
-}  // namespace
 
 void addUnitOption(CLI::App& job, std::string& unit, const std::string& name, const std::string& of) {
     job.add_option(name, unit,

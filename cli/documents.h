@@ -15,6 +15,8 @@ namespace hairloom::cli {
 /// Opened::format of what `export --format runtime` writes.
 inline constexpr const char* kAssetFormat = "Hairloom runtime asset";
 
+/// "m", "dm", …
+std::vector<std::string> unitNames();
 /// --unit m/dm/cm/mm/inch, or another name, for files that state none.
 void addUnitOption(CLI::App& job, std::string& unit, const std::string& name = "--unit",
                    const std::string& of = "the file");

@@ -2,8 +2,10 @@
 #include "cli/job.h"
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
 
+#include "cli/documents.h"
 #include "cli/error_report.h"
 #include "cli/finite_numbers.h"
 #include "cli/outputs.h"
@@ -15,13 +17,35 @@ namespace {
 /// Writes manifests of its parts whatever was asked for.
 constexpr std::string_view kOwnManifest = "sweep";
 
+/// What the job reads first, else what it writes; empty where it has neither.
+std::string worksOn(const CLI::App& app) {
+    for (const char* name : {"groom", "file", "--mesh", "--output"}) {
+        const CLI::Option* const option = app.get_option_no_throw(name);
+        if (option != nullptr && option->count() > 0) return option->results().front();
+    }
+    return {};
+}
+
 }  // namespace
+
+JobRun declareJob(const Job& job, CLI::App& app) {
+    const JobRun run = job.declare(app);
+    const auto unit = std::make_shared<std::string>();
+    if (app.get_option_no_throw("groom") != nullptr && app.get_option_no_throw("--unit") == nullptr)
+        addUnitOption(app, *unit, "--unit", "hair files");
+    return [&app, run, unit](const std::string& commandLine) -> Result<Report> {
+        setUnitOfHairFiles(*unit);
+        auto report = run(commandLine);
+        if (!report) return tl::unexpected(inFile(report.error(), worksOn(app)));
+        return report;
+    };
+}
 
 Jobs::Jobs(CLI::App& app) {
     for (const Job& job : jobs()) {
         CLI::App* const command = app.add_subcommand(job.name, job.does);
         command->footer("Example:\n  hairloom-cli " + job.name + " " + job.example);
-        command->parse_complete_callback([this, command, run = job.declare(*command)] {
+        command->parse_complete_callback([this, command, run = declareJob(job, *command)] {
             command_ = command;
             chosen_ = run;
         });

@@ -30,6 +30,11 @@ struct Job {
 /// All of them, in order of name.
 const std::vector<Job>& jobs();
 
+/// Adds the job's options to `app`, and --unit of hair files that state none where the job takes a groom and
+/// has no --unit of its own. What is given back runs the job. Its errors name the file that the job works on
+/// where they name none.
+JobRun declareJob(const Job& job, CLI::App& app);
+
 /// Declares every job to the program.
 class Jobs {
   public:

@@ -54,7 +54,7 @@ Report describedJobs() {
     addOptions(program, all["options"]);
     for (const Job& job : jobs()) {
         CLI::App& app = *program.add_subcommand(job.name);
-        job.declare(app);
+        declareJob(job, app);
         Report row{{"name", job.name},
                    {"does", job.does},
                    {"example", "hairloom-cli " + job.name + " " + job.example},

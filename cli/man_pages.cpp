@@ -53,7 +53,7 @@ void addJob(const Job& job, std::string& page) {
     page += fmt::format(".SS {}\n{}.\n", escaped(job.name), escaped(job.does));
     CLI::App program;
     CLI::App& app = *program.add_subcommand(job.name);
-    job.declare(app);
+    declareJob(job, app);
     addOptions(app, page);
     page += fmt::format(".PP\nExample:\n.PP\n.RS\n.EX\nhairloom\\-cli {} {}\n.EE\n.RE\n", escaped(job.name),
                         escaped(job.example));

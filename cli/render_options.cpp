@@ -261,7 +261,8 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
            "Device that simulates and draws. auto draws on the best GPU, or with the software renderer if "
            "there "
            "is none, and simulates where it was measured to be faster. cpu and gpu simulate there. gpu draws "
-           "with the graphics API only. software draws and simulates without a graphics API")
+           "with the graphics API only, images without --motion, too. software draws and simulates without a "
+           "graphics API")
         ->check(CLI::IsMember({"auto", "cpu", "gpu", "software"}));
     auto* frame = job.add_option(
         "--frame", options->frame,
@@ -339,8 +340,6 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
             if (option->count() > 0 && !moves)
                 throw CLI::RequiresError(option->get_name(), "--record or --motion");
         }
-        if ((options->engine == "cpu" || options->engine == "gpu") && options->motion.empty())
-            throw CLI::RequiresError("--engine " + options->engine, "--motion");
         if (options->engine == "software" && (options->chooseDevice || options->backend != "any"))
             throw CLI::ExcludesError("--engine software", options->chooseDevice ? "--device" : "--backend");
     });

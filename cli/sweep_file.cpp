@@ -214,7 +214,7 @@ Status checkWords(const Job& job, const std::vector<std::string>& words) {
     GlobalOptions options;
     addGlobalOptions(app, options);
     CLI::App& command = *app.add_subcommand(job.name, job.does);
-    const JobRun run = job.declare(command);
+    const JobRun run = declareJob(job, command);
     refuseNumbersThatAreNone(command);
     std::vector<std::string> backwards(words.rbegin(), words.rend());
     backwards.push_back(job.name);

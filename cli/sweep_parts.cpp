@@ -112,7 +112,7 @@ Result<Report> runWords(const Job& job, std::vector<std::string> words) {
     try {
         CLI::App app("hairloom-cli");
         app.allow_windows_style_options(false);
-        JobRun run = job.declare(app);
+        const JobRun run = declareJob(job, app);
         refuseNumbersThatAreNone(app);
         const std::string commandLine = fmt::format("hairloom-cli {} {}", job.name, fmt::join(words, " "));
         std::ranges::reverse(words);

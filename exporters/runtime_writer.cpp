@@ -198,7 +198,7 @@ Finding farHairFinding(const FarthestHair& far) {
 Status checkOptions(const StrandExportOptions& options) {
     if (options.metresPerUnit != 1.0f || options.up != UpAxis::Y)
         return fail("a runtime asset with another unit or axis was requested",
-                    "expected neither --unit nor --up: it is in metres, Y up");
+                    "expected neither --output-unit nor --up: it is in metres, Y up");
     if (options.clip && options.pointsPerStrand > 0)
         return fail("a clip was requested of strands with other points than the groom's",
                     "expected no --points");

@@ -106,7 +106,7 @@ void checkFormat(const HairWriter& writer, const ExportOptions& options,
     if (writer.holdsCards() &&
         (exporting.metresPerUnit != 1 || exporting.up != UpAxis::Y || exporting.pointsPerStrand > 0))
         throw WrongUsage(
-            "--unit, --up and --points do not apply to cards",
+            "--output-unit, --up and --points do not apply to cards",
             "leave them out: glTF, OBJ and USD of cards are in metres, FBX in centimetres, Y up");
     if (options.what == "all" && !writer.marksGuides && !writer.keepsGuides)
         throw WrongUsage(
@@ -219,7 +219,7 @@ Result<Report> exportAsPage(const ExportOptions& options) {
     if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
         !options.record.empty() || options.what != "guides" || options.physics)
         throw WrongUsage(
-            "--target, --unit, --up, --points, --record, --physics and --what do not apply to a web "
+            "--target, --output-unit, --up, --points, --record, --physics and --what do not apply to a web "
             "page",
             "leave them out: the page plays a runtime asset in metres, Y up, which draws follow hairs "
             "itself");
@@ -338,7 +338,9 @@ JobRun declare(CLI::App& job) {
     job.add_flag("--physics", options->physics,
                  "USD: deformable curves for simulators, of the guides or all strands "
                  "(PhysicsCurvesDeformableSimAPI)");
-    addUnitOption(job, options->unit);
+    job.add_option("--output-unit", options->unit,
+                   "Unit of lengths in the file that is written (default: that of --target, or metres)")
+        ->check(CLI::IsMember(unitNames()));
     job.add_option("--up", options->up, "Up axis of the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points,
                    "Resample every strand to this number of points. 0 keeps them")

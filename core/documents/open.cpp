@@ -39,6 +39,45 @@ Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::st
     return importSceneLoud(path, options);
 }
 
+namespace {
+
+std::string& unitOfHairFiles() {
+    static std::string unit;
+    return unit;
+}
+
+StrandImportOptions inUnit(const std::string& unit) {
+    StrandImportOptions options;
+    options.isUnitAsked = !unit.empty();
+    if (options.isUnitAsked) options.metresPerUnit = metresPerUnit(unit);
+    return options;
+}
+
+/// The mesh reader has words for these.
+bool isUtf16(const std::string& path) {
+    const std::vector<std::byte> mark = readBeginning(path, 2);
+    return mark.size() == 2 && (mark == std::vector{std::byte{0xff}, std::byte{0xfe}} ||
+                                mark == std::vector{std::byte{0xfe}, std::byte{0xff}});
+}
+
+/// Before a reader is asked, which expects what it reads.
+Status checkIsSomething(const std::string& path) {
+    constexpr const char* kExpected = "expected a project, hair file or mesh";
+    std::error_code code;
+    const auto status = std::filesystem::status(path, code);
+    if (!std::filesystem::exists(status)) return failIn(path, {}, "no such file", kExpected);
+    if (!std::filesystem::is_regular_file(status))
+        return failIn(path, {}, "is not a regular file", kExpected);
+    if (std::filesystem::file_size(path, code) == 0 && !code) return failIn(path, {}, "is empty", kExpected);
+    return {};
+}
+
+}  // namespace
+
+void setUnitOfHairFiles(const std::string& unit) {
+    unitOfHairFiles() = unit;
+}
+
 bool mayBeHead(const std::string& path) {
     std::error_code code;
     const std::uint64_t size = std::filesystem::file_size(path, code);
@@ -47,7 +86,7 @@ bool mayBeHead(const std::string& path) {
 
 Result<Groom> openGroom(const std::string& path) {
     if (looksLikeProject(path)) return openProject(path);
-    auto imported = importStrands(path, {});
+    auto imported = importStrands(path, inUnit(unitOfHairFiles()));
     if (!imported) return tl::unexpected(imported.error());
     logFindings(path, imported->warnings);
     return std::move(imported->groom);
@@ -63,10 +102,9 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
         opened.findings = validate(opened.groom);
         return opened;
     }
-    StrandImportOptions options;
-    options.isUnitAsked = !unit.empty();
-    if (options.isUnitAsked) options.metresPerUnit = metresPerUnit(unit);
-    if (auto imported = importStrands(path, options)) {
+    if (auto status = checkIsSomething(path); !status) return tl::unexpected(status.error());
+    auto imported = importStrands(path, inUnit(unit));
+    if (imported) {
         opened.groom = std::move(imported->groom);
         opened.format = imported->format;
         opened.findings = validate(opened.groom);
@@ -82,7 +120,8 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
                                        "import drops such strands"});
         }
         return opened;
-    } else if (looksLikeStrandFile(readBeginning(path, 256))) {
+    }
+    if (looksLikeStrandFile(readBeginning(path, 256))) {
         if (!mayBeHead(path)) return tl::unexpected(imported.error());
         if (const auto head = importScene(path); !head) {
             Error both = imported.error();
@@ -90,6 +129,10 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
             return tl::unexpected(both);
         }
     }
+    if (!mayBeHead(path) && !isUtf16(path))
+        return failIn(path, {}, "is in no format that is known",
+                      fmt::format("expected a project, hair ({}) or a mesh ({})", labelsOf(strandFormats()),
+                                  labelsOf(meshFormats())));
     auto scene = importSceneWithUnit(path, unit);
     if (!scene) return tl::unexpected(scene.error());
     opened.format = scene->format;

@@ -22,6 +22,10 @@ Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportO
 /// The same with the name of a unit, which may be empty.
 Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit);
 
+/// Hair files that state no unit are in the unit of this name from here on, for openGroom(). Empty, as at
+/// first: as their format says, or metres. For programs that do one job. Set before anything is read.
+void setUnitOfHairFiles(const std::string& unit);
+
 /// A groom from a project, or from a hair file of any supported format.
 Result<Groom> openGroom(const std::string& path);
 
@@ -31,6 +35,7 @@ struct Opened {
     Groom groom;  ///< for meshes: the scalp and no strands
     std::vector<Finding> findings;
 };
+/// Errors: no such file, an empty one, one that neither reader knows; those of the reader that knows it.
 Result<Opened> openAny(const std::string& path, const std::string& unit);
 
 /// From a JSON list of {"name", "centre": [x, y, z], "radius", "bone"}; metres, radius > 0.

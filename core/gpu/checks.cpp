@@ -146,11 +146,17 @@ Result<DeviceInfo> chooseDevice(const std::vector<DeviceInfo>& infos, const Devi
     }
     if (best != nullptr) return *best;
     if (refused != nullptr)
-        return fail("GPU '" + refused->name + "' cannot be used: " + refused->unusableReason);
-    std::string names;
+        return fail("GPU '" + refused->name + "' cannot be used: " + refused->unusableReason,
+                    "expected another GPU, as `devices` lists them");
+    std::string names, asked;
     for (const DeviceInfo& info : infos)
-        names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", info.index, info.name);
-    return fail("no such GPU", "one of " + names);
+        names += fmt::format("{}{}: {} ({})", names.empty() ? "" : ", ", info.index, info.name,
+                             toString(info.backend));
+    if (options.backend) asked += fmt::format(" with {}", toString(*options.backend));
+    if (options.index) asked += fmt::format(" at index {}", *options.index);
+    if (!options.name.empty()) asked += fmt::format(" named '{}'", options.name);
+    return fail("no such GPU: there is none" + asked,
+                names.empty() ? "expected a GPU and its driver" : "expected one of " + names);
 }
 
 tl::unexpected<Error> deviceLost(const DeviceInfo& info) {

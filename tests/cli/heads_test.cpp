@@ -122,7 +122,7 @@ TEST_F(HeadsTest, AUnitThatSizeAloneDoesNotTellIsFoundByTheOldHead) {
 }
 
 TEST_F(HeadsTest, HairOfAnotherAxisIsToldItsOwn) {
-    runJson("export h.hairloom --format obj-lines --up z --unit inch -o strands.obj");
+    runJson("export h.hairloom --format obj-lines --up z --output-unit inch -o strands.obj");
     const Outcome far = run("import strands.obj --mesh head.obj -o a.hairloom");
     EXPECT_EQ(far.exitCode, 1);
     EXPECT_THAT(far.errors, HasSubstr("the unit inch and Z up (--unit inch --up z)"));

@@ -33,7 +33,7 @@ TEST_F(RuntimeAssetJobs, AnAssetIsWrittenDescribedValidatedAndSimulated) {
     EXPECT_EQ(runJson("validate g.hairrt")["valid"], true);
     const auto played = runJson("simulate g.hairrt --frames 3 --motion nod");
     EXPECT_EQ(played["nan_count"], 0);
-    const auto asked = run("export g.hairloom --format runtime --unit cm -o h.hairrt");
+    const auto asked = run("export g.hairloom --format runtime --output-unit cm -o h.hairrt");
     EXPECT_EQ(asked.exitCode, 1);
     EXPECT_THAT(asked.errors, HasSubstr("metres, Y up"));
 }

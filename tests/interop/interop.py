@@ -111,7 +111,7 @@ def judged(row, groom, folder, cli, blender):
     """Error in mm by the judge, and the report of the export."""
     name, _, judge = row
     path = os.path.join(folder, f"{os.path.basename(groom)}.{name}.{name.split('-')[0]}")
-    words = ["export", groom, "--format", name, "--unit", "m", "--up", "y", "--force", "-o", path]
+    words = ["export", groom, "--format", name, "--output-unit", "m", "--up", "y", "--force", "-o", path]
     # The same points in all formats: TressFX has 16 on every strand.
     report = run(cli, *words, "--points", "16")
     if judge == "Blender" and not blender:

@@ -339,7 +339,7 @@ def check_motion(cli, folder, project, name):
 def check_blender(cli, folder, project, name, expected, own, points, blender):
     for form in BY_BLENDER:
         out = os.path.join(folder, f"{name}.out.{form.split('-')[0]}")
-        run(cli, "export", project, "--format", form, "-o", out, "--unit", "m", "--force")
+        run(cli, "export", project, "--format", form, "-o", out, "--output-unit", "m", "--force")
         objects = blender_objects(out, blender)
         hair = [one for one in objects if one["type"] == ("MESH" if form == "obj-lines" else "CURVES")]
         strands = sum(one.get("strands", 0) for one in hair)
