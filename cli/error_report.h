@@ -29,6 +29,9 @@ T orWrongUsage(Result<T> typed) {
     if (!typed) throw WrongUsage(std::move(typed.error()));
     return std::move(*typed);
 }
+inline void orWrongUsage(Status typed) {
+    if (!typed) throw WrongUsage(std::move(typed.error()));
+}
 
 /// A line on standard error; with `json` also printErrorObject().
 void printError(const Error& error, bool json);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/head_options.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
@@ -82,7 +83,8 @@ Result<Placement> place(const ScalpMesh& mesh, const FaceSet& faces, const Creat
 /// Faces of the head that carry hair.
 Result<FaceSet> scalpOf(const ScalpMesh& mesh, const CreateOptions& options, const HeadImportOptions& taken) {
     auto faces = selectFaces(mesh, options.scalp);
-    if (!faces || options.scalpMesh.empty()) return faces;
+    if (!faces) return tl::unexpected(inFile(faces.error(), options.mesh));
+    if (options.scalpMesh.empty()) return faces;
     HeadImportOptions likewise = taken;
     likewise.leaveOut.clear();
     likewise.collideWith.clear();
@@ -107,6 +109,7 @@ Result<std::vector<float>> imageMask(const std::string& path, const ScalpMesh& m
 
 Result<Report> create(const CreateOptions& options) {
     const Stopwatch watch;
+    orWrongUsage(checkSelection(options.scalp));
     HeadImportOptions wanted = headImportOptions(options.head);
     wanted.collideWith = options.collideWith;
     wanted.colliderSpheres = options.colliderSpheres;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/head_options.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
@@ -157,6 +158,7 @@ void layHeadToHair(const ImportOptions& options, const StrandImportOptions& stra
 }
 
 Result<Report> import(const ImportOptions& options) {
+    orWrongUsage(checkSelection(options.scalp));
     StrandImportOptions strandsAs = strandOptions(options);
     std::shared_ptr<const ScalpMesh> mesh;
     FaceSet faces;
@@ -171,7 +173,7 @@ Result<Report> import(const ImportOptions& options) {
         if (taken.guessUp && !taken.zUp && !read->scene.statesUp)
             layHeadToHair(options, strandsAs, mesh, taken, head);
         auto selected = selectFaces(*mesh, options.scalp);
-        if (!selected) return tl::unexpected(selected.error());
+        if (!selected) return tl::unexpected(inFile(selected.error(), options.mesh));
         faces = std::move(*selected);
         strandsAs.scalp = mesh.get();
     }

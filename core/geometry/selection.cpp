@@ -63,7 +63,7 @@ Result<double> numberBetween(std::string_view term, std::string_view text, doubl
     const std::optional<double> value = parseNumber(text);
     if (!value || *value < low || *value > high)
         return fail(fmt::format("selection '{}': '{}' is out of range", term, text),
-                    fmt::format("a number from {} to {}", low, high));
+                    fmt::format("expected a number from {} to {}", low, high));
     return *value;
 }
 
@@ -73,7 +73,7 @@ std::string someOf(std::vector<std::string> names) {
     names.erase(std::unique(names.begin(), names.end()), names.end());
     const bool more = names.size() > kNamesShown;
     if (more) names.resize(kNamesShown);
-    return fmt::format("one of: {}{}", fmt::join(names, ", "), more ? ", …" : "");
+    return fmt::format("expected one of: {}{}", fmt::join(names, ", "), more ? ", …" : "");
 }
 
 bool nameMatches(std::string_view name, std::string_view pattern) {
@@ -139,7 +139,7 @@ Result<FaceSet> facesListed(const ScalpMesh& mesh, const FaceSet& current, const
                           "expected one face number per line, from 0");
         if (face >= faceCount)
             return failIn(path, Line{lineNumber}, fmt::format("the mesh has no face {}", face),
-                          fmt::format("a number below {}", faceCount));
+                          fmt::format("expected a number below {}", faceCount));
         wanted.push_back(face);
     }
     std::sort(wanted.begin(), wanted.end());
@@ -148,48 +148,68 @@ Result<FaceSet> facesListed(const ScalpMesh& mesh, const FaceSet& current, const
     });
 }
 
-Result<FaceSet> applyWithArgument(const ScalpMesh& mesh, const FaceSet& current, std::string_view term,
-                                  std::string_view word, std::string_view argument) {
+/// A term as "word:argument". Errors: an unknown word, a number out of range.
+struct Term {
+    std::string_view word, argument;
+    double number = 0;
+};
+Result<Term> parseTerm(std::string_view term) {
+    const std::size_t colon = term.find(':');
+    if (term == "all" || term == "invert" || term == "connected") return Term{term, {}};
+    Term parsed{term.substr(0, colon), {}};
+    constexpr std::string_view kWords[] = {"group", "material", "cap", "above", "faces", "grow", "shrink"};
+    if (colon == std::string_view::npos ||
+        std::find(std::begin(kWords), std::end(kWords), parsed.word) == std::end(kWords))
+        return fail(fmt::format("selection '{}': unknown term", term.substr(0, 80)),
+                    "expected all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "
+                    "shrink:N, invert or connected");
+    parsed.argument = term.substr(colon + 1);
+    const bool isRings = parsed.word == "grow" || parsed.word == "shrink";
+    if (!isRings && parsed.word != "cap" && parsed.word != "above") return parsed;
+    constexpr double kMaxRings = 1e6;
+    const auto number = numberBetween(term, parsed.argument, 0,
+                                      isRings                ? kMaxRings
+                                      : parsed.word == "cap" ? 180
+                                                             : 1);
+    if (!number) return tl::unexpected(number.error());
+    if (isRings && *number != std::floor(*number))
+        return fail(fmt::format("selection '{}': '{}' is not a whole number", term, parsed.argument),
+                    "expected a whole number of rings");
+    parsed.number = *number;
+    return parsed;
+}
+
+/// Calls visit(term) for each until one fails.
+template <class Visit>
+Status forEachTerm(std::string_view expression, Visit visit) {
+    for (std::size_t begin = 0; begin <= expression.size();) {
+        const std::size_t end = std::min(expression.find(',', begin), expression.size());
+        if (auto status = visit(trimmed(expression.substr(begin, end - begin))); !status) return status;
+        begin = end + 1;
+    }
+    return {};
+}
+
+Result<FaceSet> applyTerm(const ScalpMesh& mesh, const FaceSet& current, std::string_view term) {
+    const auto parsed = parseTerm(term);
+    if (!parsed) return tl::unexpected(parsed.error());
+    const auto& [word, argument, number] = *parsed;
+    if (word == "all") return current;
+    if (word == "invert") return invertSelection(mesh, current);
+    if (word == "connected") {
+        std::vector<FaceSet> pieces = connectedPieces(mesh, current);
+        return pieces.empty() ? FaceSet{} : std::move(pieces.front());
+    }
     if (word == "group")
         return facesNamed(term, argument, current, mesh.triangleGroups(), mesh.groupNames(), "group");
     if (word == "material")
         return facesNamed(term, argument, current, mesh.triangleMaterials(), mesh.materialNames(),
                           "material");
-    if (word == "cap")
-        return numberBetween(term, argument, 0, 180).map([&](double angle) {
-            return facesUpright(mesh, current, angle);
-        });
-    if (word == "above")
-        return numberBetween(term, argument, 0, 1).map([&](double fraction) {
-            return facesAbove(mesh, current, fraction);
-        });
+    if (word == "cap") return facesUpright(mesh, current, number);
+    if (word == "above") return facesAbove(mesh, current, number);
     if (word == "faces") return facesListed(mesh, current, std::string(argument));
-    constexpr double kMaxRings = 1e6;
-    const Result<double> rings = numberBetween(term, argument, 0, kMaxRings);
-    if (!rings) return tl::unexpected(rings.error());
-    if (*rings != std::floor(*rings))
-        return fail(fmt::format("selection '{}': '{}' is not a whole number", term, argument),
-                    "expected a whole number of rings");
-    return word == "grow" ? growSelection(mesh, current, static_cast<int>(*rings))
-                          : shrinkSelection(mesh, current, static_cast<int>(*rings));
-}
-
-Result<FaceSet> applyTerm(const ScalpMesh& mesh, const FaceSet& current, std::string_view term) {
-    if (term == "all") return current;
-    if (term == "invert") return invertSelection(mesh, current);
-    if (term == "connected") {
-        std::vector<FaceSet> pieces = connectedPieces(mesh, current);
-        return pieces.empty() ? FaceSet{} : std::move(pieces.front());
-    }
-    const std::size_t colon = term.find(':');
-    const std::string_view word = term.substr(0, colon);
-    constexpr std::string_view kWords[] = {"group", "material", "cap", "above", "faces", "grow", "shrink"};
-    if (colon == std::string_view::npos ||
-        std::find(std::begin(kWords), std::end(kWords), word) == std::end(kWords))
-        return fail(fmt::format("selection '{}': unknown term", term.substr(0, 80)),
-                    "expected all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "
-                    "shrink:N, invert or connected");
-    return applyWithArgument(mesh, current, term, word, term.substr(colon + 1));
+    return word == "grow" ? growSelection(mesh, current, static_cast<int>(number))
+                          : shrinkSelection(mesh, current, static_cast<int>(number));
 }
 
 }  // namespace
@@ -198,19 +218,25 @@ Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression) 
     FaceSet current(mesh.triangleCount());
     for (std::uint32_t t = 0; t < current.size(); ++t) current[t] = t;
     std::string_view emptiedBy;
-    for (std::size_t begin = 0; begin <= expression.size();) {
-        const std::size_t end = std::min(expression.find(',', begin), expression.size());
-        const std::string_view term = trimmed(expression.substr(begin, end - begin));
+    const Status done = forEachTerm(expression, [&](std::string_view term) -> Status {
         Result<FaceSet> next = applyTerm(mesh, current, term);
-        if (!next) return next;
+        if (!next) return tl::unexpected(next.error());
         if (next->empty() && !current.empty()) emptiedBy = term;
         current = std::move(*next);
-        begin = end + 1;
-    }
+        return {};
+    });
+    if (!done) return tl::unexpected(done.error());
     if (current.empty())
         return fail(fmt::format("selection '{}' is empty after '{}'", expression, emptiedBy),
-                    "at least one face");
+                    "expected at least one face");
     return current;
+}
+
+Status checkSelection(std::string_view expression) {
+    return forEachTerm(expression, [](std::string_view term) -> Status {
+        if (const auto parsed = parseTerm(term); !parsed) return tl::unexpected(parsed.error());
+        return {};
+    });
 }
 
 Result<FaceSet> facesOfGroups(const ScalpMesh& mesh, std::span<const std::string> names) {

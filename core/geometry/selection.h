@@ -18,6 +18,9 @@ namespace hairloom {
 /// are), a number out of range, an empty result.
 Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression);
 
+/// What can be said of a selection without a mesh. Errors: an unknown word, a number out of range.
+Status checkSelection(std::string_view expression);
+
 /// Faces of the groups named; a name that ends in * stands for all groups that begin with what precedes it.
 /// Errors: no group of a name (with the names there are).
 Result<FaceSet> facesOfGroups(const ScalpMesh& mesh, std::span<const std::string> names);
