@@ -249,12 +249,21 @@ class Bench {
     std::size_t done_ = 0, total_ = 0;
 };
 
+/// Straight hair in wind on one thread, the fewest strands: what runs are compared by after the samples.
+bool isFirstToCompare(const SimulationBench& bench, const StepCosts& costs) {
+    return costs.scene.strands == bench.strands.front() && costs.threads == 1 &&
+           costs.scene.activeForces == ActiveForces::noTorsion;
+}
+
 Report reportOf(const SimulationBench& bench) {
     Report rows = Report::array();
     for (const SampleStep& sample : bench.samples) rows.push_back(rowOf(sample.step));
-    for (const StepCosts& costs : bench.steps) {
-        rows.push_back(rowOf(costs.step));
-        for (const StepCosts::Stage& stage : costs.stages) rows.push_back(rowOf(stage.cost));
+    for (const bool first : {true, false}) {
+        for (const StepCosts& costs : bench.steps) {
+            if (isFirstToCompare(bench, costs) != first) continue;
+            rows.push_back(rowOf(costs.step));
+            for (const StepCosts::Stage& stage : costs.stages) rows.push_back(rowOf(stage.cost));
+        }
     }
     for (const ThesisCosts& column : bench.thesis) {
         for (std::size_t i = 0; i < kFamilies.size(); ++i) {

@@ -16,6 +16,7 @@
 #include "cli/picture_accuracy.h"
 #include "cli/progress.h"
 #include "core/accuracy/compare_reports.h"
+#include "core/accuracy/peers.h"
 #include "core/accuracy/work_precision_report.h"
 #include "core/base/file.h"
 #include "core/live/groom_scene.h"
@@ -34,9 +35,12 @@ struct AccuracyOptions {
     std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
     std::string view;               ///< view file; empty for none
+    std::string peers;              ///< CSV of ./dev peers; empty for the recorded one
     PictureAccuracyOptions picture;
     std::vector<std::string> compared;  ///< two folders of earlier reports, or none
 };
+
+constexpr std::uint64_t kMaxPeerBytes = std::uint64_t{1} << 20u;
 
 /// The groom's own number of points, and a half and a quarter of it.
 std::vector<std::string> pointsToTry(const Groom& groom) {
@@ -146,7 +150,39 @@ Report frontReport(const WorkPrecision& result, std::optional<double> pixelsPerM
     return rows;
 }
 
+Result<std::vector<PeerRun>> peersOf(const AccuracyOptions& options) {
+    if (options.peers.empty()) return recordedPeers();
+    const auto text = readTextFile(options.peers, kMaxPeerBytes);
+    if (!text) return tl::unexpected(text.error());
+    return parsePeers(*text, options.peers);
+}
+
+Report toReport(const std::vector<PeerRun>& peers) {
+    Report rows = Report::array();
+    for (const PeerRun& run : peers)
+        rows.push_back(Report{{"name", run.name},
+                              {"version", run.version},
+                              {"setting", run.setting},
+                              {"strands", run.strands},
+                              {"ms", finiteOrNull(run.milliseconds)},
+                              {"ms_lowest", finiteOrNull(run.lowestMs)},
+                              {"ms_highest", finiteOrNull(run.highestMs)},
+                              {"error_mm", finiteOrNull(run.errorMm)},
+                              {"error_mm_max", finiteOrNull(run.errorMaxMm)},
+                              {"stretch_percent", finiteOrNull(run.stretchPercent)},
+                              {"stretch_percent_max", finiteOrNull(run.stretchMaxPercent)},
+                              {"cantilever_mm", finiteOrNull(run.cantileverMm)},
+                              {"reference", run.reference},
+                              {"reference_uncertainty_mm", finiteOrNull(run.referenceUncertaintyMm)},
+                              {"machine", run.machine},
+                              {"load", finiteOrNull(run.load)},
+                              {"date", run.date}});
+    return rows;
+}
+
 Result<Report> accuracy(const AccuracyOptions& options, const std::string& commandLine) {
+    const auto peers = peersOf(options);
+    if (!peers) return tl::unexpected(peers.error());
     auto scene = openMovingGroom(options.motion);
     if (!scene) return tl::unexpected(scene.error());
     // Rods have neither integrators nor corrections of length.
@@ -179,8 +215,8 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         measureWorkPrecision(scene->groom, *scene->motion, measuring, *makeGroundTruth(options.groundTruth));
     progress.reset();
     if (!result) return tl::unexpected(result.error());
-    const auto files = writeWorkPrecision(*result, {options.motion.input, options.motion.motion, commandLine},
-                                          options.output);
+    const auto files = writeWorkPrecision(
+        *result, {options.motion.input, options.motion.motion, commandLine, *peers}, options.output);
     if (!files) return tl::unexpected(files.error());
 
     Report report;
@@ -200,6 +236,8 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         report["rows"].back()["diverged"] = run.diverged;
         report["rows"].back()["trembles"] = run.trembling > 0;
     }
+    report["peers"] = toReport(*peers);
+    report["peers_scene"] = peerScene();
     report["notes"] = result->notes;
     report["output"] = options.output;
     report["files"] = *files;
@@ -259,6 +297,11 @@ JobRun declare(CLI::App& job) {
                    "(N simulated strands; the others follow) or hairsPerGuide (time only)");
     job.add_option("--view", options->view,
                    "View file (docs/cli.md) with a camera and a size. Adds errors in pixels of this view")
+        ->type_name("FILE");
+    job.add_option(
+           "--peers", options->peers,
+           "CSV of other simulators that ./dev peers measured on your machine, to stand beside the front "
+           "in the report (default: the measurement that came with this version)")
         ->type_name("FILE");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
     addGroundTruthOptions(job, options->groundTruth);

@@ -221,6 +221,25 @@ void addAllRuns(const WorkPrecision& result, HtmlReport& page) {
     page.table(rows, strong);
 }
 
+void addPeers(const std::vector<PeerRun>& peers, HtmlReport& page) {
+    if (peers.empty()) return;
+    std::vector<Cells> rows{{"simulator", "setting", "ms", "error mm rms", "error mm max", "stretch %",
+                             "cantilever error mm", "its reference", "uncertain by mm", "measured"}};
+    for (const PeerRun& run : peers)
+        rows.push_back({fmt::format("{} {}", run.name, run.version), run.setting,
+                        fmt::format("{:.4g}", run.milliseconds), fmt::format("{:.4g}", run.errorMm),
+                        fmt::format("{:.4g}", run.errorMaxMm), fmt::format("{:.4g}", run.stretchPercent),
+                        fmt::format("{:.4g}", run.cantileverMm), run.reference,
+                        fmt::format("{:.3g}", run.referenceUncertaintyMm),
+                        fmt::format("{}, {}, load {:g}", run.machine, run.date, run.load)});
+    page.heading("Other simulators");
+    page.paragraph(
+        fmt::format("Not this hairstyle: {}. Compare their rows with each other, and ours among them "
+                    "with the front above to see how this machine and hairstyle differ.",
+                    peerScene()));
+    page.table(rows);
+}
+
 constexpr const char* kPartsDrawing = "error_parts.svg";
 
 std::vector<NamedDrawing> drawingsOf(const WorkPrecision& result, const ReportContext& context) {
@@ -256,6 +275,7 @@ std::string pageOf(const WorkPrecision& result, const ReportContext& context,
     addMeasures(drawings, page);
     if (next < drawings.size()) page.heading("One setting at a time");
     for (; next < drawings.size(); ++next) page.drawing(drawings[next].svg);
+    addPeers(context.peers, page);
     addWhatWasRun(result, context, page);
     addAllRuns(result, page);
     return page.html();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/accuracy/measures.h"
+#include "core/accuracy/peers.h"
 #include "core/accuracy/work_precision.h"
 #include "core/charts/plot.h"
 
@@ -18,6 +19,7 @@ struct ReportContext {
     std::string groom;        ///< file, as the user named it
     std::string motion;       ///< as named
     std::string commandLine;  ///< may be empty
+    std::vector<PeerRun> peers = recordedPeers();
 };
 
 /// One line per run after a head line, RFC 4180: each axis by its field's name, then ms_median, ms_q1, ms_q3,
