@@ -157,7 +157,7 @@ Result<std::vector<PeerRun>> peersOf(const AccuracyOptions& options) {
     return parsePeers(*text, options.peers);
 }
 
-Report toReport(const std::vector<PeerRun>& peers) {
+Report peersReport(const std::vector<PeerRun>& peers) {
     Report rows = Report::array();
     for (const PeerRun& run : peers)
         rows.push_back(Report{{"name", run.name},
@@ -236,7 +236,7 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         report["rows"].back()["diverged"] = run.diverged;
         report["rows"].back()["trembles"] = run.trembling > 0;
     }
-    report["peers"] = toReport(*peers);
+    report["peers"] = peersReport(*peers);
     report["peers_scene"] = peerScene();
     report["notes"] = result->notes;
     report["output"] = options.output;
@@ -300,7 +300,7 @@ JobRun declare(CLI::App& job) {
         ->type_name("FILE");
     job.add_option(
            "--peers", options->peers,
-           "CSV of other simulators that ./dev peers measured on your machine, to stand beside the front "
+           "CSV of other simulators that ./dev peers measured on your machine, for the table beside the front "
            "in the report (default: the measurement that came with this version)")
         ->type_name("FILE");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
