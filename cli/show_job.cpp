@@ -76,6 +76,8 @@ Result<Report> showToFile(const RenderJobOptions& options) {
         return tl::unexpected(written.error());
     Report report{{"show", options.show}};
     if (isReportJson()) report.update(shownNumbers(*shown));
+    report["engine"] = "software";
+    report["why"] = "charts and the maps in them are computed on the processor";
     report["output"] = options.output;
     return report;
 }

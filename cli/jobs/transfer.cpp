@@ -53,6 +53,10 @@ Result<Report> transferHair(const TransferOptions& options) {
         if (transfer->distances[s] > kFar_m)
             report["strands_named"].push_back(Report{{"strand", s}, {"mm", 1e3f * transfer->distances[s]}});
     }
+    report["layers"] = Report::array();
+    for (const Layer& layer : groom->layers) report["layers"].push_back(layer.name);
+    report["groups"] = groom->groupNames;
+    report["resampled_fps"] = nullptr;  // beside import, which may resample motion
     report["head"] = headReport(done->taken, done->words);
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
     report["output"] = options.output;

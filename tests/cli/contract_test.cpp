@@ -208,5 +208,16 @@ TEST_F(Contract, AccuracyHasOtherSimulatorsBeside) {
     EXPECT_THAT(readText(folder / "own" / "report.html"), HasSubstr("Knot 1"));
 }
 
+TEST_F(Contract, TransferAndChartsHaveTheKeysOfTheirRows) {
+    runJson(createArguments());
+    const Json moved = runJson("transfer hair.hairloom --to '" + bustFile() + "' -o moved.hairloom");
+    EXPECT_EQ(moved["layers"], Json::array({"Hair"}));
+    EXPECT_TRUE(moved["groups"].is_array());
+    EXPECT_TRUE(moved.contains("resampled_fps"));
+    const Json chart = runJson("render hair.hairloom --show curves -o curves.png");
+    EXPECT_EQ(chart["engine"], "software");
+    EXPECT_TRUE(chart["why"].is_string());
+}
+
 }  // namespace
 }  // namespace hairloom::test
