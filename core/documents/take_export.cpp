@@ -5,6 +5,7 @@
 
 #include <system_error>
 
+#include "core/base/output_batch.h"
 #include "core/documents/hair_export.h"
 #include "core/simulation/frame_record.h"
 
@@ -43,7 +44,7 @@ Result<ExportReport> exportFrames(TakeReader& reader, const Groom& groom, const 
     report.points = groom.pointCount();
     report.frames = static_cast<std::size_t>(wanted.last - wanted.first + 1);
     std::error_code code;
-    const auto bytes = std::filesystem::file_size(path, code);
+    const auto bytes = std::filesystem::file_size(whereWritten(path), code);
     report.bytes = code ? 0 : bytes;
     return report;
 }
@@ -81,7 +82,7 @@ Result<ExportReport> exportStrands(TakeReader& reader, const Groom& groom, const
     if (bytes > kMostHeld)
         return fail(
             fmt::format("frames {} to {} take {:.1f} GB of memory", wanted.first, wanted.last, bytes / 1e9),
-            fmt::format("expected at most {:.0f} GB: export parts by --range", kMostHeld / 1e9));
+            fmt::format("expected at most {:.0f} GB: export fewer frames at once", kMostHeld / 1e9));
     HairToExport hair;
     hair.firstFrame = static_cast<double>(wanted.first);
     hair.cancel = wanted.watch.cancelled;

@@ -18,6 +18,7 @@
 #include "editor/fields/blocks.h"
 #include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
+#include "editor/panels/take_export_dialog.h"
 #include "editor/panels/take_view.h"
 #include "editor/style/icons.h"
 
@@ -40,6 +41,7 @@ class TakesPanel : public QWidget {
     explicit TakesPanel(const PanelParts& parts)
         : document_(parts.document),
           preferences_(parts.preferences),
+          tasks_(parts.tasks),
           messages_(parts.messages),
           player_(parts.player),
           view_(new TakeView(parts, this)) {
@@ -174,13 +176,17 @@ class TakesPanel : public QWidget {
             pushButton("takeShape", "Set as rest shape",
                        "Makes the hair of this frame the authored shape on the head at rest. You can undo it",
                        [this] { takeShape(); });
+        export_ = pushButton("takeExport", "Export…",
+                             "Export the selected take as Alembic, USD, a clip for games or a record of "
+                             "frames",
+                             [this] { exportSelected(); });
         rename_ = pushButton("takeRename", "Rename", "Rename the selected take (F2)", [this] {
             if (auto* item = list_->currentItem()) list_->editItem(item, kTakeColumn);
         });
         remove_ =
             pushButton("takeDelete", "Delete…", "Delete the file of the selected take", [this] { remove(); });
         layout.addWidget(shape_);
-        for (QPushButton* button : {rename_, remove_}) row->addWidget(button);
+        for (QPushButton* button : {export_, rename_, remove_}) row->addWidget(button);
         layout.addLayout(row);
     }
 
@@ -329,6 +335,15 @@ class TakesPanel : public QWidget {
         showState();
     }
 
+    void exportSelected() {
+        const std::filesystem::path take = fileOf(selected());
+        const auto reader = TakeReader::open(take);
+        if (!reader) return messages_.warn(errorText(reader.error()));
+        if (reader->info().frames == 0)
+            return messages_.warn(QString("The take “%1” has no frames").arg(selected()));
+        TakeExportDialog(selected(), take, reader->info(), document_, tasks_, messages_, this).exec();
+    }
+
     /// The name has been edited, or what stands beside it, which comes back.
     void rename(QTreeWidgetItem& item) {
         const QString old = item.data(kTakeColumn, Qt::UserRole).toString(), name = item.text(kTakeColumn);
@@ -416,19 +431,21 @@ class TakesPanel : public QWidget {
         const bool shown = view_->isShown();
         for (QWidget* widget : std::initializer_list<QWidget*>{play_, slider_, speed_, other_, shape_})
             widget->setEnabled(shown && !records);
-        for (QPushButton* button : {rename_, remove_}) button->setEnabled(!selected().isEmpty() && !records);
+        for (QPushButton* button : {export_, rename_, remove_})
+            button->setEnabled(!selected().isEmpty() && !records);
         if (!shown) number_->setText({});
         showPlaying();
     }
 
     QtDocument& document_;
     Preferences& preferences_;
+    Tasks& tasks_;
     Messages& messages_;
     Player& player_;
     TakeView* view_;
     QLineEdit* name_ = nullptr;
-    QPushButton *record_ = nullptr, *play_ = nullptr, *shape_ = nullptr, *rename_ = nullptr,
-                *remove_ = nullptr;
+    QPushButton *record_ = nullptr, *play_ = nullptr, *shape_ = nullptr, *export_ = nullptr,
+                *rename_ = nullptr, *remove_ = nullptr;
     QLabel *recordState_ = nullptr, *number_ = nullptr;
     QTreeWidget* list_ = nullptr;
     QSlider* slider_ = nullptr;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Takes panel, by its buttons.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDir>
 #include <QDockWidget>
@@ -7,10 +8,15 @@
 #include <QMessageBox>
 #include <QPushButton>
 #include <QSlider>
+#include <QSpinBox>
 #include <QTreeWidget>
 
+#include "core/base/content_kind.h"
+#include "core/base/file.h"
 #include "core/documents/takes.h"
 #include "core/simulation/frame_record.h"
+#include "editor/panels/take_export_dialog.h"
+#include "importers/strands.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -70,6 +76,25 @@ class TakesTest : public WindowTest {
         auto* list = get<QTreeWidget>("takes");
         list->setCurrentItem(list->findItems(name, Qt::MatchExactly).value(0));
     }
+    /// Presses *Export…* of the panel, sets the dialog's rows, then answers with that file name.
+    void exportAs(const char* format, int first, int last, const QString& path,
+                  std::function<void(TakeExportDialog&)> look = {}) {
+        onceAsked<TakeExportDialog>([=, this](TakeExportDialog& dialog) {
+            auto* formats = dialog.findChild<QComboBox*>("takeFormat");
+            formats->setCurrentIndex(formats->findData(format));
+            dialog.findChild<QSpinBox*>("takeFirst")->setValue(first);
+            dialog.findChild<QSpinBox*>("takeLast")->setValue(last);
+            if (look) look(dialog);
+            onceAskedForAFile(path);
+            dialog.findChild<QPushButton*>("takeExportAs")->click();
+        });
+        click("takeExport");
+    }
+    std::string_view kindOfFile(const char* name) {
+        const auto bytes = readFile(inFolder(name).toStdString());
+        return bytes ? contentKind(*bytes) : std::string_view();
+    }
+    std::string said() { return window->statusLine().message().toStdString(); }
     std::vector<Vec3f> shown() {
         return viewport().pose() ? viewport().pose()->positions_ws : std::vector<Vec3f>();
     }
@@ -172,6 +197,93 @@ TEST_F(TakesTest, DistancesToAnotherTakeAreDrawn) {
     QCoreApplication::processEvents();
     QDir().mkpath(HAIRLOOM_SCREENSHOTS);
     EXPECT_TRUE(onScreen().save(HAIRLOOM_SCREENSHOTS "/takes.png"));
+}
+
+TEST_F(TakesTest, ATakeIsExportedForOtherPrograms) {
+    ASSERT_TRUE(parts().player.setMotion("nod"));
+    record("nod", 16);
+    // The record holds the very frames that were asked for, under the suffix of its format.
+    exportAs("frames", 3, 12, inFolder("nod"));
+    finishWork();
+    EXPECT_EQ(said().rfind("Exported nod.frames: 10 frames", 0), 0u) << said();
+    for (const std::uint64_t number : {0u, 9u}) {
+        const auto frame = readFrame(inFolder("nod.frames").toStdString(), groom(), number);
+        ASSERT_TRUE(frame) << frame.error().message();
+        EXPECT_EQ(frame->positions_ws, frameOf("nod", 3 + number)) << number;
+        EXPECT_EQ(frame->framesInRecord, 10u);
+    }
+    exportAs("abc", 3, 12, inFolder("nod.abc"));
+    finishWork();
+    StrandImportOptions animated;
+    animated.frames = true;
+    const auto alembic = importStrands(inFolder("nod.abc").toStdString(), animated);
+    ASSERT_TRUE(alembic) << alembic.error().message();
+    ASSERT_EQ(alembic->frames.size(), 10u);
+    for (const std::size_t number : {std::size_t{0}, std::size_t{9}}) {
+        const std::vector<Vec3f> taken = frameOf("nod", 3 + number);
+        ASSERT_EQ(alembic->frames[number].size(), taken.size());
+        float farthest = 0;
+        for (std::size_t p = 0; p < taken.size(); ++p)
+            farthest = std::max(farthest, (alembic->frames[number][p] - taken[p]).norm());
+        EXPECT_LT(farthest, 1e-6f) << number;
+    }
+    // A suffix that is typed chooses the format.
+    exportAs("abc", 0, 4, inFolder("nod.usdc"));
+    finishWork();
+    EXPECT_EQ(kindOfFile("nod.usdc"), "a binary USD file");
+    exportAs("runtime", 0, 9, inFolder("nod.hairrt"), [](TakeExportDialog& dialog) {
+        auto* loops = dialog.findChild<QCheckBox*>("takeLoops");
+        EXPECT_TRUE(loops->isVisible());
+        loops->setChecked(true);
+    });
+    finishWork();
+    EXPECT_EQ(kindOfFile("nod.hairrt"), "a runtime asset");
+}
+
+TEST_F(TakesTest, AnExportOfATakeIsCancelledAndSaysWhatIsWrong) {
+    record("calm", 12);
+    exportAs("abc", 0, 10, inFolder("no/such/folder/calm.abc"));
+    finishWork();
+    EXPECT_NE(said().find("folder"), std::string::npos) << said();
+    exportAs("abc", 0, 10, inFolder("calm.abc"));
+    ASSERT_TRUE(parts().tasks.isBusy());
+    parts().tasks.cancel();
+    finishWork();
+    EXPECT_FALSE(QFile::exists(inFolder("calm.abc")));
+    // What is there stays where its replacement is refused.
+    QFile there(inFolder("calm.usda"));
+    ASSERT_TRUE(there.open(QIODevice::WriteOnly) && there.write("#usda 1.0\n") > 0);
+    there.close();
+    onceAsked<TakeExportDialog>([&](TakeExportDialog& dialog) {
+        auto* write = dialog.findChild<QPushButton*>("takeExportAs");
+        dialog.findChild<QSpinBox*>("takeFirst")->setValue(9);
+        dialog.findChild<QSpinBox*>("takeLast")->setValue(4);
+        EXPECT_FALSE(write->isEnabled());
+        EXPECT_TRUE(dialog.findChild<QLabel*>("takeWillExport")->text().contains("before the first"));
+        dialog.findChild<QSpinBox*>("takeFirst")->setValue(4);
+        onceAsked<QFileDialog>([&](QFileDialog& files) {
+            onceAsked<QMessageBox>([](QMessageBox& question) { question.button(QMessageBox::No)->click(); });
+            files.findChild<QLineEdit*>("fileNameEdit")->setText(there.fileName());
+            QMetaObject::invokeMethod(&files, "accept");
+        });
+        write->click();
+        EXPECT_FALSE(parts().tasks.isBusy());
+        dialog.reject();
+    });
+    click("takeExport");
+    EXPECT_EQ(QFileInfo(there.fileName()).size(), 10);
+}
+
+TEST_F(TakesTest, AGroomOfOtherPointsExportsNoTake) {
+    record("calm", 12);
+    document().open(firstStrands(groom(), 30), inFolder("hair.hairloom"), "hair");
+    select("calm");
+    exportAs("abc", 0, 7, inFolder("calm.abc"), [](TakeExportDialog& dialog) {
+        EXPECT_TRUE(dialog.findChild<QLabel*>("takeWillExport")->text().contains("has changed shape"));
+    });
+    finishWork();
+    EXPECT_NE(said().find("points"), std::string::npos) << said();
+    EXPECT_FALSE(QFile::exists(inFolder("calm.abc")));
 }
 
 TEST_F(TakesTest, NothingIsRecordedOfAProjectWithoutAFile) {
