@@ -169,7 +169,8 @@ Result<Report> exportFilm(const TakeInfo& info, std::pair<std::uint64_t, std::ui
                           const fs::path& take, const TakesOptions& options) {
     // Images of WebP are held, and 30 a second are what browsers show of it. A video has all frames.
     const bool isVideo = options.format == kMp4Format;
-    if (isVideo != (AnimationFile::kindOf(options.output) == AnimationFile::Kind::Mp4))
+    if (AnimationFile::kindOf(options.output) !=
+        (isVideo ? AnimationFile::Kind::Mp4 : AnimationFile::Kind::Webp))
         throw WrongUsage(fmt::format("--format {} with a name of another kind", options.format),
                          fmt::format("expected -o F.{}", options.format));
     const double kMostRate = isVideo ? 240 : 30;

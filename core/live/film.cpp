@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "core/render/png.h"
@@ -18,7 +19,11 @@ render::Camera turned(render::Camera camera, float degrees) {
 }
 
 AnimationFile::Kind AnimationFile::kindOf(const std::filesystem::path& path) {
-    return path.extension() == ".mp4" ? Kind::Mp4 : path.extension() == ".webp" ? Kind::Webp : Kind::Png;
+    std::string suffix = path.extension().string();
+    std::ranges::transform(suffix, suffix.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return suffix == ".mp4" ? Kind::Mp4 : suffix == ".webp" ? Kind::Webp : Kind::Png;
 }
 
 Result<AnimationFile> AnimationFile::open(const std::filesystem::path& path, std::uint32_t width,

@@ -21,7 +21,7 @@ render::Camera turned(render::Camera camera, float degrees);
 /// animated PNG.
 class AnimationFile {
   public:
-    /// Which of the three a name asks for.
+    /// Which of the three a name asks for, in capitals or not.
     enum class Kind { Png, Webp, Mp4 };
     static Kind kindOf(const std::filesystem::path& path);
     /// Whether images are held until finish(), 4 bytes a pixel. An MP4 is encoded as they come.

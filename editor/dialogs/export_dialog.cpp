@@ -27,6 +27,7 @@
 #include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
 #include "editor/fields/number_spin.h"
+#include "editor/fields/save_file.h"
 #include "exporters/usd_scene.h"
 #include "importers/length_unit.h"
 
@@ -331,10 +332,18 @@ void ExportDialog::choosePath() {
         if (!folder.isEmpty()) exportTo(folder + "/" + title);
         return;
     }
-    const QString suffix = "." + QString::fromStdString(choice.writer->suffix());
-    const QString name = title + suffix;
-    const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*" + suffix);
-    if (!path.isEmpty()) exportTo(withNextVersion(path));
+    const int chosen = std::max(0, format_->currentIndex());
+    const std::vector<ExportChoice>& choices =
+        programsToExportFor()[static_cast<std::size_t>(std::max(0, target_->currentIndex()))].choices;
+    std::vector<SaveFormat> formats;
+    for (const ExportChoice& one : choices)
+        formats.push_back(
+            {QString::fromStdString(one.writer->label), QString::fromStdString(one.writer->suffix())});
+    const QString name = title + '.' + formats[static_cast<std::size_t>(chosen)].suffix;
+    const auto place = askWhereToSave(this, windowTitle(), name, formats, chosen);
+    if (!place) return;
+    format_->setCurrentIndex(place->format);
+    if (canWrite() && mayReplaceFile(this, place->path)) exportTo(place->path);
 }
 
 StrandExportOptions ExportDialog::optionsAsked() const {

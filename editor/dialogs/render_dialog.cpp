@@ -2,7 +2,6 @@
 #include "editor/dialogs/render_dialog.h"
 
 #include <QDialogButtonBox>
-#include <QFileDialog>
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QMessageBox>
@@ -18,6 +17,7 @@
 #include "editor/document/publishing.h"
 #include "editor/document/words.h"
 #include "editor/fields/number_spin.h"
+#include "editor/fields/save_file.h"
 
 namespace hairloom::editor {
 namespace {
@@ -33,6 +33,16 @@ QSpinBox* pixels(const char* name, int value, const QString& tip) {
     box->setToolTip(tip);
     box->setAccessibleName(tip);
     return box;
+}
+
+/// In the order of FilmFiles.
+std::vector<SaveFormat> formatsOfFilms() {
+    std::vector<SaveFormat> formats{{"Numbered PNG images", suffixOf(FilmFiles::Pictures)},
+                                    {"Animated PNG", suffixOf(FilmFiles::AnimatedPng)},
+                                    {"Animated WebP", suffixOf(FilmFiles::AnimatedWebp)},
+                                    {"MP4 video", suffixOf(FilmFiles::Mp4)}};
+    formats[static_cast<std::size_t>(FilmFiles::Mp4)].isOffered = canWriteVideo();
+    return formats;
 }
 
 }  // namespace
@@ -105,10 +115,11 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
     rate_->setToolTip("Images per second of the film. The hair is always simulated at 60 frames per second");
     form_->addRow("Frame rate", rate_);
     files_->setObjectName("renderFiles");
-    files_->addItems({"Numbered PNG images", "Animated PNG", "Animated WebP", "MP4 video"});
+    for (const SaveFormat& format : formatsOfFilms()) files_->addItem(format.label);
     files_->setToolTip(
         "Numbered images for editing, one animated file to show. WebP is lossy and a tenth "
-        "as large. MP4 (H.264) plays everywhere, at any length, without transparency");
+        "as large. MP4 (H.264) plays everywhere, at any length, without transparency. A file name with the "
+        "suffix of another format chooses that");
     if (!canWriteVideo()) {
         auto* items = qobject_cast<QStandardItemModel*>(files_->model());
         items->item(static_cast<int>(FilmFiles::Mp4))->setEnabled(false);
@@ -225,7 +236,7 @@ void RenderDialog::showRows() {
 }
 
 bool RenderDialog::mayReplace(const QString& path, const Film& film) {
-    if (film.of == FilmOf::View || film.isAnimation()) return true;  // the dialog of files has asked
+    if (film.of == FilmOf::View || film.isAnimation()) return mayReplaceFile(this, path);
     int there = 0;
     for (std::uint32_t i = 0; i < film.images; ++i) {
         std::error_code code;
@@ -239,17 +250,17 @@ bool RenderDialog::mayReplace(const QString& path, const Film& film) {
 
 void RenderDialog::choosePath() {
     const Film film = filmAsked();
-    QString suffix = ".png";
-    if (film.isAnimation() && film.files == FilmFiles::AnimatedWebp) suffix = ".webp";
-    if (film.isAnimation() && film.files == FilmFiles::Mp4) suffix = ".mp4";
-    const bool isSequence = film.of != FilmOf::View && !film.isAnimation();
-    QString path = QFileDialog::getSaveFileName(
-        this, windowTitle(), QFileInfo(document_.title()).completeBaseName() + suffix, "*" + suffix, nullptr,
-        isSequence ? QFileDialog::DontConfirmOverwrite : QFileDialog::Options());
-    if (path.isEmpty()) return;
-    if (QFileInfo(path).suffix().isEmpty()) path += suffix;
-    path = withNextVersion(path);
-    if (mayReplace(path, film)) renderTo(path);
+    const bool isView = film.of == FilmOf::View;
+    const std::vector<SaveFormat> formats =
+        isView ? std::vector<SaveFormat>{{"PNG image", suffixOf(FilmFiles::Pictures)}} : formatsOfFilms();
+    const int chosen = isView ? 0 : files_->currentIndex();
+    const QString name = QFileInfo(document_.title()).completeBaseName() + '.' +
+                         formats[static_cast<std::size_t>(chosen)].suffix;
+    const auto place = askWhereToSave(this, windowTitle(), name, formats, chosen);
+    if (!place) return;
+    if (!isView) files_->setCurrentIndex(place->format);
+    // The note says why where that format takes more memory than there may be.
+    if (render_->isEnabled() && mayReplace(place->path, filmAsked())) renderTo(place->path);
 }
 
 void RenderDialog::renderTo(const QString& path) {

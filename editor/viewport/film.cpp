@@ -30,6 +30,11 @@ render::Image imageOf(const QImage& picture) {
     return image;
 }
 
+AnimationFile::Kind kindOf(FilmFiles files) {
+    if (files == FilmFiles::Mp4) return AnimationFile::Kind::Mp4;
+    return files == FilmFiles::AnimatedWebp ? AnimationFile::Kind::Webp : AnimationFile::Kind::Png;
+}
+
 class FilmMaker {
   public:
     FilmMaker(const Film& film, const std::function<Result<QImage>(PictureRequest)>& draw,
@@ -65,6 +70,9 @@ class FilmMaker {
         if (film_.bytesHeld() > kMostBytesOfFilm)
             return fail("an animation of this size needs more than 2 GiB of memory",
                         "numbered PNG images, fewer images or a smaller size");
+        if (film_.isAnimation() && AnimationFile::kindOf(film_.path) != kindOf(film_.files))
+            return failIn(film_.path.string(), {}, "has the suffix of another format",
+                          fmt::format("expected .{}", suffixOf(film_.files)));
         if (film_.manifest) {
             if (auto may = OutputFile::check(manifestName(film_.path), content::kJson); !may) return may;
         }
@@ -135,6 +143,11 @@ class FilmMaker {
 };
 
 }  // namespace
+
+const char* suffixOf(FilmFiles files) {
+    if (files == FilmFiles::Mp4) return "mp4";
+    return files == FilmFiles::AnimatedWebp ? "webp" : "png";
+}
 
 std::uint64_t Film::bytesHeld() const {
     const bool holds = isAnimation() && files != FilmFiles::Mp4;

@@ -19,6 +19,8 @@ namespace hairloom::editor {
 
 enum class FilmOf { View, Turntable, Simulation };
 enum class FilmFiles { Pictures, AnimatedPng, AnimatedWebp, Mp4 };
+/// What their names end in: "png", "webp", "mp4".
+const char* suffixOf(FilmFiles files);
 
 struct Film {
     FilmOf of = FilmOf::View;
@@ -44,7 +46,8 @@ struct Film {
 constexpr std::uint64_t kMostBytesOfFilm = std::uint64_t{2} << 30u;
 
 /// Draws and writes it: all files, or none. `draw` makes a picture; `progress` is told the share that is done
-/// and ends the work where it returns false. Errors: those of both, no space, more than kMostBytesOfFilm.
+/// and ends the work where it returns false. Errors: those of both, no space, more than kMostBytesOfFilm, an
+/// animation whose name has another suffix than suffixOf().
 Status makeFilm(const Film& film, const std::function<Result<QImage>(PictureRequest)>& draw,
                 const std::function<bool(float)>& progress);
 

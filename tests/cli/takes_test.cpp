@@ -216,6 +216,7 @@ TEST_F(CliTakes, SaysWhatIsWrong) {
     EXPECT_THAT(errors("--export none --format abc -o x.abc", 1), HasSubstr("expected one of: nod"));
     EXPECT_THAT(errors("--export nod --format abc", 2), HasSubstr("-o"));
     EXPECT_THAT(errors("--export nod --format mp4 -o x.webp", 2), HasSubstr("expected -o F.mp4"));
+    EXPECT_THAT(errors("--export nod --format webp -o x.png", 2), HasSubstr("expected -o F.webp"));
     EXPECT_THAT(errors("--export nod --format abc --loop -o x.abc", 2), HasSubstr("--format runtime"));
     EXPECT_THAT(errors("--export nod --format abc --range 3,9 -o x.abc", 2), HasSubstr("has 9 frames"));
     EXPECT_THAT(errors("--export nod --format abc --range 5,3 -o x.abc", 2), HasSubstr("runs backwards"));

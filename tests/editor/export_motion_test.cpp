@@ -42,6 +42,29 @@ TEST_F(ExportMotionTest, AVersionInTheNameIsTheNextThatIsFree) {
     }
 }
 
+TEST_F(ExportMotionTest, TheFormatFollowsTheSuffixOfTheFileName) {
+    openSampleHair("short");
+    openFirstStrands(20);
+    ExportDialog dialog(document(), parts().preferences, parts().tasks, parts().messages, parts().player);
+    dialog.show();
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Houdini");
+    auto* format = dialog.findChild<QComboBox*>("format");
+    const auto exportAs = [&](const char* name) {
+        onceAskedForAFile(inFolder(name));
+        dialog.findChild<QPushButton*>("export")->click();
+        finishWork();
+    };
+    ASSERT_EQ(format->currentText(), "USD .usdc");
+    exportAs("hair.usda");
+    EXPECT_EQ(format->currentText(), "USD .usda");
+    EXPECT_EQ(textOf("hair.usda").substr(0, 5), "#usda");
+    exportAs("hair.abc");
+    EXPECT_EQ(format->currentText(), "Alembic .abc");
+    EXPECT_EQ(textOf("hair.abc").substr(0, 5), "Ogawa");
+    exportAs("other");
+    EXPECT_EQ(textOf("other.abc").substr(0, 5), "Ogawa");
+}
+
 TEST_F(ExportMotionTest, MotionIsAskedForWhereItIsWritten) {
     openSampleHair("short");
     openFirstStrands(20);

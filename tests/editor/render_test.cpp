@@ -7,7 +7,9 @@
 #include <QComboBox>
 #include <QDir>
 #include <QFile>
+#include <QFileDialog>
 #include <QLabel>
+#include <QLineEdit>
 #include <QMessageBox>
 #include <QPushButton>
 #include <QSpinBox>
@@ -168,6 +170,54 @@ TEST_F(RenderTest, ATurntableBecomesAVideo) {
     EXPECT_EQ(bytes.mid(sizes + 12, 4), QByteArray("\0\0\0\3", 4));
 }
 
+TEST_F(RenderTest, FormatAndFileNameFollowOneAnother) {
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Turntable, 32, 32);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(2);
+        auto* files = dialog.findChild<QComboBox*>("renderFiles");
+        const auto format = [&] { return static_cast<FilmFiles>(files->currentIndex()); };
+        // What is typed chooses the format, whatever was set before.
+        renderAs(dialog, "film.WEBP");
+        EXPECT_EQ(format(), FilmFiles::AnimatedWebp);
+        renderAs(dialog, "turn.png");
+        EXPECT_EQ(format(), FilmFiles::Pictures);
+        files->setCurrentIndex(static_cast<int>(FilmFiles::AnimatedWebp));
+        renderAs(dialog, "film.v2");
+        EXPECT_EQ(format(), FilmFiles::AnimatedWebp) << "a suffix of no format";
+        // The type that is chosen among files renames, and becomes the format.
+        onceAsked<QFileDialog>([&](QFileDialog& dialogOfFiles) {
+            auto* name = dialogOfFiles.findChild<QLineEdit*>("fileNameEdit");
+            auto* types = dialogOfFiles.findChild<QComboBox*>("fileTypeCombo");
+            EXPECT_TRUE(types->currentText().startsWith("Animated WebP"))
+                << types->currentText().toStdString();
+            EXPECT_TRUE(name->text().endsWith(".webp")) << name->text().toStdString();
+            name->setText(inFolder("moved.webp"));
+            const int png = types->findText("Animated PNG", Qt::MatchStartsWith);
+            types->setCurrentIndex(png);
+            Q_EMIT types->activated(png);
+            EXPECT_EQ(name->text(), inFolder("moved.png"));
+            QMetaObject::invokeMethod(&dialogOfFiles, "accept");
+        });
+        QTest::mouseClick(button(dialog, "render"), Qt::LeftButton);
+        finishWork();
+        EXPECT_EQ(format(), FilmFiles::AnimatedPng);
+        // A view is one PNG.
+        set(dialog, FilmOf::View, 32, 32);
+        renderAs(dialog, "view.webp");
+        dialog.reject();
+    });
+    EXPECT_EQ(written(), QStringList({"film.WEBP", "film.v2.webp", "moved.png", "turn_0000.png",
+                                      "turn_0001.png", "view.webp.png"}));
+    const auto beginning = [this](const char* name) {
+        QFile file(inFolder(name));
+        EXPECT_TRUE(file.open(QIODevice::ReadOnly)) << name;
+        return file.read(12);
+    };
+    for (const char* name : {"film.WEBP", "film.v2.webp"}) EXPECT_EQ(beginning(name).mid(8), "WEBP") << name;
+    for (const char* name : {"moved.png", "turn_0000.png", "view.webp.png"})
+        EXPECT_EQ(beginning(name).mid(1, 3), "PNG") << name;
+}
+
 TEST_F(RenderTest, CancelLeavesNoFileAndTheDialogGoesOn) {
     inDialog([&](RenderDialog& dialog) {
         set(dialog, FilmOf::Turntable, 64, 64);
@@ -201,8 +251,15 @@ TEST_F(RenderTest, WhatCannotBeIsSaidBeforeAnythingIsDrawn) {
             ->setCurrentIndex(static_cast<int>(FilmFiles::AnimatedWebp));
         EXPECT_FALSE(button(dialog, "render")->isEnabled());
         EXPECT_TRUE(note(dialog).contains("memory")) << note(dialog).toStdString();
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(2);
         set(dialog, FilmOf::View, 32, 32);
         EXPECT_TRUE(button(dialog, "render")->isEnabled());
+        set(dialog, FilmOf::Turntable, 32, 32);
+        dialog.renderTo(inFolder("film.png"));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
+        QCoreApplication::processEvents();
+        EXPECT_TRUE(note(dialog).contains("expected .webp")) << note(dialog).toStdString();
+        set(dialog, FilmOf::View, 32, 32);
         dialog.renderTo(inFolder("no/such/folder.png"));
         EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
         QCoreApplication::processEvents();
