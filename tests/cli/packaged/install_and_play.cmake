@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the runtime that is built, builds samples/player and the C program of docs/integrate.md against it, and plays an
-# asset that the command line exports.
+# Installs the runtime that is built, builds samples/player and programs in C against it (that of docs/integrate.md, and one
+# that plays a take), and plays assets that the command line exports.
 #   cmake -DSOURCE=DIR -DBINARY=DIR -DWORK=DIR -DCLI=PROGRAM -DCC=C -DCXX=CXX -P install_and_play.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
@@ -60,6 +60,14 @@ run("${WORK}/player/player" "${WORK}/g.hairrt" --frames 20 --crowd 24 --budget 0
 expect("${crowd}")
 run("${WORK}/player/player" "${WORK}/g.hairrt" --frames 5 --crowd 3 --resting --wind 0)
 expect("crowd of 3 at rest")
+# A take plays without simulating, and its guides are where the take has them.
+run("${CLI}" takes "${WORK}/g.hairloom" --record nod --motion nod --frames 40)
+run("${CLI}" takes "${WORK}/g.hairloom" --export nod --format runtime --loop -o "${WORK}/nod.hairrt")
+run("${CLI}" takes "${WORK}/g.hairloom" --export nod --format frames -o "${WORK}/nod.frames")
+run("${CLI}" simulate "${WORK}/g.hairloom" --motion none --frames 1 --record "${WORK}/rest.frames")
+run("${WORK}/game/play_take" "${WORK}/nod.hairrt" "${WORK}/nod.frames" "${WORK}/rest.frames")
+expect("40 frames of 60 guides: ")
+message("${output}")
 # The single header: the same program, in C99, and one file of C++ that has the rest. It comes to the same point.
 run("${WORK}/game/game" "${WORK}/g.hairrt")
 set(expected "${output}")
