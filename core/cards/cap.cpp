@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/cards/cap.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/cards/raster.h"
 #include "core/geometry/curve.h"
 
 namespace hairloom::cards {
@@ -16,6 +19,7 @@ constexpr float kLength = 0.012f;                           // metres of a hair 
 constexpr float kClear = 0.0003f;                           // metres above the skin, beside the tolerance
 constexpr float kHeadRadius = 0.09f;                        // metres: how much a square of the grid bulges
 constexpr float kFinestSquare = 0.004f, kCoarsest = 0.03f;  // metres, squares of the grid
+constexpr float kThinned = 0.5f;      // of the tolerance, that fewer triangles may be off those of the grid
 constexpr float kOverlap = 0.15f;     // of a square, that charts go beyond the hairs that they hold
 constexpr float kShownSlope = 0.35f;  // cosine: skin that turns away further is another chart's
 
@@ -88,31 +92,105 @@ class Grid {
 /// another sheet. Without that a chart would hang between the two.
 constexpr float kSheet = 4;
 
-/// Height and normal of the outermost skin at a place, from the planes that touch it at the roots around.
-Root skinAt(const Vec2f& place, const std::vector<Root>& roots, float square) {
-    const float reach = 0.5f * square;
-    float weights = 0, height = 0;
-    Vec3f normal = Vec3f::Zero();
-    // Near roots count so much more that one far away matters only where there is no other.
-    float nearest = std::numeric_limits<float>::infinity();
-    for (const Root& root : roots) nearest = std::min(nearest, (root.at.head<2>() - place).squaredNorm());
-    const auto offOf = [&](const Root& root) {
-        return ((root.at.head<2>() - place).squaredNorm() - nearest) / (reach * reach);
-    };
-    constexpr float kNothing = 12;
-    float outermost = -std::numeric_limits<float>::infinity();
-    for (const Root& root : roots) {
-        if (offOf(root) <= kNothing) outermost = std::max(outermost, root.at.z());
+/// Roots as a chart sees them, by squares of a grid, so that none far away are looked at.
+class Roots {
+  public:
+    Roots(std::vector<Root> roots, float square) : roots_(std::move(roots)), square_(square) {
+        Vec2f high = low_ = roots_[0].at.head<2>();
+        for (const Root& root : roots_)
+            low_ = low_.cwiseMin(root.at.head<2>()), high = high.cwiseMax(root.at.head<2>());
+        columns_ = columnOf(high.x()) + 1, rows_ = rowOf(high.y()) + 1;
+        starts_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
+        const auto cellOf = [&](const Root& root) {
+            return cell(columnOf(root.at.x()), rowOf(root.at.y()));
+        };
+        std::ranges::stable_sort(roots_, {}, cellOf);
+        for (const Root& root : roots_) ++starts_[cellOf(root) + 1];
+        for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
     }
-    for (const Root& root : roots) {
-        const Vec2f away = place - root.at.head<2>();
-        const float off = offOf(root);
-        if (off > kNothing || root.at.z() < outermost - kSheet * square) continue;
-        const float weight = std::exp(-off);
-        const float fall = root.normal.head<2>().dot(away) / std::max(root.normal.z(), kShownSlope);
-        weights += weight, height += weight * (root.at.z() - fall), normal += weight * root.normal;
+
+    /// Height and normal of the outermost skin at a place, from the planes that touch it at the roots around.
+    Root skinAt(const Vec2f& place) const {
+        const float reach = 0.5f * square_;
+        // Near roots count so much more that one far away matters only where there is no other.
+        constexpr float kNothing = 12;
+        const float nearest = nearestSquare(place);
+        const float farthest = nearest + kNothing * reach * reach;
+        float outermost = -std::numeric_limits<float>::infinity();
+        forRootsWithin(place, farthest, [&](const Root& root, float) {
+            outermost = std::max(outermost, root.at.z());
+        });
+        float weights = 0, height = 0;
+        Vec3f normal = Vec3f::Zero();
+        forRootsWithin(place, farthest, [&](const Root& root, float square) {
+            if (root.at.z() < outermost - kSheet * square_) return;
+            const float weight = std::exp((nearest - square) / (reach * reach));
+            const Vec2f away = place - root.at.head<2>();
+            const float fall = root.normal.head<2>().dot(away) / std::max(root.normal.z(), kShownSlope);
+            weights += weight, height += weight * (root.at.z() - fall), normal += weight * root.normal;
+        });
+        return {Vec3f(place.x(), place.y(), height / weights), normal.normalized()};
     }
-    return {Vec3f(place.x(), place.y(), height / weights), normal.normalized()};
+
+  private:
+    int columnOf(float x) const { return static_cast<int>(std::floor((x - low_.x()) / square_)); }
+    int rowOf(float y) const { return static_cast<int>(std::floor((y - low_.y()) / square_)); }
+    std::size_t cell(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(column);
+    }
+    template <class F>
+    void forCells(int left, int right, int top, int bottom, const F& f) const {
+        left = std::max(left, 0), right = std::min(right, columns_ - 1);
+        for (int row = std::max(top, 0); row <= std::min(bottom, rows_ - 1); ++row) {
+            if (left > right) continue;
+            for (std::size_t r = starts_[cell(left, row)]; r < starts_[cell(right, row) + 1]; ++r) f(roots_[r]);
+        }
+    }
+    template <class F>
+    void forRootsWithin(const Vec2f& place, float farthestSquare, const F& f) const {
+        const float far = std::sqrt(farthestSquare);
+        forCells(columnOf(place.x() - far), columnOf(place.x() + far), rowOf(place.y() - far),
+                 rowOf(place.y() + far), [&](const Root& root) {
+                     const float square = (root.at.head<2>() - place).squaredNorm();
+                     if (square <= farthestSquare) f(root, square);
+                 });
+    }
+    /// Square of the distance to the nearest root: larger squares of cells until one must hold it.
+    float nearestSquare(const Vec2f& place) const {
+        const int column = columnOf(place.x()), row = rowOf(place.y());
+        float nearest = std::numeric_limits<float>::infinity();
+        for (int ring = 1;; ring *= 2) {
+            forCells(column - ring, column + ring, row - ring, row + ring, [&](const Root& root) {
+                nearest = std::min(nearest, (root.at.head<2>() - place).squaredNorm());
+            });
+            const float seen = static_cast<float>(ring) * square_;
+            if (nearest <= seen * seen) return nearest;
+        }
+    }
+
+    std::vector<Root> roots_;  ///< by cells
+    float square_;
+    Vec2f low_ = Vec2f::Zero();
+    int columns_ = 1, rows_ = 1;
+    std::vector<std::size_t> starts_;  ///< of each cell, and where the last one ends
+};
+
+/// Fewer triangles where the skin is flatter than the squares of the grid are made for.
+void thin(CapChart& chart, float tolerance) {
+    if (chart.indices.empty()) return;
+    const float* const first = chart.vertices[0].position_ws.data();
+    const float size = meshopt_simplifyScale(first, chart.vertices.size(), sizeof(CapChart::Vertex));
+    std::vector<std::uint32_t> fewer(chart.indices.size());
+    fewer.resize(meshopt_simplify(fewer.data(), chart.indices.data(), chart.indices.size(), first,
+                                  chart.vertices.size(), sizeof(CapChart::Vertex), 0, tolerance / size, 0,
+                                  nullptr));
+    chart.indices = std::move(fewer);
+    std::vector<CapChart::Vertex> used(chart.vertices.size());
+    used.resize(meshopt_optimizeVertexFetch(used.data(), chart.indices.data(), chart.indices.size(),
+                                            chart.vertices.data(), chart.vertices.size(),
+                                            sizeof(CapChart::Vertex)));
+    chart.vertices = std::move(used);
 }
 
 Strip planeOf(const Frame& frame, const Vec2f& low, const Vec2f& size, float height) {
@@ -128,7 +206,7 @@ Strip planeOf(const Frame& frame, const Vec2f& low, const Vec2f& size, float hei
     return plane;
 }
 
-CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance) {
+CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance, Cancel cancel) {
     const Frame frame(axis);
     CapChart chart;
     std::vector<Root> roots;
@@ -165,11 +243,12 @@ CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance) {
                 cells.push_back({number(x, y), number(x + 1, y), number(x, y + 1), number(x + 1, y + 1)});
         }
     }
+    const Roots skinRoots(std::move(roots), square);
     chart.vertices.resize(places.size());
     std::vector<float> heights(places.size());
     parallelFor(places.size(), 8, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-            const Root skin = skinAt(places[v], roots, square);
+        for (std::size_t v = begin; v < end && !cancelled(cancel); ++v) {
+            const Root skin = skinRoots.skinAt(places[v]);
             heights[v] = skin.at.z();
             chart.vertices[v] = {frame.back(skin.at + (kClear + tolerance) * skin.normal),
                                  frame.back(skin.normal), (places[v] - low).cwiseQuotient(size)};
@@ -180,7 +259,24 @@ CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance) {
         if (highest - lowest > kSheet * square) continue;  // from one sheet to another
         for (const std::uint32_t v : {a, c, b, b, c, d}) chart.indices.push_back(v);
     }
+    thin(chart, kThinned * tolerance);
     return chart;
+}
+
+/// Straight down, hair that stands up covers nothing, but eyes look at skin aslant: a laid hair reaches at
+/// least kAslant of its length aside, where it leans to or, standing straight, any way.
+constexpr float kAslant = 0.5f;
+void layAside(std::size_t strand, const Vec3f& normal, float length, std::span<Vec3f> laid) {
+    const Vec3f aside = laid.back() - laid.front();
+    const float missing = kAslant * length - aside.norm();
+    if (!(missing > 0)) return;
+    const Vec3f x = normal.unitOrthogonal();
+    const float turn = 2 * kPi * hashUnit(static_cast<std::uint32_t>(strand), 17, 0);
+    const Vec3f any = std::cos(turn) * x + std::sin(turn) * normal.cross(x);
+    constexpr float kNoWay = 0.05f;  // of its length
+    const Vec3f way = aside.norm() > kNoWay * length ? Vec3f(aside.normalized()) : any;
+    for (std::size_t p = 1; p < laid.size(); ++p)
+        laid[p] += missing * static_cast<float>(p) / static_cast<float>(laid.size() - 1) * way;
 }
 
 }  // namespace
@@ -204,20 +300,22 @@ Hair laidRoots(const Hair& hair) {
             add((1 - t) * a + t * b, p, t);
             left -= length;
         }
+        layAside(s, normal, kLength - std::max(left, 0.0f), std::span(laid.positions_ws).subspan(laid.offsets.back()));
         laid.offsets.push_back(static_cast<std::uint32_t>(laid.positions_ws.size()));
         laid.rootNormals_ws.push_back(normal);
     }
     return laid;
 }
 
-std::vector<CapChart> makeCap(const Hair& hair, float tolerance) {
+Result<std::vector<CapChart>> makeCap(const Hair& hair, float tolerance, Cancel cancel) {
     const Hair laid = laidRoots(hair);
     std::vector<CapChart> charts;
     constexpr std::size_t kAxes = 6;
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-        CapChart chart = chartOf(laid, axis, tolerance);
+    for (std::size_t axis = 0; axis < kAxes && !cancelled(cancel); ++axis) {
+        CapChart chart = chartOf(laid, axis, tolerance, cancel);
         if (!chart.indices.empty()) charts.push_back(std::move(chart));
     }
+    if (cancelled(cancel)) return stopped();
     return charts;
 }
 

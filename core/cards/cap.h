@@ -19,13 +19,14 @@ struct CapChart {
     std::vector<std::uint32_t> indices;  ///< three a triangle, outwards
 };
 
-/// Hairs up to a length, laid on the planes that touch the skin at their roots. Strands have the numbers that
-/// they have in `hair`.
+/// Hairs up to a length, laid on the planes that touch the skin at their roots. Those that stand up lie as far
+/// aside as they cover skin for an eye that looks at it aslant. Strands have the numbers that they have in
+/// `hair`.
 Hair laidRoots(const Hair& hair);
 
 /// Charts that hold all roots of `hair`, between them off the skin by `tolerance` (> 0, metres) and a little.
-/// Empty where there are no strands. The same for any number of threads.
-std::vector<CapChart> makeCap(const Hair& hair, float tolerance);
+/// Empty where there are no strands. The same for any number of threads. Errors: stopped.
+Result<std::vector<CapChart>> makeCap(const Hair& hair, float tolerance, Cancel cancel);
 
 /// What a chart wears: strands as laidRoots() has them, `thickness` times as thick. `hair` gives their whole
 /// lengths.

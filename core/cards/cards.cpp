@@ -15,6 +15,7 @@ namespace {
 constexpr std::uint32_t kPadding = 4;  // texels around a picture
 constexpr std::uint32_t kLeastSide = 64;
 constexpr float kCapTexels = 1.5f;          // of the cap's textures beside those of cards
+constexpr float kCoarser = 1.25f;           // than asked for, that texels may be
 constexpr std::uint32_t kHairStations = 9;  // of strands, while they are sorted into bundles
 
 Status check(const CardOptions& options) {
@@ -38,11 +39,9 @@ void measure(const Hair& hair, const HairLight& light, Card& card) {
     card.albedo.fill(Vec3f::Zero());
     card.open.fill(0);
     for (const std::uint32_t s : card.strands) {
-        std::size_t guess = 0;
+        const auto places = placesOn(card.strip, hair.strand(s));
         for (std::size_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
-            const StripPlace place = placeOn(card.strip, hair.positions_ws[p], guess);
-            guess = place.station;
-            const std::size_t k = place.station + (place.share > 0.5f ? 1 : 0);
+            const std::size_t k = places[p - hair.offsets[s]].nearest();
             const float weight = hair.radii[p] + 1e-9f;
             card.albedo[k] += weight * hair.albedo[p];
             card.open[k] += weight * light.open(hair.positions_ws[p]);
@@ -96,14 +95,14 @@ struct Layout {
 /// as fit there.
 Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
     for (std::uint32_t side = kLeastSide; side <= options.mostSide; side *= 2) {
-        for (const float coarser : {1.0f, 1.25f}) {  // rather than four times the memory
+        for (const float coarser : {1.0f, kCoarser}) {  // rather than four times the memory
             auto rects = rectsFor(cards, coarser * options.texel, side);
             if (!rects.empty()) return Layout{std::move(rects), side, coarser * options.texel};
         }
     }
-    constexpr int kCoarser = 48;
+    constexpr int kSteps = 48;
     float texel = options.texel;
-    for (int step = 0; step < kCoarser; ++step) {
+    for (int step = 0; step < kSteps; ++step) {
         texel *= 1.1f;
         auto rects = rectsFor(cards, texel, options.mostSide);
         if (!rects.empty()) return Layout{std::move(rects), options.mostSide, texel};
@@ -111,6 +110,15 @@ Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
     return fail(
         fmt::format("{} textures do not fit an atlas of {} texels", cards.painters.size(), options.mostSide),
         "fewer textures or a larger atlas");
+}
+
+/// Textures of the cards, and where they lie: as many as the largest atlas holds as fine as they are asked for.
+Result<Layout> shareAtlas(const std::vector<Look>& looks, const CardOptions& options, Cards& cards) {
+    for (std::uint32_t most = options.textures;; most = std::max(kLeastTextures, most - most / 4)) {
+        cards.painters = shareLooks(looks, most, cards.cards);
+        auto layout = layOut(cards, options);
+        if (most <= kLeastTextures || (layout && layout->texel <= kCoarser * options.texel)) return layout;
+    }
 }
 
 /// Strands of a card.
@@ -201,9 +209,10 @@ Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOpti
     });
     if (cancelled(cancel)) return stopped();
     const auto looks = looksOf(hair, light, cards.cards);
-    cards.painters = shareLooks(looks, options.textures, cards.cards);
-    cards.cap = makeCap(hair, options.tolerance);
-    auto layout = layOut(cards, options);
+    auto cap = makeCap(hair, options.tolerance, cancel);
+    if (!cap) return tl::unexpected(cap.error());
+    cards.cap = std::move(*cap);
+    auto layout = shareAtlas(looks, options, cards);
     if (!layout) return tl::unexpected(layout.error());
     cards.texel = layout->texel;
     cards.atlas.rects = std::move(layout->rects);

@@ -23,7 +23,9 @@ struct HeldCard {
 
 struct CardOptions {
     std::uint32_t cards = 200;    ///< at most, 1 … 4096
-    std::uint32_t textures = 32;  ///< at most, 1 … 256; cards that look alike share one
+    /// At most, 1 … 256; cards that look alike share one. Where the largest atlas cannot hold so many as fine as
+    /// they are asked for, fewer are made, kLeastTextures at least.
+    std::uint32_t textures = 256;
     float error = 0;              ///< metres off their strips that strands may be; fewer cards where they are
     float texel = 0.0007f;        ///< metres, the finest that textures are
     float tolerance = 0.0005f;    ///< metres that a strip may be off its curve
@@ -33,6 +35,7 @@ struct CardOptions {
     std::vector<HeldCard> held = {};
 };
 
+constexpr std::uint32_t kLeastTextures = 32;  ///< below it texels get coarser instead
 constexpr std::uint32_t kOfCap = UINT32_MAX;  ///< CardVertex::card of the cap's vertices
 constexpr std::uint32_t kStations = 25;       ///< of a card's strip: 24 segments at most
 

@@ -20,10 +20,15 @@ struct Cluster {
 
 /// Of `strands`, ascending, at least one; others stay out. The bundle of the most error is split until there
 /// are enough: along the direction in which its strands differ most, off the surface before across it, since
-/// a strip can be wide but not thick. Then strands change over to the strip that they lie nearest to. In
-/// order of their first strand. The same for any number of threads. Errors: stopped.
+/// a strip can be wide but not thick. Then strands change over to the strip that they lie nearest to. At last
+/// bundles are parted whose roots do not hang together, since a strip over both would cover the skin between.
+/// In order of their first strand. The same for any number of threads. Errors: stopped.
 Result<std::vector<Cluster>> clusterHair(const EvenHair& hair, std::vector<std::uint32_t> strands,
                                          std::span<const Vec3f> rootNormals_ws, const ClusterOptions& options,
                                          Cancel cancel);
+
+/// Strands whose roots hang together: no farther from the next than a few times what is usual among them. By
+/// size, the largest first.
+std::vector<std::vector<std::uint32_t>> byRoots(const EvenHair& hair, std::span<const std::uint32_t> strands);
 
 }  // namespace hairloom::cards

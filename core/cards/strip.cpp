@@ -11,6 +11,13 @@ namespace {
 // Of a square distance: what one across or along the strip counts beside one off its surface.
 constexpr float kAcross = 0.10f;
 constexpr float kAlong = 0.15f;
+// At the roots both count so much, fading over the first part of the strip: hair of a card grows side by side,
+// or the card would span the skin between.
+constexpr float kAtRoots = 0.5f, kOfRoots = 0.3f;
+float besideAt(std::size_t station, std::size_t stations, float farther) {
+    const float share = static_cast<float>(station) / (kOfRoots * static_cast<float>(stations - 1));
+    return std::max(farther, kAtRoots * (1 - share));
+}
 // How strongly the strip keeps to the scalp's plane where strands do not say what is across; a share of their
 // spread.
 constexpr float kPrior = 0.5f;
@@ -171,37 +178,49 @@ float offStrip(const Strip& strip, std::span<const Vec3f> points_ws, float enoug
         const Vec3f d = points_ws[k] - strip.centre[k];
         const float x = d.dot(strip.cross[k]), t = d.dot(strip.along[k]);
         const float off = d.dot(strip.normal[k]) - strip.bend[k] * (x * x - strip.spread[k]);
-        sum += off * off + kAcross * x * x + kAlong * t * t;
+        sum += off * off + besideAt(k, n, kAcross) * x * x + besideAt(k, n, kAlong) * t * t;
     }
     return sum / static_cast<float>(n);
 }
 
 void residual(const Strip& strip, std::span<const Vec3f> points_ws, std::span<float> out) {
-    static const float across = std::sqrt(kAcross), along = std::sqrt(kAlong);
-    for (std::size_t k = 0; k < strip.stations(); ++k) {
+    const std::size_t n = strip.stations();
+    for (std::size_t k = 0; k < n; ++k) {
         const Vec3f d = points_ws[k] - strip.centre[k];
         out[3 * k] = d.dot(strip.normal[k]);
-        out[3 * k + 1] = across * d.dot(strip.cross[k]);
-        out[3 * k + 2] = along * d.dot(strip.along[k]);
+        out[3 * k + 1] = std::sqrt(besideAt(k, n, kAcross)) * d.dot(strip.cross[k]);
+        out[3 * k + 2] = std::sqrt(besideAt(k, n, kAlong)) * d.dot(strip.along[k]);
     }
 }
 
-StripPlace placeOn(const Strip& strip, const Vec3f& point_ws, std::size_t guess) {
+namespace {
+
+/// The foot nearest along the centre to `guess`, a station: that of the point before is a good one. In
+/// stations, beyond the ends for points there.
+float footOn(const Strip& strip, const Vec3f& point_ws, std::size_t guess) {
     constexpr std::size_t kBack = 3, kAhead = 5;  // stations that the next point of a strand may be off by
     const std::size_t last = strip.stations() - 1;
     const std::size_t begin = guess > kBack ? guess - kBack : 0, end = std::min(guess + kAhead, last);
-    StripPlace place;
-    float nearest = std::numeric_limits<float>::infinity();
+    float nearest = std::numeric_limits<float>::infinity(), foot = 0;
     for (std::size_t k = begin; k < end; ++k) {
         const Vec3f step = strip.centre[k + 1] - strip.centre[k], d = point_ws - strip.centre[k];
         const float share = d.dot(step) / std::max(step.squaredNorm(), 1e-12f);
         const float distance = (d - std::clamp(share, 0.0f, 1.0f) * step).squaredNorm();
         if (distance >= nearest) continue;
-        nearest = distance, place.station = k;
+        nearest = distance;
         // Only the ends of the strip go on beyond their last station.
-        place.share = std::clamp(share, k == 0 ? -1.0f : 0.0f, k + 1 == last ? 2.0f : 1.0f);
+        foot = static_cast<float>(k) +
+               std::clamp(share, k == 0 ? -1.0f : 0.0f, k + 1 == last ? 2.0f : 1.0f);
     }
+    return foot;
+}
+
+StripPlace placeAt(const Strip& strip, const Vec3f& point_ws, float foot) {
+    const std::size_t last = strip.stations() - 1;
+    StripPlace place;
+    place.station = std::min(static_cast<std::size_t>(std::max(foot, 0.0f)), last - 1);
     const std::size_t k = place.station;
+    place.share = std::clamp(foot - static_cast<float>(k), -1.0f, 2.0f);
     const float t = std::clamp(place.share, 0.0f, 1.0f);
     const auto mixed = [&](const std::vector<Vec3f>& v) -> Vec3f { return (1 - t) * v[k] + t * v[k + 1]; };
     const Vec3f d = point_ws - ((1 - place.share) * strip.centre[k] + place.share * strip.centre[k + 1]);
@@ -209,6 +228,30 @@ StripPlace placeOn(const Strip& strip, const Vec3f& point_ws, std::size_t guess)
     place.off = d.dot(mixed(strip.normal).normalized());
     place.along = (static_cast<float>(k) + place.share) / static_cast<float>(last);
     return place;
+}
+
+}  // namespace
+
+std::vector<StripPlace> placesOn(const Strip& strip, std::span<const Vec3f> points_ws) {
+    constexpr float kByWay = 0.4f;  // of the strip, that strands are placed along it by their own way, fading
+    const auto last = static_cast<float>(strip.stations() - 1);
+    const float length = std::max(strip.length(), 1e-9f), reach = kByWay * length;
+    const float root = (points_ws[0] - strip.centre[0]).dot(strip.along[0]);
+    std::vector<StripPlace> places;
+    places.reserve(points_ws.size());
+    std::size_t guess = 0;
+    float way = 0;
+    for (std::size_t p = 0; p < points_ws.size(); ++p) {
+        if (p > 0) way += (points_ws[p] - points_ws[p - 1]).norm();
+        float foot = footOn(strip, points_ws[p], guess);
+        guess = std::min(static_cast<std::size_t>(std::max(foot, 0.0f)), strip.stations() - 2);
+        if (way < reach) {
+            const float t = way / reach, fade = t * t * (3 - 2 * t);
+            foot = (1 - fade) * last * (root + way) / length + fade * foot;
+        }
+        places.push_back(placeAt(strip, points_ws[p], foot));
+    }
+    return places;
 }
 
 namespace {
@@ -251,7 +294,10 @@ std::vector<Vec3f> extended(const EvenHair& hair, std::span<const std::uint32_t>
         before.push_back((points.front() - fitted.centre[0]).dot(back));
         behind.push_back((points.back() - fitted.centre[last]).dot(fitted.along[last]));
     }
-    const float longest = std::min(kLongest, 0.3f * fitted.length());
+    // Hair that stands up has no way back along the scalp.
+    const float upright = std::abs(fitted.along[0].dot(rootNormal));
+    const float flat = std::min(1.0f, 2 * std::sqrt(std::max(0.0f, 1 - upright * upright)));
+    const float longest = flat * std::min(kLongest, 0.3f * fitted.length());
     const float atRoot = std::clamp(quantile(before, kHolds), 0.0f, longest);
     const float atTip = std::clamp(quantile(behind, kHolds), 0.0f, longest);
     std::vector<Vec3f> centre = fitted.centre;
@@ -271,12 +317,10 @@ NearPoints nearPoints(const EvenHair& hair, std::span<const std::uint32_t> stran
     const std::size_t stations = strip.stations();
     NearPoints near(stations);
     for (const std::uint32_t s : strands) {
-        std::size_t guess = 0;
-        for (const Vec3f& point : hair.strand(s)) {
-            const StripPlace place = placeOn(strip, point, guess);
-            guess = place.station;
-            near[place.station + (place.share > 0.5f ? 1 : 0)].push_back({point, hair.weights[s] + 1e-12f});
-        }
+        const auto points = hair.strand(s);
+        const auto places = placesOn(strip, points);
+        for (std::size_t p = 0; p < points.size(); ++p)
+            near[places[p].nearest()].push_back({points[p], hair.weights[s] + 1e-12f});
     }
     for (std::size_t k = 1; k < stations; ++k)
         if (near[k].empty()) near[k] = near[k - 1];
@@ -366,6 +410,8 @@ Strip finishStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, 
     const Vec3f rootNormal = meanNormal(strands, rootNormals_ws);
     Strip strip;
     strip.centre = evenly(extended(hair, strands, fitted, rootNormal), stations);
+    // No crease where it leaves the scalp.
+    for (int pass = 0; pass < 2; ++pass) smooth(stations, [&](std::size_t k) -> Vec3f& { return strip.centre[k]; });
     setFrames(strip, fitted);
     const NearPoints near = nearPoints(hair, strands, strip);
     fitAcross(strip, rootNormal, [&](std::size_t k, const auto& take) {

@@ -55,10 +55,13 @@ struct StripPlace {
     float across = 0;         ///< metres
     float off = 0;            ///< metres outwards from the flat strip
     std::size_t station = 0;  ///< the one before it
-    float share = 0;          ///< of the way to the next
+    float share = 0;          ///< of the way to the next; below 0 and above 1 beyond the ends
+    /// The station that it is nearest to.
+    std::size_t nearest() const { return station + (share > 0.5f ? 1 : 0); }
 };
-/// The foot nearest along the centre to `guess`, a station; `place.station` of the point before is a good
-/// one.
-StripPlace placeOn(const Strip& strip, const Vec3f& point_ws, std::size_t guess);
+/// The places of a strand's points, root first. A root is placed by its way over the scalp from where the
+/// strip begins, points behind it by their way along the strand, and those farther on by the foot that is
+/// nearest: where a strip rises from the scalp, feet alone would lie on its crease, all of them.
+std::vector<StripPlace> placesOn(const Strip& strip, std::span<const Vec3f> points_ws);
 
 }  // namespace hairloom::cards

@@ -14,23 +14,25 @@ namespace {
 struct FlatPoint {
     float across = 0, along = 0;  // metres; samples follow from the strip's width there
     float off = 0;
+    float open = 1;                // ambient occlusion
     float x = 0, y = 0;            // shares of the picture
     Vec2f radius = Vec2f::Zero();  // likewise
 };
 
-std::vector<FlatPoint> flattened(const Hair& hair, const Strip& strip, std::uint32_t s, float thickness) {
+std::vector<FlatPoint> flattened(const Hair& hair, const HairLight& light, const Strip& strip,
+                                 std::uint32_t s, float thickness) {
     const float length = strip.length();
     std::vector<FlatPoint> flat;
-    std::size_t guess = 0;
+    const auto places = placesOn(strip, hair.strand(s));
     for (std::size_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
-        const StripPlace place = placeOn(strip, hair.positions_ws[p], guess);
-        guess = place.station;
+        const StripPlace& place = places[p - hair.offsets[s]];
         const float t = std::clamp(place.share, 0.0f, 1.0f);
         const float half = (1 - t) * strip.halfWidth[place.station] + t * strip.halfWidth[place.station + 1];
         FlatPoint point;
         point.across = place.across, point.off = place.off, point.along = place.along * length;
         point.x = 0.5f + 0.5f * place.across / half;
         point.y = place.along;
+        point.open = light.open(hair.positions_ws[p]);
         point.radius = thickness * hair.radii[p] * Vec2f(0.5f / half, 1 / length);
         flat.push_back(point);
     }
@@ -42,6 +44,7 @@ struct Sample {
     float off = -std::numeric_limits<float>::infinity();
     std::uint32_t point = 0;  // of the hair, the one before
     float t = 0;
+    float open = 1;
     float side = 0;  // -1 … 1 across the strand
     Vec2f flow = Vec2f(0, 1);
     std::uint32_t strand = 0;
@@ -72,7 +75,8 @@ class Canvas {
                 const float middle = from.at.x() + t * (to.at.x() - from.at.x());
                 const float half = from.radius.x() + t * (to.radius.x() - from.radius.x());
                 const float side = std::clamp((static_cast<float>(x) + 0.5f - middle) / half, -1.0f, 1.0f);
-                sample = {off, firstPoint + static_cast<std::uint32_t>(p), t, side, flow, strand};
+                sample = {off, firstPoint + static_cast<std::uint32_t>(p), t, a.open + t * (b.open - a.open),
+                          side, flow, strand};
             });
         }
     }
@@ -112,7 +116,7 @@ struct Sum {
     }
 };
 
-Texel shown(const Hair& hair, const HairLight& light, const Sample& sample) {
+Texel shown(const Hair& hair, const Sample& sample) {
     const std::uint32_t p = sample.point;
     const float t = sample.t;
     Texel texel;
@@ -124,7 +128,7 @@ Texel shown(const Hair& hair, const HairLight& light, const Sample& sample) {
     const std::uint32_t first = hair.offsets[sample.strand], count = hair.offsets[sample.strand + 1] - first;
     texel.along = (static_cast<float>(p - first) + t) / static_cast<float>(count - 1);
     texel.id = hashUnit(sample.strand, 11, 0);
-    texel.open = light.open((1 - t) * hair.positions_ws[p] + t * hair.positions_ws[p + 1]);
+    texel.open = sample.open;
     return texel;
 }
 
@@ -136,7 +140,7 @@ Picture bake(const Hair& hair, const HairLight& light, const Strip& strip,
     constexpr int kFiner = 4;
     Canvas canvas(width, height, kFiner);
     for (const std::uint32_t s : strands)
-        canvas.draw(s, hair.offsets[s], flattened(hair, strip, s, thickness));
+        canvas.draw(s, hair.offsets[s], flattened(hair, light, strip, s, thickness));
     Picture picture{width, height, std::vector<Texel>(std::size_t{width} * height)};
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
@@ -145,7 +149,7 @@ Picture bake(const Hair& hair, const HairLight& light, const Strip& strip,
                 for (int i = 0; i < kFiner; ++i) {
                     const Sample& sample =
                         canvas.at(static_cast<int>(x) * kFiner + i, static_cast<int>(y) * kFiner + j);
-                    if (std::isfinite(sample.off)) sum.add(shown(hair, light, sample), 1);
+                    if (std::isfinite(sample.off)) sum.add(shown(hair, sample), 1);
                 }
             }
             picture.at(x, y) = sum.mean(sum.weight / static_cast<float>(kFiner * kFiner));

@@ -93,16 +93,14 @@ cards::Cards onCards(const cards::Cards& made, std::span<const Vec3f> points_ws)
             const float off = cards::offStrip(made.cards[c].strip, strand, nearest);
             if (off < nearest) nearest = off, own = c;
         }
-        std::size_t guess = 0;
-        for (const Vec3f& point : strand) {
-            const cards::StripPlace place = cards::placeOn(made.cards[own].strip, point, guess);
-            guess = place.station;
-            held.mesh.vertices.push_back({.position_ws = point,
+        const auto places = cards::placesOn(made.cards[own].strip, strand);
+        for (std::size_t p = 0; p < strand.size(); ++p) {
+            held.mesh.vertices.push_back({.position_ws = strand[p],
                                           .normal_ws = Vec3f::UnitY(),
                                           .along_ws = Vec3f::UnitX(),
                                           .uv = Vec2f::Zero(),
                                           .place = Vec2f::Zero(),
-                                          .hangs = std::clamp(place.along, 0.0f, 1.0f),
+                                          .hangs = std::clamp(places[p].along, 0.0f, 1.0f),
                                           .card = own});
         }
     }

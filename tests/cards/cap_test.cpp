@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/cards/rig.h"
@@ -15,6 +16,12 @@ namespace {
 constexpr float kBall = 0.1f;  // metres, radius of the ball that samples stand on
 constexpr float kTolerance = 0.0003f;
 constexpr float kShownLength = 0.012f;  // metres of a hair
+
+std::vector<CapChart> capOf(const Hair& hair, float tolerance) {
+    auto cap = makeCap(hair, tolerance, nullptr);
+    EXPECT_TRUE(cap);
+    return cap ? std::move(*cap) : std::vector<CapChart>{};
+}
 
 /// Where a line from the middle of the ball meets a triangle, as a factor; negative: nowhere.
 float hit(const Vec3f& direction, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
@@ -40,7 +47,7 @@ std::vector<float> distances(const std::vector<CapChart>& cap, const Vec3f& dire
 
 TEST(Cap, LiesJustAboveTheSkinAtAllRoots) {
     const Hair hair = ballHair(1500);
-    const auto cap = makeCap(hair, kTolerance);
+    const auto cap = capOf(hair, kTolerance);
     for (std::size_t s = 0; s < hair.strandCount(); ++s) {
         const auto found = distances(cap, hair.rootNormals_ws[s]);
         ASSERT_FALSE(found.empty()) << "no seam at root " << s;
@@ -52,7 +59,7 @@ TEST(Cap, LiesJustAboveTheSkinAtAllRoots) {
 }
 
 TEST(Cap, FacesOutwards) {
-    for (const CapChart& chart : makeCap(ballHair(1500), kTolerance)) {
+    for (const CapChart& chart : capOf(ballHair(1500), kTolerance)) {
         for (std::size_t i = 0; i + 2 < chart.indices.size(); i += 3) {
             const auto at = [&](std::size_t k) { return chart.vertices[chart.indices[i + k]].position_ws; };
             EXPECT_GT((at(1) - at(0)).cross(at(2) - at(0)).dot(at(0)), 0);
@@ -73,7 +80,7 @@ TEST(Cap, DoesNotHangBetweenSkinAndSkinBehindIt) {
     hair.albedo.insert(hair.albedo.end(), front.albedo.begin(), front.albedo.end());
     hair.rootNormals_ws.insert(hair.rootNormals_ws.end(), front.rootNormals_ws.begin(),
                                front.rootNormals_ws.end());
-    for (const CapChart& chart : makeCap(hair, kTolerance)) {
+    for (const CapChart& chart : capOf(hair, kTolerance)) {
         for (const std::uint32_t index : chart.indices) {
             const Vec3f& at = chart.vertices[index].position_ws;
             const float off = std::min(std::abs(at.norm() - kBall), std::abs((at - behind).norm() - kBall));
@@ -85,10 +92,37 @@ TEST(Cap, DoesNotHangBetweenSkinAndSkinBehindIt) {
 TEST(Cap, IsOfFewerTrianglesFartherAway) {
     const auto triangles = [](float tolerance) {
         std::size_t count = 0;
-        for (const CapChart& chart : makeCap(ballHair(1500), tolerance)) count += chart.indices.size() / 3;
+        for (const CapChart& chart : capOf(ballHair(1500), tolerance)) count += chart.indices.size() / 3;
         return count;
     };
     EXPECT_GT(triangles(0.0003f), 2 * triangles(0.0012f));
+}
+
+TEST(Cap, StopsWhenItIsCancelled) {
+    const std::atomic<bool> cancel{true};
+    EXPECT_FALSE(makeCap(ballHair(1500), kTolerance, &cancel));
+}
+
+TEST(Cap, HoldsHairThatStandsUpAsFarAsItHidesSkin) {
+    Hair hair;
+    constexpr std::uint32_t kStrands = 40;
+    for (std::uint32_t s = 0; s < kStrands; ++s) {  // of 20 mm, straight up from the plane y = 0
+        for (const float height : {0.0f, 0.01f, 0.02f}) {
+            hair.positions_ws.emplace_back(0.002f * static_cast<float>(s), height, 0);
+            hair.radii.push_back(0.0001f), hair.albedo.emplace_back(0.2f, 0.1f, 0.05f);
+        }
+        hair.offsets.push_back(static_cast<std::uint32_t>(hair.positions_ws.size()));
+        hair.rootNormals_ws.emplace_back(0, 1, 0);
+    }
+    const Hair laid = laidRoots(hair);
+    Vec3f sum = Vec3f::Zero();
+    for (std::uint32_t s = 0; s < kStrands; ++s) {
+        const Vec3f way = laid.strand(s).back() - laid.strand(s).front();
+        EXPECT_NEAR(way.y(), 0, 1e-6f) << "on the skin";
+        EXPECT_NEAR(way.norm(), kShownLength / 2, 1e-5f);
+        sum += way;
+    }
+    EXPECT_LT(sum.norm(), 0.5f * kStrands * kShownLength / 2) << "not all one way";
 }
 
 TEST(Cap, IsTransparentBeyondTheHairsAndThinsTowardsThem) {
@@ -97,7 +131,7 @@ TEST(Cap, IsTransparentBeyondTheHairsAndThinsTowardsThem) {
     ASSERT_TRUE(light);
     const Hair laid = laidRoots(hair);
     double within = 0, withinCount = 0, outermost = 0, outermostCount = 0;
-    for (const CapChart& chart : makeCap(hair, kTolerance)) {
+    for (const CapChart& chart : capOf(hair, kTolerance)) {
         constexpr std::uint32_t kSide = 200;
         const Picture picture = bakeCap(hair, laid, *light, chart, 1, kSide, kSide);
         for (std::uint32_t y = 0; y < kSide; ++y) {
