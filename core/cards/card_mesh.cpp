@@ -128,8 +128,10 @@ class Builder {
         v.position_ws = bent ? strip.at(k, across)
                              : Vec3f(strip.centre[k] + across * strip.halfWidth[k] * strip.cross[k]);
         const float slope = bent ? 2 * strip.bend[k] * across * strip.halfWidth[k] : 0.0f;
-        v.normal_ws = (strip.normal[k] - slope * strip.cross[k]).normalized();
-        v.along_ws = strip.along[k];
+        // Lit as strands are that rise from it.
+        v.along_ws = card.flow_ws[k];
+        const Vec3f out = strip.normal[k] - slope * strip.cross[k];
+        v.normal_ws = (out - out.dot(v.along_ws) * v.along_ws).normalized();
         v.hangs = static_cast<float>(k) / static_cast<float>(kStations - 1);
         wear(card, Vec2f(0.5f + 0.5f * x, v.hangs), k, v);
         v.card = c;

@@ -33,11 +33,29 @@ Status check(const CardOptions& options) {
     return {};
 }
 
+/// Directions from their sums, smoothed: stations of few strands, of none or of some that lie all ways go as
+/// their neighbours or, at last, as the strip does. A strip by hand takes its strands along.
+void setFlow(Card& card) {
+    const auto sums = card.flow_ws;
+    constexpr float kNoWay = 0.2f;  // of the length that directions of one way sum up to
+    float longest = 0;
+    for (const Vec3f& sum : sums) longest = std::max(longest, sum.norm());
+    for (std::size_t k = 0; k < kStations; ++k) {
+        Vec3f sum = 2 * sums[k];
+        if (k > 0) sum += sums[k - 1];
+        if (k + 1 < kStations) sum += sums[k + 1];
+        const Vec3f& strip = card.strip.along[k];
+        const bool isClear = sum.norm() > 1e-3f * longest && sum.dot(strip) > kNoWay * sum.norm();
+        card.flow_ws[k] = isClear && !card.pinned ? Vec3f(sum.normalized()) : strip;
+    }
+}
+
 /// What strands are like by stations of their card: means, and those of a neighbour where there are none.
 void measure(const Hair& hair, const HairLight& light, Card& card) {
     std::array<float, kStations> weights{};
     card.albedo.fill(Vec3f::Zero());
     card.open.fill(0);
+    card.flow_ws.fill(Vec3f::Zero());
     for (const std::uint32_t s : card.strands) {
         const auto places = placesOn(card.strip, hair.strand(s));
         for (std::size_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
@@ -45,9 +63,12 @@ void measure(const Hair& hair, const HairLight& light, Card& card) {
             const float weight = hair.radii[p] + 1e-9f;
             card.albedo[k] += weight * hair.albedo[p];
             card.open[k] += weight * light.open(hair.positions_ws[p]);
+            if (p + 1 < hair.offsets[s + 1])
+                card.flow_ws[k] += weight * (hair.positions_ws[p + 1] - hair.positions_ws[p]).normalized();
             weights[k] += weight;
         }
     }
+    setFlow(card);
     for (std::size_t k = 0; k < kStations; ++k) {
         if (weights[k] > 0) card.albedo[k] /= weights[k], card.open[k] /= weights[k];
     }

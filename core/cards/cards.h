@@ -44,6 +44,9 @@ struct Card {
     std::vector<std::uint32_t> strands;
     std::array<Vec3f, kStations> albedo;  ///< means of its strands
     std::array<float, kStations> open;
+    /// World space, unit: the way that its strands take there on average, which is not the strip's where it lies
+    /// on the scalp and they rise from that.
+    std::array<Vec3f, kStations> flow_ws;
     std::uint32_t texture = 0;
     float widen = 1;  ///< factor on the width, by which a shared texture covers as much as its own strands do
 
@@ -57,7 +60,7 @@ struct Card {
 struct CardVertex {
     Vec3f position_ws;
     Vec3f normal_ws;  ///< unit, outwards
-    Vec3f along_ws;   ///< unit, towards the tip; with the normal it says what the flow of a texel means
+    Vec3f along_ws;   ///< unit, as strands go, perpendicular to the normal: what the flow of a texel is in
     Vec2f uv;         ///< in the atlas, 0 … 1; v grows downwards, as rows do
     Vec2f place;      ///< in the card's own picture, 0 … 1
     Vec3f tint =

@@ -78,6 +78,90 @@ TEST(Clusters, PartTwoLayersBeforeTheyPartARibbon) {
     }
 }
 
+/// Two patches of roots with skin between, whose hairs lie in two layers and side by side beyond the roots.
+Hair parted() {
+    Hair hair = ribbonHair(400, 0.02f, 0);
+    for (std::uint32_t s = 0; s < 400; ++s) {
+        const float side = s % 2 == 0 ? 0.02f : -0.02f, layer = s % 4 < 2 ? 0.0f : 0.004f;
+        for (std::uint32_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
+            const float left = std::max(0.0f, 1 - 0.4f * static_cast<float>(p - hair.offsets[s]));
+            hair.positions_ws[p] += Vec3f(left * side, 0, layer);
+        }
+    }
+    return hair;
+}
+
+TEST(Clusters, PartHairThatSkinPartsBeforeLayers) {
+    const Hair hair = parted();
+    const auto clusters = clusterHair(evenHair(hair, 9), allOf(hair), hair.rootNormals_ws, {2, 0}, nullptr);
+    ASSERT_TRUE(clusters);
+    ASSERT_EQ(clusters->size(), 2u);
+    for (const Cluster& cluster : *clusters) {
+        for (const std::uint32_t s : cluster.strands) EXPECT_EQ(s % 2, cluster.strands[0] % 2) << s;
+    }
+}
+
+TEST(Clusters, KnowWhichRootsHangTogether) {
+    const Hair hair = parted();
+    const EvenHair even = evenHair(hair, 9);
+    const auto both = byRoots(even, allOf(hair));
+    ASSERT_EQ(both.size(), 2u);
+    for (const auto& piece : both) {
+        EXPECT_EQ(piece.size(), 200u);
+        for (const std::uint32_t s : piece) EXPECT_EQ(s % 2, piece[0] % 2);
+    }
+    std::vector<std::uint32_t> some = both[1];
+    some.push_back(both[0][0]), some.push_back(both[0][1]);
+    std::ranges::sort(some);
+    const auto unequal = byRoots(even, some);
+    ASSERT_GE(unequal.size(), 2u);
+    EXPECT_EQ(unequal[0], both[1]) << "the largest first";
+}
+
+/// Straight hairs that rise from the plane y = 0 towards x; roots over a square.
+Hair risingHair(float degrees) {
+    Hair hair;
+    const float angle = radians(degrees);
+    for (std::uint32_t s = 0; s < 400; ++s) {
+        Random random(9, s);
+        const Vec3f root(random.uniform(-0.01f, 0.01f), 0, random.uniform(-0.01f, 0.01f));
+        for (int p = 0; p < 10; ++p) {
+            hair.positions_ws.emplace_back(
+                root + 0.006f * static_cast<float>(p) * Vec3f(std::cos(angle), std::sin(angle), 0));
+            hair.radii.push_back(0.0001f), hair.albedo.emplace_back(0.3f, 0.2f, 0.1f);
+        }
+        hair.offsets.push_back(static_cast<std::uint32_t>(hair.positions_ws.size()));
+        hair.rootNormals_ws.emplace_back(0, 1, 0);
+    }
+    return hair;
+}
+
+TEST(Strip, PlacesRootsWhereTheyGrowAndNotOnItsCrease) {
+    const Hair hair = risingHair(60);
+    const auto made = cardsOf(hair, {.cards = 1});
+    ASSERT_TRUE(made) << made.error().message();
+    const Strip& strip = made->cards[0].strip;
+    for (std::uint32_t s = 1; s < hair.strandCount(); ++s) {
+        const auto places = placesOn(strip, hair.strand(s)), first = placesOn(strip, hair.strand(0));
+        const float apart = strip.length() * (places[0].along - first[0].along);
+        EXPECT_NEAR(apart, hair.strand(s)[0].x() - hair.strand(0)[0].x(), 0.002f) << s;
+        for (std::size_t p = 1; p < places.size(); ++p)
+            EXPECT_GT(places[p].along, places[p - 1].along + 0.02f) << "no pile at point " << p << " of " << s;
+    }
+}
+
+TEST(Cards, AreLitAsTheirStrandsGoAndNotAsTheirStripLies) {
+    const Hair hair = risingHair(60);
+    const auto made = cardsOf(hair, {.cards = 4});
+    ASSERT_TRUE(made) << made.error().message();
+    const Vec3f way = (hair.strand(0)[1] - hair.strand(0)[0]).normalized();
+    for (const CardVertex& v : made->mesh.vertices) {
+        if (v.card == kOfCap) continue;
+        EXPECT_GT(v.along_ws.dot(way), 0.99f);
+        EXPECT_NEAR(v.along_ws.dot(v.normal_ws), 0, 1e-4f);
+    }
+}
+
 TEST(Clusters, HoldEachStrandOnceAndStopWhereTheyAreGoodEnough) {
     const Hair hair = ballHair(2000);
     const EvenHair even = evenHair(hair, 9);
@@ -236,6 +320,18 @@ TEST(Cards, KeepTheirBudgets) {
         EXPECT_GE(count, 4u) << "two segments' ends of two columns";
         EXPECT_LE(count, 3u * kStations);
     }
+}
+
+TEST(Cards, ShareTexturesWhereTheAtlasHoldsNoMoreAsFine) {
+    const Hair hair = ballHair(1500);
+    const auto fine = cardsOf(hair, {.cards = 60, .textures = 60});
+    const auto small = cardsOf(hair, {.cards = 60, .textures = 60, .mostSide = 512});
+    ASSERT_TRUE(fine && small);
+    EXPECT_EQ(fine->painters.size(), fine->cards.size()) << "each its own";
+    EXPECT_LT(small->painters.size(), small->cards.size());
+    EXPECT_GE(small->painters.size(), kLeastTextures);
+    EXPECT_LE(small->atlas.side(), 512u);
+    for (const Card& card : small->cards) EXPECT_LT(card.texture, small->painters.size());
 }
 
 TEST(Cards, RefuseWhatCannotBe) {
