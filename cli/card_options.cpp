@@ -11,10 +11,11 @@ std::vector<const CLI::Option*> addCardOptions(CLI::App& job, LevelBudget& budge
     added.push_back(
         job.add_option("--cards", budget.cards, "Maximum number of cards in the nearest level of cards")
             ->check(CLI::Range(1, 4096)));
-    added.push_back(job.add_option("--textures", budget.chain.textures,
-                                   "Maximum number of textures in a level. Cards that look alike share one, as "
-                                   "do all that the largest atlas cannot hold")
-                        ->check(CLI::Range(1, 256)));
+    added.push_back(
+        job.add_option("--textures", budget.chain.textures,
+                       "Maximum number of textures in a level. Cards that look alike share one, as "
+                       "do all that the largest atlas cannot hold")
+            ->check(CLI::Range(1, 256)));
     added.push_back(
         job.add_option("--segments", budget.chain.segments, "Maximum number of segments in a card")
             ->check(CLI::Range(1, 24)));

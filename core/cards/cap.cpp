@@ -101,9 +101,7 @@ class Roots {
             low_ = low_.cwiseMin(root.at.head<2>()), high = high.cwiseMax(root.at.head<2>());
         columns_ = columnOf(high.x()) + 1, rows_ = rowOf(high.y()) + 1;
         starts_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
-        const auto cellOf = [&](const Root& root) {
-            return cell(columnOf(root.at.x()), rowOf(root.at.y()));
-        };
+        const auto cellOf = [&](const Root& root) { return cell(columnOf(root.at.x()), rowOf(root.at.y())); };
         std::ranges::stable_sort(roots_, {}, cellOf);
         for (const Root& root : roots_) ++starts_[cellOf(root) + 1];
         for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
@@ -117,9 +115,8 @@ class Roots {
         const float nearest = nearestSquare(place);
         const float farthest = nearest + kNothing * reach * reach;
         float outermost = -std::numeric_limits<float>::infinity();
-        forRootsWithin(place, farthest, [&](const Root& root, float) {
-            outermost = std::max(outermost, root.at.z());
-        });
+        forRootsWithin(place, farthest,
+                       [&](const Root& root, float) { outermost = std::max(outermost, root.at.z()); });
         float weights = 0, height = 0;
         Vec3f normal = Vec3f::Zero();
         forRootsWithin(place, farthest, [&](const Root& root, float square) {
@@ -144,7 +141,8 @@ class Roots {
         left = std::max(left, 0), right = std::min(right, columns_ - 1);
         for (int row = std::max(top, 0); row <= std::min(bottom, rows_ - 1); ++row) {
             if (left > right) continue;
-            for (std::size_t r = starts_[cell(left, row)]; r < starts_[cell(right, row) + 1]; ++r) f(roots_[r]);
+            for (std::size_t r = starts_[cell(left, row)]; r < starts_[cell(right, row) + 1]; ++r)
+                f(roots_[r]);
         }
     }
     template <class F>
@@ -300,7 +298,8 @@ Hair laidRoots(const Hair& hair) {
             add((1 - t) * a + t * b, p, t);
             left -= length;
         }
-        layAside(s, normal, kLength - std::max(left, 0.0f), std::span(laid.positions_ws).subspan(laid.offsets.back()));
+        layAside(s, normal, kLength - std::max(left, 0.0f),
+                 std::span(laid.positions_ws).subspan(laid.offsets.back()));
         laid.offsets.push_back(static_cast<std::uint32_t>(laid.positions_ws.size()));
         laid.rootNormals_ws.push_back(normal);
     }

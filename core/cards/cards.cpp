@@ -133,7 +133,8 @@ Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
         "fewer textures or a larger atlas");
 }
 
-/// Textures of the cards, and where they lie: as many as the largest atlas holds as fine as they are asked for.
+/// Textures of the cards, and where they lie: as many as the largest atlas holds as fine as they are asked
+/// for.
 Result<Layout> shareAtlas(const std::vector<Look>& looks, const CardOptions& options, Cards& cards) {
     for (std::uint32_t most = options.textures;; most = std::max(kLeastTextures, most - most / 4)) {
         cards.painters = shareLooks(looks, most, cards.cards);

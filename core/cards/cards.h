@@ -22,9 +22,9 @@ struct HeldCard {
 };
 
 struct CardOptions {
-    std::uint32_t cards = 200;    ///< at most, 1 … 4096
-    /// At most, 1 … 256; cards that look alike share one. Where the largest atlas cannot hold so many as fine as
-    /// they are asked for, fewer are made, kLeastTextures at least.
+    std::uint32_t cards = 200;  ///< at most, 1 … 4096
+    /// At most, 1 … 256; cards that look alike share one. Where the largest atlas cannot hold so many as fine
+    /// as they are asked for, fewer are made, kLeastTextures at least.
     std::uint32_t textures = 256;
     float error = 0;              ///< metres off their strips that strands may be; fewer cards where they are
     float texel = 0.0007f;        ///< metres, the finest that textures are
@@ -44,8 +44,8 @@ struct Card {
     std::vector<std::uint32_t> strands;
     std::array<Vec3f, kStations> albedo;  ///< means of its strands
     std::array<float, kStations> open;
-    /// World space, unit: the way that its strands take there on average, which is not the strip's where it lies
-    /// on the scalp and they rise from that.
+    /// World space, unit: the way that its strands take there on average, which is not the strip's where it
+    /// lies on the scalp and they rise from that.
     std::array<Vec3f, kStations> flow_ws;
     std::uint32_t texture = 0;
     float widen = 1;  ///< factor on the width, by which a shared texture covers as much as its own strands do

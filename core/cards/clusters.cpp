@@ -202,7 +202,7 @@ void partByRoots(const EvenHair& hair, std::vector<Cluster>& clusters, std::span
 
 std::vector<std::vector<std::uint32_t>> byRoots(const EvenHair& hair,
                                                 std::span<const std::uint32_t> strands) {
-    constexpr float kApart = 4;  // times the median distance to the next root
+    constexpr float kApart = 4;                       // times the median distance to the next root
     constexpr float kLeast = 0.004f, kMost = 0.012f;  // metres
     const RootCells cells(hair, strands, kMost);
     std::vector<float> next(strands.size(), kMost * kMost);

