@@ -13,9 +13,9 @@ std::vector<const CLI::Option*> addCardOptions(CLI::App& job, LevelBudget& budge
             ->check(CLI::Range(1, 4096)));
     added.push_back(
         job.add_option("--textures", budget.chain.textures,
-                       "Maximum number of textures in a level. Cards that look alike share one, as "
-                       "do all that the largest atlas cannot hold")
-            ->check(CLI::Range(1, 256)));
+                       "Maximum number of textures in a level. Cards that look alike share one. 0 makes "
+                       "as many as fit the atlas that 32 need")
+            ->check(CLI::Range(0, 256)));
     added.push_back(
         job.add_option("--segments", budget.chain.segments, "Maximum number of segments in a card")
             ->check(CLI::Range(1, 24)));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/parallel.h"
 #include "core/cards/looks.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t kPadding = 4;  // texels around a picture
 constexpr std::uint32_t kLeastSide = 64;
+constexpr std::uint32_t kMostTextures = 256;
 constexpr float kCapTexels = 1.5f;          // of the cap's textures beside those of cards
 constexpr float kCoarser = 1.25f;           // than asked for, that texels may be
 constexpr std::uint32_t kHairStations = 9;  // of strands, while they are sorted into bundles
@@ -21,8 +23,9 @@ constexpr std::uint32_t kHairStations = 9;  // of strands, while they are sorted
 Status check(const CardOptions& options) {
     if (options.cards < 1 || options.cards > 4096)
         return fail(fmt::format("{} cards", options.cards), "1 to 4096");
-    if (options.textures < 1 || options.textures > 256)
-        return fail(fmt::format("{} textures", options.textures), "1 to 256");
+    if (options.textures > kMostTextures)
+        return fail(fmt::format("{} textures", options.textures),
+                    "1 to 256, or 0 for as many as fit the atlas that 32 need");
     const std::uint32_t side = options.mostSide;
     if (side < kLeastSide || side > 8192 || (side & (side - 1)) != 0)
         return fail(fmt::format("an atlas of {} texels", side), "a power of two from 64 to 8192");
@@ -63,8 +66,9 @@ void measure(const Hair& hair, const HairLight& light, Card& card) {
             const float weight = hair.radii[p] + 1e-9f;
             card.albedo[k] += weight * hair.albedo[p];
             card.open[k] += weight * light.open(hair.positions_ws[p]);
-            if (p + 1 < hair.offsets[s + 1])
-                card.flow_ws[k] += weight * (hair.positions_ws[p + 1] - hair.positions_ws[p]).normalized();
+            const std::size_t before = p > hair.offsets[s] ? p - 1 : p;
+            const std::size_t behind = p + 1 < hair.offsets[s + 1] ? p + 1 : p;
+            card.flow_ws[k] += weight * (hair.positions_ws[behind] - hair.positions_ws[before]).normalized();
             weights[k] += weight;
         }
     }
@@ -92,15 +96,21 @@ std::uint32_t texelsOf(float metres, float texel, float least) {
     return static_cast<std::uint32_t>(std::clamp(metres / texel, least, 16384.0f));
 }
 
+/// Width of texels in metres, and their length by it.
+struct TexelSize {
+    float width, longer = 1;
+};
+
 /// Rects of all textures with texels of that size; empty where they do not fit.
-std::vector<Rect> rectsFor(const Cards& cards, float texel, std::uint32_t side) {
+std::vector<Rect> rectsFor(const Cards& cards, const TexelSize& texel, std::uint32_t side) {
     std::vector<std::array<std::uint32_t, 2>> sizes;
     for (const std::uint32_t painter : cards.painters) {
         const Strip& strip = cards.cards[painter].strip;
-        sizes.push_back({texelsOf(meanWidth(strip), texel, 4), texelsOf(strip.length(), texel, 8)});
+        sizes.push_back({texelsOf(meanWidth(strip), texel.width, 4),
+                         texelsOf(strip.length(), texel.longer * texel.width, 8)});
     }
     // Hairs on the cap lie side by side as cards have them, and are mostly hidden by these.
-    const float ofCap = kCapTexels * texel;
+    const float ofCap = kCapTexels * texel.width;
     for (const CapChart& chart : cards.cap)
         sizes.push_back(
             {texelsOf(meanWidth(chart.plane), ofCap, 4), texelsOf(chart.plane.length(), ofCap, 4)});
@@ -117,7 +127,7 @@ struct Layout {
 Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
     for (std::uint32_t side = kLeastSide; side <= options.mostSide; side *= 2) {
         for (const float coarser : {1.0f, kCoarser}) {  // rather than four times the memory
-            auto rects = rectsFor(cards, coarser * options.texel, side);
+            auto rects = rectsFor(cards, {coarser * options.texel}, side);
             if (!rects.empty()) return Layout{std::move(rects), side, coarser * options.texel};
         }
     }
@@ -125,7 +135,7 @@ Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
     float texel = options.texel;
     for (int step = 0; step < kSteps; ++step) {
         texel *= 1.1f;
-        auto rects = rectsFor(cards, texel, options.mostSide);
+        auto rects = rectsFor(cards, {texel}, options.mostSide);
         if (!rects.empty()) return Layout{std::move(rects), options.mostSide, texel};
     }
     return fail(
@@ -133,14 +143,31 @@ Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
         "fewer textures or a larger atlas");
 }
 
-/// Textures of the cards, and where they lie: as many as the largest atlas holds as fine as they are asked
-/// for.
-Result<Layout> shareAtlas(const std::vector<Look>& looks, const CardOptions& options, Cards& cards) {
-    for (std::uint32_t most = options.textures;; most = std::max(kLeastTextures, most - most / 4)) {
-        cards.painters = shareLooks(looks, most, cards.cards);
-        auto layout = layOut(cards, options);
-        if (most <= kLeastTextures || (layout && layout->texel <= kCoarser * options.texel)) return layout;
+/// The textures of the cards in the same atlas, with longer texels and none wider than kCoarser times what is
+/// asked for or, where that is more, than the layout has them.
+std::optional<Layout> filled(const Cards& cards, const Layout& layout, float texel) {
+    const float widest = std::max(layout.texel, kCoarser * texel);
+    for (const TexelSize& size : {TexelSize{texel}, TexelSize{texel, 2}, TexelSize{texel, kLongestTexel},
+                                  TexelSize{widest, 2}, TexelSize{widest, kLongestTexel}}) {
+        auto rects = rectsFor(cards, size, layout.side);
+        if (!rects.empty()) return Layout{std::move(rects), layout.side, size.width};
     }
+    return std::nullopt;
+}
+
+/// Textures of the cards, and where they lie.
+Result<Layout> shareAtlas(const std::vector<Look>& looks, const CardOptions& options, Cards& cards) {
+    cards.painters =
+        shareLooks(looks, options.textures > 0 ? options.textures : kSharedTextures, cards.cards);
+    auto layout = layOut(cards, options);
+    if (options.textures > 0 || !layout) return layout;
+    const auto all = static_cast<std::uint32_t>(std::min<std::size_t>(looks.size(), kMostTextures));
+    for (std::uint32_t most = all; most > kSharedTextures; most -= most / 8) {
+        cards.painters = shareLooks(looks, most, cards.cards);
+        if (auto more = filled(cards, *layout, options.texel)) return std::move(*more);
+    }
+    cards.painters = shareLooks(looks, kSharedTextures, cards.cards);
+    return layout;
 }
 
 /// Strands of a card.

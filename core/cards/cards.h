@@ -23,9 +23,9 @@ struct HeldCard {
 
 struct CardOptions {
     std::uint32_t cards = 200;  ///< at most, 1 … 4096
-    /// At most, 1 … 256; cards that look alike share one. Where the largest atlas cannot hold so many as fine
-    /// as they are asked for, fewer are made, kLeastTextures at least.
-    std::uint32_t textures = 256;
+    /// At most, 1 … 256; cards that look alike share one. 0: as many as the atlas holds that kSharedTextures
+    /// need, with texels up to kLongestTexel times as long as wide.
+    std::uint32_t textures = 0;
     float error = 0;              ///< metres off their strips that strands may be; fewer cards where they are
     float texel = 0.0007f;        ///< metres, the finest that textures are
     float tolerance = 0.0005f;    ///< metres that a strip may be off its curve
@@ -35,9 +35,10 @@ struct CardOptions {
     std::vector<HeldCard> held = {};
 };
 
-constexpr std::uint32_t kLeastTextures = 32;  ///< below it texels get coarser instead
-constexpr std::uint32_t kOfCap = UINT32_MAX;  ///< CardVertex::card of the cap's vertices
-constexpr std::uint32_t kStations = 25;       ///< of a card's strip: 24 segments at most
+constexpr std::uint32_t kSharedTextures = 32;  ///< what an atlas is sized by where no number is set
+constexpr float kLongestTexel = 3;             ///< along a card, times its width: hair changes slowly there
+constexpr std::uint32_t kOfCap = UINT32_MAX;   ///< CardVertex::card of the cap's vertices
+constexpr std::uint32_t kStations = 25;        ///< of a card's strip: 24 segments at most
 
 struct Card {
     Strip strip;  ///< as its strands have it, or as it is pinned

@@ -33,7 +33,7 @@ std::string standardLevels(std::uint32_t cards, std::uint32_t headPx = 256);
 std::string standardCardLevels(std::uint32_t cards, std::uint32_t headPx = 256);
 
 struct ChainOptions {
-    std::uint32_t textures = 256;   ///< at most, as CardOptions has it
+    std::uint32_t textures = 0;     ///< at most, as CardOptions has it
     std::uint32_t segments = 24;    ///< of a card, at most
     std::uint32_t mostSide = 2048;  ///< texels along an atlas
     std::uint32_t directions = 12;  ///< that levels are judged from

@@ -229,13 +229,22 @@ StripPlace placeAt(const Strip& strip, const Vec3f& point_ws, float foot) {
     return place;
 }
 
+/// The way that the strip takes over the scalp. Its centre moves aside there where roots at one side begin
+/// before those at the other: that is no way along it.
+Vec3f alongRoots(const Strip& strip) {
+    constexpr std::size_t kOneIn = 4;  // of the stations, the first
+    Vec3f cross = Vec3f::Zero();
+    for (std::size_t k = 0; k <= (strip.stations() - 1) / kOneIn; ++k) cross += strip.cross[k];
+    return cross.norm() > 0 ? perpendicular(strip.along[0], cross.normalized()) : strip.along[0];
+}
+
 }  // namespace
 
 std::vector<StripPlace> placesOn(const Strip& strip, std::span<const Vec3f> points_ws) {
     constexpr float kByWay = 0.4f;  // of the strip, that strands are placed along it by their own way, fading
     const auto last = static_cast<float>(strip.stations() - 1);
     const float length = std::max(strip.length(), 1e-9f), reach = kByWay * length;
-    const float root = (points_ws[0] - strip.centre[0]).dot(strip.along[0]);
+    const float root = (points_ws[0] - strip.centre[0]).dot(alongRoots(strip));
     std::vector<StripPlace> places;
     places.reserve(points_ws.size());
     std::size_t guess = 0;

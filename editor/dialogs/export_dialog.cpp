@@ -156,9 +156,13 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
     cards_->setToolTip(
         "Maximum number of cards in the nearest level. Farther levels have a half and a quarter of them");
     textures_->setObjectName("textures");
-    textures_->setRange(1, 256);
+    textures_->setRange(0, 256);
     textures_->setValue(static_cast<int>(budget.chain.textures));
-    textures_->setToolTip("Maximum number of textures in a level. Cards that look alike share one");
+    textures_->setSpecialValueText("Automatic");
+    textures_->setToolTip(
+        "Maximum number of textures in a level. Cards that look alike share one. Automatic makes as many as "
+        "fit "
+        "the atlas that 32 need");
     form_->addRow("Cards", cards_);
     form_->addRow("Textures", textures_);
     certify_->setObjectName("certify");

@@ -129,9 +129,11 @@ QWidget* LevelsPanel::makeBudget() {
                        "Maximum number of cards in the nearest level. The next levels have a half "
                        "and a quarter of them",
                        1, 1000, standard.cards);
-    textures_ = addBudget(*form, "levelTextures", "Textures",
-                          "Maximum number of textures in a level. Cards that look alike share one", 1, 128,
-                          standard.chain.textures);
+    textures_ =
+        addBudget(*form, "levelTextures", "Textures",
+                  "Maximum number of textures in a level. Cards that look alike share one. 0 makes as "
+                  "many as fit the atlas that 32 need",
+                  0, 256, standard.chain.textures);
     segments_ = addBudget(*form, "levelSegments", "Segments",
                           "Maximum number of segments per card. A card has fewer if they would not change "
                           "its outline by a third of a pixel",

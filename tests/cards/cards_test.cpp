@@ -118,13 +118,17 @@ TEST(Clusters, KnowWhichRootsHangTogether) {
     EXPECT_EQ(unequal[0], both[1]) << "the largest first";
 }
 
-/// Straight hairs that rise from the plane y = 0 towards x; roots over a square.
+/// Straight hairs that rise from the plane y = 0 towards x; roots in rows and columns over a square, so that
+/// its strip is straight, too.
 Hair risingHair(float degrees) {
     Hair hair;
     const float angle = radians(degrees);
     for (std::uint32_t s = 0; s < 400; ++s) {
-        Random random(9, s);
-        const Vec3f root(random.uniform(-0.01f, 0.01f), 0, random.uniform(-0.01f, 0.01f));
+        constexpr std::uint32_t kInARow = 20;
+        constexpr float kApart = 0.001f;  // metres
+        const float across = static_cast<float>(s % kInARow) - 9.5f,
+                    along = static_cast<float>(s / kInARow) - 9.5f;
+        const Vec3f root(kApart * along, 0, kApart * across);
         for (int p = 0; p < 10; ++p) {
             hair.positions_ws.emplace_back(root + 0.006f * static_cast<float>(p) *
                                                       Vec3f(std::cos(angle), std::sin(angle), 0));
@@ -325,16 +329,24 @@ TEST(Cards, KeepTheirBudgets) {
     }
 }
 
-TEST(Cards, ShareTexturesWhereTheAtlasHoldsNoMoreAsFine) {
+TEST(Cards, HaveTexturesOfTheirOwnAsFarAsTheAtlasOfSharedOnesHoldsThem) {
     const Hair hair = ballHair(1500);
-    const auto fine = cardsOf(hair, {.cards = 60, .textures = 60});
-    const auto small = cardsOf(hair, {.cards = 60, .textures = 60, .mostSide = 512});
-    ASSERT_TRUE(fine && small);
-    EXPECT_EQ(fine->painters.size(), fine->cards.size()) << "each its own";
-    EXPECT_LT(small->painters.size(), small->cards.size());
-    EXPECT_GE(small->painters.size(), kLeastTextures);
-    EXPECT_LE(small->atlas.side(), 512u);
-    for (const Card& card : small->cards) EXPECT_LT(card.texture, small->painters.size());
+    const auto shared = cardsOf(hair, {.cards = 120, .textures = kSharedTextures});
+    const auto made = cardsOf(hair, {.cards = 120});
+    const auto own = cardsOf(hair, {.cards = 120, .textures = 120});
+    ASSERT_TRUE(shared && made && own);
+    EXPECT_EQ(shared->painters.size(), kSharedTextures) << "a number is kept to";
+    EXPECT_EQ(own->painters.size(), own->cards.size()) << "each its own";
+    EXPECT_GT(own->atlas.side(), shared->atlas.side());
+    EXPECT_GT(made->painters.size(), 2 * kSharedTextures);
+    EXPECT_EQ(made->atlas.side(), shared->atlas.side()) << "of the same memory";
+    for (const Card& card : made->cards) EXPECT_LT(card.texture, made->painters.size());
+    for (std::size_t t = 0; t < made->painters.size(); ++t) {
+        const Strip& strip = made->cards[made->painters[t]].strip;
+        const Rect& rect = made->atlas.rects[t];
+        const float texel = strip.length() / static_cast<float>(rect.height);
+        EXPECT_LE(texel, 1.1f * kLongestTexel * made->texel) << t;
+    }
 }
 
 TEST(Cards, RefuseWhatCannotBe) {
@@ -348,6 +360,7 @@ TEST(Cards, RefuseWhatCannotBe) {
     EXPECT_THAT(check(broken).error().message(), HasSubstr("strand 1 is not finite"));
     const Hair hair = ballHair(300);
     EXPECT_THAT(cardsOf(hair, {.cards = 0}).error().message(), HasSubstr("0 cards"));
+    EXPECT_THAT(cardsOf(hair, {.textures = 257}).error().message(), HasSubstr("257 textures"));
     EXPECT_THAT(cardsOf(hair, {.mostSide = 100}).error().message(), HasSubstr("power of two"));
     const auto full = cardsOf(hair, {.cards = 256, .textures = 256, .mostSide = 64});
     ASSERT_FALSE(full);
