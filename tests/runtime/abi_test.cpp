@@ -205,7 +205,7 @@ TEST(Abi, StructsLieAsTheyDid) {
     EXPECT_EQ(sizeof(hl_bone), 72u);
     EXPECT_EQ(sizeof(hl_layer), 24u);
     EXPECT_EQ(sizeof(hl_jobs), 16u);
-    EXPECT_EQ(sizeof(hl_frame), 128u);
+    EXPECT_EQ(sizeof(hl_frame), 144u);
     EXPECT_EQ(sizeof(hl_instance_info), 40u);
     EXPECT_EQ(sizeof(hl_out), 24u);
     EXPECT_EQ(sizeof(hl_effect), 136u);

@@ -59,12 +59,15 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
         const MovingSphere& around = capsule.around;
         const auto substeps = static_cast<float>(context.index + 1);
         const V3 to = position_ws - all3(around.from_ws + around.step * substeps);
-        const V farthest = away + all(1.001f * (around.radius + around.stepLength) +
-                                      static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR));
-        const auto near = dot(to, to) <= farthest * farthest;
-        if (HWY_LIKELY(hn::AllFalse(D(), near))) continue;
+        const V margin = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR)), more = all(1.001f);
+        const V farthest = away + (more * all(around.radius + around.stepLength) + margin);
+        if (HWY_LIKELY(hn::AllFalse(D(), dot(to, to) <= farthest * farthest))) continue;
         const V3 moved = context.sweeps ? node.displacement : zero3();
         const CapsuleSphere sphere = sphereOfCapsule(capsule, substeps, position_ws, moved);
+        const V3 off = position_ws - sphere.centre_ws;
+        const V reach = away + (more * (sphere.radius + hn::Sqrt(dot(sphere.step, sphere.step))) + margin);
+        const auto near = dot(off, off) <= reach * reach;
+        if (hn::AllFalse(D(), near)) continue;
         visit(rodTouchSphere(node, sphere.centre_ws - root, sphere.step, sphere.radius, context.sweeps),
               near);
     }
