@@ -91,8 +91,8 @@ class Bodies {
             x.push_back(root(s) + positions[p]);
             v.emplace_back(moved[p] / kSubstep);
         }
-        const auto spheres = spheresNow();
-        reference::addForces(physics, shape(s), x, v, around(spheres), force);
+        const auto colliders = collidersNow();
+        reference::addForces(physics, shape(s), x, v, around(colliders), force);
         return force;
     }
     /// And what they add to the displacement.
@@ -111,16 +111,16 @@ class Bodies {
         const runtime::Float3 position = scene_.roots[s].position;
         return {position.x, position.y, position.z};
     }
-    std::vector<reference::SphereNow> spheresNow() const {
-        std::vector<reference::SphereNow> spheres;
+    std::vector<reference::ColliderNow> collidersNow() const {
+        std::vector<reference::ColliderNow> colliders;
         for (const runtime::Sphere& sphere : scene_.spheres) {
             const runtime::Float3 c = sphere.center_ws;
-            spheres.push_back({{c.x, c.y, c.z}, Vector3d::Zero(), sphere.radius});
+            colliders.push_back({{{c.x, c.y, c.z}, Vector3d::Zero(), sphere.radius}});
         }
-        return spheres;
+        return colliders;
     }
-    static reference::Environment around(std::span<const reference::SphereNow> spheres) {
-        return {0.7, Eigen::Quaterniond::Identity(), Vector3d::Zero(), spheres};
+    static reference::Environment around(std::span<const reference::ColliderNow> colliders) {
+        return {0.7, Eigen::Quaterniond::Identity(), Vector3d::Zero(), colliders};
     }
 
     const Scene& scene_;
