@@ -37,8 +37,9 @@ Result<std::uint32_t> Actor::findClip(std::string_view name) const {
     if (found != clips_.end()) return static_cast<std::uint32_t>(found - clips_.begin());
     std::string names;
     for (const Clip& clip : clips_) names += (names.empty() ? "'" : ", '") + clip.name + "'";
-    return fail(fmt::format("the character has no clip '{}'", name),
-                names.empty() ? "it has no clips" : "expected one of " + names);
+    return fail(
+        fmt::format("the character has no clip '{}'", name),
+        names.empty() ? "expected a character with clips, and it has none" : "expected one of " + names);
 }
 
 ActorPose Actor::posedBy(std::span<const Eigen::Affine3f> local) const {

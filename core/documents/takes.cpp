@@ -113,7 +113,8 @@ Result<fs::path> existingTake(const fs::path& project, const std::string& name) 
         names += (names.empty() ? "" : ", ") + take.name;
     }
     return fail(fmt::format("there is no take '{}'", name),
-                names.empty() ? "this project has no takes" : "expected one of: " + names);
+                names.empty() ? "expected a take, and this project has none: takes --record makes one"
+                              : "expected one of: " + names);
 }
 
 Status removeTake(const fs::path& project, const std::string& name) {
