@@ -109,7 +109,7 @@ class Harm:
             self.fall(part, f"{len(errors)} lines with error: {done.stderr.strip()[-200:]!r}", arguments)
             return None
         bare = ("std::bad_alloc", "[json.exception", "basic_string", "vector::")
-        if errors and any(errors[0][len("error: "):].startswith(word) for word in bare):
+        if errors and any(word in errors[0] for word in bare):
             self.fall(part, f"a library's words alone: {errors[0]}", arguments)
             return None
         return done
