@@ -142,7 +142,7 @@ void addJobs(std::string& page) {
         page += fmt::format("\n### `{}`\n\n{}\n\n    hairloom-cli {} {}\n", job.name, asSentence(job.does),
                             job.name, job.example);
         CLI::App& app = *program.add_subcommand(job.name);
-        job.declare(app);
+        declareJob(job, app);
         addOptions(app, page);
     }
 }
