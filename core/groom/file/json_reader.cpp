@@ -189,8 +189,9 @@ double JsonReader::number(std::string_view key, double min, double max, std::str
 
 std::uint64_t JsonReader::count(std::string_view key, std::uint64_t min, std::uint64_t max) {
     const bool hasEnd = max != ~std::uint64_t{0};
-    const std::string expected = hasEnd ? fmt::format("expected a whole number from {} to {}", min, max)
-                                        : fmt::format("expected a whole number from {}", min);
+    const std::string expected = min == max ? fmt::format("expected {}", min)
+                                 : hasEnd   ? fmt::format("expected a whole number from {} to {}", min, max)
+                                            : fmt::format("expected a whole number from {}", min);
     const json* value = member(key, expected);
     if (!value) return 0;
     if (value->is_number_unsigned()) {
