@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The runtime as a game has it, through hairloom.h and without threads: loading, memory, stepping, read-out,
-// crowds.
+// The runtime as a game has it, through hairloom.h and without threads: loading, memory, stepping, clips,
+// read-out, crowds.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "benchmarks/measurement.h"
 #include "benchmarks/sample_hair.h"
@@ -21,6 +22,8 @@ namespace {
 constexpr std::size_t kCrowd = 50;
 constexpr std::size_t kPlannedCrowd = 100;
 constexpr int kFramesToSleep = 600;
+/// Two blocks of the format, half a second.
+constexpr std::uint64_t kClipFrames = 32;
 
 Status refused(const hl_error& error) {
     return fail(error.words);
@@ -163,6 +166,41 @@ class CrowdBeside {
     double finestSeconds_ = 0, plannedSeconds_ = 0, squares_ = 0;
 };
 
+Result<std::vector<std::byte>> exported(const Groom& groom,
+                                        std::shared_ptr<const ClipToWrite> clip = nullptr) {
+    const TemporaryFile file("hairloom-runtime-benchmark");
+    StrandExportOptions options;
+    options.clip = std::move(clip);
+    const auto written = strandWriter("runtime").write(groom, file.path, options);
+    if (!written) return tl::unexpected(written.error());
+    return readFile(file.path);
+}
+
+/// What an asset comes to that nods in wind, for a clip. Frames are simulated as they are asked for, so that
+/// none is held.
+class NodToWrite {
+  public:
+    explicit NodToWrite(const game::Asset& asset) : asset_(asset) {}
+
+    ClipToWrite::Frame frame(std::uint64_t number, game::Error& error, Status& status) {
+        ClipToWrite::Frame frame;
+        if (number == 0 && !hair_.make(asset_, HL_GUIDES, nullptr, &error)) status = refused(error);
+        const Nod nod(static_cast<float>(number + 1) / 60, true);
+        if (status && !(hair_.step(nod.frame, &error) && hair_.readGuides(points_, &error)))
+            status = refused(error);
+        for (std::size_t p = 0; status && p < points_.size(); p += 3)
+            frame.positions_ws.emplace_back(points_[p], points_[p + 1], points_[p + 2]);
+        for (std::size_t i = 0; i < nod.head.size(); ++i)
+            frame.head_ws(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = nod.head[i];
+        return frame;
+    }
+
+  private:
+    const game::Asset& asset_;
+    game::Instance hair_;
+    std::vector<float> points_;
+};
+
 /// One asset through everything.
 class Played {
   public:
@@ -229,6 +267,47 @@ class Played {
                              }
                              return {};
                          });
+    }
+
+    /// The same motion as a clip, over and over, on the same head.
+    Status measureClip(const Groom& groom) {
+        NodToWrite nods(asset_);
+        auto clip = std::make_shared<ClipToWrite>();
+        clip->frames = kClipFrames;
+        clip->frame = [&](std::uint64_t number) -> Result<ClipToWrite::Frame> {
+            Status status;
+            ClipToWrite::Frame frame = nods.frame(number, error_, status);
+            if (!status) return tl::unexpected(status.error());
+            return frame;
+        };
+        const auto bytes = exported(groom, std::move(clip));
+        if (!bytes) return tl::unexpected(bytes.error());
+        game::Asset asset;
+        if (!asset.open(bytes->data(), bytes->size(), &error_)) return refused(error_);
+        game::Instance hair;
+        if (!hair.make(asset, HL_HAIRS, nullptr, &error_)) return refused(error_);
+        for (const int way : {1, -1}) {
+            hl_play play;
+            hl_play_init(&play);
+            play.loop = HL_LOOP_ALWAYS;
+            timings_.measure((way > 0 ? "play a clip, " : "play a clip backwards, ") + name_,
+                             [&](Rounds& rounds) -> Status {
+                                 while (rounds.next()) {
+                                     play.time += way / 60.0;
+                                     const Nod nod(static_cast<float>(play.time), true);
+                                     if (!hair.play(asset, nod.frame, play, &error_)) return refused(error_);
+                                 }
+                                 return {};
+                             });
+        }
+        const hl_clip found = asset.clip();
+        memory_.push_back({"clip of " + std::to_string(kClipFrames) + " frames in the file, " + name_,
+                           "KB",
+                           {static_cast<double>(found.bytes) / 1e3}});
+        memory_.push_back({"memory that a clip adds to an instance, " + name_,
+                           "KB",
+                           {static_cast<double>(found.memory) / 1e3}});
+        return {};
     }
 
     /// Guides of `kCrowd` characters, each at its own time of the nod.
@@ -369,13 +448,6 @@ class Played {
     game::Error error_;
 };
 
-Result<std::vector<std::byte>> exported(const Groom& groom) {
-    const TemporaryFile file("hairloom-runtime-benchmark");
-    const auto written = strandWriter("runtime").write(groom, file.path, {});
-    if (!written) return tl::unexpected(written.error());
-    return readFile(file.path);
-}
-
 Result<Outcome> run(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
@@ -393,6 +465,7 @@ Result<Outcome> run(const Options& options) {
         Played played(timings, memory, name, std::move(*bytes));
         played.measureLoading();
         played.measureFrames();
+        if (auto status = played.measureClip(groom); !status) return tl::unexpected(status.error());
         if (!name.starts_with("300x24")) continue;
         played.measureCrowd();
         played.measureLevels();
@@ -407,7 +480,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark runtimeBenchmark() {
-    return {"runtime", "assets in a game: load, memory, step, read-out, crowds", {"--quick"}, run};
+    return {"runtime", "assets in a game: load, memory, step, clips, read-out, crowds", {"--quick"}, run};
 }
 
 }  // namespace hairloom::benchmarks

@@ -235,6 +235,10 @@ TEST_F(TakesTest, ATakeIsExportedForOtherPrograms) {
         auto* loops = dialog.findChild<QCheckBox*>("takeLoops");
         EXPECT_TRUE(loops->isVisible());
         loops->setChecked(true);
+        if (!isDrawn()) return;
+        QCoreApplication::processEvents();
+        QDir().mkpath(HAIRLOOM_SCREENSHOTS);
+        EXPECT_TRUE(onScreen().save(HAIRLOOM_SCREENSHOTS "/take-export.png"));
     });
     finishWork();
     EXPECT_EQ(kindOfFile("nod.hairrt"), "a runtime asset");
