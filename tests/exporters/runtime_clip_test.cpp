@@ -168,6 +168,49 @@ TEST_F(RuntimeClip, LoopsWhereItIsToldTo) {
     EXPECT_LE(error(points, Eigen::Isometry3f::Identity(), kFrames - 1), double{clip.largest_error} + 1e-6);
 }
 
+/// Version 1.3 brought clips. Three strands in wind, in 20 frames that loop, beside the frames that the take
+/// had.
+TEST_F(RuntimeClip, FilesOfTheFirstVersionWithAClipStillPlay) {
+    const auto files = sourceDir() / "tests/exporters/files";
+    const Groom three = helices({12, 12, 12});
+    const auto bytes = readFile(files / "version_1_3.hairrt").value();
+    game::Asset asset;
+    Error error;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size(), &error)) << error.what();
+    ASSERT_TRUE(asset.check(&error)) << error.what();
+    EXPECT_EQ(asset.describe().minor, 3u);
+    const hl_clip clip = asset.clip(&error);
+    EXPECT_EQ(std::string(clip.name, clip.name_bytes), "sway");
+    EXPECT_EQ(clip.frames, 20u);
+    EXPECT_EQ(clip.loops, 1u);
+    EXPECT_LE(clip.largest_error, 0.0001f);
+    Instance hair;
+    ASSERT_TRUE(hair.make(asset, HL_GUIDES, nullptr, &error)) << error.what();
+    std::vector<float> points;
+    // docs/formats/frames.md: version 1, of 36 points and nothing else.
+    const auto record = readFile(files / "version_1_3.frames").value();
+    const std::size_t frameBytes = 8 + three.pointCount() * sizeof(Vec3f);
+    ASSERT_EQ(record.size(), 48 + clip.frames * frameBytes);
+    const auto frameOf = [&](std::size_t number) {
+        std::vector<Vec3f> taken(three.pointCount());
+        std::memcpy(static_cast<void*>(taken.data()), record.data() + 48 + number * frameBytes + 8,
+                    taken.size() * sizeof(Vec3f));
+        return taken;
+    };
+    for (const std::size_t number : {std::size_t{0}, std::size_t{17}, std::size_t{3}, std::size_t{19}}) {
+        const std::vector<Vec3f> taken = frameOf(number);
+        ASSERT_TRUE(hair.play(asset, Frame(), static_cast<double>(number + 20) / 60, &error)) << error.what();
+        ASSERT_TRUE(hair.readGuides(points));
+        ASSERT_EQ(points.size(), 3 * three.pointCount());
+        for (std::size_t p = 0; p < three.pointCount(); ++p) {
+            if (p % 12 == 0) continue;  // roots stay on the skin
+            const Vec3f at(points[3 * p], points[3 * p + 1], points[3 * p + 2]);
+            EXPECT_LE((at - taken[p]).norm(), clip.largest_error + 2e-6f) << number << " " << p;
+        }
+    }
+    EXPECT_GT((frameOf(19)[35] - frameOf(0)[35]).norm(), 0.01f) << "it moves";
+}
+
 /// x, y, z and 0 of each point of the guides, m/s, as kernels of hairs are given them.
 std::vector<float> velocitiesOf(const Instance& hair, std::size_t points) {
     std::vector<float> velocities(4 * points);
