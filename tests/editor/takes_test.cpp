@@ -200,6 +200,9 @@ TEST_F(TakesTest, DistancesToAnotherTakeAreDrawn) {
 }
 
 TEST_F(TakesTest, ATakeIsExportedForOtherPrograms) {
+    // Without a head, out of which an export would push hair.
+    openFirstStrands(60);
+    save();
     ASSERT_TRUE(parts().player.setMotion("nod"));
     record("nod", 16);
     // The record holds the very frames that were asked for, under the suffix of its format.
