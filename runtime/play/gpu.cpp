@@ -188,10 +188,11 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
     const std::size_t spheres =
         frame.sphere_count + (frame.capsules ? kMaxAlongCapsule * frame.capsule_count : 0);
     if (frame.spheres && spheres > gpuGuides_->mostSpheres())
-        return Refusal{HL_WRONG_SIZE, std::to_string(spheres) + " spheres, " +
-                                          std::to_string(kMaxAlongCapsule) +
-                                          " of them for each capsule; expected at most " +
-                                          std::to_string(gpuGuides_->mostSpheres())};
+        return Refusal{HL_WRONG_SIZE, std::to_string(spheres) + " spheres" +
+                                          (frame.capsules ? ", " + std::to_string(kMaxAlongCapsule) +
+                                                                " of them for each capsule"
+                                                          : "") +
+                                          "; expected at most " + std::to_string(gpuGuides_->mostSpheres())};
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
     takeTurns();

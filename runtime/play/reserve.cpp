@@ -28,8 +28,9 @@ void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const 
             input.roots_ws = roots;
             input.wind_ws = Float3{wind, 0, 0};
             input.spheres = spheres.first(count);
-            input.capsules = std::span(capsules).first(count > 0 ? capsules.size() : 0);
             engine.step(input);
+            input.capsules = std::span(capsules).first(count > 0 ? capsules.size() : 0);
+            if (!input.capsules.empty()) engine.step(input);
         }
     }
     engine.setState(*before);
