@@ -258,7 +258,18 @@ ExportNames plyNames() {
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, PreparedStrands& strands,
                                                   const ExportNames& names) {
     std::vector<ExportedAttribute> attributes = Collector(groom, strands, names).run();
-    for (const ExportedAttribute& attribute : attributes) strands.names.push_back(attribute.name);
+    // As the file has them: Unreal's is one of three numbers.
+    constexpr std::string_view kClosest = "groom_closest_guides";
+    const auto isPart = [&](const ExportedAttribute& attribute) {
+        return names.isUnreal && attribute.name.starts_with(kClosest) &&
+               attribute.name.size() == kClosest.size() + 2;
+    };
+    for (const ExportedAttribute& attribute : attributes) {
+        if (!isPart(attribute))
+            strands.names.push_back(attribute.name);
+        else if (std::ranges::count(strands.names, kClosest) == 0)
+            strands.names.emplace_back(kClosest);
+    }
     return attributes;
 }
 

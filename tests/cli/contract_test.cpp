@@ -170,7 +170,7 @@ TEST_F(Contract, HairsForUnrealHaveTheirGuidesMarked) {
     EXPECT_GT(hairs["strands"], 300);
     EXPECT_EQ(hairs["strands"], all["strands"]) << "Unreal binds hairs to guides in the same file";
     const auto names = hairs["names"].get<std::set<std::string>>();
-    for (const char* name : {"groom_guide", "groom_guide_weights", "groom_id"})
+    for (const char* name : {"groom_guide", "groom_closest_guides", "groom_guide_weights", "groom_id"})
         EXPECT_TRUE(names.contains(name)) << name;
     const Json alone = runJson("export hair.hairloom --target unreal -o guides.abc");
     EXPECT_EQ(alone["strands"], 300);
