@@ -244,7 +244,7 @@ TEST_F(Cli, HiddenGroupsAreLeftOutOfThePicture) {
     EXPECT_EQ(picture("two.hairloom --hide helper-a,helper-b"), picture("one.hairloom"));
     const Outcome unknown = run("render two.hairloom --hide helper-c -o none.png");
     EXPECT_EQ(unknown.exitCode, 1);
-    EXPECT_THAT(unknown.errors, HasSubstr("no group 'helper-c'; one of: head, helper-a, helper-b"));
+    EXPECT_THAT(unknown.errors, HasSubstr("no group 'helper-c'; expected one of: head, helper-a, helper-b"));
     EXPECT_FALSE(fs::exists(folder / "none.png"));
 }
 
