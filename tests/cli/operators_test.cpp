@@ -161,7 +161,8 @@ TEST_F(OperatorsCli, HairCollidesWithGroupsThatAreNoPartOfTheHead) {
     const auto again = runJson("spheres more.hairloom --fit 2 --replace -o more.hairloom --force");
     EXPECT_EQ(again["spheres"], 9);
 
-    EXPECT_THAT(run(head + "--collide-with coat").errors, HasSubstr("no group 'coat'; expected one of: bust_ears"));
+    EXPECT_THAT(run(head + "--collide-with coat").errors,
+                HasSubstr("no group 'coat'; expected one of: bust_ears"));
     EXPECT_THAT(run(head + "--collide-with 'bust*'").errors, HasSubstr("no head is left"));
     EXPECT_EQ(run(head + "--collide-with bust_neck --collide-spheres 257").exitCode, 2);
     EXPECT_EQ(run(head + "--collide-spheres 4").exitCode, 2) << "of what?";

@@ -164,7 +164,8 @@ TEST(HeadImport, RefusesWhatCannotBe) {
     PolygonSoup soup = soupOf(kHeadAndClothes);
     addTriangle(soup, "flat", {0, 0, 0}, 0);
     const ScalpMesh mesh = test::meshOf(soup);
-    EXPECT_THAT(refusal(mesh, collidingWith({"coller"}, 4)), HasSubstr("no group 'coller'; expected one of: "));
+    EXPECT_THAT(refusal(mesh, collidingWith({"coller"}, 4)),
+                HasSubstr("no group 'coller'; expected one of: "));
     EXPECT_THAT(refusal(mesh, collidingWith({"flat"}, 4)), HasSubstr("'flat' has no faces to collide with"));
     EXPECT_THAT(refusal(mesh, collidingWith({"*"}, 4)), HasSubstr("no head is left"));
     EXPECT_THAT(refusal(mesh, collidingWith({"hat"}, 0)), HasSubstr("0 spheres"));
