@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/editing/sphere_fit.h"
 #include "core/groom/spheres.h"
+#include "core/operations/skin.h"
 #include "hairloom/capsules.h"
 
 namespace hairloom::editing {
@@ -39,11 +40,28 @@ runtime::Sphere toSphere(const CollisionSphere& sphere) {
     return {{sphere.centre.x(), sphere.centre.y(), sphere.centre.z()}, sphere.radius};
 }
 
+/// Whether the capsule stands out of the skin by no more than `deepest` metres, or than its ends do: one
+/// across a hollow, from chin to chest, holds no vertex.
+bool liesInSkin(const runtime::Sphere& from, const runtime::Sphere& to, const SkinQuery& skin,
+                float deepest) {
+    const auto standsOut = [&](const runtime::Sphere& sphere) {
+        return skin.distanceAt(Vec3f(sphere.center_ws.x, sphere.center_ws.y, sphere.center_ws.z)).distance +
+               sphere.radius;
+    };
+    const float most = std::max({deepest, standsOut(from), standsOut(to)});
+    constexpr std::size_t kLooks = 15;
+    for (std::size_t k = 0; k < kLooks; ++k) {
+        if (standsOut(runtime::sphereAlongCapsule(from, to, k, kLooks)) > most) return false;
+    }
+    return true;
+}
+
 /// Distances of the samples, or none where skin lies too deep in the capsule.
 std::vector<float> distancesFrom(const CollisionSphere& first, const CollisionSphere& second,
-                                 const std::vector<Vec3f>& samples, float deepest) {
+                                 const std::vector<Vec3f>& samples, const SkinQuery& skin, float deepest) {
     std::vector<float> distances;
     const runtime::Sphere from = toSphere(first), to = toSphere(second);
+    if (!liesInSkin(from, to, skin, deepest)) return {};
     for (const Vec3f& sample : samples) {
         const runtime::Float3 place{sample.x(), sample.y(), sample.z()};
         const runtime::Sphere nearest = runtime::nearestOfCapsule(from, to, place);
@@ -68,6 +86,7 @@ double outside(const std::vector<float>& now, const std::vector<float>* with) {
 void joinSpheres(const ScalpMesh& mesh, const FaceSet& region, float error,
                  std::vector<CollisionSphere>& spheres) {
     const std::vector<Vec3f> samples = samplesOf(mesh, region);
+    const Skin skin(std::make_shared<const ScalpMesh>(mesh));
     const ColliderDistance distance(spheres);
     std::vector<float> now;
     for (const Vec3f& sample : samples) now.push_back(distance(sample));
@@ -82,7 +101,7 @@ void joinSpheres(const ScalpMesh& mesh, const FaceSet& region, float error,
     parallelFor(pairs.size(), 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
             pairs[p].distances =
-                distancesFrom(spheres[pairs[p].first], spheres[pairs[p].second], samples, deepest);
+                distancesFrom(spheres[pairs[p].first], spheres[pairs[p].second], samples, skin, deepest);
     });
     std::erase_if(pairs, [](const Pair& pair) { return pair.distances.empty(); });
     constexpr double kWorthIt = 1e-3;  // of what lies outside

@@ -112,9 +112,13 @@ std::unique_ptr<Command> mirrorSphere(const Model& model, std::size_t index, con
         const std::int32_t joined = spheres[index].joined;
         mirrored(index);
         if (joined < 0) return;
-        const auto end = static_cast<std::int32_t>(spheres.size());
-        mirrored(static_cast<std::size_t>(joined));
-        spheres[static_cast<std::size_t>(end) - 1].joined = end;
+        // One that lies on the plane is its own mirror image.
+        constexpr float kOnPlane = 1e-4f;  // metres
+        const auto other = static_cast<std::size_t>(joined);
+        const std::size_t made = spheres.size() - 1;
+        const bool isOnPlane = std::abs((spheres[other].centre - planePoint).dot(normal)) < kOnPlane;
+        if (!isOnPlane) mirrored(other);
+        spheres[made].joined = isOnPlane ? joined : static_cast<std::int32_t>(made + 1);
     });
 }
 

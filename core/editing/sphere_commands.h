@@ -29,7 +29,8 @@ std::unique_ptr<Command> renameSphere(const Model& model, std::size_t index, std
 std::unique_ptr<Command> removeSphere(const Model& model, std::size_t index);
 /// Makes a tapered capsule with sphere `other`; −1 or itself makes none any more.
 std::unique_ptr<Command> joinSphere(const Model& model, std::size_t index, std::int32_t other);
-/// Adds the mirror image in the plane, of both spheres where it is joined; a name or bone that ends in a side
+/// Adds the mirror image in the plane, and that of the sphere that it is joined to, unless that lies on the
+/// plane; a name or bone that ends in a side
 /// ("_L", ".l", "Left" …) gets the other.
 std::unique_ptr<Command> mirrorSphere(const Model& model, std::size_t index,
                                       const Vec3f& planePoint = Vec3f::Zero(),

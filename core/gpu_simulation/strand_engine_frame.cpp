@@ -193,8 +193,9 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     const Float3 lowBefore = placed.min_ws, highBefore = placed.max_ws;
     const bool found = deviceRoots != nullptr;
     const bool moves = found ? takeRoots(*deviceRoots) : takeRoots(input);
-    runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, input.capsules,
-                         frameSpheres);
+    const std::vector<runtime::Capsule> capsulesBefore = frameSpheres.capsules;
+    runtime::takeSpheres(wanted, shape->longestStrand, {spheresBefore, capsulesBefore}, input.spheres,
+                         input.capsules, frameSpheres);
     const Float3 low{std::min(placed.min_ws.x, lowBefore.x), std::min(placed.min_ws.y, lowBefore.y),
                      std::min(placed.min_ws.z, lowBefore.z)};
     const Float3 high{std::max(placed.max_ws.x, highBefore.x), std::max(placed.max_ws.y, highBefore.y),

@@ -114,6 +114,7 @@ Result<runtime::State> StrandEngine::Impl::readState() {
     std::span<const std::byte> rest = *bytes;
     for (const StrandBatch& batch : batches) takeBatch(batch, rest, state);
     state.spheres = spheresBefore;
+    state.capsules = frameSpheres.capsules;
     state.rootsMin_ws = placed.min_ws;
     state.rootsMax_ws = placed.max_ws;
     state.substep = substep;
@@ -175,6 +176,7 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
     auto submission = device.submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
     spheresBefore = state.spheres;
+    frameSpheres.capsules = state.capsules;
     substep = state.substep;
     origin_ws = state.origin_ws;
     runtime::Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
@@ -252,7 +254,7 @@ Result<double> StrandEngine::wait() {
 Result<runtime::Measurements> StrandEngine::measure() {
     const auto state = readState();
     if (!state) return tl::unexpected(state.error());
-    return runtime::measureState(*impl_->shape, *state, settings(), impl_->frameSpheres.capsules);
+    return runtime::measureState(*impl_->shape, *state, settings());
 }
 
 Status StrandEngine::readPositions(std::span<Float3> positions_ws) {

@@ -263,8 +263,8 @@ class SpheresPanel : public QWidget {
     void refresh() {
         showSkin();
         // One that is new is what people go on with.
-        const bool grew = list_->topLevelItemCount() > 0 &&
-                          static_cast<int>(spheres().size()) == list_->topLevelItemCount() + 1;
+        const bool grew =
+            list_->topLevelItemCount() > 0 && static_cast<int>(spheres().size()) > list_->topLevelItemCount();
         const int row =
             grew ? static_cast<int>(spheres().size()) - 1 : list_->indexOfTopLevelItem(list_->currentItem());
         const QSignalBlocker quiet(list_);

@@ -205,6 +205,9 @@ nb::object capsules(PyGroom& groom) {
 void setCapsules(PyGroom& groom, nb::handle values) {
     const Use use(groom.inUse, kTheGroom);
     const Input<std::array<std::uint32_t, 2>> given("capsules", values);
+    if (given.values().size() > runtime::kMaxCapsules)
+        raiseArgument("capsules", fmt::format("has {} rows", given.values().size()),
+                      fmt::format("at most {}", runtime::kMaxCapsules));
     std::vector<CollisionSphere> joined = groom.groom.spheres;
     for (CollisionSphere& ball : joined) ball.joined = -1;
     for (const auto& [first, second] : given.values()) {
@@ -217,7 +220,7 @@ void setCapsules(PyGroom& groom, nb::handle values) {
         if (ball.joined >= 0)
             raiseArgument("capsules",
                           fmt::format("joins the spheres {} and {}, each to several", first, second),
-                          "as many capsules as spheres among any that they join, at most");
+                          "pairs in an order in which each has a sphere that is joined to no other yet");
         ball.joined = static_cast<std::int32_t>(isTaken ? first : second);
     }
     groom.groom.spheres = std::move(joined);

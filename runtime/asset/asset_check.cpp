@@ -135,7 +135,7 @@ Problem Asset::checkScalp() const {
         if (sphere.joined > 0 && ++capsules > kMaxCapsules)
             return damaged(placeOf(&sphere), "more than " + number(kMaxCapsules) + " capsules");
         if (sphere.joined > spheres.size() || &spheres[0] + sphere.joined == &sphere + 1)
-            return damaged(placeOf(&sphere), "a capsule to sphere " + number(sphere.joined) + " of " +
+            return damaged(placeOf(&sphere), "a capsule with sphere " + number(sphere.joined - 1) + " of " +
                                                  number(spheres.size()) + ", or to itself");
         const bool boned =
             sphere.bone >= -1 && (sphere.bone < 0 || static_cast<std::size_t>(sphere.bone) < bones.size());

@@ -34,6 +34,7 @@ std::size_t countAlongCapsule(const Sphere& first, const Sphere& second) {
     // r − √(r² − (d/2)²) = bump for spheres of radius r that are d apart.
     const float apart = 2.0f * std::sqrt(kBump * std::max(2.0f * thinnest - kBump, thinnest));
     const float count = std::ceil(size / apart) - 1.0f;
+    if (!(count > 0.0f)) return 0;  // nor where lengths leave single precision
     return static_cast<std::size_t>(std::clamp(count, 0.0f, static_cast<float>(kMaxAlongCapsule)));
 }
 

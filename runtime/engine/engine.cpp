@@ -128,7 +128,7 @@ const StepReport& Engine::lastStep() const {
 }
 
 Measurements Engine::measure() const {
-    return measureState(*impl_->shape_, impl_->state_, impl_->settings_, impl_->spheres_.capsules);
+    return measureState(*impl_->shape_, impl_->state_, impl_->settings_);
 }
 
 std::size_t Engine::effectBytes(Effect effect) const {

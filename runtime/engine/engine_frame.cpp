@@ -72,6 +72,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
         placeAtRest(b, kAllLanes);
     });
     state_.spheres.clear();
+    state_.capsules.clear();
     state_.body.clear();
     hairGrid_.forget();
     bodyLost_ = true;
@@ -351,6 +352,14 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     Frame frame{};
     frame.input = &input;
     frame.context = substepContext(settings_, plan_, input.dt, substeps_, movingSpheres_, movingCapsules_);
+    if (!model().listsSpheres) {
+        // Those along capsules come last.
+        const auto given = std::count_if(
+            spheres_.usable.begin(), spheres_.usable.begin() + static_cast<std::ptrdiff_t>(spheres_.given),
+            [](const Sphere& sphere) { return sphere.radius > 0.0f; });
+        frame.context.shelters = frame.context.spheres.first(
+            std::min(frame.context.spheres.size(), static_cast<std::size_t>(given)));
+    }
     if (!movingBody_.empty()) {
         frame.context.body = &movingBody_;
         frame.context.spheresRest = frame.context.spheresRest && !bodyMoves_;
@@ -390,7 +399,8 @@ void Engine::Impl::step(const FrameInput& input) {
     const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
     takeRoots(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
-    takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, input.capsules, spheres_);
+    takeSpheres(settings_, shape_->longestStrand, {state_.spheres, state_.capsules}, input.spheres,
+                input.capsules, spheres_);
     report_.rejectedSpheres = spheres_.rejected;
     report_.rejectedWinds = takeWind(settings_, input, wind_);
     report_.substeps = substeps_ = substepsOf(input);
@@ -405,7 +415,7 @@ void Engine::Impl::step(const FrameInput& input) {
         movingCapsules_ = {};
     } else if (model().listsSpheres) {
         moveCapsules(spheres_, substeps_, movingSpheres_, movingCapsules_);
-        scratch_.reserveSpheres(movingSpheres_.size(), movingCapsules_.size());
+        scratch_.reserveSpheres(spheres_.given, movingCapsules_.size());
     } else {
         moveSpheres(spheres_, substeps_, movingSpheres_);
     }
@@ -416,6 +426,7 @@ void Engine::Impl::step(const FrameInput& input) {
     runBlocks(frame);
     const std::span<const Sphere> given = std::span(spheres_.usable).first(spheres_.given);
     state_.spheres.assign(given.begin(), given.end());
+    state_.capsules.assign(spheres_.capsules.begin(), spheres_.capsules.end());
     state_.substep = frame.context.h;
     strands_->closeFrame(frame);
     sumReports();

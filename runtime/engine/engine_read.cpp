@@ -70,8 +70,7 @@ void readVelocities(const RestShape& shape, const State& state, std::span<Float3
                  });
 }
 
-Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings,
-                          std::span<const Capsule> capsules) {
+Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings) {
     Measurements result;
     const double rate = state.substep > 0.0f ? 1.0 / static_cast<double>(state.substep) : 0.0;
     const SimulationSettings& s = settings;
@@ -109,7 +108,7 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
                 result.maxPenetration = std::max(result.maxPenetration, depth);
             };
             for (const Sphere& sphere : state.spheres) meet(sphere);
-            for (const Capsule& capsule : capsules) {
+            for (const Capsule& capsule : state.capsules) {
                 if (isCapsule(capsule, state.spheres))
                     meet(
                         nearestOfCapsule(state.spheres[capsule.first], state.spheres[capsule.second], at_ws));
@@ -139,7 +138,10 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
 
 std::size_t Engine::Impl::baseBytes() const {
     return shape_->bytes() + (state_.planes.size() + state_.roots.size()) * sizeof(float) +
-           strands_->baseBytes(state_) + (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
+           strands_->baseBytes(state_) +
+           (state_.spheres.size() + spheres_.usable.size() + spheres_.planned.size()) * sizeof(Sphere) +
+           (spheres_.motion.size() + spheres_.plannedMotion.size()) * sizeof(Float3) +
+           (state_.capsules.size() + spheres_.capsules.size()) * sizeof(Capsule) + spheres_.ends.size() +
            state_.rests.size() * sizeof(Rest) +
            (nextRoots_.size() + clearances_.size() + bodySeen_.size()) * sizeof(float) + bodyTable_.bytes() +
            blockReports_.size() * sizeof(BlockReport) + scratch_.bytes();

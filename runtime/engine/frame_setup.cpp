@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/checks.h"
 #include "engine/strand_model.h"
 #include "hairloom/capsules.h"
 
@@ -22,36 +23,49 @@ Sphere sphereAround(const Sphere& first, const Sphere& second) {
     return {(first.center_ws + second.center_ws) * 0.5f, half + std::max(first.radius, second.radius)};
 }
 
-void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& spheres) {
-    const std::size_t count = std::max(spheres.given, before.size());
+bool joinSame(const Capsule& a, const Capsule& b) {
+    return (a.first == b.first && a.second == b.second) || (a.first == b.second && a.second == b.first);
+}
+bool contains(std::span<const Capsule> capsules, const Capsule& one) {
+    return std::any_of(capsules.begin(), capsules.end(), [&](const Capsule& c) { return joinSame(c, one); });
+}
+
+void findWaking(float hair, const FormerSpheres& before, FrameSpheres& spheres) {
+    const std::size_t count = std::max(spheres.given, before.spheres.size());
     spheres.waking.clear();
-    spheres.waking.reserve(2 * (count + spheres.capsules.size()));
-    const auto changed = [](const Sphere& then, const Sphere& now) {
+    spheres.waking.reserve(2 * count + before.capsules.size() + spheres.capsules.size());
+    const auto thenOf = [&](std::size_t i) {
+        return i < before.spheres.size() ? before.spheres[i] : Sphere{};
+    };
+    const auto nowOf = [&](std::size_t i) { return i < spheres.given ? spheres.usable[i] : Sphere{}; };
+    const auto changed = [&](std::size_t i) {
+        const Sphere then = thenOf(i), now = nowOf(i);
         return !(then.center_ws == now.center_ws && then.radius == now.radius);
     };
-    const auto wakes = [&](const Sphere& then, const Sphere& now, float distance) {
-        for (const Sphere& sphere : {then, now}) {
-            if (sphere.radius > 0.0f)
-                spheres.waking.push_back({sphere.center_ws, hair + sphere.radius + distance});
+    const auto movedBy = [&](std::size_t i) {
+        const Sphere then = thenOf(i), now = nowOf(i);
+        const bool moved = then.radius > 0.0f && now.radius > 0.0f;
+        return moved ? length(now.center_ws - then.center_ws) : 0.0f;
+    };
+    const auto wakes = [&](const Sphere& sphere, float distance) {
+        if (sphere.radius > 0.0f)
+            spheres.waking.push_back({sphere.center_ws, hair + sphere.radius + distance});
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!changed(i)) continue;
+        wakes(thenOf(i), movedBy(i));
+        wakes(nowOf(i), movedBy(i));
+    }
+    const auto wakesAlong = [&](std::span<const Capsule> capsules, std::span<const Capsule> others,
+                                const auto& sphereOf) {
+        for (const Capsule& capsule : capsules) {
+            if (contains(others, capsule) && !changed(capsule.first) && !changed(capsule.second)) continue;
+            wakes(sphereAround(sphereOf(capsule.first), sphereOf(capsule.second)),
+                  std::max(movedBy(capsule.first), movedBy(capsule.second)));
         }
     };
-    const auto thenOf = [&](std::size_t i) { return i < before.size() ? before[i] : Sphere{}; };
-    for (std::size_t i = 0; i < count; ++i) {
-        const Sphere then = thenOf(i), now = i < spheres.given ? spheres.usable[i] : Sphere{};
-        if (!changed(then, now)) continue;
-        const bool moved = then.radius > 0.0f && now.radius > 0.0f;
-        wakes(then, now, moved ? length(now.center_ws - then.center_ws) : 0.0f);
-    }
-    for (const Capsule& capsule : spheres.capsules) {
-        const Sphere &first = spheres.usable[capsule.first], &second = spheres.usable[capsule.second];
-        const Sphere firstThen = thenOf(capsule.first), secondThen = thenOf(capsule.second);
-        if (!changed(firstThen, first) && !changed(secondThen, second)) continue;
-        const bool moved = firstThen.radius > 0.0f && secondThen.radius > 0.0f;
-        wakes(moved ? sphereAround(firstThen, secondThen) : Sphere{}, sphereAround(first, second),
-              moved ? std::max(length(first.center_ws - firstThen.center_ws),
-                               length(second.center_ws - secondThen.center_ws))
-                    : 0.0f);
-    }
+    wakesAlong(before.capsules, spheres.capsules, thenOf);
+    wakesAlong(spheres.capsules, before.capsules, nowOf);
 }
 
 MovingSphere movingOf(const FrameSpheres& spheres, std::size_t i, float share) {
@@ -74,6 +88,11 @@ MovingCapsule movingOf(const FrameSpheres& spheres, const Capsule& capsule, std:
     return moving;
 }
 
+/// Whether lengths between such spheres stay within single precision.
+bool isWithin(const Sphere& sphere) {
+    return length(sphere.center_ws) < kFarthest && sphere.radius < kFarthest;
+}
+
 /// Capsules between usable spheres, and spheres along them.
 void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
     spheres.capsules.clear();
@@ -85,10 +104,10 @@ void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
     spheres.planned.reserve(spheres.given + (kMaxAlongCapsule + 1) * capsules.size());
     spheres.plannedMotion.reserve(spheres.given + (kMaxAlongCapsule + 1) * capsules.size());
     for (const Capsule& capsule : capsules) {
-        if (!isCapsule(capsule, std::span<const Sphere>(spheres.usable).first(spheres.given))) {
-            ++spheres.rejected;
+        const std::span<const Sphere> usable = std::span<const Sphere>(spheres.usable).first(spheres.given);
+        if (!isCapsule(capsule, usable) || contains(spheres.capsules, capsule) ||
+            !isWithin(usable[capsule.first]) || !isWithin(usable[capsule.second]))
             continue;
-        }
         spheres.capsules.push_back(capsule);
         spheres.ends[capsule.first] = spheres.ends[capsule.second] = 1;
         const Sphere first = spheres.usable[capsule.first], second = spheres.usable[capsule.second];
@@ -104,7 +123,6 @@ void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
     spheres.plannedMotion.assign(spheres.motion.begin(), spheres.motion.end());
     for (const Capsule& capsule : spheres.capsules) {
         const Sphere first = spheres.usable[capsule.first], second = spheres.usable[capsule.second];
-        if (countAlongCapsule(first, second) < kMaxAlongCapsule) continue;
         const Float3 motion = spheres.motion[capsule.first], other = spheres.motion[capsule.second];
         Sphere around = sphereAround(first, second);
         around.radius += 0.5f * length(other - motion);
@@ -126,7 +144,7 @@ float slowestSwept(const SubstepContext& context) {
 
 }  // namespace
 
-void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
+void takeSpheres(const SimulationSettings& settings, float longestStrand, const FormerSpheres& before,
                  std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres) {
     spheres.usable.assign(given.begin(), given.end());
     spheres.given = given.size();
@@ -139,8 +157,8 @@ void takeSpheres(const SimulationSettings& settings, float longestStrand, std::s
             ++spheres.rejected;
             continue;
         }
-        if (i < before.size() && before[i].radius > 0.0f) {
-            const Float3 motion = sphere.center_ws - before[i].center_ws;
+        if (i < before.spheres.size() && before.spheres[i].radius > 0.0f) {
+            const Float3 motion = sphere.center_ws - before.spheres[i].center_ws;
             if (length(motion) <= settings.teleportDistance) spheres.motion[i] = motion;
         }
     }
@@ -161,6 +179,8 @@ void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, std::vect
                   std::vector<MovingCapsule>& capsules) {
     moving.clear();
     capsules.clear();
+    moving.reserve(spheres.given);
+    capsules.reserve(spheres.capsules.size());
     const float share = 1.0f / static_cast<float>(substeps);
     for (std::size_t i = 0; i < spheres.given; ++i) {
         if (spheres.usable[i].radius > 0.0f && spheres.ends[i] == 0)
@@ -253,6 +273,7 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.friction = settings.friction;
     context.restitution = settings.restitution;
     context.spheres = spheres;
+    context.shelters = spheres;
     context.capsules = capsules;
     context.windShelter = settings.windShelter;
     context.segmentsTouch = settings.collisionSegments;

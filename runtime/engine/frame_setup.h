@@ -18,7 +18,7 @@ namespace hairloom::runtime {
 struct FrameSpheres {
     std::vector<Sphere> usable;      ///< those of the frame, then those along capsules
     std::size_t given = 0;           ///< of the frame
-    std::vector<Capsule> capsules;   ///< between usable ones
+    std::vector<Capsule> capsules;   ///< between usable ones, each pair once
     std::vector<std::uint8_t> ends;  ///< 1 for a sphere that is the end of a capsule
     std::vector<Float3> motion;      ///< each one's displacement during the frame; none for a cut
     /// What a plan looks at: the usable ones, and what holds capsules that few spheres along them stand for.
@@ -29,8 +29,13 @@ struct FrameSpheres {
     /// hair: what sleeps there wakes up.
     std::vector<Sphere> waking;
 };
-/// `before` are the usable ones that the last frame gave. Keeps the memory of `spheres`.
-void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
+/// What the last frame had: usable spheres, and capsules between these.
+struct FormerSpheres {
+    std::span<const Sphere> spheres;
+    std::span<const Capsule> capsules;
+};
+/// Keeps the memory of `spheres`.
+void takeSpheres(const SimulationSettings& settings, float longestStrand, const FormerSpheres& before,
                  std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres);
 /// Those with a radius, on their way through the frame's substeps, capsules as spheres along them.
 void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving);

@@ -142,10 +142,11 @@ struct SubstepContext : shaders::SubstepNumbers {
     std::uint32_t lengthIterations = 0;
     std::span<const MovingSphere> spheres;
     std::span<const MovingCapsule> capsules;
-    float stepRatio = 1.0f;     ///< h over that of the substep before, or kFirstStepRatio
-    bool sweeps = false;        ///< spheres are met where fast points come in
-    bool conservative = false;  ///< nothing but motion of roots and spheres adds energy
-    bool spheresRest = false;   ///< nor do spheres and body
+    std::span<const MovingSphere> shelters;  ///< spheres that air goes around: none of those along capsules
+    float stepRatio = 1.0f;                  ///< h over that of the substep before, or kFirstStepRatio
+    bool sweeps = false;                     ///< spheres are met where fast points come in
+    bool conservative = false;               ///< nothing but motion of roots and spheres adds energy
+    bool spheresRest = false;                ///< nor do spheres and body
     const MovingBody* body = nullptr;
     const Wind* wind = nullptr;
     float windShelter = 0.0f;           ///< 0…1, of spheres

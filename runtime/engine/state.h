@@ -102,6 +102,7 @@ struct State {
     std::array<Floats, kOwnArrays> own;     ///< what the model remembers besides, per block (Model::own)
     std::vector<Rest> rests;                ///< per block
     std::vector<Sphere> spheres;            ///< of the last frame
+    std::vector<Capsule> capsules;          ///< likewise, between these
     std::vector<BonePose> body;             ///< likewise; empty where none was given
     Float3 rootsMin_ws, rootsMax_ws;        ///< box of the last frame's roots
     float substep = 0.0f;                   ///< seconds of the last substep; 0 before the first

@@ -14,7 +14,6 @@ namespace hairloom::runtime {
 void readPositions(const RestShape& shape, const State& state, std::span<Float3> positions_ws);
 /// In the same order, metres per second over the last substep.
 void readVelocities(const RestShape& shape, const State& state, std::span<Float3> velocities_ws);
-Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings,
-                          std::span<const Capsule> capsules);
+Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings);
 
 }  // namespace hairloom::runtime

@@ -82,13 +82,13 @@ HWY_INLINE V3 shelteredWindAt(const Wind& wind, const float* phases, V3 position
     if (!(speed > 0.0f)) return open;
     const V3 along = all3(wind.mean * (1.0f / speed));
     V3 air = open;
-    for (const MovingSphere& sphere : context.spheres) {
+    for (const MovingSphere& sphere : context.shelters) {
         if (sphere.radius < 1e-6f) continue;  // no air stands behind a point
         const V3 centre = all3(sphere.from_ws + sphere.step * steps);
         air = airPastSphere(air, position_ws - centre, all(sphere.radius), along);
     }
     for (const MovingCapsule& capsule : context.capsules) {
-        const CapsuleSphere sphere = sphereOfCapsule(capsule, steps, position_ws, zero3());
+        const CapsuleSphere sphere = CapsuleAxis(capsule, steps).nearest(position_ws);
         air = airPastSphere(air, position_ws - sphere.centre_ws, hn::Max(sphere.radius, all(1e-6f)), along);
     }
     return open + (air - open) * all(context.windShelter);

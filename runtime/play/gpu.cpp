@@ -185,13 +185,20 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
     if (!gpuGuides_) return Refusal{HL_BAD_VALUE, "hl_gpu_begin() comes before the first hl_gpu_step()"};
     if (frame.dt == 0) return std::nullopt;
     if (Outcome refused = checkStep(frame)) return refused;
-    const std::size_t spheres =
-        frame.sphere_count + (frame.capsules ? kMaxAlongCapsule * frame.capsule_count : 0);
+    std::size_t spheres = frame.sphere_count;
+    const auto sphereAt = [&](std::uint32_t at) {
+        const float* const sphere = frame.spheres + 4 * std::size_t{at};
+        return Sphere{{sphere[0], sphere[1], sphere[2]}, sphere[3]};
+    };
+    for (std::size_t c = 0;
+         frame.spheres && frame.capsules && c < std::min(frame.capsule_count, kMaxCapsules); ++c) {
+        const std::uint32_t* const ends = frame.capsules + 2 * c;
+        if (std::max(ends[0], ends[1]) < frame.sphere_count)
+            spheres += countAlongCapsule(sphereAt(ends[0]), sphereAt(ends[1]));
+    }
     if (frame.spheres && spheres > gpuGuides_->mostSpheres())
         return Refusal{HL_WRONG_SIZE, std::to_string(spheres) + " spheres" +
-                                          (frame.capsules ? ", " + std::to_string(kMaxAlongCapsule) +
-                                                                " of them for each capsule"
-                                                          : "") +
+                                          (frame.capsules ? " with those along capsules" : "") +
                                           "; expected at most " + std::to_string(gpuGuides_->mostSpheres())};
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;

@@ -108,7 +108,9 @@ void GpuGuides::take(const FrameInput& input) {
     const Float3 shift = moveOrigin(input.origin_ws);
     const Float3 lowBefore = roots_.min_ws, highBefore = roots_.max_ws;
     takeFrameRoots(input.roots_ws, settings_.teleportDistance, true, roots_);
-    takeSpheres(settings_, shape_->longestStrand, spheresBefore_, input.spheres, input.capsules, spheres_);
+    const std::vector<Capsule> capsulesBefore = spheres_.capsules;
+    takeSpheres(settings_, shape_->longestStrand, {spheresBefore_, capsulesBefore}, input.spheres,
+                input.capsules, spheres_);
     takeWind(settings_, input, wind_);
     FramePlanInput planInput;
     planInput.strandCount = static_cast<std::uint32_t>(shape_->restRoots.size());

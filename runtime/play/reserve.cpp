@@ -16,7 +16,7 @@ constexpr std::size_t kMostReserved = 4096;
 /// Frames in still air and in wind, without spheres and among as many as there may be.
 void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const Sphere> spheres) {
     const std::shared_ptr<const State> before = engine.state();
-    // As many as a frame may have of so many spheres: each end of its own has.
+    // With as many capsules as spheres.
     std::vector<Capsule> capsules;
     for (std::uint32_t s = 1; s < spheres.size() && capsules.size() < kMaxCapsules; ++s)
         capsules.push_back({s - 1, s});
@@ -56,7 +56,7 @@ void Instance::grow(const hl_reserve& wanted) {
     poses_.followHead(kIdentity34, roots);
     const std::size_t count = std::max<std::size_t>(wanted.spheres, restSpheres_.size());
     if (spheres_.size() < count) spheres_.resize(count);
-    capsules_.reserve(std::min(count, kMaxCapsules));
+    capsules_.reserve(kMaxCapsules);
     std::vector<Sphere> spheres(count);
     for (std::size_t s = 0; s < count; ++s)
         spheres[s] = {roots.empty() ? Float3{} : roots[s % roots.size()].position, kRehearsedRadius};

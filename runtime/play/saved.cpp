@@ -90,6 +90,7 @@ void writeState(Writer& writer, const State& state) {
         writer.value(std::uint32_t{rest.asleep});
     }
     writer.all<Sphere>(state.spheres);
+    writer.all<Capsule>(state.capsules);
     writer.all<BonePose>(state.body);
     writer.value(state.rootsMin_ws);
     writer.value(state.rootsMax_ws);
@@ -120,6 +121,9 @@ State readState(Reader& reader, const State& like) {
     const std::uint64_t spheres = reader.peekCount();
     if (spheres > kMostSpheres) reader.good = false;
     reader.all(state.spheres, static_cast<std::size_t>(std::min<std::uint64_t>(spheres, kMostSpheres)));
+    const std::uint64_t capsules = reader.peekCount();
+    if (capsules > kMaxCapsules) reader.good = false;
+    reader.all(state.capsules, static_cast<std::size_t>(std::min<std::uint64_t>(capsules, kMaxCapsules)));
     const std::uint64_t bones = reader.peekCount();
     if (bones > kMostBodyBones) reader.good = false;
     reader.all(state.body, static_cast<std::size_t>(std::min<std::uint64_t>(bones, kMostBodyBones)));

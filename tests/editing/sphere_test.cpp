@@ -193,7 +193,7 @@ TEST(SphereCommands, JoinSpheresInCapsules) {
     EXPECT_EQ(capsulesOf(spheres()).size(), 1u);
     document.perform(joinSphere(document.model(), 1, 2));
     document.perform(mirrorSphere(document.model(), 1));
-    ASSERT_EQ(spheres().size(), 5u);
+    ASSERT_EQ(spheres().size(), 5u) << "both ends";
     EXPECT_EQ(spheres()[3].name, "Arm.R");
     EXPECT_EQ(spheres()[4].name, "Hand.R");
     EXPECT_EQ(spheres()[3].joined, 4);
@@ -258,6 +258,18 @@ TEST(CapsuleFit, ClosesAGapBetweenSpheresAndBulgesNoFarther) {
         joinSpheres(*mesh, {}, 0.001f, boned);
         EXPECT_TRUE(capsulesOf(boned).empty());
     }
+}
+
+TEST(CapsuleFit, BridgesNoHollow) {
+    // Two balls that stand apart on a third, as chin and chest on a neck: between them is air.
+    PolygonSoup soup = test::icosphereSoup(4, 0.06f);
+    for (const float x : {-0.09f, 0.09f})
+        test::append(soup, test::icosphereSoup(4, 0.05f), Vec3f(x, 0.08f, 0));
+    const ScalpMesh mesh = test::meshOf(soup);
+    std::vector<CollisionSphere> balls{{"a", Vec3f(-0.09f, 0.08f, 0), 0.045f, ""},
+                                       {"b", Vec3f(0.09f, 0.08f, 0), 0.045f, ""}};
+    joinSpheres(mesh, {}, 0.001f, balls);
+    EXPECT_TRUE(capsulesOf(balls).empty());
 }
 
 TEST(ColliderDistance, IsThatOfTheDeepestSphereOfAHull) {

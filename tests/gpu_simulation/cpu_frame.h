@@ -208,8 +208,8 @@ struct CpuFrame {
     explicit CpuFrame(const Scene& scene) {
         const runtime::RestShape& shape = *scene.shape;
         const float dt = scene.input().dt;
-        runtime::takeSpheres(scene.settings, shape.longestStrand, scene.state.spheres, scene.spheres, {},
-                             spheres);
+        runtime::takeSpheres(scene.settings, shape.longestStrand, {scene.state.spheres, scene.state.capsules},
+                             scene.spheres, {}, spheres);
         wind.wind = runtime::makeWind(scene.settings);
         runtime::FramePlanInput planInput;
         planInput.strandCount = 64;

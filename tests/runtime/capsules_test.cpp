@@ -58,16 +58,21 @@ TEST(Capsules, SpheresAlongOneLieHalfAMillimetreBelowItAtMost) {
         std::vector<Sphere> spheres{first, second};
         appendCapsules(std::vector<Capsule>{{0, 1}}, spheres);
         ASSERT_LE(spheres.size(), 2 + kMaxAlongCapsule);
-        for (int i = 0; i < 400; ++i) {
+        if (spheres.size() == 2 + kMaxAlongCapsule) continue;  // too few for the bound
+        for (int i = 0; i <= 400; ++i) {
+            // From a place on the axis straight out to the surface.
             const float f = static_cast<float>(i);
-            const Float3 place{0.2f * std::sin(f), 0.15f * std::cos(1.7f * f), 0.2f * std::sin(2.3f * f)};
-            const float depth = depthIn(nearestOfCapsule(first, second, place), place);
+            const Float3 out{std::sin(f), std::cos(1.7f * f), std::sin(2.3f * f)};
+            Float3 place = mixed(first, second, f / 400.0f).center_ws;
+            for (int k = 0; k < 200; ++k) {
+                const float depth = depthIn(nearestOfCapsule(first, second, place), place);
+                if (std::abs(depth) < 1e-6f) break;
+                place = place + out * (depth / length(out));
+            }
             float deepest = -1e30f;
             for (const Sphere& sphere : spheres) deepest = std::max(deepest, depthIn(sphere, place));
-            EXPECT_LE(deepest, depth + 1e-6f);
-            if (std::abs(depth) < 0.002f) {
-                EXPECT_GE(deepest, depth - 6e-4f) << i;
-            }
+            EXPECT_LE(deepest, 1e-5f) << i;
+            EXPECT_GE(deepest, -6e-4f) << i;
         }
     }
 }
@@ -167,18 +172,77 @@ TEST(Capsules, OneThatComesFastIsMetAndNotPassed) {
         EXPECT_LT(x[17 * strand + 16].y, -0.05f) << "it has taken the tips along";
 }
 
-TEST(Capsules, SleepingHairWakesWhenAnEndMoves) {
-    const Strands strands = levelStrands(16);
-    Engine engine = makeEngine(strands, onBar(StrandModel::rods));
-    int f = 1;
-    for (; f <= 1200 && engine.asleep() < 16; ++f) step(engine, strands, f, kBar, kOne);
-    ASSERT_EQ(engine.asleep(), 16u);
-    step(engine, strands, ++f, kBar, kOne);
-    EXPECT_EQ(engine.asleep(), 16u);
-    std::vector<Sphere> moved = kBar;
+/// Hair that has fallen asleep on a bar whose ends are out of its reach.
+class OnABar : public testing::Test {
+  protected:
+    OnABar() : engine_(makeEngine(strands_, onBar(StrandModel::rods))) {
+        for (int f = 0; f < 1200 && engine_.asleep() < 16; ++f) frame(ends_, kOne);
+        EXPECT_EQ(engine_.asleep(), 16u);
+        frame(ends_, kOne);
+        EXPECT_EQ(engine_.asleep(), 16u);
+    }
+    void frame(std::span<const Sphere> spheres, std::span<const Capsule> capsules) {
+        step(engine_, strands_, ++frame_, spheres, capsules);
+    }
+
+    const std::vector<Sphere> ends_{{{0.09f, -0.08f, -0.5f}, 0.05f}, {{0.09f, -0.08f, 0.6f}, 0.05f}};
+    Strands strands_ = levelStrands(16);
+    Engine engine_;
+    int frame_ = 0;
+};
+
+TEST_F(OnABar, SleepingHairWakesWhenAnEndMovesFarAway) {
+    std::vector<Sphere> moved = ends_;
     moved[1].center_ws.x += 0.01f;
-    step(engine, strands, ++f, moved, kOne);
-    EXPECT_EQ(engine.asleep(), 0u);
+    frame(moved, kOne);
+    EXPECT_EQ(engine_.asleep(), 0u);
+}
+
+TEST_F(OnABar, SleepingHairFallsWhenItIsUnjoinedAndWhenItsEndsAreGone) {
+    Engine other(engine_);
+    frame(ends_, {});
+    EXPECT_EQ(engine_.asleep(), 0u);
+    const auto roots = strands_.roots();
+    FrameInput nothing;
+    nothing.dt = kStep;
+    nothing.roots_ws = roots;
+    other.step(nothing);
+    EXPECT_EQ(other.asleep(), 0u);
+}
+
+TEST_F(OnABar, SleepingHairIsWokenByABarThatAppears) {
+    for (int f = 0; f < 1200 && (f < 3 || engine_.asleep() < 16); ++f) frame(ends_, {});
+    ASSERT_EQ(engine_.asleep(), 16u);
+    frame(ends_, {});
+    EXPECT_EQ(engine_.asleep(), 16u);
+    frame(ends_, kOne);
+    EXPECT_EQ(engine_.asleep(), 0u);
+}
+
+TEST_F(OnABar, WhatGoesWithItStaysOnIt) {
+    // Roots and bar go along together, 4 cm in each substep: to each other they rest.
+    const auto start = positionsOf(engine_);
+    for (const Float3 way :
+         {Float3{0.05f, -0.06f, 0.0f}, Float3{0.0f, 0.03f, 0.07f}, Float3{0.06f, 0.0f, 0.05f}}) {
+        Engine going(engine_);
+        for (int f = 1; f <= 6; ++f) {
+            const Float3 shift = way * static_cast<float>(f);
+            std::vector<RootFrame> roots = strands_.roots();
+            for (RootFrame& root : roots) root.position = root.position + shift;
+            std::vector<Sphere> bar = ends_;
+            for (Sphere& end : bar) end.center_ws = end.center_ws + shift;
+            FrameInput input;
+            input.dt = kStep;
+            input.roots_ws = roots;
+            input.spheres = bar;
+            input.capsules = kOne;
+            going.step(input);
+            float deepest = -1.0f;
+            for (const Float3& x : positionsOf(going))
+                deepest = std::max(deepest, depthIn(nearestOfCapsule(bar[0], bar[1], x), x));
+            EXPECT_LT(deepest, 0.004f) << f;
+        }
+    }
 }
 
 TEST(Capsules, ThoseThatCannotBeUsedAreCountedAndLeftOut) {
@@ -190,7 +254,7 @@ TEST(Capsules, ThoseThatCannotBeUsedAreCountedAndLeftOut) {
     const std::vector<Capsule> wrong{{0, 0}, {0, 2}, {1, 9}};
     step(engine, strands, 1, spheres, wrong);
     step(plain, strands, 1, spheres, {});
-    EXPECT_EQ(engine.lastStep().rejectedSpheres, 4u);
+    EXPECT_EQ(engine.lastStep().rejectedSpheres, 1u) << "the sphere that is none";
     EXPECT_EQ(plain.lastStep().rejectedSpheres, 1u);
     EXPECT_EQ(engine.stateHash(), plain.stateHash());
 }

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "hairloom/strands.h"
+
 namespace hairloom {
 namespace {
 
@@ -99,14 +101,17 @@ std::vector<CollisionSphere> readSphereList(JsonReader& reader) {
     std::vector<CollisionSphere> spheres;
     std::vector<JsonReader> entries = reader.objects("spheres");
     for (JsonReader& entry : entries) spheres.push_back(readSphere(entry));
+    std::size_t capsules = 0;
     for (std::size_t s = 0; s < spheres.size(); ++s) {
         const std::int32_t joined = spheres[s].joined;
+        if (joined >= 0 && ++capsules > runtime::kMaxCapsules)
+            entries[s].complain("joined", "makes one capsule too many",
+                                fmt::format("expected at most {}", runtime::kMaxCapsules));
         if (joined < 0 ||
             (static_cast<std::size_t>(joined) < spheres.size() && static_cast<std::size_t>(joined) != s))
             continue;
-        entries[s].complain(
-            "joined", fmt::format("is {}", joined),
-            fmt::format("expected the number of another sphere, 0 to {}", spheres.size() - 1));
+        entries[s].complain("joined", fmt::format("is {}", joined),
+                            "expected the number of another sphere of the list");
     }
     return spheres;
 }

@@ -297,9 +297,9 @@ HL_API hl_code hl_instance_set(hl_instance* instance, const char* name, const do
 
 /* Memory ahead of time. hl_instance_make asks for what an instance holds, its first frames of new effects and
  * of more spheres for more. After this call no step, reset, change of level or read asks for any, whatever
- * head, bones and wind do, as long as frames have no more spheres and no setting is replaced. The state
- * stays. Takes as long as some frames at each level, and the memory of a copy meanwhile. Copies of the
- * instance have to be told again. */
+ * head, bones and wind do, as long as frames have no more spheres, no more capsules than these, and no
+ * setting is replaced. The state stays. Takes as long as some frames at each level, and the memory of a copy
+ * meanwhile. Copies of the instance have to be told again. */
 typedef struct hl_reserve {
     size_t size;      /* sizeof(hl_reserve), set by hl_reserve_init() */
     uint32_t spheres; /* that hl_frame.spheres will have at most, up to 4096; 0: the asset's own */

@@ -86,16 +86,28 @@ AirPath::AirPath(const Wind& wind, const WindyFrame& frame, const RootPath& path
 void MovingSpheres::take(const FrameInput& input, float teleportDistance) {
     moving_.clear();
     now_.assign(input.spheres.begin(), input.spheres.end());
-    appendCapsules(input.capsules, now_);
+    motions_.assign(now_.size(), Float3{});
     for (std::size_t i = 0; i < now_.size(); ++i) {
-        const Sphere& now = now_[i];
-        if (!isFinite(now.center_ws) || !std::isfinite(now.radius) || !(now.radius > 0.0f)) continue;
-        Float3 motion;
-        if (i < last_.size() && isFinite(last_[i].center_ws)) {
-            motion = now.center_ws - last_[i].center_ws;
-            if (!(length(motion) <= teleportDistance)) motion = {};
+        Sphere& now = now_[i];
+        if (!isFinite(now.center_ws) || !std::isfinite(now.radius)) now = {};
+        if (!(now.radius > 0.0f)) continue;
+        if (i < last_.size() && last_[i].radius > 0.0f) {
+            const Float3 motion = now.center_ws - last_[i].center_ws;
+            if (length(motion) <= teleportDistance) motions_[i] = motion;
         }
-        moving_.push_back({now.center_ws - motion, motion, now.radius});
+        moving_.push_back({now.center_ws - motions_[i], motions_[i], now.radius});
+    }
+    for (const Capsule& capsule : input.capsules) {
+        if (!isCapsule(capsule, now_)) continue;
+        const Sphere first = now_[capsule.first], second = now_[capsule.second];
+        const Float3 from = motions_[capsule.first], to = motions_[capsule.second];
+        const std::size_t count = countAlongCapsule(first, second);
+        for (std::size_t k = 0; k < count; ++k) {
+            const Sphere between = sphereAlongCapsule(first, second, k, count);
+            const Float3 motion =
+                from + (to - from) * (static_cast<float>(k + 1) / static_cast<float>(count + 1));
+            moving_.push_back({between.center_ws - motion, motion, between.radius});
+        }
     }
     last_.swap(now_);
 }

@@ -27,6 +27,7 @@ class MovingSpheres {
   private:
     std::vector<Moving> moving_;
     std::vector<Sphere> now_, last_;
+    std::vector<Float3> motions_;
 };
 
 }  // namespace hairloom::runtime
