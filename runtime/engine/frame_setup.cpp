@@ -33,7 +33,7 @@ bool contains(std::span<const Capsule> capsules, const Capsule& one) {
 void findWaking(float hair, const FormerSpheres& before, FrameSpheres& spheres) {
     const std::size_t count = std::max(spheres.given, before.spheres.size());
     spheres.waking.clear();
-    spheres.waking.reserve(2 * count + before.capsules.size() + spheres.capsules.size());
+    spheres.waking.reserve(2 * (count + std::max(before.capsules.size(), spheres.capsules.size())));
     const auto thenOf = [&](std::size_t i) {
         return i < before.spheres.size() ? before.spheres[i] : Sphere{};
     };

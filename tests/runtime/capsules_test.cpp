@@ -240,7 +240,7 @@ TEST_F(OnABar, WhatGoesWithItStaysOnIt) {
             float deepest = -1.0f;
             for (const Float3& x : positionsOf(going))
                 deepest = std::max(deepest, depthIn(nearestOfCapsule(bar[0], bar[1], x), x));
-            EXPECT_LT(deepest, 0.004f) << f;
+            EXPECT_LT(deepest, 0.005f) << f;  // from rest to 5 m/s at once
         }
     }
 }
