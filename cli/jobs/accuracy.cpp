@@ -298,10 +298,10 @@ JobRun declare(CLI::App& job) {
     job.add_option("--view", options->view,
                    "View file (docs/cli.md) with a camera and a size. Adds errors in pixels of this view")
         ->type_name("FILE");
-    job.add_option(
-           "--peers", options->peers,
-           "CSV of other simulators that ./dev peers measured on your machine, for the table beside the front "
-           "in the report (default: the measurement that came with this version)")
+    job.add_option("--peers", options->peers,
+                   "CSV of other simulators that ./dev peers measured on your machine, for the table beside "
+                   "the front "
+                   "in the report (default: the measurement that came with this version)")
         ->type_name("FILE");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
     addGroundTruthOptions(job, options->groundTruth);

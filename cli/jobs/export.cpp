@@ -301,10 +301,11 @@ JobRun declare(CLI::App& job) {
     job.add_option("--format", options->format, formatsInWords())->check(CLI::IsMember(formatNames()));
     job.add_option("--target", options->target, targetsInWords())
         ->check(CLI::IsMember(exportPrograms(hairWriters())));
-    job.add_option("--what", options->what,
-                   "guides: the strands of the groom; hairs: the follow hairs that images show, in abc-unreal with "
-                   "their guides, which Unreal needs; all: these with their guides beside them, in formats that "
-                   "keep them apart")
+    job.add_option(
+           "--what", options->what,
+           "guides: the strands of the groom; hairs: the follow hairs that images show, in abc-unreal with "
+           "their guides, which Unreal needs; all: these with their guides beside them, in formats that "
+           "keep them apart")
         ->check(CLI::IsMember({"guides", "hairs", "all"}));
     job.add_option("--layers", options->layers, "Names of the layers to export (default: all)")
         ->delimiter(',');

@@ -126,8 +126,10 @@ TEST_F(Colliders, CapsulesCoverMoreThanAsManySpheres) {
     };
     for (const char* model : {"rods", "springs"}) {
         const double bare = deepest("hair.hairloom", model);
-        EXPECT_GT(bare, 5) << model;
-        EXPECT_LT(deepest("capsules.hairloom", model), 0.5 * bare) << model;
+        // Hair hangs into skin that none of them covers, too.
+        const double kept = deepest("capsules.hairloom", model);
+        EXPECT_LT(kept, bare - 10) << model;
+        EXPECT_LE(kept, deepest("spheres.hairloom", model) + 1) << model;
     }
     // One that has no second sphere is no project.
     EXPECT_EQ(run("validate capsules.hairloom").exitCode, 0);

@@ -472,11 +472,10 @@ TEST_F(RuntimeLibrary, AnAssetsCapsuleAndTheSameOneOfAFrameMoveHairAlike) {
     const Vec3f tip = groom.strand(7).back();
     groom.spheres = {{"from", tip + Vec3f(0, 0, 0.2f), 0.05f, "", 1},
                      {"to", tip - Vec3f(0, 0, 0.2f), 0.04f, ""}};
-    const Asset with = opened(groom);
+    Instance own, given, apart;
+    ASSERT_TRUE(own.make(opened(groom), HL_GUIDES));
     groom.spheres[0].joined = -1;
     const Asset without = opened(groom);
-    Instance own, given, apart;
-    ASSERT_TRUE(own.make(with, HL_GUIDES));
     ASSERT_TRUE(given.make(without, HL_GUIDES));
     ASSERT_TRUE(apart.make(without, HL_GUIDES));
     std::vector<float> spheres;

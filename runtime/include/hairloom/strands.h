@@ -56,8 +56,8 @@ struct FrameInput {
     /// that.
     std::span<const Sphere> spheres = {};
     std::span<const Capsule> capsules = {};  ///< between spheres of this frame; at most kMaxCapsules count
-    std::optional<Float3> wind_ws = {};  ///< m/s, a script's mean wind of this frame, in place of the
-                                         ///< authored one; ignored unless finite and within 1000 m/s
+    std::optional<Float3> wind_ws = {};      ///< m/s, a script's mean wind of this frame, in place of the
+                                             ///< authored one; ignored unless finite and within 1000 m/s
     /// m/s, of an actor that the caller does not move in world space; WindKind::vehicle blows against it.
     /// Ignored unless finite and within 1000 m/s.
     Float3 actorVelocity_ws{};

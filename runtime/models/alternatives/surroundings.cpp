@@ -109,7 +109,7 @@ void MovingSpheres::take(const FrameInput& input, float teleportDistance) {
             moving_.push_back({between.center_ws - motion, motion, between.radius});
         }
     }
-    last_.swap(now_);
+    last_.assign(now_.begin(), now_.end());
 }
 
 }  // namespace hairloom::runtime
