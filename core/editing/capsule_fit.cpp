@@ -17,10 +17,7 @@ constexpr std::size_t kMostSamples = 4000;
 
 /// Vertices of the region, evenly thinned out.
 std::vector<Vec3f> samplesOf(const ScalpMesh& mesh, const FaceSet& region) {
-    std::vector<std::uint8_t> isIn(mesh.vertexCount(), region.empty() ? 1 : 0);
-    for (const std::uint32_t face : region) {
-        for (const std::uint32_t v : mesh.triangles()[face]) isIn[v] = 1;
-    }
+    const std::vector<std::uint8_t> isIn = verticesOf(mesh, region);
     std::vector<Vec3f> points;
     for (std::size_t v = 0; v < isIn.size(); ++v) {
         if (isIn[v]) points.push_back(mesh.positions()[v]);
@@ -36,10 +33,6 @@ struct Pair {
     std::vector<float> distances;  ///< of the samples from the capsule
 };
 
-runtime::Sphere toSphere(const CollisionSphere& sphere) {
-    return {{sphere.centre.x(), sphere.centre.y(), sphere.centre.z()}, sphere.radius};
-}
-
 /// Whether the capsule stands out of the skin by no more than `deepest` metres, or than its ends do: one
 /// across a hollow, from chin to chest, holds no vertex.
 bool liesInSkin(const runtime::Sphere& from, const runtime::Sphere& to, const SkinQuery& skin,
@@ -49,9 +42,10 @@ bool liesInSkin(const runtime::Sphere& from, const runtime::Sphere& to, const Sk
                sphere.radius;
     };
     const float most = std::max({deepest, standsOut(from), standsOut(to)});
-    constexpr std::size_t kLooks = 15;
-    for (std::size_t k = 0; k < kLooks; ++k) {
-        if (standsOut(runtime::sphereAlongCapsule(from, to, k, kLooks)) > most) return false;
+    constexpr int kSteps = 16;
+    for (int k = 1; k < kSteps; ++k) {
+        if (standsOut(runtime::sphereOfCapsule(from, to, static_cast<float>(k) / kSteps)) > most)
+            return false;
     }
     return true;
 }
@@ -60,7 +54,8 @@ bool liesInSkin(const runtime::Sphere& from, const runtime::Sphere& to, const Sk
 std::vector<float> distancesFrom(const CollisionSphere& first, const CollisionSphere& second,
                                  const std::vector<Vec3f>& samples, const SkinQuery& skin, float deepest) {
     std::vector<float> distances;
-    const runtime::Sphere from = toSphere(first), to = toSphere(second);
+    const runtime::Sphere from = toSphere(first.centre, first.radius),
+                          to = toSphere(second.centre, second.radius);
     if (!liesInSkin(from, to, skin, deepest)) return {};
     for (const Vec3f& sample : samples) {
         const runtime::Float3 place{sample.x(), sample.y(), sample.z()};

@@ -30,8 +30,7 @@ std::unique_ptr<Command> removeSphere(const Model& model, std::size_t index);
 /// Makes a tapered capsule with sphere `other`; −1 or itself makes none any more.
 std::unique_ptr<Command> joinSphere(const Model& model, std::size_t index, std::int32_t other);
 /// Adds the mirror image in the plane, and that of the sphere that it is joined to, unless that lies on the
-/// plane; a name or bone that ends in a side
-/// ("_L", ".l", "Left" …) gets the other.
+/// plane; a name or bone that ends in a side ("_L", ".l", "Left" …) gets the other.
 std::unique_ptr<Command> mirrorSphere(const Model& model, std::size_t index,
                                       const Vec3f& planePoint = Vec3f::Zero(),
                                       const Vec3f& planeNormal = Vec3f::UnitX());

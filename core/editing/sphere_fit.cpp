@@ -259,13 +259,18 @@ float largestSphereIn(const Box3f& bounds) {
     return std::clamp(bounds.sizes().minCoeff() / 2, kOfAnyHead, kLargestSphere);
 }
 
-SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vector<CollisionSphere> spheres) {
-    SphereFit fit;
-    fit.spheres = std::move(spheres);
+std::vector<std::uint8_t> verticesOf(const ScalpMesh& mesh, const FaceSet& region) {
     std::vector<std::uint8_t> isIn(mesh.vertexCount(), 0);
     for (const std::uint32_t face : facesOf(mesh, region)) {
         for (const std::uint32_t v : mesh.triangles()[face]) isIn[v] = 1;
     }
+    return isIn;
+}
+
+SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vector<CollisionSphere> spheres) {
+    SphereFit fit;
+    fit.spheres = std::move(spheres);
+    const std::vector<std::uint8_t> isIn = verticesOf(mesh, region);
     const ColliderDistance distance(fit.spheres);
     double sum = 0;
     std::size_t count = 0;

@@ -40,6 +40,9 @@ float largestSphereIn(const Box3f& bounds);
 void joinSpheres(const ScalpMesh& mesh, const FaceSet& region, float error,
                  std::vector<CollisionSphere>& spheres);
 
+/// 1 for each vertex of the region (all faces where it is empty), 0 for others.
+std::vector<std::uint8_t> verticesOf(const ScalpMesh& mesh, const FaceSet& region);
+
 /// How well spheres, and capsules between them, cover the vertices of a region (all where it is empty).
 SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vector<CollisionSphere> spheres);
 

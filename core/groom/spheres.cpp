@@ -8,6 +8,10 @@
 
 namespace hairloom {
 
+runtime::Sphere toSphere(const Vec3f& centre, float radius) {
+    return {{centre.x(), centre.y(), centre.z()}, radius};
+}
+
 std::vector<runtime::Capsule> capsulesOf(std::span<const CollisionSphere> spheres) {
     std::vector<runtime::Capsule> capsules;
     for (std::size_t s = 0; s < spheres.size(); ++s) {
@@ -48,10 +52,9 @@ void appendSpheres(std::vector<CollisionSphere>& spheres, std::span<const Collis
 
 ColliderDistance::ColliderDistance(std::span<const CollisionSphere> spheres, std::span<const Vec3f> centres)
     : capsules_(capsulesOf(spheres)) {
-    for (std::size_t s = 0; s < spheres.size(); ++s) {
-        const Vec3f& at = centres.size() == spheres.size() ? centres[s] : spheres[s].centre;
-        spheres_.push_back({{at.x(), at.y(), at.z()}, spheres[s].radius});
-    }
+    for (std::size_t s = 0; s < spheres.size(); ++s)
+        spheres_.push_back(
+            toSphere(centres.size() == spheres.size() ? centres[s] : spheres[s].centre, spheres[s].radius));
 }
 
 float ColliderDistance::operator()(const Vec3f& point) const {

@@ -11,6 +11,8 @@
 
 namespace hairloom {
 
+/// As the engine has it.
+runtime::Sphere toSphere(const Vec3f& centre, float radius);
 /// Tapered capsules that the spheres make. What is joined with itself or with no sphere makes none.
 std::vector<runtime::Capsule> capsulesOf(std::span<const CollisionSphere> spheres);
 /// Those that `keeps` says yes to, by number, and the capsules between them.

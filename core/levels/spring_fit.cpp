@@ -107,15 +107,12 @@ std::vector<cards::Collider> collidersOf(const Groom& groom) {
     // Springs of avatars know capsules of one radius and one bone alone.
     for (const auto& [from, to] : capsulesOf(groom.spheres)) {
         const CollisionSphere &first = groom.spheres[from], &second = groom.spheres[to];
-        const auto toRuntime = [](const CollisionSphere& s) {
-            return runtime::Sphere{{s.centre.x(), s.centre.y(), s.centre.z()}, s.radius};
-        };
-        const std::size_t count = runtime::countAlongCapsule(toRuntime(first), toRuntime(second));
-        for (std::size_t k = 0; k < count; ++k) {
-            const auto [at, radius] =
-                runtime::sphereAlongCapsule(toRuntime(first), toRuntime(second), k, count);
-            colliders.push_back({{at.x, at.y, at.z}, radius, 2 * k < count ? first.bone : second.bone});
-        }
+        runtime::forEachAlongCapsule(
+            toSphere(first.centre, first.radius), toSphere(second.centre, second.radius),
+            [&](const runtime::Sphere& sphere, float share) {
+                const auto& [x, y, z] = sphere.center_ws;
+                colliders.push_back({{x, y, z}, sphere.radius, share <= 0.5f ? first.bone : second.bone});
+            });
     }
     return colliders;
 }

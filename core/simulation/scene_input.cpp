@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/animation/root_motion.h"
+#include "core/groom/spheres.h"
 #include "core/groom/validate.h"
 
 namespace hairloom {
@@ -25,7 +26,7 @@ std::vector<runtime::Sphere> spheresAt(std::span<const CollisionSphere> spheres,
     std::vector<runtime::Sphere> placed(spheres.size());
     for (std::size_t s = 0; s < placed.size(); ++s) {
         const Vec3f centre_ws = byBone ? pose.sphereCentres_ws[s] : Vec3f(pose.head_ws * spheres[s].centre);
-        placed[s] = {toFloat3(centre_ws), spheres[s].radius};
+        placed[s] = toSphere(centre_ws, spheres[s].radius);
     }
     return placed;
 }

@@ -5,14 +5,6 @@
 #include <cmath>
 
 namespace hairloom::runtime {
-namespace {
-
-Sphere between(const Sphere& first, const Sphere& second, float share) {
-    return {first.center_ws + (second.center_ws - first.center_ws) * share,
-            first.radius + (second.radius - first.radius) * share};
-}
-
-}  // namespace
 
 Sphere nearestOfCapsule(const Sphere& first, const Sphere& second, Float3 place_ws) {
     const Float3 axis = second.center_ws - first.center_ws, to = place_ws - first.center_ws;
@@ -23,7 +15,7 @@ Sphere nearestOfCapsule(const Sphere& first, const Sphere& second, Float3 place_
     const float lean = narrows / size, along = dot(to, axis) / size;
     const float off = std::sqrt(std::max(dot(to, to) - along * along, 0.0f));
     const float place = along - off * lean / std::sqrt(1.0f - lean * lean);
-    return between(first, second, std::clamp(place / size, 0.0f, 1.0f));
+    return sphereOfCapsule(first, second, std::clamp(place / size, 0.0f, 1.0f));
 }
 
 std::size_t countAlongCapsule(const Sphere& first, const Sphere& second) {
@@ -38,8 +30,9 @@ std::size_t countAlongCapsule(const Sphere& first, const Sphere& second) {
     return static_cast<std::size_t>(std::clamp(count, 0.0f, static_cast<float>(kMaxAlongCapsule)));
 }
 
-Sphere sphereAlongCapsule(const Sphere& first, const Sphere& second, std::size_t k, std::size_t count) {
-    return between(first, second, static_cast<float>(k + 1) / static_cast<float>(count + 1));
+Sphere sphereOfCapsule(const Sphere& first, const Sphere& second, float share) {
+    return {first.center_ws + (second.center_ws - first.center_ws) * share,
+            first.radius + (second.radius - first.radius) * share};
 }
 
 bool isCapsule(const Capsule& capsule, std::span<const Sphere> spheres) {
@@ -52,9 +45,7 @@ void appendCapsules(std::span<const Capsule> capsules, std::vector<Sphere>& sphe
     for (const Capsule& capsule : capsules) {
         if (!isCapsule(capsule, std::span<const Sphere>(spheres).first(given))) continue;
         const Sphere first = spheres[capsule.first], second = spheres[capsule.second];
-        const std::size_t count = countAlongCapsule(first, second);
-        for (std::size_t k = 0; k < count; ++k)
-            spheres.push_back(sphereAlongCapsule(first, second, k, count));
+        forEachAlongCapsule(first, second, [&](const Sphere& sphere, float) { spheres.push_back(sphere); });
     }
 }
 

@@ -112,12 +112,10 @@ void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
         spheres.ends[capsule.first] = spheres.ends[capsule.second] = 1;
         const Sphere first = spheres.usable[capsule.first], second = spheres.usable[capsule.second];
         const Float3 motion = spheres.motion[capsule.first], other = spheres.motion[capsule.second];
-        const std::size_t count = countAlongCapsule(first, second);
-        for (std::size_t k = 0; k < count; ++k) {
-            const float share = static_cast<float>(k + 1) / static_cast<float>(count + 1);
-            spheres.usable.push_back(sphereAlongCapsule(first, second, k, count));
+        forEachAlongCapsule(first, second, [&](const Sphere& sphere, float share) {
+            spheres.usable.push_back(sphere);
             spheres.motion.push_back(motion + (other - motion) * share);
-        }
+        });
     }
     spheres.planned.assign(spheres.usable.begin(), spheres.usable.end());
     spheres.plannedMotion.assign(spheres.motion.begin(), spheres.motion.end());

@@ -21,7 +21,7 @@ struct FrameSpheres {
     std::vector<Capsule> capsules;   ///< between usable ones, each pair once
     std::vector<std::uint8_t> ends;  ///< 1 for a sphere that is the end of a capsule
     std::vector<Float3> motion;      ///< each one's displacement during the frame; none for a cut
-    /// What a plan looks at: the usable ones, and what holds capsules that few spheres along them stand for.
+    /// What a plan looks at: the usable ones, and a sphere around each capsule.
     std::vector<Sphere> planned;
     std::vector<Float3> plannedMotion;
     std::uint32_t rejected = 0;  ///< not finite or without radius

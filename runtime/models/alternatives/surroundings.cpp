@@ -101,13 +101,10 @@ void MovingSpheres::take(const FrameInput& input, float teleportDistance) {
         if (!isCapsule(capsule, now_)) continue;
         const Sphere first = now_[capsule.first], second = now_[capsule.second];
         const Float3 from = motions_[capsule.first], to = motions_[capsule.second];
-        const std::size_t count = countAlongCapsule(first, second);
-        for (std::size_t k = 0; k < count; ++k) {
-            const Sphere between = sphereAlongCapsule(first, second, k, count);
-            const Float3 motion =
-                from + (to - from) * (static_cast<float>(k + 1) / static_cast<float>(count + 1));
+        forEachAlongCapsule(first, second, [&](const Sphere& between, float share) {
+            const Float3 motion = from + (to - from) * share;
             moving_.push_back({between.center_ws - motion, motion, between.radius});
-        }
+        });
     }
     last_.assign(now_.begin(), now_.end());
 }
