@@ -90,12 +90,7 @@ ExportDialog::ExportDialog(QtDocument& document, const Preferences& preferences,
       findings_(new QTreeWidget) {
     setWindowTitle("Export hair");
     resize(620, 640);
-    auto* layout = new QVBoxLayout(this);
-    layout->setContentsMargins(20, 20, 20, 16);
-    layout->setSpacing(12);
-    form_->setHorizontalSpacing(16);
-    form_->setVerticalSpacing(8);
-    form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+    auto* layout = exportLayout(*this, *form_);
     layout->addLayout(form_);
     for (const ExportProgram& program : programsToExportFor()) target_->addItem(program.name);
     target_->setObjectName("target");

@@ -16,6 +16,7 @@
 #include "core/simulation/settings_text.h"
 #include "editor/document/publishing.h"
 #include "editor/document/words.h"
+#include "editor/fields/blocks.h"
 #include "editor/fields/number_spin.h"
 #include "editor/fields/save_file.h"
 
@@ -71,14 +72,9 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
       progress_(new QProgressBar) {
     setWindowTitle("Render");
     resize(440, 0);
-    auto* layout = new QVBoxLayout(this);
-    layout->setContentsMargins(20, 20, 20, 16);
-    layout->setSpacing(12);
+    auto* layout = exportLayout(*this, *form_);
     rows_->setLayout(form_);
     form_->setContentsMargins(0, 0, 0, 0);
-    form_->setHorizontalSpacing(16);
-    form_->setVerticalSpacing(8);
-    form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
     layout->addWidget(rows_);
 
     of_->setObjectName("renderOf");

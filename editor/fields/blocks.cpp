@@ -42,6 +42,16 @@ QPushButton* acceptOrCancel(QDialog& dialog, QLayout& layout, const QString& tex
     return accept;
 }
 
+QVBoxLayout* exportLayout(QDialog& dialog, QFormLayout& rows) {
+    auto* layout = new QVBoxLayout(&dialog);
+    layout->setContentsMargins(20, 20, 20, 16);
+    layout->setSpacing(12);
+    rows.setHorizontalSpacing(16);
+    rows.setVerticalSpacing(8);
+    rows.setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+    return layout;
+}
+
 namespace {
 
 /// Two columns of them leave room for the view in a window of 856 pixels.

@@ -3,6 +3,7 @@
 // Building blocks that panels and dialogs share.
 
 #include <QDialog>
+#include <QFormLayout>
 #include <QLayout>
 #include <QPushButton>
 #include <QTreeWidget>
@@ -18,6 +19,8 @@ QPushButton* pushButton(const char* name, const QString& text, const QString& ti
 /// At the end of `layout`: Cancel, and the dialog's default button, which accepts and which the caller
 /// enables once there is something to take. Returns that one.
 QPushButton* acceptOrCancel(QDialog& dialog, QLayout& layout, const QString& text, const QString& tip);
+/// The layout of a dialog that asks for what it exports, and the spacing of its rows, which the caller adds.
+QVBoxLayout* exportLayout(QDialog& dialog, QFormLayout& rows);
 /// `content` in a scroll area with the margins of a panel.
 QWidget* scrolled(QWidget* content);
 /// A widget with a vertical layout, margins and spacing of a panel.

@@ -11,6 +11,7 @@
 #include "core/base/output_batch.h"
 #include "core/simulation/take_file.h"
 #include "editor/document/words.h"
+#include "editor/fields/blocks.h"
 #include "editor/fields/number_spin.h"
 
 namespace hairloom::editor {
@@ -79,12 +80,7 @@ TakeExportDialog::TakeExportDialog(const QString& name, std::filesystem::path ta
       summary_(new QLabel) {
     setWindowTitle("Export take");
     resize(440, 0);
-    auto* layout = new QVBoxLayout(this);
-    layout->setContentsMargins(20, 20, 20, 16);
-    layout->setSpacing(12);
-    form_->setHorizontalSpacing(16);
-    form_->setVerticalSpacing(8);
-    form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+    auto* layout = exportLayout(*this, *form_);
     layout->addLayout(form_);
     for (const std::string& format : formats_) {
         files_.push_back(fileOfTake(format));
