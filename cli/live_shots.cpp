@@ -2,16 +2,16 @@
 #include "cli/live_shots.h"
 
 namespace hairloom::cli {
-Result<std::unique_ptr<LiveShots>> LiveShots::make(gpu::Device& device,
-                                                   std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
-                                                   GroomScene scene, const HeadMotion& motion,
-                                                   const runtime::SimulationSettings& settings,
-                                                   const FramePace& pace, EngineKind engine) {
+Result<std::unique_ptr<LiveShots>> LiveShots::make(
+    gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLibrary> kernels, GroomScene scene,
+    const HeadMotion& motion, const runtime::SimulationSettings& settings, const FramePace& pace,
+    EngineKind engine, const ViewFile& view, std::shared_ptr<const TimeLine> line) {
     const HeadPose first = motion.poseAt(0);
     auto hair = MovingHair::make(engine, device, std::move(kernels), scene, motion.skin(), {first});
     if (!hair) return tl::unexpected(hair.error());
-    std::unique_ptr<LiveShots> shots(
-        new LiveShots(device, std::move(scene), motion, settings, pace, std::move(*hair)));
+    std::unique_ptr<LiveShots> shots(new LiveShots(device, std::move(scene), motion, settings, pace,
+                                                   std::move(*hair), view,
+                                                   line && keysMaterial(*line) ? std::move(line) : nullptr));
     for (std::uint64_t step = 0; step < pace.preRoll * pace.steps(); ++step) {
         if (auto settled = shots->hair_.step(pace.dt(), first); !settled)
             return tl::unexpected(settled.error());
@@ -28,11 +28,21 @@ Status LiveShots::stepWithin(std::uint64_t frame) {
     return {};
 }
 
+Status LiveShots::giveMaterial(float seconds) {
+    if (!line_) return {};
+    Groom now = authored_;  // shares its arrays
+    now.material = materialAt(*line_, line_->timeAt(seconds), authored_.material);
+    if (!scene_.setMaterials(now, view_))
+        return fail("the keys of the material change which strands look otherwise");
+    return showMaterials(renderer_, scene_, true, true);
+}
+
 Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::RenderScene& scene,
                                         const render::RenderOptions& how) {
     if (!shown_) {
         if (auto set = renderer_.setScene(scene); !set) return tl::unexpected(set.error());
         shown_ = true;
+        if (auto given = giveMaterial(0); !given) return tl::unexpected(given.error());
     }
     if (auto set = renderer_.setCamera(scene.camera, !how.temporal); !set) return tl::unexpected(set.error());
     gpu::SubmissionPtr last;
@@ -45,6 +55,7 @@ Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::Rende
         if (how.surface && !how.temporal && frame_ + 1 == frame) {
             if (auto past = renderer_.recordPast(**list, how); !past) return tl::unexpected(past.error());
         }
+        if (auto given = giveMaterial(time); !given) return tl::unexpected(given.error());
         if (auto moved = hair_.step(**list, pace_.dt(), motion_.poseAt(time)); !moved)
             return tl::unexpected(moved.error());
         if (auto shown = hair_.show(renderer_, scene_); !shown) return tl::unexpected(shown.error());

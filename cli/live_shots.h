@@ -2,6 +2,7 @@
 #pragma once
 // Pictures of hair while it is simulated, without a record between.
 
+#include "core/groom/time_line.h"
 #include "core/live/moving_hair.h"
 #include "core/render/picture.h"
 #include "core/simulation/time_line_motion.h"
@@ -10,13 +11,12 @@ namespace hairloom::cli {
 
 class LiveShots {
   public:
-    /// `motion` and `device` outlive it. `settings` are authored; the scene's groom has those that
-    /// `motion` begins with.
-    static Result<std::unique_ptr<LiveShots>> make(gpu::Device& device,
-                                                   std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
-                                                   GroomScene scene, const HeadMotion& motion,
-                                                   const runtime::SimulationSettings& settings,
-                                                   const FramePace& pace, EngineKind engine);
+    /// `motion`, `device` and `view` outlive it. `settings` are authored; the scene's groom has those that
+    /// `motion` begins with. `line`: keys of the scene's material, in the motion's time; null: none.
+    static Result<std::unique_ptr<LiveShots>> make(
+        gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLibrary> kernels, GroomScene scene,
+        const HeadMotion& motion, const runtime::SimulationSettings& settings, const FramePace& pace,
+        EngineKind engine, const ViewFile& view, std::shared_ptr<const TimeLine> line);
 
     /// Strands at rest.
     const GroomScene& scene() const { return scene_; }
@@ -27,16 +27,22 @@ class LiveShots {
 
   private:
     LiveShots(gpu::Device& device, GroomScene scene, const HeadMotion& motion,
-              const runtime::SimulationSettings& settings, const FramePace& pace, MovingHair hair)
+              const runtime::SimulationSettings& settings, const FramePace& pace, MovingHair hair,
+              const ViewFile& view, std::shared_ptr<const TimeLine> line)
         : device_(device),
           scene_(std::move(scene)),
           motion_(motion),
           keyed_(motion, settings),
           pace_(pace),
           hair_(std::move(hair)),
+          view_(view),
+          line_(std::move(line)),
+          authored_(scene_.rest()),
           renderer_(device) {}
     /// All steps of the next frame but the last, which goes into the frame's own list.
     Status stepWithin(std::uint64_t frame);
+    /// The keyed material at that time of the motion, to scene and renderer.
+    Status giveMaterial(float seconds);
 
     gpu::Device& device_;
     GroomScene scene_;
@@ -44,6 +50,9 @@ class LiveShots {
     KeyedSettings keyed_;
     FramePace pace_;
     MovingHair hair_;
+    const ViewFile& view_;
+    std::shared_ptr<const TimeLine> line_;  ///< null: the material has no keys
+    Groom authored_;
     render::Renderer renderer_;
     bool shown_ = false;
     std::uint64_t frame_ = 0;

@@ -25,6 +25,8 @@
 #include "core/documents/look_presets.h"
 #include "core/documents/sample.h"
 #include "core/documents/sample_material.h"
+#include "core/documents/takes.h"
+#include "core/groom/time_line.h"
 #include "core/live/film.h"
 #include "core/live/groom_scene.h"
 #include "core/live/moving_picture.h"
@@ -38,8 +40,22 @@
 namespace hairloom::cli {
 namespace {
 
-Result<GroomScene> loadScene(const RenderJobOptions& options, const Groom& groom, std::uint64_t number,
+/// With the material that the time line keys in this frame of a take of it.
+Result<Groom> lookOfFrame(const RenderJobOptions& options, Groom groom, std::uint64_t number) {
+    const TimeLine& line = timeLineOf(groom);
+    if (options.record.empty() || !keysMaterial(line) || !isTake(options.record)) return groom;
+    const auto take = TakeReader::open(options.record);
+    if (!take) return tl::unexpected(take.error());
+    if (const auto seconds = timeLineSeconds(take->info(), number))
+        groom.material = materialAt(line, line.timeAt(*seconds), groom.material);
+    return groom;
+}
+
+Result<GroomScene> loadScene(const RenderJobOptions& options, const Groom& authored, std::uint64_t number,
                              const ViewFile& view) {
+    const auto looks = lookOfFrame(options, authored, number);
+    if (!looks) return tl::unexpected(looks.error());
+    const Groom& groom = *looks;
     auto scene = GroomScene::make(groom, view, options.hiddenGroups);
     if (!scene || options.record.empty()) return scene;
     const auto frame = readFrame(options.record, groom, number);
@@ -197,7 +213,8 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     if (!scene) return tl::unexpected(scene.error());
     auto made = LiveShots::make(gpu.device(), gpu.kernels(), std::move(*scene), *playing.motion, authored,
                                 options.motion == kTimeLineMotion ? paceOf(timeLineOf(groom)) : FramePace(),
-                                playing.engine.kind);
+                                playing.engine.kind, view,
+                                options.motion == kTimeLineMotion ? groom.timeLine : nullptr);
     if (!made) return tl::unexpected(made.error());
     playing.shots = std::move(*made);
     return playing;

@@ -11,6 +11,7 @@
 
 #include "core/base/output_file.h"
 #include "core/base/utf8.h"
+#include "core/documents/motions.h"
 #include "core/groom/file/settings_json.h"
 #include "core/simulation/frame_record.h"
 
@@ -158,6 +159,11 @@ std::string motionOfNotes(const std::string& notes) {
     if (!read || !read->is_object()) return {};
     const auto found = read->find("motion");
     return found != read->end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+std::optional<float> timeLineSeconds(const TakeInfo& info, std::uint64_t frame) {
+    if (motionOfNotes(info.notes) != kTimeLineMotion) return std::nullopt;
+    return static_cast<float>(frame + 1) / info.framesPerSecond;
 }
 
 Result<TakeDifference> compareTakes(const fs::path& a, const fs::path& b, const Groom& groom,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,10 @@ std::string takeNotes(const std::string& motion, const Groom& groom, const std::
                       std::uint64_t preRoll);
 /// "motion" of such notes; empty where they have none.
 std::string motionOfNotes(const std::string& notes);
+
+/// Seconds behind the start of the time line at a frame of a take of that, whose first frame is the one
+/// behind the start. Nothing of takes of other motions.
+std::optional<float> timeLineSeconds(const TakeInfo& info, std::uint64_t frame);
 
 /// Distances of points of the same number in frames of the same number, millimetres.
 struct TakeDifference {

@@ -14,10 +14,10 @@
 namespace hairloom {
 namespace {
 
+using runtime::FieldInfo;
 using runtime::SimulationSettings;
-using SettingField = Field<SimulationSettings>;
 
-constexpr std::string_view kSection = "simulation.";
+constexpr std::string_view kSimulation = "simulation.", kMaterial = "material.";
 constexpr double kLongest = static_cast<double>(kLatestKey);
 
 // clang-format off
@@ -96,7 +96,7 @@ void checkWind(const std::vector<WindKey>& keys, Problems& problems) {
 }
 
 void checkTrack(const SettingTrack& track, const std::string& where, Problems& problems) {
-    const SettingField* const field = findKeyable(track.name);
+    const FieldInfo* const field = findKeyable(track.name);
     if (field == nullptr) {
         problems.add(where + "name", fmt::format("is \"{}\", which cannot be keyed", track.name),
                      fmt::format("expected one of {}", fmt::join(keyableNames(), ", ")));
@@ -175,30 +175,46 @@ const TimeLine& timeLineOf(const Groom& groom) {
     return groom.timeLine ? *groom.timeLine : empty;
 }
 
-const SettingField* findKeyable(std::string_view name) {
-    if (!name.starts_with(kSection)) return nullptr;
-    const SettingField* const field = runtime::findField<SimulationSettings>(name.substr(kSection.size()));
-    // These choose the engine, or have it count all of the hair anew.
-    constexpr std::array<std::string_view, 9> kChosenBefore{"strandModel",
-                                                            "hairHair",
-                                                            "hairHairCell",
-                                                            "windShelter",
-                                                            "collisionSegments",
-                                                            "latticeNodes",
-                                                            "latticeRootFrequency",
-                                                            "latticeTipFrequency",
-                                                            "latticeCouplingFrequency"};
+const FieldInfo* findKeyable(std::string_view name) {
+    const FieldInfo* field = nullptr;
+    if (name.starts_with(kSimulation))
+        field = runtime::findField<SimulationSettings>(name.substr(kSimulation.size()));
+    else if (name.starts_with(kMaterial))
+        field = runtime::findField<HairMaterial>(name.substr(kMaterial.size()));
+    // These choose the engine, or have it count all of the hair anew. Of the material they choose what draws
+    // it, or which strands look otherwise.
+    constexpr std::array<std::string_view, 17> kChosenBefore{"simulation.strandModel",
+                                                             "simulation.hairHair",
+                                                             "simulation.hairHairCell",
+                                                             "simulation.windShelter",
+                                                             "simulation.collisionSegments",
+                                                             "simulation.latticeNodes",
+                                                             "simulation.latticeRootFrequency",
+                                                             "simulation.latticeTipFrequency",
+                                                             "simulation.latticeCouplingFrequency",
+                                                             "material.shadingModel",
+                                                             "material.tubes",
+                                                             "material.streakShare",
+                                                             "material.streakWidth",
+                                                             "material.streakSoftness",
+                                                             "material.greyShare",
+                                                             "material.dyeStrength",
+                                                             "material.dyeRegrowth"};
     const bool cannot = field == nullptr || field->kind == FieldKind::Ramp ||
-                        field->kind == FieldKind::Seed || std::ranges::count(kChosenBefore, field->name) > 0;
+                        field->kind == FieldKind::Seed || std::ranges::count(kChosenBefore, name) > 0;
     return cannot ? nullptr : field;
 }
 
 std::vector<std::string> keyableNames() {
     std::vector<std::string> names;
-    for (const SettingField& field : fieldsOf(SimulationSettings())) {
-        std::string name = std::string(kSection) + field.name;
-        if (findKeyable(name) != nullptr) names.push_back(std::move(name));
-    }
+    const auto add = [&](std::string_view section, const auto& fields) {
+        for (const FieldInfo& field : fields) {
+            std::string name = std::string(section) + field.name;
+            if (findKeyable(name) != nullptr) names.push_back(std::move(name));
+        }
+    };
+    add(kSimulation, fieldsOf(SimulationSettings()));
+    add(kMaterial, fieldsOf(HairMaterial()));
     return names;
 }
 
@@ -209,16 +225,54 @@ Vec3d valueAt(const SettingTrack& track, float time) {
     return value + static_cast<double>(share) * (track.keys[from + 1].value - value);
 }
 
-SimulationSettings settingsAt(const TimeLine& line, float time, const SimulationSettings& authored) {
-    SimulationSettings settings = authored;
+namespace {
+
+/// What the tracks of a section key of `settings`.
+template <class S>
+void takeKeys(const TimeLine& line, std::string_view section, float time, S& settings) {
     for (const SettingTrack& track : line.settings) {
-        const SettingField* const field = findKeyable(track.name);
-        if (field == nullptr || track.keys.empty()) continue;
+        if (!track.name.starts_with(section) || track.keys.empty() || findKeyable(track.name) == nullptr)
+            continue;
+        const auto* const field = runtime::findField<S>(std::string_view(track.name).substr(section.size()));
         const Vec3d value = valueAt(track, time);
         for (std::uint32_t c = 0; c < field->components(); ++c)
             runtime::setFieldValue(settings, *field, value[c], c);
     }
+}
+
+template <class S>
+Vec3d valueOf(const S& settings, std::string_view name) {
+    Vec3d value = Vec3d::Zero();
+    if (const auto* const field = runtime::findField<S>(name)) {
+        for (std::uint32_t c = 0; c < field->components(); ++c)
+            value[c] = runtime::fieldValue(settings, *field, c);
+    }
+    return value;
+}
+
+}  // namespace
+
+SimulationSettings settingsAt(const TimeLine& line, float time, const SimulationSettings& authored) {
+    SimulationSettings settings = authored;
+    takeKeys(line, kSimulation, time, settings);
     return settings;
+}
+
+HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& authored) {
+    HairMaterial material = authored;
+    takeKeys(line, kMaterial, time, material);
+    return material;
+}
+
+bool keysMaterial(const TimeLine& line) {
+    return std::ranges::any_of(line.settings,
+                               [](const SettingTrack& track) { return track.name.starts_with(kMaterial); });
+}
+
+Vec3d authoredValue(const Groom& groom, std::string_view name) {
+    return name.starts_with(kMaterial)     ? valueOf(groom.material, name.substr(kMaterial.size()))
+           : name.starts_with(kSimulation) ? valueOf(groom.simulation, name.substr(kSimulation.size()))
+                                           : Vec3d(Vec3d::Zero());
 }
 
 std::vector<TimeLineProblem> problemsOf(const TimeLine& line) {

@@ -12,6 +12,7 @@
 
 #include "core/base/math.h"
 #include "core/base/smooth_step.h"
+#include "core/groom/material.h"
 #include "hairloom/field.h"
 #include "hairloom/settings.h"
 
@@ -55,7 +56,7 @@ struct SettingKey {
 };
 /// Keys of one described setting.
 struct SettingTrack {
-    std::string name;              ///< "simulation.windSpeed", see findKeyable()
+    std::string name;              ///< "simulation.windSpeed" or "material.rootColour", see findKeyable()
     std::vector<SettingKey> keys;  ///< at least one
 
     friend bool operator==(const SettingTrack&, const SettingTrack&) = default;
@@ -106,16 +107,23 @@ inline constexpr std::size_t kMaxKeys = 200'000;  ///< of a time line, clips amo
 /// The groom's, or one with nothing on it.
 const TimeLine& timeLineOf(const Groom& groom);
 
-/// The field of a name such as "simulation.gravity"; null where there is none that can be keyed: curves
-/// cannot, and a strand model cannot change while hair moves.
-const runtime::Field<runtime::SimulationSettings>* findKeyable(std::string_view name);
-/// The names of all that can be keyed, in order of their description.
+/// The field of a name such as "simulation.gravity" or "material.rootColour"; null where there is none that
+/// can be keyed: curves and seeds cannot, a strand model cannot change while hair moves, and a material
+/// neither its shading model nor which strands are in streaks, white and dyed.
+const runtime::FieldInfo* findKeyable(std::string_view name);
+/// The names of all that can be keyed, in order of their description, those of the material last.
 std::vector<std::string> keyableNames();
+/// What the groom has of a field that findKeyable() finds; components that the field lacks are 0.
+Vec3d authoredValue(const Groom& groom, std::string_view name);
 
 /// `authored` with what is keyed at that time. Before the first key and behind the last one their values
 /// hold.
 runtime::SimulationSettings settingsAt(const TimeLine& line, float time,
                                        const runtime::SimulationSettings& authored);
+/// The hairstyle's material, likewise. Those of layers have no keys.
+HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& authored);
+/// Whether materialAt() may give something else than what is authored.
+bool keysMaterial(const TimeLine& line);
 /// Of a track at that time; it has keys.
 Vec3d valueAt(const SettingTrack& track, float time);
 

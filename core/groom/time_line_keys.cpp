@@ -9,7 +9,7 @@ namespace hairloom {
 namespace {
 
 using Of = KeyTrack::Of;
-using SettingField = runtime::Field<runtime::SimulationSettings>;
+using runtime::FieldInfo;
 
 float frameOf(const TimeLine& line) {
     return 1 / line.framesPerSecond;
@@ -216,7 +216,7 @@ void keySetting(TimeLine& line, const std::string& name, float time, const Vec3d
     SettingTrack* track = settingTrack(line, name);
     if (track == nullptr) track = &line.settings.emplace_back(SettingTrack{name, {}});
     SettingKey key{time, value};
-    const SettingField* const field = findKeyable(name);
+    const FieldInfo* const field = findKeyable(name);
     if (field != nullptr && field->isWhole()) key.interpolation = KeyInterpolation::step;
     insert(track->keys, key, frameOf(line));
 }
@@ -259,7 +259,7 @@ std::vector<KeyPlace> copyKeys(TimeLine& line, std::span<const KeyPlace> keys, f
 
 void setInterpolation(TimeLine& line, std::span<const KeyPlace> keys, KeyInterpolation interpolation) {
     for (const KeyPlace& key : keys) {
-        const SettingField* const field = key.track.of == Of::setting ? findKeyable(key.track.name) : nullptr;
+        const FieldInfo* const field = key.track.of == Of::setting ? findKeyable(key.track.name) : nullptr;
         if (field != nullptr && field->isWhole()) continue;
         withKeys(line, key.track, [&]<class Key>(std::vector<Key>& all) {
             if constexpr (!std::is_same_v<Key, ClipStrip>) all[key.index].interpolation = interpolation;
@@ -269,6 +269,7 @@ void setInterpolation(TimeLine& line, std::span<const KeyPlace> keys, KeyInterpo
 
 std::vector<KeyNumber> numbersOf(const KeyTrack& track) {
     static constexpr const char* kAxes[] = {"X", "Y", "Z"};
+    static constexpr const char* kChannels[] = {"Red", "Green", "Blue"};
     std::vector<KeyNumber> numbers;
     if (track.of == Of::head) {
         for (const char* axis : {"Move X", "Move Y", "Move Z"})
@@ -282,11 +283,13 @@ std::vector<KeyNumber> numbersOf(const KeyTrack& track) {
         constexpr auto kMost = static_cast<double>(kFastestKeyedWind);
         for (const char* axis : kAxes) numbers.push_back({axis, "m/s", -kMost, kMost, false, {}, true});
     }
-    const SettingField* const field = track.of == Of::setting ? findKeyable(track.name) : nullptr;
+    const FieldInfo* const field = track.of == Of::setting ? findKeyable(track.name) : nullptr;
     if (field == nullptr) return numbers;
     for (std::uint32_t c = 0; c < field->components(); ++c)
-        numbers.push_back({field->components() > 1 ? kAxes[c] : "Value", field->unit, field->min, field->max,
-                           field->isWhole(), field->choices, true});
+        numbers.push_back({field->kind == runtime::FieldKind::Colour ? kChannels[c]
+                           : field->components() > 1                 ? kAxes[c]
+                                                                     : "Value",
+                           field->unit, field->min, field->max, field->isWhole(), field->choices, true});
     return numbers;
 }
 

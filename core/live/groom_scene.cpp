@@ -82,8 +82,9 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
         if (!hidden) return tl::unexpected(hidden.error());
         // A view's albedo is that of the whole head.
         const Vec3f skin = view.headAlbedo.value_or(render::RenderMesh().albedo);
-        scene.vertexAlbedo_ =
-            scene.matte_ ? std::vector<Vec3f>(groom.scalp->vertexCount(), skin) : headTint(groom, skin);
+        if (!scene.matte_) scene.tint_ = headTint(groom);
+        scene.vertexAlbedo_ = scene.matte_ ? std::vector<Vec3f>(groom.scalp->vertexCount(), skin)
+                                           : tinted(skin, groom.material.rootColour, scene.tint_);
         for (const std::uint32_t face : invertSelection(*groom.scalp, *hidden)) {
             const Triangle& triangle = groom.scalp->triangles()[face];
             scene.indices_.insert(scene.indices_.end(), triangle.begin(), triangle.end());
@@ -149,13 +150,15 @@ bool GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<c
 
 bool GroomScene::setMaterials(const Groom& groom, const ViewFile& view) {
     const HairMaterial &authored = groom.material, &before = rest_.material;
-    if (authored.rootColour != before.rootColour || !hasSameWeights(authored, before)) return false;
+    if (!hasSameWeights(authored, before)) return false;
     const bool sameOwners =
         std::ranges::equal(groom.layers, rest_.layers, [](const Layer& a, const Layer& b) {
             return a.material.has_value() == b.material.has_value() &&
                    (!a.material || hasSameWeights(*a.material, *b.material));
         });
     if (!sameOwners) return false;
+    if (authored.rootColour != before.rootColour && !tint_.empty())
+        vertexAlbedo_ = tinted(render::RenderMesh().albedo, authored.rootColour, tint_);
     rest_.material = authored;
     rest_.layers = groom.layers;
     StrandMaterials now = strandMaterials(rest_, view);

@@ -58,9 +58,9 @@ class GroomScene {
     /// partings, which depend on where guides point, and guides of another length.
     bool isBindingOld() const { return bindingOld_; }
 
-    /// The materials of another version of the same strands on the same layers. False, and nothing changed,
-    /// where it takes make() anew: colours that stand in the head, the share of streaks and dye that each
-    /// strand has, a layer that gets or loses a material of its own.
+    /// The materials of another version of the same strands on the same layers, and the skin below, which has
+    /// some of the hair's colour. False, and nothing changed, where it takes make() anew: the share of
+    /// streaks and dye that each strand has, a layer that gets or loses a material of its own.
     bool setMaterials(const Groom& groom, const ViewFile& view);
 
     /// The painted dye of another version of the same strands. False where it takes make() anew: nothing was
@@ -99,6 +99,7 @@ class GroomScene {
     std::optional<runtime::BodyPush> push_;  ///< of what is drawn, where the groom has a body
     std::vector<std::uint32_t> indices_;     ///< of the head's triangles that are drawn
     std::vector<Vec3f> vertexAlbedo_;        ///< of the head: skin, tinted by hair where that grows
+    std::vector<float> tint_;                ///< how much, where no view says what the head is
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;

@@ -41,12 +41,12 @@ float distanceOfFourth(const editing::RootGrid& grid, const Vec3f& place, float 
 
 }  // namespace
 
-std::vector<Vec3f> headTint(const Groom& groom, const Vec3f& skin) {
-    std::vector<Vec3f> albedo(groom.scalp->vertexCount(), skin);
+std::vector<float> headTint(const Groom& groom) {
+    std::vector<float> shares(groom.scalp->vertexCount(), 0.0f);
     const std::vector<Vec3f> roots = someRoots(groom);
     // As far apart as they would be evenly on their scalp.
     const float even = std::sqrt(areaOf(groom) / static_cast<float>(std::max<std::size_t>(roots.size(), 1)));
-    if (roots.size() <= kNeighbours || !(even > 0) || !std::isfinite(even)) return albedo;
+    if (roots.size() <= kNeighbours || !(even > 0) || !std::isfinite(even)) return shares;
     editing::RootGrid grid(2 * even);
     for (std::size_t i = 0; i < roots.size(); ++i) grid.add(static_cast<std::uint32_t>(i), roots[i]);
     std::vector<float> distances;
@@ -67,10 +67,16 @@ std::vector<Vec3f> headTint(const Groom& groom, const Vec3f& skin) {
         for (std::size_t v = first; v < last; ++v) {
             if (!reached.contains(positions[v])) continue;
             const float distance = distanceOfFourth(grid, positions[v], dense + fade, 0);
-            const float tint = kShare * (1 - smoothStep(dense, dense + fade, distance));
-            albedo[v] = (1 - tint) * skin + tint * groom.material.rootColour;
+            shares[v] = kShare * (1 - smoothStep(dense, dense + fade, distance));
         }
     });
+    return shares;
+}
+
+std::vector<Vec3f> tinted(const Vec3f& skin, const Vec3f& colour, std::span<const float> shares) {
+    std::vector<Vec3f> albedo;
+    albedo.reserve(shares.size());
+    for (const float share : shares) albedo.push_back((1 - share) * skin + share * colour);
     return albedo;
 }
 

@@ -8,6 +8,18 @@
 
 namespace hairloom {
 
+Status showMaterials(render::Renderer& renderer, const GroomScene& scene, bool hair, bool head) {
+    const render::RenderScene shown = scene.scene();
+    for (std::size_t i = 0; head && i < shown.meshes.size(); ++i) {
+        const auto& albedo = shown.meshes[i].vertexAlbedo;
+        if (albedo.empty()) continue;
+        if (auto set = renderer.setMeshAlbedo(i, albedo); !set) return set;
+    }
+    if (!hair || shown.strands.empty()) return {};
+    const render::RenderStrands& strands = shown.strands.front();
+    return renderer.setMaterial(0, strands.material, strands.others);
+}
+
 Status showPosed(render::Renderer& renderer, const GroomScene& scene, bool hair, bool head) {
     const render::RenderScene moved = scene.scene();
     for (std::size_t i = 0; head && i < moved.meshes.size(); ++i) {

@@ -22,6 +22,10 @@ struct MovingStart {
     double time = 0;                                   ///< seconds, of the state
 };
 
+/// Hands what GroomScene::setMaterials() has changed to a renderer that has the scene: its strands, its
+/// meshes, or both.
+Status showMaterials(render::Renderer& renderer, const GroomScene& scene, bool hair, bool head);
+
 /// Hands a scene that was posed to a renderer that has it: its strands, its meshes, or both.
 Status showPosed(render::Renderer& renderer, const GroomScene& scene, bool hair, bool head);
 

@@ -25,6 +25,13 @@ std::vector<Vec3f> averagedNormals(std::span<const Vec3f> positions, std::span<c
     return normals;
 }
 
+/// By area.
+Vec3f meanAlbedoOf(const MeshOnDevice& mesh, std::span<const Vec3f> albedo) {
+    Vec3f sum = Vec3f::Zero();
+    for (std::size_t v = 0; v < albedo.size(); ++v) sum += mesh.areas[v] * albedo[v];
+    return mesh.area > 0 ? Vec3f(sum / mesh.area) : sum;
+}
+
 }  // namespace
 
 Result<Box3f> finiteBounds(std::span<const Vec3f> positions, const char* what) {
@@ -66,15 +73,16 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     const std::span<const Vec3f> normals = mesh.normals_ws.empty() ? computed : mesh.normals_ws;
     std::vector<Vec3f> albedo(mesh.vertexAlbedo.begin(), mesh.vertexAlbedo.end());
     if (albedo.empty()) albedo.assign(result.vertexCount, mesh.albedo);
+    result.areas.assign(result.vertexCount, 0.0f);
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const std::uint32_t* const corner = &mesh.indices[3 * t];
         const Vec3f& a = mesh.positions_ws[corner[0]];
         const float area =
             0.5f * (mesh.positions_ws[corner[1]] - a).cross(mesh.positions_ws[corner[2]] - a).norm();
         result.area += area;
-        result.meanAlbedo += area / 3 * (albedo[corner[0]] + albedo[corner[1]] + albedo[corner[2]]);
+        for (int c = 0; c < 3; ++c) result.areas[corner[c]] += area / 3;
     }
-    if (result.area > 0) result.meanAlbedo /= result.area;
+    result.meanAlbedo = meanAlbedoOf(result, albedo);
     Gather gather;
     gather(result.positions, structured(device, "mesh positions", 4, std::as_bytes(mesh.positions_ws)));
     gather(result.normals, structured(device, "mesh normals", 4, std::as_bytes(normals)));
@@ -83,6 +91,20 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     gather(result.indexBuffer, structured(device, "mesh indices", 4, std::as_bytes(mesh.indices)));
     if (!gather.status()) return tl::unexpected(gather.status().error());
     return result;
+}
+
+Status DeviceScene::replaceMeshAlbedo(gpu::Device& device, std::size_t mesh, std::span<const Vec3f> albedo) {
+    if (mesh >= meshes.size()) return fail(fmt::format("mesh {} of {}", mesh, meshes.size()));
+    MeshOnDevice& m = meshes[mesh];
+    if (m.indices.empty()) return {};
+    if (albedo.size() != m.vertexCount)
+        return fail(fmt::format("{} colours for a mesh", albedo.size()),
+                    fmt::format("{}, as it has vertices", m.vertexCount));
+    auto made = structured(device, "mesh colours", 4, std::as_bytes(albedo));
+    if (!made) return tl::unexpected(made.error());
+    m.albedo = std::move(*made);
+    m.meanAlbedo = meanAlbedoOf(m, albedo);
+    return {};
 }
 
 Status DeviceScene::replaceMesh(std::size_t mesh, std::span<const Vec3f> positions_ws,

@@ -113,7 +113,9 @@ struct MeshOnDevice {
     Box3f bounds_ws;
     bool hasLooseVertices = false;  ///< that no triangle has
     bool matte = false;
-    float area = 0;  ///< m², where it stood when it was set
+    std::vector<float>
+        areas;       ///< m² of each vertex, a third of its triangles', where it stood when it was set
+    float area = 0;  ///< of all of them
     Vec3f meanAlbedo = Vec3f::Zero();
 
     const gpu::BufferPtr& drawnPositions() const { return devicePositions ? devicePositions : positions; }
@@ -128,6 +130,7 @@ class DeviceScene {
                        std::span<const Vec3f> normals_ws);
     Status replaceMesh(std::size_t mesh, gpu::BufferPtr positions_ws, gpu::BufferPtr normals_ws,
                        const Box3f& bounds_ws);
+    Status replaceMeshAlbedo(gpu::Device& device, std::size_t mesh, std::span<const Vec3f> albedo);
     Status replaceStrands(std::size_t group, std::span<const Vec3f> positions_ws);
     Status replacePointDyes(std::size_t group, std::span<const float> dyes);
     Status replaceRadii(std::size_t group, std::span<const float> radii);

@@ -131,6 +131,13 @@ Status Renderer::setMeshPositions(std::size_t mesh, std::span<const Vec3f> posit
     return {};
 }
 
+Status Renderer::setMeshAlbedo(std::size_t mesh, std::span<const Vec3f> albedo) {
+    auto status = parts_->state.scene.replaceMeshAlbedo(parts_->device, mesh, albedo);
+    if (!status) return status;
+    parts_->changes.add(Changes::looks());
+    return {};
+}
+
 Status Renderer::setStrandPositions(std::size_t group, std::span<const Vec3f> positions_ws) {
     if (auto status = parts_->state.scene.replaceStrands(group, positions_ws); !status) return status;
     parts_->changes.add(Changes::geometry());

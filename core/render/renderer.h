@@ -44,6 +44,8 @@ class Renderer {
     /// The same from buffers that the device itself writes, three floats a vertex.
     Status setMeshPositions(std::size_t mesh, gpu::BufferPtr positions_ws, gpu::BufferPtr normals_ws,
                             const Box3f& bounds_ws);
+    /// One linear RGB a vertex of RenderScene::meshes[mesh].
+    Status setMeshAlbedo(std::size_t mesh, std::span<const Vec3f> albedo);
     /// One position a point of RenderScene::strands[group], strand after strand as its offsets say.
     Status setStrandPositions(std::size_t group, std::span<const Vec3f> positions_ws);
     /// The same from a buffer that the device itself writes, in the same order, 3 or 4 floats a point (a

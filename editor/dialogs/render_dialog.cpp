@@ -275,6 +275,7 @@ void RenderDialog::renderTo(const QString& path) {
         auto motion = player_.makeMeasuredMotion();
         if (!motion) return end(errorText(motion.error()), true);
         film.motion = std::move(*motion);
+        film.isOfTimeLine = player_.measuredMotion() == Player::kTimeLine;
     }
     player_.pause();
     work_ = Work::Runs;

@@ -11,14 +11,10 @@
 namespace hairloom::editor {
 namespace {
 
-KeyTrack trackOf(const char* setting) {
-    return {KeyTrack::Of::setting, std::string("simulation.") + setting};
-}
-
 class KeyMenu : public QObject {
   public:
-    KeyMenu(Keying& keying, const char* setting, QObject* parent)
-        : QObject(parent), keying_(keying), track_(trackOf(setting)) {}
+    KeyMenu(Keying& keying, KeyTrack track, QObject* parent)
+        : QObject(parent), keying_(keying), track_(std::move(track)) {}
 
     void watch(QWidget& place) {
         place.installEventFilter(this);
@@ -56,13 +52,18 @@ class KeyMenu : public QObject {
 
 }  // namespace
 
-KeyThis::KeyThis(Keying& keying, QObject* parent) : FieldKeys(parent), keying_(keying) {
+KeyThis::KeyThis(Keying& keying, const char* section, QObject* parent)
+    : FieldKeys(parent), keying_(keying), section_(section) {
     connect(&keying_, &Keying::changed, this, &FieldKeys::changed);
+}
+
+KeyTrack KeyThis::trackOf(const char* setting) const {
+    return {KeyTrack::Of::setting, section_ + '.' + setting};
 }
 
 void KeyThis::offer(const char* setting, std::initializer_list<QWidget*> places) {
     if (findKeyable(trackOf(setting).name) == nullptr) return;
-    for (QWidget* place : places) (new KeyMenu(keying_, setting, place))->watch(*place);
+    for (QWidget* place : places) (new KeyMenu(keying_, trackOf(setting), place))->watch(*place);
 }
 
 QString KeyThis::mark(const char* setting) const {

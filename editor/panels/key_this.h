@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Key this: the menu of a setting of the simulation that can be keyed on the time line, and its mark.
+// Key this: the menu of a setting of hair or look that can be keyed on the time line, and its mark.
 
 #include "editor/fields/field_keys.h"
 #include "editor/simulation/keying.h"
@@ -11,14 +11,18 @@ class KeyThis : public FieldKeys {
     Q_OBJECT
 
   public:
-    explicit KeyThis(Keying& keying, QObject* parent = nullptr);
+    /// `section` of the settings: "simulation" or "material".
+    KeyThis(Keying& keying, const char* section, QObject* parent = nullptr);
 
     void offer(const char* setting, std::initializer_list<QWidget*> places) override;
     QString mark(const char* setting) const override;
     QString tip(const char* setting) const override;
 
   private:
+    KeyTrack trackOf(const char* setting) const;
+
     Keying& keying_;
+    std::string section_;
 };
 
 }  // namespace hairloom::editor

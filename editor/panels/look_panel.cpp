@@ -12,6 +12,7 @@
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
 #include "editor/look/parts.h"
+#include "editor/panels/key_this.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
@@ -89,6 +90,7 @@ class LookPanel : public QWidget {
           prices_(parts.prices),
           messages_(parts.messages),
           viewport_(parts.viewport),
+          keys_(new KeyThis(parts.keying, "material", this)),
           layout_(new QVBoxLayout(this)) {
         layout_->setContentsMargins(0, 0, 0, 0);
         layout_->setSpacing(8);
@@ -111,14 +113,14 @@ class LookPanel : public QWidget {
     }
 
   private:
-    FieldForm* form(const std::vector<Field>& fields) {
-        return new FieldForm(document_, preferences_, fields, &prices_);
+    FieldForm* form(const std::vector<Field>& fields, FieldKeys* keys = nullptr) {
+        return new FieldForm(document_, preferences_, fields, &prices_, keys);
     }
 
     void makeGroups() {
         const std::vector<Field> fields = materialFields();
         for (const Group& group : groups()) {
-            QWidget* rows = form(pick(fields, group.fields));
+            QWidget* rows = form(pick(fields, group.fields), keys_);
             if (QLatin1String(group.title) == QLatin1String("Pigment")) rows = withPigmentButtons(rows);
             QWidget* const section = collapsible(QString(group.title), rows, group.open);
             layout_->addWidget(section);
@@ -131,7 +133,7 @@ class LookPanel : public QWidget {
             if (QLatin1String(field.name) != QLatin1String(kModel) && std::ranges::none_of(groups(), has))
                 others.push_back(field);
         }
-        if (!others.empty()) layout_->addWidget(collapsible("More", form(others), false));
+        if (!others.empty()) layout_->addWidget(collapsible("More", form(others, keys_), false));
     }
 
     /// For Kajiya-Kay, which knows colours only, and for those who want to go on from a natural colour.
@@ -183,6 +185,7 @@ class LookPanel : public QWidget {
     const Prices& prices_;
     Messages& messages_;
     Viewport& viewport_;
+    KeyThis* keys_;
     QVBoxLayout* layout_;
     std::vector<std::pair<QWidget*, unsigned>> shownFor_;
     QPushButton* evenMelanin_ = new QPushButton("Even melanin");

@@ -113,7 +113,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
     const std::vector<Field> fields = simulationFields();
     QWidget* const content = column({makePresets(document), makeHoldButton(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
-    auto* keys = new KeyThis(keying, content);
+    auto* keys = new KeyThis(keying, "simulation", content);
     QStringList shown;
     for (const Group& group : groups()) {
         shown += group.fields;

@@ -109,6 +109,8 @@ void TakeView::showFrame(std::uint64_t number) {
     auto pose = std::make_shared<HairPose>();
     pose->positions_ws = frame_->positions_ws;
     pose->head = frame_->pose;
+    if (const auto seconds = timeLineSeconds(take_->info(), number_))
+        pose->lineTime = timeLineOf(document_.groom()).timeAt(*seconds);
     viewport_.setPose(std::move(pose));
     Q_EMIT frameShown(number_);
 }

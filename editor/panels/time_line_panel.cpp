@@ -229,16 +229,22 @@ class TimeLinePanel : public QWidget {
         refresh();
     }
 
+    /// By their labels.
+    void fillSettings(QMenu& menu, std::string_view section) {
+        std::map<QString, std::string> byLabel;
+        for (const std::string& name : keyableNames()) {
+            if (name.starts_with(section)) byLabel[labelOf(KeyTrack{KeyTrack::Of::setting, name})] = name;
+        }
+        for (const auto& [label, name] : byLabel)
+            menu.addAction(label, this, [this, name = name] { keying_.keySetting(name); });
+    }
+
     void fillKeyMenu(QMenu& menu) {
         menu.clear();
         menu.addAction("Head, as it is shown", this, [this] { keying_.keyHead(); });
         menu.addAction("Wind, as Physics has it", this, [this] { keying_.keyWind(); });
-        QMenu* settings = menu.addMenu("Setting");
-        std::map<QString, std::string> byLabel;
-        for (const std::string& name : keyableNames())
-            byLabel[labelOf(KeyTrack{KeyTrack::Of::setting, name})] = name;
-        for (const auto& [label, name] : byLabel)
-            settings->addAction(label, this, [this, name = name] { keying_.keySetting(name); });
+        fillSettings(*menu.addMenu("Setting of Physics"), "simulation.");
+        fillSettings(*menu.addMenu("Setting of Look"), "material.");
         QMenu* clips = menu.addMenu("Add clip");
         if (player_.actor()) {
             for (const Clip& clip : player_.actor()->clips()) {

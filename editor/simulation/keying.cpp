@@ -11,8 +11,6 @@ namespace {
 
 using Of = KeyTrack::Of;
 
-constexpr std::string_view kSimulation = "simulation.";
-
 /// Of the head's keys alone, at that time.
 Eigen::Isometry3d headAt(const TimeLine& line, float time, const Groom& groom) {
     if (line.head.empty()) return Eigen::Isometry3d::Identity();
@@ -72,8 +70,7 @@ QString labelOf(const KeyTrack& track) {
         case Of::setting:
             break;
     }
-    return labelOf(
-        QString::fromStdString(track.name.substr(std::min(track.name.size(), kSimulation.size()))));
+    return labelOf(QString::fromStdString(track.name).section('.', 1));
 }
 
 Keying::Keying(QtDocument& document, Player& player, Messages& messages, QObject* parent)
@@ -105,13 +102,9 @@ bool Keying::change(TimeLine to, const QString& name, quint64 mergeKey) {
 }
 
 void Keying::keySetting(const std::string& name) {
-    const auto* const field = findKeyable(name);
-    if (field == nullptr) return;
-    Vec3d value = Vec3d::Zero();
-    for (std::uint32_t c = 0; c < field->components(); ++c)
-        value[c] = runtime::fieldValue(document_.groom().simulation, *field, c);
+    if (findKeyable(name) == nullptr) return;
     TimeLine to = line();
-    hairloom::keySetting(to, name, player_.lineTime(), value);
+    hairloom::keySetting(to, name, player_.lineTime(), authoredValue(document_.groom(), name));
     change(std::move(to), "Key " + labelOf(KeyTrack{Of::setting, name}));
 }
 

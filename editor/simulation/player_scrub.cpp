@@ -83,6 +83,7 @@ std::shared_ptr<const HairPose> Player::posedAt(float lineTime) {
     pose->head = inWorld((*motion)->poseAt(isOutside ? lineTime : std::max(0.0f, lineTime - line.start)));
     moveBy(offset_, pose->head);
     pose->positions_ws = posedPositions(groom, pose->head);
+    if (motion_ == kTimeLine) pose->lineTime = lineTime;
     return pose;
 }
 

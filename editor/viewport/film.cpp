@@ -9,6 +9,7 @@
 
 #include "core/base/content_kind.h"
 #include "core/base/output_batch.h"
+#include "core/groom/time_line.h"
 #include "core/live/film.h"
 #include "core/live/played_frames.h"
 #include "core/render/png.h"
@@ -113,6 +114,9 @@ class FilmMaker {
                     pose->velocities_ws.push_back((frame.positions_ws[p] - last_ws[p]) * kFramesPerSecond);
                 pose->positions_ws = std::move(frame.positions_ws);
                 pose->head = std::move(frame.pose);
+                if (film_.isOfTimeLine)
+                    pose->lineTime =
+                        timeLineOf(*film_.view.groom).timeAt(static_cast<float>(number) / kFramesPerSecond);
                 PictureRequest request = film_.view;
                 request.pose = std::move(pose);
                 return take(number / step, std::move(request));

@@ -31,6 +31,7 @@ struct Film {
     /// A divisor of 60, the frames that are simulated in a second.
     std::uint32_t imagesPerSecond = 30;
     std::shared_ptr<const HeadMotion> motion;  ///< of the simulation, which begins at rest
+    bool isOfTimeLine = false;                 ///< `motion` is the groom's time line
 
     bool burnsInFrame = false;         ///< the frame's number, in the lower left corner
     std::vector<std::string> burntIn;  ///< lines below it, the same in all pictures

@@ -4,6 +4,7 @@
 
 #include <QMetaType>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/groom/groom.h"
@@ -22,6 +23,8 @@ struct HairPose {
     /// The device moves the hair itself (PlayedHair): positions, where there are any, are of a frame or two
     /// ago.
     bool onDevice = false;
+    /// Seconds on the groom's time line, whose keys of the material count then; none: the pose is not of it.
+    std::optional<float> lineTime;
 };
 
 /// Strands that have moved since a groom was handed over, so that a stroke hands over what it touches and no

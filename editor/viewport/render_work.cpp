@@ -10,6 +10,7 @@
 #include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
+#include "core/groom/time_line.h"
 #include "core/live/moving_picture.h"
 #include "core/software/device.h"
 
@@ -171,8 +172,22 @@ void RenderWork::takeMoves(PictureRequest& request) {
     if (moved_) request.groom = moved_;
 }
 
+void RenderWork::takeKeys(PictureRequest& request) {
+    if (!request.pose || !request.pose->lineTime || !keysMaterial(timeLineOf(*request.groom))) return;
+    const float time = *request.pose->lineTime;
+    if (request.groom != unkeyed_ || time != keyedTime_) {
+        auto keyed = std::make_shared<Groom>(*request.groom);  // shares its arrays
+        keyed->material = materialAt(timeLineOf(*keyed), time, keyed->material);
+        unkeyed_ = request.groom;
+        keyed_ = std::move(keyed);
+        keyedTime_ = time;
+    }
+    request.groom = keyed_;
+}
+
 Status RenderWork::take(PictureRequest request) {
     takeMoves(request);
+    takeKeys(request);
     // What the device makes itself is never too slow to move.
     const bool onDevice = request.pose && request.pose->onDevice;
     const bool draft =
@@ -213,7 +228,8 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         if (draft) widenMaterials(looks);
         if (software_) leaveTubes(looks);
         if (!scene_->setMaterials(looks, viewOf(request))) return replaceScene(request, draft);
-        if (auto set = showMaterial(request); !set) return set;
+        if (auto set = showMaterials(renderer_, *scene_, request.showHair, request.showHead); !set)
+            return set;
     }
     const bool sameDye = now.pointAttributes.version(attribute::kPointDye) ==
                          before.pointAttributes.version(attribute::kPointDye);
@@ -279,13 +295,6 @@ Status RenderWork::moveStrands(const PictureRequest& request, const StrandMoves&
     if (!request.showHair || shown.strands.empty()) return {};
     // One copy of all is sooner on the device than thousands of small ones with a barrier between each.
     return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
-}
-
-Status RenderWork::showMaterial(const PictureRequest& request) {
-    const render::RenderScene shown = scene_->scene();
-    if (!request.showHair || shown.strands.empty()) return {};
-    const render::RenderStrands& strands = shown.strands.front();
-    return renderer_.setMaterial(0, strands.material, strands.others);
 }
 
 Status RenderWork::showWidths(const PictureRequest& request) {

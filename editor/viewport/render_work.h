@@ -41,12 +41,16 @@ class RenderWork {
     void forget() {
         handed_.reset();
         moved_.reset();
+        unkeyed_.reset();
+        keyed_.reset();
         last_.reset();
         scene_.reset();
     }
 
   private:
     void takeMoves(PictureRequest& request);
+    /// The groom with the material that its time line keys at the time of the pose.
+    void takeKeys(PictureRequest& request);
     Status takeScene(const PictureRequest& request, bool draft);
     /// As this device draws it.
     Groom shownOf(const Groom& groom, bool draft) const;
@@ -55,7 +59,6 @@ class RenderWork {
     /// What the request shows where the device simulates it; null: it does not.
     MovingHair* playedIn(const PictureRequest& request) const;
     Status moveStrands(const PictureRequest& request, const StrandMoves& moves);
-    Status showMaterial(const PictureRequest& request);
     Status showWidths(const PictureRequest& request);
     Status showDye(const PictureRequest& request);
     Status resize(std::uint32_t width, std::uint32_t height);
@@ -72,10 +75,12 @@ class RenderWork {
     gpu::TexturePtr target_;
     std::uint32_t width_ = 0, height_ = 0;  ///< of the target
 
-    std::shared_ptr<const Groom> handed_;  ///< as the last request had it
-    std::shared_ptr<Groom> moved_;         ///< the same with all moves since then; null: none
-    std::optional<PictureRequest> last_;   ///< its groom is moved_ where there is one
-    std::optional<GroomScene> scene_;      ///< of last_
+    std::shared_ptr<const Groom> handed_;           ///< as the last request had it
+    std::shared_ptr<Groom> moved_;                  ///< the same with all moves since then; null: none
+    std::shared_ptr<const Groom> unkeyed_, keyed_;  ///< of the last request whose pose has a time; null: none
+    float keyedTime_ = 0;
+    std::optional<PictureRequest> last_;  ///< its groom is moved_ or keyed_ where there is one
+    std::optional<GroomScene> scene_;     ///< of last_
     bool hairShown_ = true, headShown_ = true;
     bool draft_ = false;       ///< scene_ is without follow hairs
     bool needsDraft_ = false;  ///< follow hairs are too slow to move

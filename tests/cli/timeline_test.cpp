@@ -155,6 +155,39 @@ TEST_F(CliTimeLine, RendersAndMeasuresWithIt) {
     EXPECT_FALSE(runJson("effects moving.hairloom --motion timeline --frames 4")["effects"].empty());
 }
 
+TEST_F(CliTimeLine, KeysOfTheMaterialColourHairAndTheSkinBelow) {
+    runJson(createArguments());
+    const Json grey{0.5, 0.5, 0.5}, blue{0, 0, 1};
+    Json tracks = Json::array();
+    for (const char* name : {"material.rootColour", "material.tipColour"})
+        tracks.push_back(
+            {{"name", name}, {"keys", {{{"t", 0}, {"value", grey}}, {{"t", 0.2}, {"value", blue}}}}});
+    ASSERT_EQ(set({{"framesPerSecond", 30}, {"end", 0.4}, {"settings", tracks}}).exitCode, 0);
+    // A frame has the look that an authored material has there.
+    runJson("set hair.hairloom 'material.rootColour=[0,0,1]' 'material.tipColour=[0,0,1]' -o blue.hairloom");
+    write("empty.json", Json{{"time_line", {{"framesPerSecond", 30}, {"end", 0.4}}}}.dump());
+    runJson("timeline blue.hairloom --from empty.json -o blue.hairloom --force");
+    const std::string how = " --engine software --size 64x64 --passes 1 --force -o ";
+    const auto picture = [&](const std::string& arguments) {
+        runJson("render " + arguments + how + "picture.png");
+        return readText(folder / "picture.png");
+    };
+    const std::string end = picture("moving.hairloom --motion timeline --frame 8");
+    EXPECT_EQ(end, picture("blue.hairloom --motion timeline --frame 8"));
+    EXPECT_NE(end, picture("moving.hairloom --motion timeline --frame 2"));
+    // Of a take of the time line as well, and of no other.
+    runJson("takes moving.hairloom --record line --motion timeline --frames 9");
+    EXPECT_EQ(picture("moving.hairloom --record moving.takes/line.hltake --frame 8"),
+              picture("blue.hairloom --record moving.takes/line.hltake --frame 8"));
+    runJson("simulate moving.hairloom --motion timeline --frames 9 --record line.frames");
+    EXPECT_NE(picture("moving.hairloom --record line.frames --frame 8"),
+              picture("blue.hairloom --record line.frames --frame 8"));
+    const Outcome streaks =
+        set({{"settings", {{{"name", "material.streakShare"}, {"keys", {{{"t", 0}, {"value", 0.5}}}}}}}});
+    EXPECT_EQ(streaks.exitCode, 1);
+    EXPECT_THAT(streaks.errors, HasSubstr("cannot be keyed"));
+}
+
 TEST_F(CliTimeLine, WhatCannotPlayIsRefusedWithItsPlace) {
     runJson(createArguments());
     const auto settings = [](const char* name, const Json& key) {

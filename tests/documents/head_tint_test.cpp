@@ -13,6 +13,10 @@ namespace {
 
 const Vec3f kSkin(0.5f, 0.4f, 0.3f);
 
+std::vector<Vec3f> tintedHead(const Groom& groom) {
+    return tinted(kSkin, groom.material.rootColour, headTint(groom));
+}
+
 /// Share of the hair's colour at a vertex, from its red.
 float shareAt(const Groom& groom, const std::vector<Vec3f>& albedo, std::size_t vertex) {
     return (albedo[vertex].x() - kSkin.x()) / (groom.material.rootColour.x() - kSkin.x());
@@ -20,7 +24,7 @@ float shareAt(const Groom& groom, const std::vector<Vec3f>& albedo, std::size_t 
 
 TEST(HeadTint, IsHalfWhereHairGrowsAndFadesBesideIt) {
     const Groom groom = smallHead();
-    const auto albedo = headTint(groom, kSkin);
+    const auto albedo = tintedHead(groom);
     ASSERT_EQ(albedo.size(), groom.scalp->vertexCount());
     std::size_t between = 0;
     for (std::size_t v = 0; v < albedo.size(); ++v) {
@@ -42,7 +46,7 @@ TEST(HeadTint, DoesNotDependOnTheNumberOfRoots) {
     std::vector<std::uint32_t> some;
     for (std::uint32_t s = 0; s < many.strandCount(); s += 2) some.push_back(s);
     const Groom few = strandsOf(many, some);
-    const auto a = headTint(many, kSkin), b = headTint(few, kSkin);
+    const auto a = tintedHead(many), b = tintedHead(few);
     for (std::size_t v = 0; v < a.size(); ++v)
         if (many.scalp->positions()[v].y() > 0.08f) {
             EXPECT_NEAR(shareAt(many, a, v), shareAt(few, b, v), 0.15f) << v;
@@ -53,21 +57,21 @@ TEST(HeadTint, StrandsThatShareTheirRootsAreNoDivisionByZero) {
     const Groom groom = smallHead();
     std::vector<std::uint32_t> tufts;
     for (std::uint32_t s = 0; s < 40; ++s) tufts.push_back(s / 10);
-    for (const Vec3f& albedo : headTint(strandsOf(groom, tufts), kSkin)) ASSERT_TRUE(albedo.allFinite());
+    for (const Vec3f& albedo : tintedHead(strandsOf(groom, tufts))) ASSERT_TRUE(albedo.allFinite());
 }
 
 TEST(HeadTint, LeavesTheSkinWhereHairIsTooFewOrFarAway) {
     Groom groom = smallHead();
     const std::vector<Vec3f> bare(groom.scalp->vertexCount(), kSkin);
-    EXPECT_EQ(headTint(strandsOf(groom, std::vector<std::uint32_t>{0, 1, 2}), kSkin), bare);
-    EXPECT_EQ(headTint(strandsOf(groom, {}), kSkin), bare);
+    EXPECT_EQ(tintedHead(strandsOf(groom, std::vector<std::uint32_t>{0, 1, 2})), bare);
+    EXPECT_EQ(tintedHead(strandsOf(groom, {})), bare);
     groom.scalpSelection = {};
-    EXPECT_EQ(headTint(groom, kSkin), bare) << "hair that grows on no scalp";
+    EXPECT_EQ(tintedHead(groom), bare) << "hair that grows on no scalp";
     groom = smallHead();
     std::vector<Vec3f> away(groom.positions().begin(), groom.positions().end());
     for (Vec3f& point : away) point *= 1e6f;
     groom.pointAttributes.set(attribute::kPosition, std::move(away));
-    EXPECT_EQ(headTint(groom, kSkin), bare);
+    EXPECT_EQ(tintedHead(groom), bare);
 }
 
 }  // namespace

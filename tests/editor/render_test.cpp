@@ -14,6 +14,8 @@
 #include <QPushButton>
 #include <QSpinBox>
 
+#include "core/editing/settings_commands.h"
+#include "core/groom/time_line.h"
 #include "core/live/video_file.h"
 #include "editor/dialogs/render_dialog.h"
 #include "tests/editor/window_fixture.h"
@@ -128,6 +130,33 @@ TEST_F(RenderTest, AFilmOfTheSimulationMoves) {
     ASSERT_TRUE(film.open(QIODevice::ReadOnly));
     EXPECT_EQ(film.readAll().count("fcTL"), 3) << "three frames";
     EXPECT_FALSE(parts().player.hasFrame()) << "what the window plays is as it was";
+}
+
+TEST_F(RenderTest, AFilmOfTheTimeLineHasTheKeysOfTheMaterial) {
+    TimeLine line;
+    for (const char* name : {"material.rootColour", "material.tipColour"})
+        line.settings.push_back({name, {{0, Vec3d(0.2, 0.2, 0.2)}, {0.1f, Vec3d(1, 0, 0)}}});
+    auto made = editing::setTimeLine(document().editing().model(), line, "Keys");
+    ASSERT_TRUE(made);
+    document().perform(std::move(*made));
+    ASSERT_EQ(parts().player.motion(), Player::kTimeLine);
+    inDialog([&](RenderDialog& dialog) {
+        set(dialog, FilmOf::Simulation, 64, 64);
+        dialog.findChild<QSpinBox*>("renderImages")->setValue(2);
+        dialog.findChild<QComboBox*>("renderRate")->setCurrentText("10");
+        renderAs(dialog, "keys.png");
+        dialog.reject();
+    });
+    const auto redness = [this](const char* name) {
+        const QImage picture(inFolder(name));
+        long sum = 0;
+        for (int y = 0; y < picture.height(); ++y) {
+            for (int x = 0; x < picture.width(); ++x)
+                sum += picture.pixelColor(x, y).red() - picture.pixelColor(x, y).green();
+        }
+        return sum;
+    };
+    EXPECT_GT(redness("keys_0001.png"), redness("keys_0000.png") + 64 * 64);
 }
 
 TEST_F(RenderTest, TextIsBurntInAndVersionsAreTaken) {

@@ -126,6 +126,24 @@ TEST_F(TimeLinePanelTest, KeyThisOnAFieldKeysItAtThePlayHead) {
     EXPECT_EQ(findKeyable("simulation.stiffnessRamp"), nullptr);
 }
 
+TEST_F(TimeLinePanelTest, TheLookIsKeyedAndShownAtThePlayHead) {
+    const KeyTrack shininess{KeyTrack::Of::setting, "material.shininess"};
+    auto* control = window->panel("look")->findChild<NumberBox*>("shininess");
+    ASSERT_TRUE(control);
+    chooseInMenu(*control, "Key this at frame 0");
+    EXPECT_EQ(keyTimes(line(), shininess).size(), 1u);
+    EXPECT_EQ(numberOf(line(), {shininess, 0}, 0), double{groom().material.shininess});
+    player().scrub(0.5f);
+    ASSERT_TRUE(viewport().pose());
+    EXPECT_EQ(viewport().pose()->lineTime, 0.5f);
+    // Which strands are white is no matter of a frame.
+    EXPECT_EQ(findKeyable("material.greyShare"), nullptr);
+    ASSERT_TRUE(player().setMotion("none"));
+    player().scrub(0.5f);
+    ASSERT_TRUE(viewport().pose());
+    EXPECT_FALSE(viewport().pose()->lineTime) << "another motion has no keys";
+}
+
 TEST_F(TimeLinePanelTest, KeysAreDraggedCopiedEditedAndDeletedEachAsOneStep) {
     set(windy());
     EXPECT_TRUE(window->panel("time_line")->isVisible()) << "what is keyed is seen";

@@ -65,7 +65,7 @@ TEST_F(TimeLineWalkTest, KeyRecordScrubBackAndExport) {
         Groom windier = groom();
         windier.simulation.windSpeed = static_cast<float>(value);
         change("Wind speed", windier);
-        chooseKey("Wind speed", "Setting");
+        chooseKey("Wind speed", "Setting of Physics");
     }
     ASSERT_EQ(line().clips.size(), 1u);
     ASSERT_EQ(line().settings.size(), 1u);

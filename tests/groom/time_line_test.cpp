@@ -58,24 +58,47 @@ TEST(TimeLine, WhatChoosesTheEngineHasNoKeys) {
          {"strandModel", "hairHair", "hairHairCell", "windShelter", "collisionSegments", "latticeNodes"})
         EXPECT_EQ(findKeyable(std::string("simulation.") + name), nullptr) << name;
     EXPECT_NE(findKeyable("simulation.hairHairStrength"), nullptr);
+    for (const char* const name :
+         {"shadingModel", "tubes", "streakShare", "streakSeed", "greyShare", "dyeStrength", "windSpeed"})
+        EXPECT_EQ(findKeyable(std::string("material.") + name), nullptr) << name;
+    for (const char* const name : {"interpolation.blend", "rootColour", "material", "material."})
+        EXPECT_EQ(findKeyable(name), nullptr) << name;
+}
+
+TEST(TimeLine, MaterialsGoFromKeyToKeyAndKeepWhatIsNotKeyed) {
+    TimeLine line = withSetting("material.rootColour", {{1, Vec3d(0, 0.5, 1)}, {2, Vec3d(1, 0.5, 0)}});
+    EXPECT_TRUE(keysMaterial(line));
+    HairMaterial authored;
+    authored.eumelanin = 5;
+    EXPECT_EQ(materialAt(line, 0, authored).rootColour, Vec3f(0, 0.5f, 1));
+    EXPECT_TRUE(materialAt(line, 1.25f, authored).rootColour.isApprox(Vec3f(0.25f, 0.5f, 0.75f)));
+    EXPECT_EQ(materialAt(line, 9, authored).rootColour, Vec3f(1, 0.5f, 0));
+    EXPECT_EQ(materialAt(line, 9, authored).tipColour, authored.tipColour);
+    EXPECT_EQ(materialAt(line, 9, authored).eumelanin, 5);
+    EXPECT_TRUE(settingsAt(line, 1.5f, {}) == runtime::SimulationSettings());
+    line.settings[0].keys[1].value[2] = 1.5;
+    ASSERT_EQ(problemsOf(line).size(), 1u);
+    EXPECT_EQ(problemsOf(line)[0].where, "settings/0/keys/1/value");
+    EXPECT_FALSE(keysMaterial(withSetting("simulation.windSpeed", {{0, Vec3d(1, 0, 0)}})));
 }
 
 TEST(TimeLine, EveryKeyableSettingCanBeKeyedAndRead) {
     EXPECT_THAT(keyableNames(), testing::Contains("simulation.windSpeed"));
+    EXPECT_THAT(keyableNames(), testing::Contains("material.rootColour"));
     EXPECT_THAT(keyableNames(), testing::Not(testing::Contains("simulation.angularCurve")));
-    const runtime::SimulationSettings defaults;
+    Groom groom;
     for (const std::string& name : keyableNames()) {
-        const auto* const field = findKeyable(name);
-        ASSERT_TRUE(field) << name;
-        Vec3d value = Vec3d::Zero();
-        for (std::uint32_t c = 0; c < field->components(); ++c) value[c] = field->get(defaults, c);
+        ASSERT_TRUE(findKeyable(name)) << name;
+        const Vec3d value = authoredValue(groom, name);
         const TimeLine line = withSetting(
             name.c_str(), {{0.5f, value, KeyInterpolation::step}, {1, value, KeyInterpolation::step}});
         EXPECT_THAT(problemsOf(line), testing::IsEmpty()) << name;
         const auto read = parseTimeLine("x", timeLineText(line));
         ASSERT_TRUE(read) << name << read.error().message();
         EXPECT_EQ(*read, line) << name;
-        EXPECT_TRUE(settingsAt(line, 0.7f, {}) == defaults) << name;
+        EXPECT_TRUE(settingsAt(line, 0.7f, {}) == groom.simulation) << name;
+        groom.material = materialAt(line, 0.7f, {});
+        EXPECT_EQ(authoredValue(groom, name), value) << name;
     }
 }
 

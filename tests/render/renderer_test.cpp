@@ -81,6 +81,12 @@ TEST_F(RendererTest, SequenceOfChangesEqualsFreshPictures) {
     for (Vec3f& p : head.positions) p *= 0.97f;
     ASSERT_TRUE(renderer.setMeshPositions(0, head.positions));
     compare("mesh positions");
+    const std::vector<Vec3f> colours(head.positions.size(), Vec3f(0.1f, 0.4f, 0.2f));
+    scene.meshes[0].vertexAlbedo = colours;
+    ASSERT_TRUE(renderer.setMeshAlbedo(0, colours));
+    EXPECT_FALSE(renderer.setMeshAlbedo(0, std::span(colours).first(3)));
+    EXPECT_FALSE(renderer.setMeshAlbedo(1, colours));
+    compare("mesh colours");
     scene.camera.eye_ws.x() *= 0.8f;
     ASSERT_TRUE(renderer.setCamera(scene.camera));
     compare("camera");
