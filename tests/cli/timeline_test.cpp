@@ -219,7 +219,7 @@ TEST_F(CliTimeLine, WhatCannotPlayIsRefusedWithItsPlace) {
         {settings("simulation.angularCurve", {{"t", 0}, {"value", 1}}),
          "/settings/0/name is \"simulation.angularCurve\", which cannot be keyed"},
         {settings("simulation.strandModel", {{"t", 0}, {"value", "rods"}}), "which cannot be keyed"},
-        {settings("material.specular", {{"t", 0}, {"value", 1}}), "which cannot be keyed"},
+        {settings("material.greyShare", {{"t", 0}, {"value", 1}}), "which cannot be keyed"},
         {settings("simulation.windSpeed", {{"t", 0}, {"value", 900}}), "/settings/0/keys/0/value is 900"},
         {settings("simulation.windKind", {{"t", 0}, {"value", "uniform"}, {"interpolate", "linear"}}),
          "/settings/0/keys/0/interpolate is \"linear\"; expected \"step\""},

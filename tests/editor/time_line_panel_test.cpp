@@ -49,6 +49,11 @@ class TimeLinePanelTest : public WindowTest {
     }
     /// What a right-click on a control offers, by the words that it begins with.
     void chooseInMenu(QWidget& control, const QString& words) {
+        // As a person scrolls to it; a menu that begins outside of the screen closes at once.
+        QCoreApplication::processEvents();
+        for (QWidget* around = control.parentWidget(); around; around = around->parentWidget()) {
+            if (auto* area = qobject_cast<QScrollArea*>(around)) area->ensureWidgetVisible(&control);
+        }
         bool chosen = false;
         QTimer timer;
         QObject::connect(&timer, &QTimer::timeout, [&] {
@@ -68,7 +73,7 @@ class TimeLinePanelTest : public WindowTest {
         const QPoint middle = control.rect().center();
         QContextMenuEvent event(QContextMenuEvent::Mouse, middle, control.mapToGlobal(middle));
         QCoreApplication::sendEvent(&control, &event);
-        EXPECT_TRUE(chosen) << words.toStdString();
+        EXPECT_TRUE(chosen) << words.toStdString() << " at " << event.globalX() << ", " << event.globalY();
     }
     /// In three steps, as a hand does.
     static void dragIn(QWidget& widget, const QPoint& from, const QPoint& to) {
