@@ -103,7 +103,9 @@ TEST_F(OverlayTest, LinesThroughTheEyeEndBeforeIt) {
 
 TEST_F(OverlayTest, ColoursAreAsAskedForInEachFormat) {
     Overlay overlay;
-    overlay.batches = {{OverlayShape::points, 20, true, {{Vec4f(0, 0, 0, 1), Vec4f(0.5f, 0.25f, 0, 1)}}}};
+    // What a byte can hold: devices may round halves up and down.
+    const Vec4f colour(128.0f / 255, 64.0f / 255, 0, 1);
+    overlay.batches = {{OverlayShape::points, 20, true, {{Vec4f(0, 0, 0, 1), colour}}}};
     const auto plain = draw(overlay);
     const auto encoded = draw(overlay, gpu::Format::Rgba8UnormSrgb);
     const std::size_t middle = 4 * (32 * kSize + 32);

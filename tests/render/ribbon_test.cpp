@@ -125,10 +125,15 @@ TEST_F(RibbonTest, KernelsDrawTrianglesThatReachBehindTheEye) {
     const LinearImage kernels = draw(scene, how);
     ASSERT_GT(coverage(strip), 1000);
     std::size_t far = 0;
+    float mostSamples = 0;
     for (std::size_t i = 0; i < strip.rgba.size(); ++i) {
-        far += std::abs(strip.rgba[i] - kernels.rgba[i]) > 0.02f ? 1 : 0;
+        const float off = std::abs(strip.rgba[i] - kernels.rgba[i]);
+        far += off > 0.02f ? 1 : 0;
+        if (i % 4 == 3) mostSamples = std::max(mostSamples, off * static_cast<float>(how.samples));
     }
-    EXPECT_LT(far, strip.rgba.size() / 200);
+    // At the horizon a device that rounds otherwise may take or leave one sample of a pixel.
+    EXPECT_LT(mostSamples, 1.1f);
+    EXPECT_LT(far, strip.rgba.size() / 100);
 }
 
 TEST_F(RibbonTest, EachKindOfTransparencyKeepsTheWidth) {
