@@ -2,7 +2,6 @@
 // The clip of an asset: whether its records fit each other, and its frames out of their bits.
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 
 #include "asset/asset_error.h"
@@ -24,32 +23,9 @@ std::int64_t unzigzag(std::uint32_t value) {
 
 }  // namespace
 
-std::uint32_t ClipBits::take(std::uint32_t count) {
-    if (count == 0) return 0;
-    const std::uint64_t first = at_ / 8, shift = at_ % 8;
-    std::uint64_t word = 0;
-    // 32 bits from any bit of a byte lie in five bytes.
-    for (std::uint64_t i = 0; i < 5 && first + i < bytes_.size(); ++i)
-        word |= std::to_integer<std::uint64_t>(bytes_[static_cast<std::size_t>(first + i)]) << (8 * i);
-    at_ += count;
-    if (at_ > 8 * std::uint64_t{bytes_.size()}) good = false;
-    return static_cast<std::uint32_t>((word >> shift) & ((std::uint64_t{1} << count) - 1));
-}
-
-std::uint32_t ClipBits::takeNumber(std::uint32_t low) {
-    const std::uint64_t before = at_;
-    const std::uint32_t ahead = take(kMostClipOnes);
-    const auto ones = static_cast<std::uint32_t>(std::countr_one(ahead));
-    if (ones >= kMostClipOnes) return take(32);
-    // What was looked at beyond the number comes again.
-    at_ = before + ones + 1;
-    good = at_ <= 8 * std::uint64_t{bytes_.size()};
-    return (ones << low) | take(low);
-}
-
 bool ClipBits::isAtEnd() const {
     const std::uint64_t end = 8 * std::uint64_t{bytes_.size()};
-    if (!good || end - at_ >= 8) return false;
+    if (!isGood() || end - at_ >= 8) return false;
     if (at_ == end) return true;
     return (std::to_integer<std::uint32_t>(bytes_.back()) >> (8 - (end - at_))) == 0;
 }
@@ -72,6 +48,41 @@ std::vector<std::int32_t> clipRest(const Asset::Strands& rest, std::uint32_t gri
     return cells;
 }
 
+namespace {
+
+/// A coordinate of a frame whose residuals are differences of order `kAlong` between points and of order
+/// `kTime` between frames. False where a cell is out of range.
+template <std::uint32_t kTime, std::uint32_t kAlong>
+bool readAxis(ClipBits& bits, std::uint32_t low, std::size_t axis, ConstClipCells rest, ConstClipCells last,
+              ConstClipCells beforeLast, ClipCells cells) {
+    std::int64_t before = 0, second = 0;
+    for (std::size_t at = axis; at < cells.size(); at += 3) {
+        std::int64_t left = low == kNoClipResiduals ? 0 : unzigzag(bits.takeNumber(low));
+        if constexpr (kAlong == 1) left += before;
+        if constexpr (kAlong == 2) left += 2 * before - second;
+        std::int64_t cell = left;
+        if constexpr (kTime == 0) cell += rest[at];
+        if constexpr (kTime == 1) cell += last[at];
+        if constexpr (kTime == 2) cell += 2 * std::int64_t{last[at]} - beforeLast[at];
+        if (cell < -kFarthestClipCell || cell > kFarthestClipCell) return false;
+        cells[at] = static_cast<std::int32_t>(cell);
+        second = before;
+        before = left;
+    }
+    return true;
+}
+
+using ReadAxis = bool (*)(ClipBits&, std::uint32_t, std::size_t, ConstClipCells, ConstClipCells,
+                          ConstClipCells, ClipCells);
+static_assert(kClipOrders == 3);
+constexpr ReadAxis kReadAxis[kClipOrders][kClipOrders] = {
+    {readAxis<0, 0>, readAxis<0, 1>, readAxis<0, 2>},
+    {readAxis<1, 0>, readAxis<1, 1>, readAxis<1, 2>},
+    {readAxis<2, 0>, readAxis<2, 1>, readAxis<2, 2>},
+};
+
+}  // namespace
+
 bool readClipFrame(ClipBits& bits, std::uint32_t number, ConstClipCells rest, ConstClipCells last,
                    ConstClipCells beforeLast, ClipCells cells) {
     const std::uint32_t way = bits.take(4);
@@ -80,23 +91,9 @@ bool readClipFrame(ClipBits& bits, std::uint32_t number, ConstClipCells rest, Co
     std::uint32_t low[3];
     for (std::uint32_t& axis : low) axis = bits.take(4);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::int64_t before = 0, second = 0;
-        for (std::size_t at = axis; at < cells.size(); at += 3) {
-            std::int64_t left = 0;
-            if (low[axis] != kNoClipResiduals) left = unzigzag(bits.takeNumber(low[axis]));
-            if (along == 1) left += before;
-            if (along == 2) left += 2 * before - second;
-            std::int64_t cell = left;
-            if (time == 0) cell += rest[at];
-            if (time == 1) cell += last[at];
-            if (time == 2) cell += 2 * std::int64_t{last[at]} - beforeLast[at];
-            if (!bits.good || cell < -kFarthestClipCell || cell > kFarthestClipCell) return false;
-            cells[at] = static_cast<std::int32_t>(cell);
-            second = before;
-            before = left;
-        }
+        if (!kReadAxis[time][along](bits, low[axis], axis, rest, last, beforeLast, cells)) return false;
     }
-    return bits.good;
+    return bits.isGood();
 }
 
 std::span<const std::byte> clipStrandBytes(const Asset& asset, std::size_t block, std::size_t strand) {

@@ -131,16 +131,4 @@ std::optional<AssetError> ClipPlayer::decode(const Asset& asset, const ClipMomen
     return std::nullopt;
 }
 
-ClipPlayer::Place ClipPlayer::place(std::size_t strand, std::size_t point, float share) const {
-    const std::size_t at = 3 * (offsets_[strand] - strand + point - 1);
-    const auto& from = cells_[from_];
-    const auto& to = cells_[to_];
-    const auto cell = [&](const std::vector<std::int32_t>& cells) {
-        return Float3{static_cast<float>(cells[at]) * step_, static_cast<float>(cells[at + 1]) * step_,
-                      static_cast<float>(cells[at + 2]) * step_};
-    };
-    const Float3 begin = cell(from), moved = cell(to) - begin;
-    return {begin + moved * share, moved};
-}
-
 }  // namespace hairloom::runtime

@@ -39,7 +39,15 @@ class ClipPlayer {
     struct Place {
         Float3 offset, moved;
     };
-    Place place(std::size_t strand, std::size_t point, float share) const;
+    Place place(std::size_t strand, std::size_t point, float share) const {
+        const std::size_t at = 3 * (offsets_[strand] - strand + point - 1);
+        const auto cell = [&](const std::int32_t* cells) {
+            return Float3{static_cast<float>(cells[at]) * step_, static_cast<float>(cells[at + 1]) * step_,
+                          static_cast<float>(cells[at + 2]) * step_};
+        };
+        const Float3 begin = cell(cells_[from_].data()), moved = cell(cells_[to_].data()) - begin;
+        return {begin + moved * share, moved};
+    }
     bool isSame(const Asset& asset) const { return asset.identity() == identity_; }
 
   private:
