@@ -176,6 +176,7 @@ Outcome Instance::beginGpu() {
         return Refusal{HL_BAD_VALUE, "level " + std::to_string(level()) + "; the GPU steps the finest alone"};
     if (std::string why = gpuGuidesRefused(engine_.settings()); !why.empty())
         return Refusal{HL_BAD_VALUE, std::move(why)};
+    settlePlayed();
     gpuGuides_.emplace(engine_.restShape(), engine_.settings(), engine_.state(),
                        gpuSpheresOf(restSpheres_.size(), restCapsules_.size()));
     return std::nullopt;

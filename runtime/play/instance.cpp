@@ -325,6 +325,7 @@ Outcome Instance::reset(const hl_frame& frame) {
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
     leaveGpu();
+    playedWaits_ = false;
     engine_.reset(roots_);
     takeTurns();
     asleep_ = false;
@@ -360,6 +361,7 @@ Outcome Instance::step(const hl_frame& frame) {
     if (Outcome refused = checkStep(frame)) return refused;
     // Nothing wakes it: a step would leave every bit as it is.
     if (asleep_ && asBefore(frame)) return std::nullopt;
+    settlePlayed();
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
     leaveGpu();
@@ -414,6 +416,7 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
             return refuse("is " + std::to_string(values[c]) + "; expected " + std::to_string(field->min) +
                           " to " + std::to_string(field->max));
     }
+    settlePlayed();
     if (const std::string why = engine_.setSettings(settings); !why.empty())
         return Refusal{HL_BAD_VALUE, why};
     if (levels_) setSettingsOfLevels(settings);
@@ -437,7 +440,7 @@ hl_instance_info Instance::describe() const {
     const Engine* const engine = engineOfLevel();
     const StepReport report = engine ? engine->lastStep() : StepReport{};
     // At a coarser level the guides that are not simulated sleep when the others do.
-    info.asleep = asleep_ ? info.guides : engine ? engine->asleep() : 0;
+    info.asleep = asleep_ ? info.guides : engine && !playedWaits_ ? engine->asleep() : 0;
     info.restored = report.restoredStrands;
     info.left_roots = report.rejectedRoots;
     info.left_spheres = report.rejectedSpheres;
@@ -465,8 +468,10 @@ hl_effect Instance::describeEffect(std::uint32_t number) const {
     effect.name = strands ? "strands" : kEffects[number].name;
     const Engine* const engine = engineOfLevel();
     std::string why;
-    if (!engine || asleep_) {
-        why = std::string(effect.name) + (asleep_ ? ": off, all strands at rest" : ": off, hair is rigid");
+    if (!engine || asleep_ || playedWaits_) {
+        why = std::string(effect.name) + (asleep_        ? ": off, all strands at rest"
+                                          : playedWaits_ ? ": off, a clip plays"
+                                                         : ": off, hair is rigid");
     } else {
         effect.on = strands || engine->plan().on(static_cast<Effect>(number));
         why = strands ? "strands: on, of every strand" : engine->plan().why(static_cast<Effect>(number));

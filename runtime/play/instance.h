@@ -152,6 +152,10 @@ class Instance {
     void playOnto(const HeadBefore& before, const hl_frame& frame, float rate, float share,
                   std::span<const std::uint32_t> strands);
     void placePlayed();
+    /// Puts the finest level's engine where a clip has the points, before anything else needs it.
+    void settlePlayed();
+    /// Of what can be seen nothing changes.
+    void settlePlayed() const { const_cast<Instance*>(this)->settlePlayed(); }
     void grow(const hl_reserve& wanted);
     static Outcome checkStep(const hl_frame& frame);
     Outcome place(const hl_frame& frame, FrameInput& input);
@@ -196,6 +200,9 @@ class Instance {
     std::optional<ClipPlayer> clip_;
     std::vector<std::uint32_t> allStrands_;
     std::vector<Float3> rootsBefore_;
+    /// positions_ and velocities_ are a clip's, and engine_ is not there yet: what only plays never pays for
+    /// a simulation that could follow.
+    bool playedWaits_ = false;
     bool rootsKnown_ = true;  // roots_ are those of the state
     Float3 pivot_{};          // that heads nod about where something is measured
     WispMotion gpuWisps_;

@@ -164,6 +164,7 @@ void Instance::fadeLevel(float dt) {
 }
 
 void Instance::showPositions() {
+    if (playedWaits_) return;
     const Engine* const engine = engineOfLevel();
     if (engine == &engine_) {
         engine_.readPositions(positions_);
@@ -183,6 +184,7 @@ void Instance::showPositions() {
 }
 
 void Instance::showVelocities() {
+    if (playedWaits_) return;
     const Engine* const engine = engineOfLevel();
     if (engine == &engine_) {
         engine_.readVelocities(velocities_);
@@ -222,6 +224,7 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
     Levels& levels = *levels_;
     takeHairs(hairShare);
     if (number == levels.level) return std::nullopt;
+    settlePlayed();
     leaveGpu();
     ++changes_;
     showPositions();
@@ -330,6 +333,7 @@ void Instance::takeHairs(float share) {
 }
 
 std::uint64_t Instance::hash() const {
+    settlePlayed();
     if (level() == HL_LEVEL_FINEST) return engine_.stateHash();
     const Engine* const engine = engineOfLevel();
     std::uint64_t hash = engine ? engine->stateHash() : 0;

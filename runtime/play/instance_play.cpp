@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "engine/checks.h"
 #include "engine/in_parallel.h"
@@ -132,11 +133,25 @@ void Instance::playOnto(const HeadBefore& before, const hl_frame& frame, float r
     });
 }
 
-/// positions_ and velocities_ become those of the level's engine.
+/// positions_ and velocities_ become those of the level's engine, at the finest level once it is needed. Only
+/// the engine knows where a strand without a place lies, and reading adds what fades to what it has.
 void Instance::placePlayed() {
     Engine* const engine = engineOfLevel();
-    if (engine == &engine_) engine_.place(roots_, positions_, velocities_, origin_);
-    if (engine && engine != &engine_) placeCoarser(*engine, positions_, origin_);
+    playedWaits_ = engine == &engine_;
+    if (!playedWaits_) {
+        if (engine) placeCoarser(*engine, positions_, origin_);
+        return;
+    }
+    const bool hasPlaces = std::all_of(roots_.begin(), roots_.end(), [](const RootFrame& root) {
+        RootFrame usable = root;
+        return usableWithin(usable, kFarthest);
+    });
+    if (!hasPlaces || (levels_ && levels_->fading)) settlePlayed();
+}
+
+void Instance::settlePlayed() {
+    if (!std::exchange(playedWaits_, false)) return;
+    engine_.place(roots_, positions_, velocities_, origin_);
 }
 
 }  // namespace hairloom::runtime

@@ -144,6 +144,7 @@ Refusal damaged(const char* words) {
 }  // namespace
 
 std::vector<std::byte> Instance::save() const {
+    settlePlayed();
     Writer writer;
     writer.value(Head{});
     writer.value(origin_);
@@ -225,6 +226,7 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
         placeRootsOfLevels();
     }
     leaveGpu();
+    playedWaits_ = false;
     origin_ = origin;
     turns_.swap(turns);
     asleep_ = last_.known = rootsKnown_ = false;

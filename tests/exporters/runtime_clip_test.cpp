@@ -297,6 +297,43 @@ TEST_F(RuntimeClip, AStepGoesOnFromThePoseWithItsSpeed) {
     }
 }
 
+// The engine is put where a clip has the points once something needs it, and nobody can tell when that was.
+TEST_F(RuntimeClip, WhatPlaysIsSavedCopiedAndSteppedFromWhereItIs) {
+    const auto bytes = writtenWithClip();
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    const auto played = [&](Instance& hair) {
+        EXPECT_TRUE(hair.make(asset, HL_GUIDES));
+        for (int f = 0; f < 5; ++f) EXPECT_TRUE(hair.step(Frame(1 / 60.0f)));
+        for (int f = 1; f < 4; ++f) EXPECT_TRUE(hair.play(asset, Frame(), 0.1 * f));
+    };
+    Instance stepped, hashed, saved, copied, set;
+    for (Instance* hair : {&stepped, &hashed, &set}) played(*hair);
+    EXPECT_EQ(stepped.describeEffect(0).on, 0u);
+    EXPECT_THAT(stepped.describeEffect(0).why, HasSubstr("a clip plays"));
+    EXPECT_EQ(stepped.describe().asleep, 0u);
+    std::size_t size = 0;
+    ASSERT_EQ(hl_instance_save(stepped.get(), nullptr, 0, &size, nullptr), HL_OK);
+    std::vector<std::byte> file(size);
+    ASSERT_EQ(hl_instance_save(stepped.get(), file.data(), size, &size, nullptr), HL_OK);
+    ASSERT_TRUE(saved.make(asset, HL_GUIDES));
+    ASSERT_EQ(hl_instance_load(saved.get(), file.data(), size, nullptr), HL_OK);
+    ASSERT_TRUE(copied.copy(stepped));
+    ASSERT_TRUE(set.set("airDrag", groom_.simulation.airDrag));
+    EXPECT_EQ(hashed.hash(), stepped.hash());
+    EXPECT_EQ(saved.hash(), stepped.hash());
+    std::vector<float> before, after;
+    ASSERT_TRUE(stepped.readGuides(before));
+    ASSERT_TRUE(set.readGuides(after));
+    for (std::size_t i = 0; i < before.size(); ++i) ASSERT_NEAR(before[i], after[i], 2e-6f);
+    for (Instance* hair : {&stepped, &hashed, &saved, &copied, &set}) ASSERT_TRUE(hair->step(Frame()));
+    for (Instance* hair : {&hashed, &saved, &copied, &set}) EXPECT_EQ(hair->hash(), stepped.hash());
+    // A reset forgets the clip.
+    ASSERT_TRUE(copied.play(asset, Frame(), 0.2));
+    for (Instance* hair : {&copied, &hashed}) ASSERT_TRUE(hair->reset(Frame()));
+    EXPECT_EQ(copied.hash(), hashed.hash());
+}
+
 TEST_F(RuntimeClip, TheBitsAreThoseOfAnyThreadsAndAnyWayThere) {
     const auto bytes = writtenWithClip();
     game::Asset asset;
