@@ -265,7 +265,8 @@ Result<AssetClip> encodeClip(const ClipToWrite& clip, const PreparedStrands& str
                              const WorkWatch& watch) {
     if (auto status = checkClipToWrite(clip); !status) return tl::unexpected(status.error());
     ClipGrid grid(strands, groom, plain, scalpVertices);
-    const Cells rest = runtime::clipRest(grid.rest(), kClipGridBits);
+    const auto atRest = runtime::clipRest(grid.rest(), kClipGridBits);
+    const Cells rest(atRest.begin(), atRest.end());
     AssetClip encoded;
     encoded.places.push_back(0);
     std::vector<std::vector<std::byte>> bits(strands.strandCount());

@@ -138,7 +138,8 @@ class Collector {
 
     void addBody() {
         if (!groom_.body) return;
-        for (const std::string& name : groom_.body->bones) {
+        for (const runtime::String& own : groom_.body->bones) {
+            const std::string name(own);
             const auto bone = scene_ ? scene_->skeleton.find(name) : std::nullopt;
             if (!bone) {
                 result_.findings.push_back(

@@ -155,10 +155,10 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
     if (!opened.asset) return refuse(opened.error);
     if (const auto problem = opened.asset->check()) return refuse(*problem);
     const runtime::Asset& from = *opened.asset;
-    auto strands = from.strandsAtRest();
+    const auto strands = from.strandsAtRest();
     RawStrands raw;
     raw.format = "Hairloom runtime asset";
-    raw.offsets = std::move(strands.offsets);
+    raw.offsets.assign(strands.offsets.begin(), strands.offsets.end());
     for (const runtime::Float3& p : strands.positions_ss) raw.positions.emplace_back(p.x, p.y, p.z);
     for (const std::uint16_t radius : from.radii)
         raw.thickness.push_back(2 * asset::kRadiusStep * static_cast<float>(radius));

@@ -122,8 +122,9 @@ class Binder {
             lengths_[guide] = polylineLength(points(guide));
         }
         setFrames();
-        bindings_.radii =
+        const auto radii =
             runtime::wispRadii(settings_.wispRadiusRoot, settings_.wispRadiusTip, bindings_.pointsPerHair);
+        bindings_.radii.assign(radii.begin(), radii.end());
         bindings_.wisps = {settings_.wispSpread, settings_.wispSpreadLimit};
         bindings_.triangles = guideTriangles(groom_, bindings_.guideStrands);
         setHairs();
@@ -193,8 +194,8 @@ class Binder {
              bindings_.triangles,
              bindings_.areas},
             host);
-        bindings_.guides = drawn.guides;
-        bindings_.blends = drawn.blends;
+        bindings_.guides.assign(drawn.guides.begin(), drawn.guides.end());
+        bindings_.blends.assign(drawn.blends.begin(), drawn.blends.end());
         for (std::size_t hair = 0; hair < drawn.guides.size(); ++hair) {
             const runtime::Float3 &shares = drawn.weights[hair], &root = drawn.rootWeights[hair];
             bindings_.weights.emplace_back(shares.x, shares.y, shares.z);

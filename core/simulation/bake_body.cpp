@@ -471,7 +471,8 @@ Result<BakedBody> bakeBody(const ScalpMesh& mesh, const SkinWeights& skin,
             return fail(fmt::format("{} bones move the body in too many ways", bones.size()),
                         "255 bones at most");
         for (const std::uint32_t bone : bones)
-            field.bones.push_back(bone < boneNames.size() ? boneNames[bone] : fmt::format("bone {}", bone));
+            field.bones.emplace_back(bone < boneNames.size() ? boneNames[bone]
+                                                             : fmt::format("bone {}", bone));
         boxBones(table, field.bones.size(), field);
     } else {
         field.palette.resize(1);

@@ -44,7 +44,10 @@ Result<CharacterPoser> CharacterPoser::make(std::shared_ptr<const Actor> actor, 
 CharacterPoser::CharacterPoser(std::shared_ptr<const Actor> actor, const Groom& groom)
     : actor_(std::move(actor)), spheres_(groom.spheres) {
     if (!groom.body) return;
-    for (const std::string& bone : groom.body->bones) bodyBones_.push_back({bone, Vec3f::Zero(), 0, bone});
+    for (const runtime::String& own : groom.body->bones) {
+        const std::string bone(own);
+        bodyBones_.push_back({bone, Vec3f::Zero(), 0, bone});
+    }
 }
 
 HeadPose CharacterPoser::pose(ActorPose posed) const {

@@ -30,8 +30,8 @@ bool ClipBits::isAtEnd() const {
     return (std::to_integer<std::uint32_t>(bytes_.back()) >> (8 - (end - at_))) == 0;
 }
 
-std::vector<std::int32_t> clipRest(const Asset::Strands& rest, std::uint32_t gridBits) {
-    std::vector<std::int32_t> cells;
+Vector<std::int32_t> clipRest(const Asset::Strands& rest, std::uint32_t gridBits) {
+    Vector<std::int32_t> cells;
     const double perMetre = std::ldexp(1.0, static_cast<int>(gridBits));
     for (std::size_t s = 0; s + 1 < rest.offsets.size(); ++s) {
         const Float3 root = rest.positions_ss[rest.offsets[s]];
@@ -141,12 +141,12 @@ std::optional<AssetError> Asset::checkClipFrames(const Host& host) const {
     const Clip* const c = clip();
     if (!c) return std::nullopt;
     const Strands rest = strandsAtRest();
-    const std::vector<std::int32_t> cells = clipRest(rest, c->gridBits);
+    const Vector<std::int32_t> cells = clipRest(rest, c->gridBits);
     const std::uint32_t blocks = clipBlocks(*c);
     // The lowest one, whichever thread finds one first.
     std::atomic<std::uint64_t> first = kNoStrand;
     inParallel(host, strands.size(), kClipStrandsPerJob, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::int32_t> frames[3];
+        Vector<std::int32_t> frames[3];
         for (std::size_t s = begin; s < end; ++s) {
             const std::size_t from = 3 * (rest.offsets[s] - s), count = 3 * (strands[s].points - 1u);
             for (auto& frame : frames) frame.assign(count, 0);

@@ -156,9 +156,9 @@ BodyFieldRead Asset::readBody() const {
     return bodyFieldFromBytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
-std::vector<std::size_t> Asset::bonesOf(const BodyField& field) const {
-    std::vector<std::size_t> numbers;
-    for (const std::string& name : field.bones) {
+Vector<std::size_t> Asset::bonesOf(const BodyField& field) const {
+    Vector<std::size_t> numbers;
+    for (const String& name : field.bones) {
         const auto found = std::find_if(bones.begin(), bones.end(),
                                         [&](const Bone& bone) { return text(bone.name) == name; });
         if (found != bones.end()) numbers.push_back(static_cast<std::size_t>(found - bones.begin()));
@@ -168,9 +168,9 @@ std::vector<std::size_t> Asset::bonesOf(const BodyField& field) const {
 
 DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
     const Recipe& r = recipe[0];
-    std::vector<std::uint32_t> ids, layersOfGuides;
-    std::vector<Float3> rootsOfGuides, quarters, tips;
-    std::vector<float> lengths;
+    Vector<std::uint32_t> ids, layersOfGuides;
+    Vector<Float3> rootsOfGuides, quarters, tips;
+    Vector<float> lengths;
     for (const Guide& guide : guides) {
         const auto points = std::span(rest.positions_ss)
                                 .subspan(rest.offsets[guide.strand],
@@ -183,10 +183,10 @@ DrawnHairs Asset::drawnHairs(const Strands& rest, const Host& host) const {
         layersOfGuides.push_back(layerOf(guide.strand));
         quarters.push_back(pointAtShare(points, FollowRecipe::kQuarter));
     }
-    std::vector<std::uint32_t> hairs(guides.size());
+    Vector<std::uint32_t> hairs(guides.size());
     for (std::size_t guide = 0; guide < hairs.size(); ++guide) hairs[guide] = hairsOf(guide);
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<float> areas;
+    Vector<std::array<std::uint32_t, 3>> triangles;
+    Vector<float> areas;
     for (const GuideTriangle& triangle : guideTriangles) {
         triangles.push_back(triangle.guides);
         areas.push_back(triangle.area);

@@ -9,9 +9,9 @@
 #include <cstring>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "hairloom/asset.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -21,7 +21,7 @@ using ConstClipCells = std::span<const std::int32_t>;
 
 /// Of all strands, strand after strand, without their roots, in cells of 1 / 2^gridBits metres: what frames
 /// that nothing comes before are predicted from.
-std::vector<std::int32_t> clipRest(const Asset::Strands& rest, std::uint32_t gridBits);
+Vector<std::int32_t> clipRest(const Asset::Strands& rest, std::uint32_t gridBits);
 
 /// A strand's bits of a block, from the front to the back. Behind their end there are zeros, and isGood() is
 /// false.

@@ -44,7 +44,7 @@ class BodyReader {
 
     /// False, and nothing is taken or allocated, where there are not as many.
     template <class T>
-    bool take(std::vector<T>& values, std::uint64_t count) {
+    bool take(Vector<T>& values, std::uint64_t count) {
         static_assert(std::is_trivially_copyable_v<T>);
         if (count > (bytes_.size() - at_) / sizeof(T)) return false;
         values.resize(static_cast<std::size_t>(count));
@@ -86,10 +86,10 @@ bool takeArrays(BodyReader& reader, const BodyHead& head, BodyField& field) {
            reader.take(field.boxes, head.bones);
 }
 
-bool takeNames(BodyReader& reader, std::uint32_t count, std::vector<std::string>& names) {
+bool takeNames(BodyReader& reader, std::uint32_t count, Vector<String>& names) {
     for (std::uint32_t b = 0; b < count; ++b) {
         std::uint16_t length = 0;
-        std::vector<char> name;
+        Vector<char> name;
         if (!reader.copy(&length, sizeof(length)) || !reader.take(name, length)) return false;
         names.emplace_back(name.begin(), name.end());
     }
@@ -116,8 +116,8 @@ BodyHead headOf(const BodyField& field, std::uint32_t version) {
     return head;
 }
 
-void putNames(BodyWriter& writer, const std::vector<std::string>& bones) {
-    for (const std::string& bone : bones) {
+void putNames(BodyWriter& writer, const Vector<String>& bones) {
+    for (const String& bone : bones) {
         constexpr std::size_t kLongest = 0xffff;
         const auto length = static_cast<std::uint16_t>(bone.size() < kLongest ? bone.size() : kLongest);
         writer.put(&length, 1);

@@ -177,7 +177,7 @@ void alongBlocks(const BodyField& field, T* values, std::size_t count, const Eac
             endRun();
         }
     };
-    std::vector<bool> done(count, false);
+    Vector<bool> done(count, false);
     const std::size_t steps[] = {1, field.size[0], std::size_t{field.size[0]} * field.size[1]};
     for (std::size_t cell = 0; cell < field.blocks.size(); ++cell) {
         const std::size_t block = field.blocks[cell];

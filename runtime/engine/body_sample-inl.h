@@ -9,6 +9,7 @@
 
 #include "engine/body_table.h"
 #include "engine/lanes-inl.h"
+#include "hairloom/memory.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,7 +22,7 @@ using BodyWords = hn::Vec<BodyInts>;
 HWY_INLINE BodyWords allWords(std::int32_t value) {
     return hn::Set(BodyInts(), value);
 }
-HWY_INLINE BodyWords wordsAt(const std::vector<std::int32_t>& table, BodyWords index) {
+HWY_INLINE BodyWords wordsAt(const Vector<std::int32_t>& table, BodyWords index) {
     return hn::GatherIndex(BodyInts(), table.data(), index);
 }
 

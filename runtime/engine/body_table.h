@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "hairloom/body_field.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -21,17 +21,17 @@ struct BodyTable {
     explicit BodyTable(const BodyField& field);
 
     /// Of each cell: its block, BodyField::kNoBlock for none; from bit 16 the bone; kRefined.
-    std::vector<std::int32_t> cells;
+    Vector<std::int32_t> cells;
     /// Of each block and each of its cells and layers, four bytes: the distances at (0, 0), (1, 0), (0, 1)
     /// and (1, 1) of x and y.
-    std::vector<std::int32_t> quads;
+    Vector<std::int32_t> quads;
     /// Of each corner, two halves: the distances there and at the next one along x.
-    std::vector<std::int32_t> pairs;
-    std::vector<std::int32_t> refinements;  ///< of each block, BodyField::refinements
-    std::vector<std::int32_t> finer;        ///< BodyField::finer
-    std::vector<std::int32_t> skins;        ///< of each corner, BodyField::skins
+    Vector<std::int32_t> pairs;
+    Vector<std::int32_t> refinements;  ///< of each block, BodyField::refinements
+    Vector<std::int32_t> finer;        ///< BodyField::finer
+    Vector<std::int32_t> skins;        ///< of each corner, BodyField::skins
     /// Of each entry of the palette, four bytes: its bones and their weights.
-    std::vector<std::int32_t> skinBones, skinWeights;
+    Vector<std::int32_t> skinBones, skinWeights;
 
     /// Of the table of a field, which is not made.
     static std::size_t bytesFor(const BodyField& field);

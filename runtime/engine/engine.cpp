@@ -88,7 +88,7 @@ std::shared_ptr<const RestShape> Engine::restShape() const {
 }
 
 std::shared_ptr<const State> Engine::state() const {
-    return std::make_shared<const State>(impl_->state_);
+    return makeShared<const State>(impl_->state_);
 }
 
 void Engine::keepMemory() {

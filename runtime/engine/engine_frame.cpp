@@ -278,7 +278,7 @@ void Engine::Impl::setBody(std::shared_ptr<const BodyField> body) {
 void Engine::Impl::allocateForBody() {
     clearances_ = meetsBody() ? bodyClearances(*shape_, *body_) : Floats();
     bodyTable_ = meetsBody() ? BodyTable(*body_) : BodyTable();
-    bodyCarriers_ = meetsBody() ? carriersOf(*shape_, *body_) : std::vector<std::uint32_t>();
+    bodyCarriers_ = meetsBody() ? carriersOf(*shape_, *body_) : Vector<std::uint32_t>();
     bodySeen_ = Floats(meetsBody() ? kBodyPlanes * shape_->planeFloats : 0, kNeverSeen);
     bodyLost_ = true;
     movingBody_ = {};

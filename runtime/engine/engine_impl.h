@@ -13,11 +13,12 @@
 #include "engine/state_read.h"
 #include "engine/strand_model.h"
 #include "hairloom/engine.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
 /// Trusts the sizes of what it is given.
-struct Engine::Impl {
+struct Engine::Impl : InMemory {
     struct Frame;
     struct BlockReport {
         std::array<std::uint64_t, kStageCount> nanoseconds{};
@@ -84,8 +85,8 @@ struct Engine::Impl {
     Floats bodySeen_;       // kBodyPlanes, per block
     bool bodyLost_ = true;  // what they say is void
     BodyTable bodyTable_;
-    std::vector<std::uint32_t> bodyCarriers_;  // carriersOf()
-    OwnedStrands strands_;                     // as their model has them
+    Vector<std::uint32_t> bodyCarriers_;  // carriersOf()
+    OwnedStrands strands_;                // as their model has them
     HairGrid hairGrid_;
     EffectPlan plan_;
     FrameWind wind_;
@@ -93,12 +94,12 @@ struct Engine::Impl {
     Scratch scratch_;
     bool keepsMemory_ = false;  // of effects that are off
     StepReport report_;
-    std::vector<BlockReport> blockReports_;
+    Vector<BlockReport> blockReports_;
     // Of the frame under way.
     Floats nextRoots_;  // as State::roots, at the frame's end
     FrameSpheres spheres_;
-    std::vector<MovingSphere> movingSpheres_;
-    std::vector<MovingCapsule> movingCapsules_;
+    Vector<MovingSphere> movingSpheres_;
+    Vector<MovingCapsule> movingCapsules_;
     MovingBody movingBody_;
     bool bodyMoves_ = false;
     std::uint32_t substeps_ = 1;

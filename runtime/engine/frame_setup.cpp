@@ -164,7 +164,7 @@ void takeSpheres(const SimulationSettings& settings, float longestStrand, const 
     findWaking(hairReach(settings, longestStrand), before, spheres);
 }
 
-void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving) {
+void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving) {
     moving.clear();
     moving.reserve(spheres.given + kMaxAlongCapsule * spheres.capsules.size());
     const float share = 1.0f / static_cast<float>(substeps);
@@ -173,8 +173,8 @@ void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vecto
     }
 }
 
-void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving,
-                  std::vector<MovingCapsule>& capsules) {
+void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving,
+                  Vector<MovingCapsule>& capsules) {
     moving.clear();
     capsules.clear();
     moving.reserve(spheres.given);

@@ -5,9 +5,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "engine/kernels.h"
+#include "hairloom/memory.h"
 #include "hairloom/plan.h"
 #include "hairloom/strands.h"
 #include "hairloom/wind.h"
@@ -16,18 +16,18 @@ namespace hairloom::runtime {
 
 /// The spheres of a frame. Those that cannot be used stay in their place at radius 0.
 struct FrameSpheres {
-    std::vector<Sphere> usable;      ///< those of the frame, then those along capsules
-    std::size_t given = 0;           ///< of the frame
-    std::vector<Capsule> capsules;   ///< between usable ones, each pair once
-    std::vector<std::uint8_t> ends;  ///< 1 for a sphere that is the end of a capsule
-    std::vector<Float3> motion;      ///< each one's displacement during the frame; none for a cut
+    Vector<Sphere> usable;      ///< those of the frame, then those along capsules
+    std::size_t given = 0;      ///< of the frame
+    Vector<Capsule> capsules;   ///< between usable ones, each pair once
+    Vector<std::uint8_t> ends;  ///< 1 for a sphere that is the end of a capsule
+    Vector<Float3> motion;      ///< each one's displacement during the frame; none for a cut
     /// What a plan looks at: the usable ones, and a sphere around each capsule.
-    std::vector<Sphere> planned;
-    std::vector<Float3> plannedMotion;
+    Vector<Sphere> planned;
+    Vector<Float3> plannedMotion;
     std::uint32_t rejected = 0;  ///< not finite or without radius
     /// Around a root within `radius` of which a sphere that has changed since the last frame may touch the
     /// hair: what sleeps there wakes up.
-    std::vector<Sphere> waking;
+    Vector<Sphere> waking;
 };
 /// What the last frame had: usable spheres, and capsules between these.
 struct FormerSpheres {
@@ -38,10 +38,10 @@ struct FormerSpheres {
 void takeSpheres(const SimulationSettings& settings, float longestStrand, const FormerSpheres& before,
                  std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres);
 /// Those with a radius, on their way through the frame's substeps, capsules as spheres along them.
-void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving);
+void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving);
 /// Likewise, for what meets capsules as they are: their ends are none of the spheres.
-void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving,
-                  std::vector<MovingCapsule>& capsules);
+void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving,
+                  Vector<MovingCapsule>& capsules);
 
 /// The wind of a frame.
 struct FrameWind {

@@ -57,16 +57,16 @@ shaders::SimulationConstants frameConstants(const GpuFrame& frame, const Substep
     return c;
 }
 
-std::vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres) {
-    std::vector<shaders::SphereConstants> constants;
+Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres) {
+    Vector<shaders::SphereConstants> constants;
     constants.reserve(spheres.size());
     for (const MovingSphere& sphere : spheres)
         constants.push_back({gpuQuad(sphere.from_ws, sphere.radius), gpuQuad(sphere.step, 0.0f)});
     return constants;
 }
 
-std::vector<shaders::float4> wakingOf(const FrameSpheres& spheres) {
-    std::vector<shaders::float4> reaches;
+Vector<shaders::float4> wakingOf(const FrameSpheres& spheres) {
+    Vector<shaders::float4> reaches;
     for (const Sphere& sphere : spheres.waking) reaches.push_back(gpuQuad(sphere.center_ws, sphere.radius));
     return reaches;
 }

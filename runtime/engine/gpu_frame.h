@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "engine/frame_setup.h"
 #include "engine/slots.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -27,16 +27,16 @@ shaders::SimulationConstants frameConstants(const GpuFrame& frame, const Substep
                                             const FrameInput& input, const Slots& slots,
                                             std::uint32_t groupStrands);
 
-std::vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres);
+Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres);
 /// Centre and reach of each.
-std::vector<shaders::float4> wakingOf(const FrameSpheres& spheres);
+Vector<shaders::float4> wakingOf(const FrameSpheres& spheres);
 
 /// What is known of roots from frame to frame.
 struct FrameRoots {
-    std::vector<RootFrame> roots;  ///< one per strand, sound, at the end of the last frame
-    std::vector<bool> moved;       ///< of the last frame
-    Float3 min_ws, max_ws;         ///< box of them
-    float motion = 0;              ///< metres, the longest way
+    Vector<RootFrame> roots;  ///< one per strand, sound, at the end of the last frame
+    Vector<bool> moved;       ///< of the last frame
+    Float3 min_ws, max_ws;    ///< box of them
+    float motion = 0;         ///< metres, the longest way
     std::uint32_t rejected = 0;
 };
 /// Takes the roots that the frame ends on. What is no root stays where it was. `known`: those of before are

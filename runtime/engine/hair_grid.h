@@ -12,6 +12,7 @@
 
 #include "engine/hair_kernel.h"
 #include "engine/state.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -108,8 +109,8 @@ class HairGrid {
     Floats allowed_;  ///< of each node of `restBox_`: density as authored there, at least 1
     Floats places_;   ///< per block: x, y, z in cells
     Floats felt_;     ///< kHairPlanes per block
-    std::vector<HairBounds> bounds_;
-    std::vector<std::uint8_t> counted_;  ///< per block: asleep, and in `Work::sleepers`
+    Vector<HairBounds> bounds_;
+    Vector<std::uint8_t> counted_;  ///< per block: asleep, and in `Work::sleepers`
     Work work_;
 };
 

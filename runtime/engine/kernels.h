@@ -22,8 +22,8 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
-#include <vector>
 
+#include "hairloom/memory.h"
 #include "hairloom/plan.h"
 #include "hairloom/wind.h"
 #include "shaders/simulation_types.h"
@@ -98,9 +98,9 @@ struct alignas(64) LaneFrame {
     float rotationFrom[4][kBlockLanes];      ///< x, y, z, w
     float rotationTo[4][kBlockLanes];        ///< by the first substep on the side of rotationFrom
     float rotation[4][kBlockLanes];          ///< of now; kept by the stage `roots`
-    std::uint32_t guarded = 0;  ///< a bit for each lane whose speeds the model took back in this frame
-    std::vector<MovingSphere> touchable;  ///< spheres that can reach the block, where its model lists them
-    std::vector<MovingCapsule> touchableCapsules;  ///< likewise
+    std::uint32_t guarded = 0;       ///< a bit for each lane whose speeds the model took back in this frame
+    Vector<MovingSphere> touchable;  ///< spheres that can reach the block, where its model lists them
+    Vector<MovingCapsule> touchableCapsules;  ///< likewise
     /// What the model keeps for a block through a frame: Model::laneFloats of them, on a cache line.
     float* own = nullptr;
     /// What the solvers along a strand work in: for each point what Model::solverFloats says of the stages,

@@ -82,7 +82,7 @@ void MovingBody::take(const BodyField& field, const BodyTable& table, std::span<
 void MovingBody::reserve(const BodyField& field, const BodyTable& table,
                          std::span<const std::uint32_t> carriers, std::uint32_t substeps) {
     // Bones that go apart need most.
-    std::vector<BonePose> poses(std::max<std::size_t>(field.bones.size(), 1));
+    Vector<BonePose> poses(std::max<std::size_t>(field.bones.size(), 1));
     for (std::size_t b = 0; b < poses.size(); ++b) poses[b].origin.x = static_cast<float>(b);
     take(field, table, poses, poses, carriers, substeps);
     strayed_ = {};
@@ -166,8 +166,8 @@ void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, float near
     }
 }
 
-std::vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body) {
-    std::vector<std::size_t> roots(std::max<std::size_t>(body.bones.size(), 1), 0), corners(roots);
+Vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body) {
+    Vector<std::size_t> roots(std::max<std::size_t>(body.bones.size(), 1), 0), corners(roots);
     for (const RootFrame& root : shape.restRoots) {
         const Corner corner = nearestCorner(body, (root.position - body.low_ss) * (1 / body.cell));
         const BodyField::Skin& skin = body.palette[body.skins[corner.index]];
@@ -180,10 +180,11 @@ std::vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& b
         for (std::size_t i = 0; i < skin.bones.size(); ++i)
             if (skin.weights[i] == kAll) ++corners[skin.bones[i]];
     }
-    std::vector<std::uint32_t> carriers(roots.size());
+    Vector<std::uint32_t> carriers(roots.size());
     std::iota(carriers.begin(), carriers.end(), 0u);
-    std::stable_sort(carriers.begin(), carriers.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return corners[a] > corners[b]; });
+    std::sort(carriers.begin(), carriers.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return corners[a] != corners[b] ? corners[a] > corners[b] : a < b;
+    });
     const auto first =
         std::max_element(carriers.begin(), carriers.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return roots[a] < roots[b]; });

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "engine/body_table.h"
 #include "engine/state.h"
 #include "hairloom/body_field.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -91,15 +91,15 @@ class MovingBody {
                 std::span<const BonePose> after) const;
 
     /// At the start of the frame, and at the end of each substep; behind them those of longer frames before.
-    std::vector<PosedBody> at_;
-    std::vector<BonePose> between_, before_;
-    std::vector<BonePose> inverses_;  ///< of each bone at the end of each substep
-    std::vector<float> leasts_;       ///< metres in the world of one that it carries, at least; 0: it is flat
+    Vector<PosedBody> at_;
+    Vector<BonePose> between_, before_;
+    Vector<BonePose> inverses_;  ///< of each bone at the end of each substep
+    Vector<float> leasts_;       ///< metres in the world of one that it carries, at least; 0: it is flat
     const BodyField* field_ = nullptr;
     const BodyTable* table_ = nullptr;
     std::size_t bones_ = 0, carrierCount_ = 0;
-    std::vector<Carrier> carriers_;  ///< of each substep
-    std::vector<std::uint8_t> wholes_;
+    Vector<Carrier> carriers_;  ///< of each substep
+    Vector<std::uint8_t> wholes_;
     std::array<float, kMostCarriers> strayed_{};
     bool moves_ = false, lostTrack_ = true;
 };
@@ -110,7 +110,7 @@ Floats bodyClearances(const RestShape& shape, const BodyField& body);
 
 /// Bones of the body in whose spaces nodes are looked for: the one that moves most roots first, then those
 /// that alone move most of the body; at most MovingBody::kMostCarriers.
-std::vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body);
+Vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body);
 
 /// Planes of what is known of each point and the body: where it was looked at, in its carrier's space, metres
 /// that it may go from there to skin of the carrier and to other skin, which has strayed, and the carrier.

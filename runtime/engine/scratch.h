@@ -15,7 +15,7 @@ namespace hairloom::runtime {
 
 class Scratch {
   public:
-    struct Piece {
+    struct Piece : InMemory {
         LaneFrame lanes;  ///< lanes.own and lanes.solver are memory
         Floats memory;
         std::atomic<bool> taken = false;

@@ -18,10 +18,10 @@ void forEachRow(const RestShape& shape, const Slots& slots,
     }
 }
 
-std::vector<float> planesOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
-                                 std::size_t count) {
+Vector<float> planesOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
+                            std::size_t count) {
     const std::size_t plane = slots.planeSize(), stride = slots.laneStride();
-    std::vector<float> values(plane * count, 0.0f);
+    Vector<float> values(plane * count, 0.0f);
     forEachRow(shape, slots, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
         const float* const first = planes.data() + shape.blocks[block].firstPlane * count;
         for (std::size_t k = 0; k < count; ++k) {
@@ -54,8 +54,8 @@ void rowsToBlocks(const Slots& slots, std::span<const float> values, std::size_t
     }
 }
 
-std::vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::size_t rows) {
-    std::vector<float> values(rows * slots.count);
+Vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::size_t rows) {
+    Vector<float> values(rows * slots.count);
     for (std::size_t n = 0; n < slots.blocks.size(); ++n) {
         for (std::size_t r = 0; r < rows; ++r)
             std::copy_n(blocks + (slots.blocks[n] * rows + r) * kBlockLanes, kBlockLanes,
@@ -64,9 +64,9 @@ std::vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::siz
     return values;
 }
 
-std::vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
-                                          std::size_t count, std::span<const std::size_t> which) {
-    std::vector<shaders::float4> values(slots.planeSize());
+Vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
+                                     std::size_t count, std::span<const std::size_t> which) {
+    Vector<shaders::float4> values(slots.planeSize());
     forEachRow(shape, slots, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
         const std::size_t size = planeSize(shape.blocks[block]);
         const float* const first = planes.data() + shape.blocks[block].firstPlane * count + inBlock;
@@ -96,9 +96,9 @@ RestSlots restOfSlots(const RestShape& shape, const Slots& slots) {
     return made;
 }
 
-std::vector<shaders::float4> rootsOfSlots(const RestShape& shape, const Slots& slots,
-                                          std::span<const RootFrame> roots, const std::vector<bool>& moved) {
-    std::vector<shaders::float4> rows(std::size_t{slots.count} * 2);
+Vector<shaders::float4> rootsOfSlots(const RestShape& shape, const Slots& slots,
+                                     std::span<const RootFrame> roots, const Vector<bool>& moved) {
+    Vector<shaders::float4> rows(std::size_t{slots.count} * 2);
     for (std::size_t n = 0; n < slots.blocks.size(); ++n) {
         for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::uint32_t strand = shape.blocks[slots.blocks[n]].strandOfLane[lane];

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <vector>
 
 #include "engine/state.h"
+#include "hairloom/memory.h"
 #include "shaders/types.h"
 
 namespace hairloom::runtime {
@@ -32,30 +32,30 @@ void forEachRow(const RestShape& shape, const Slots& slots,
                                          std::size_t inSlots)>& visit);
 
 /// Planes of blocks as those of slots, plane after plane. `planes` holds `count` of them per block.
-std::vector<float> planesOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
-                                 std::size_t count);
+Vector<float> planesOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
+                            std::size_t count);
 /// The reverse.
 void planesOfBlocks(const RestShape& shape, const Slots& slots, std::span<const float> values, Floats& planes,
                     std::size_t count);
 /// Rows of one value per slot in the order of blocks: `rows` of them a block.
 void rowsToBlocks(const Slots& slots, std::span<const float> values, std::size_t rows, float* blocks);
 /// The reverse.
-std::vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::size_t rows);
+Vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::size_t rows);
 /// Up to four of the planes of each block, as the components of a float4 for each point.
-std::vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
-                                          std::size_t count, std::span<const std::size_t> which);
+Vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
+                                     std::size_t count, std::span<const std::size_t> which);
 
 /// The rest shape, as storage.hlsli has it.
 struct RestSlots {
-    std::vector<shaders::float4> rest;
-    std::vector<std::array<float, 2>> segments;
-    std::vector<std::array<std::uint32_t, 2>> blocks;
-    std::vector<std::uint32_t> firstPoints;
+    Vector<shaders::float4> rest;
+    Vector<std::array<float, 2>> segments;
+    Vector<std::array<std::uint32_t, 2>> blocks;
+    Vector<std::uint32_t> firstPoints;
 };
 RestSlots restOfSlots(const RestShape& shape, const Slots& slots);
 
 /// Where the frame's roots are; `moved` may be empty: none has.
-std::vector<shaders::float4> rootsOfSlots(const RestShape& shape, const Slots& slots,
-                                          std::span<const RootFrame> roots, const std::vector<bool>& moved);
+Vector<shaders::float4> rootsOfSlots(const RestShape& shape, const Slots& slots,
+                                     std::span<const RootFrame> roots, const Vector<bool>& moved);
 
 }  // namespace hairloom::runtime

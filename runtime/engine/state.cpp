@@ -70,12 +70,12 @@ bool bends(std::span<const Float3> points) {
 
 /// In blocks of equal point counts; straight strands and others apart, so that each block pays for what it
 /// needs.
-std::vector<Block> groupStrands(const StrandsView& strands, const Host& host, bool& straight) {
+Vector<Block> groupStrands(const StrandsView& strands, const Host& host, bool& straight) {
     const std::size_t count = strands.offsets.size() - 1;
     const auto pointsOf = [&](std::uint32_t s) { return strands.offsets[s + 1] - strands.offsets[s]; };
-    std::vector<std::uint32_t> order(count);
+    Vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
-    std::vector<std::uint32_t> kind(count);  // twice the points, and one more where the strand bends
+    Vector<std::uint32_t> kind(count);  // twice the points, and one more where the strand bends
     inParallel(host, count, kStrandsPerPiece, [&](std::size_t begin, std::size_t end) {
         for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s) {
             const bool curved = bends(strands.restPositions_ss.subspan(strands.offsets[s], pointsOf(s)));
@@ -83,17 +83,18 @@ std::vector<Block> groupStrands(const StrandsView& strands, const Host& host, bo
         }
     });
     straight = std::none_of(kind.begin(), kind.end(), [](std::uint32_t k) { return k % 2 == 1; });
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return kind[a] < kind[b]; });
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return kind[a] != kind[b] ? kind[a] < kind[b] : a < b;
+    });
     // Where strands touch things, rather than where they grow.
-    std::vector<Float3> positions(count);
+    Vector<Float3> positions(count);
     for (std::uint32_t s = 0; s < count; ++s)
         positions[s] = strands.restPositions_ss[strands.offsets[s] + pointsOf(s) / 4];
     for (std::size_t first = 0, end = 0; first < count; first = end) {
         while (end < count && kind[order[end]] == kind[order[first]]) ++end;
         orderByPosition(std::span(order).subspan(first, end - first), positions);
     }
-    std::vector<Block> blocks;
+    Vector<Block> blocks;
     std::size_t plane = 0;
     for (std::size_t i = 0; i < count;) {
         Block block{pointsOf(order[i]), 0, plane, {}};
@@ -193,7 +194,7 @@ Floats zeroFloats(std::size_t count, const Host& host) {
 }
 
 std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const Host& host) {
-    auto shape = std::make_shared<RestShape>();
+    auto shape = makeShared<RestShape>();
     const std::size_t count = strands.offsets.size() - 1;
     shape->offsets.assign(strands.offsets.begin(), strands.offsets.end());
     shape->restRoots.resize(count);
@@ -207,7 +208,7 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const
     shape->blocks = groupStrands(strands, host, shape->straight);
     shape->planeFloats = shape->blocks.back().firstPlane + planeSize(shape->blocks.back());
     shape->planes = zeroFloats(shape->planeFloats * kRestPlanes, host);
-    std::vector<float> longest(shape->blocks.size());
+    Vector<float> longest(shape->blocks.size());
     inParallel(host, longest.size(), kStrandsPerPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
             longest[b] = fillRestPlanes(strands, shape->blocks[b], *shape);

@@ -14,6 +14,7 @@
 #include "engine/kernels.h"
 #include "hairloom/body_field.h"
 #include "hairloom/host.h"
+#include "hairloom/memory.h"
 #include "hairloom/settings.h"
 
 namespace hairloom::runtime {
@@ -22,13 +23,12 @@ namespace hairloom::runtime {
 template <class T>
 struct CacheLineAllocator {
     using value_type = T;
+    static constexpr std::size_t kCacheLine = 64;
     CacheLineAllocator() = default;
     template <class U>
     CacheLineAllocator(const CacheLineAllocator<U>&) {}
-    T* allocate(std::size_t n) {
-        return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64}));
-    }
-    void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
+    T* allocate(std::size_t n) { return static_cast<T*>(takeMemory(n * sizeof(T), kCacheLine)); }
+    void deallocate(T* p, std::size_t n) noexcept { returnMemory(p, n * sizeof(T), kCacheLine); }
     /// What is given no value has none: a vector that is resized does not touch its memory.
     template <class U>
     void construct(U* p) {
@@ -63,11 +63,11 @@ struct Block {
 
 /// Rest shape and grouping of the strands; immutable, shared by copies of an engine.
 struct RestShape {
-    std::vector<std::uint32_t> offsets;
-    std::vector<Block> blocks;
+    Vector<std::uint32_t> offsets;
+    Vector<Block> blocks;
     std::size_t planeFloats = 0;  ///< sum of the blocks' plane sizes
     Floats planes;                ///< per block: rest x, y, z, length, inverse length, inverse mass
-    std::vector<RootFrame> restRoots;
+    Vector<RootFrame> restRoots;
     std::uint32_t longestPointCount = 0;
     float longestStrand = 0.0f;  ///< metres
     bool straight = true;        ///< no strand bends at rest
@@ -100,10 +100,10 @@ struct State {
     Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
     StrandModel model = StrandModel::rods;  ///< that `own` is of
     std::array<Floats, kOwnArrays> own;     ///< what the model remembers besides, per block (Model::own)
-    std::vector<Rest> rests;                ///< per block
-    std::vector<Sphere> spheres;            ///< of the last frame
-    std::vector<Capsule> capsules;          ///< likewise, between these
-    std::vector<BonePose> body;             ///< likewise; empty where none was given
+    Vector<Rest> rests;                     ///< per block
+    Vector<Sphere> spheres;                 ///< of the last frame
+    Vector<Capsule> capsules;               ///< likewise, between these
+    Vector<BonePose> body;                  ///< likewise; empty where none was given
     Float3 rootsMin_ws, rootsMax_ws;        ///< box of the last frame's roots
     float substep = 0.0f;                   ///< seconds of the last substep; 0 before the first
     float fastest = 0.0f;                   ///< m/s, greatest speed of a point at the end of the last frame

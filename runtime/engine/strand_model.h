@@ -54,7 +54,7 @@ struct ModelFrame {
 
 /// The strands of one engine as their model has them: what it derives from the rest shape, settings and plan.
 /// What it remembers from step to step is in State::own.
-class ModelStrands {
+class ModelStrands : public InMemory {
   public:
     virtual ~ModelStrands() = default;
     virtual std::unique_ptr<ModelStrands> copy() const = 0;

@@ -48,10 +48,10 @@ struct BodyPush::Hair {
     std::span<const float> least, leastBetween;
     /// What is known of a hair's points, in memory that hairs share.
     struct Known {
-        std::vector<float> free;  ///< metres that the body is away from each for certain
-        std::vector<float> near;  ///< and at most
+        Vector<float> free;  ///< metres that the body is away from each for certain
+        Vector<float> near;  ///< and at most
         /// Moments: when each point has moved, when it was looked at, and when the way to the next one was.
-        std::vector<std::uint32_t> moved, looked, checked;
+        Vector<std::uint32_t> moved, looked, checked;
     };
     Known& known;
     std::uint32_t moment = 1;
@@ -78,7 +78,7 @@ struct BodyPush::Hair {
     }
 };
 
-BodyPush::BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint32_t> offsets,
+BodyPush::BodyPush(std::shared_ptr<const BodyField> body, Vector<std::uint32_t> offsets,
                    std::span<const Float3> rest_ss)
     : body_(std::move(body)),
       offsets_(std::move(offsets)),

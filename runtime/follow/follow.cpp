@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <utility>
-#include <vector>
 
 #include "engine/in_parallel.h"
 #include "engine/state.h"
@@ -192,8 +191,8 @@ void forTaken(const Host& host, std::span<const std::uint32_t> groups, std::span
 
 }  // namespace
 
-void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples) {
-    std::vector<double> arc(guide.size(), 0.0);
+void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, Vector<GuideSample>& samples) {
+    Vector<double> arc(guide.size(), 0.0);
     for (std::size_t p = 1; p < guide.size(); ++p) {
         const Float3 step = guide[p] - guide[p - 1];
         arc[p] = arc[p - 1] + std::hypot(double{step.x}, double{step.y}, double{step.z});
@@ -209,16 +208,16 @@ void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vecto
     samples.push_back({static_cast<std::uint32_t>(guide.size() - 2), 1.0f});
 }
 
-struct FollowHairs::Impl {
+struct FollowHairs::Impl : InMemory {
     std::uint32_t points = 0;
     std::size_t rowFloats = 0;
-    std::vector<std::uint32_t> guideOffsets;
-    std::vector<RootPlane> rootPlanes;
-    std::vector<std::size_t> firstSample;  // per guide; kNoSamples where its points are taken as they are
-    std::vector<GuideSample> samples;      // `points` of them for each guide that is resampled
-    std::vector<float> radii;
+    Vector<std::uint32_t> guideOffsets;
+    Vector<RootPlane> rootPlanes;
+    Vector<std::size_t> firstSample;  // per guide; kNoSamples where its points are taken as they are
+    Vector<GuideSample> samples;      // `points` of them for each guide that is resampled
+    Vector<float> radii;
     WispMotion wispMotion;
-    std::vector<HairBinding> hairs;
+    Vector<HairBinding> hairs;
     Floats positions, wisps, frames;  // of the frame, as GuideRows has them
 
     static constexpr std::size_t kNoSamples = static_cast<std::size_t>(-1);

@@ -34,9 +34,9 @@ shaders::FollowPlane followPlane(const RootPlane& plane) {
     return {follow4(plane.x), follow4(plane.y), follow4(plane.normal)};
 }
 
-std::vector<std::array<float, 2>> followSamples(const FollowView& view) {
-    std::vector<std::array<float, 2>> all;
-    std::vector<GuideSample> samples;
+Vector<std::array<float, 2>> followSamples(const FollowView& view) {
+    Vector<std::array<float, 2>> all;
+    Vector<GuideSample> samples;
     for (std::size_t g = 0; g + 1 < view.guideOffsets.size(); ++g) {
         const std::uint32_t first = view.guideOffsets[g], count = view.guideOffsets[g + 1] - first;
         samples.clear();

@@ -17,9 +17,9 @@ constexpr std::size_t kGuidesPerPiece = 16;
 
 /// The triangles around each guide, with the running sum of their areas for drawing by area.
 struct Fans {
-    std::vector<std::uint32_t> offsets;  // per guide, into the others
-    std::vector<std::uint32_t> triangles;
-    std::vector<float> areas;  // running sum within the fan
+    Vector<std::uint32_t> offsets;  // per guide, into the others
+    Vector<std::uint32_t> triangles;
+    Vector<float> areas;  // running sum within the fan
 
     explicit Fans(const FollowRecipe& recipe) : offsets(recipe.ids.size() + 1, 0) {
         for (const auto& triangle : recipe.triangles) {
@@ -28,7 +28,7 @@ struct Fans {
         std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
         triangles.resize(offsets.back());
         areas.resize(offsets.back());
-        std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
+        Vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
         for (std::uint32_t index = 0; index < recipe.triangles.size(); ++index) {
             for (const std::uint32_t corner : recipe.triangles[index]) {
                 const std::uint32_t place = next[corner]++;
@@ -132,7 +132,7 @@ void drawHair(const FollowRecipe& recipe, const Fans& fans, std::uint32_t guide,
 
 DrawnHairs drawFollowHairs(const FollowRecipe& recipe, const Host& host) {
     const std::size_t guides = recipe.ids.size();
-    std::vector<std::size_t> firstHairs(guides + 1);
+    Vector<std::size_t> firstHairs(guides + 1);
     for (std::size_t guide = 0; guide < guides; ++guide)
         firstHairs[guide + 1] = firstHairs[guide] + recipe.hairs[guide];
     const std::size_t count = firstHairs.back();
@@ -183,8 +183,8 @@ Float3 pointAtShare(std::span<const Float3> points, float share) {
     return points.back();
 }
 
-std::vector<float> wispRadii(float root, float tip, std::uint32_t points) {
-    std::vector<float> radii(points);
+Vector<float> wispRadii(float root, float tip, std::uint32_t points) {
+    Vector<float> radii(points);
     for (std::uint32_t i = 0; i < points; ++i)
         radii[i] = root + static_cast<float>(i) / static_cast<float>(points - 1) * (tip - root);
     return radii;

@@ -13,7 +13,7 @@ constexpr float kSeam = 0.25f;
 /// Separates random numbers of hairs from those that they are drawn with.
 constexpr std::uint64_t kHairStream = 0x6861697273ull;
 
-std::array<float, 3> numbersOf(const Asset& asset, const std::string& name, std::array<float, 3> usual) {
+std::array<float, 3> numbersOf(const Asset& asset, const String& name, std::array<float, 3> usual) {
     const asset::Setting* const setting = asset.findSetting(name);
     if (!setting || setting->kind != asset::ValueKind::numbers || setting->count > 3) return usual;
     const auto values = asset.valuesOf(*setting);
@@ -27,7 +27,7 @@ struct LayerLook {
     float rootRadius, tipRadius;
 };
 
-LayerLook lookOf(const Asset& asset, const std::string& group, const LayerLook& usual) {
+LayerLook lookOf(const Asset& asset, const String& group, const LayerLook& usual) {
     const float radius = numbersOf(asset, group + ".rootRadius", {usual.rootRadius, 0, 0})[0];
     const float scale = numbersOf(asset, group + ".tipScale", {usual.tipRadius / usual.rootRadius, 0, 0})[0];
     return {numbersOf(asset, group + ".rootColour", usual.colour), radius, radius * scale};
@@ -41,12 +41,11 @@ const float* floatsOf(const Asset& asset, std::string_view name, std::uint32_t c
     return reinterpret_cast<const float*>(asset.valuesOf(*found).data());
 }
 
-std::vector<LayerLook> looksOf(const Asset& asset) {
+Vector<LayerLook> looksOf(const Asset& asset) {
     const LayerLook all = lookOf(asset, "material", {{0.16f, 0.08f, 0.04f}, 4e-5f, 1.6e-5f});
-    std::vector<LayerLook> looks(asset.layerCount(), all);
+    Vector<LayerLook> looks(asset.layerCount(), all);
     for (std::size_t layer = 0; layer < asset.layers.size(); ++layer) {
-        if (asset.layers[layer].ownMaterial != 0)
-            looks[layer] = lookOf(asset, "layer" + std::to_string(layer + 1), all);
+        if (asset.layers[layer].ownMaterial != 0) looks[layer] = lookOf(asset, layerGroup(layer), all);
     }
     return looks;
 }
@@ -54,7 +53,7 @@ std::vector<LayerLook> looksOf(const Asset& asset) {
 void fillHairs(const Asset& asset, char* out, std::size_t stride) {
     const Asset::Strands rest = asset.strandsAtRest();
     const DrawnHairs drawn = asset.drawnHairs(rest);
-    const std::vector<LayerLook> looks = looksOf(asset);
+    const Vector<LayerLook> looks = looksOf(asset);
     const float* const uvs = floatsOf(asset, "root_uv", 2);
     const float* const colours = floatsOf(asset, "colour", 3);
     std::size_t hair = 0;

@@ -42,7 +42,7 @@ hl_code makeInstance(const hl_asset* opened, uint32_t what, const Host& host, hl
     return withContent(opened, error, [&](const Asset& asset) {
         Instance::Result made = Instance::make(asset, (what & HL_HAIRS) != 0, (what & HL_LEVELS) != 0, host);
         if (!made.instance) return say(error, HL_DAMAGED, HL_NO_PLACE, made.error);
-        *out = new hl_instance{std::move(*made.instance)};
+        *out = new hl_instance(std::move(*made.instance));
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }
@@ -86,6 +86,27 @@ hl_code hl_build_info(hl_build* out, hl_error* error) {
 #endif
     giveBack(build, out, out->size);
     return say(error, HL_OK, HL_NO_PLACE, "");
+}
+
+void hl_allocator_init(hl_allocator* allocator) {
+    if (!allocator) return;
+    *allocator = {};
+    allocator->size = sizeof(hl_allocator);
+}
+
+hl_code hl_set_allocator(const hl_allocator* given, hl_error* error) {
+    return guarded(error, [&] {
+        hl_allocator allocator{};
+        if (given) {
+            if (const Outcome refused = takeIn(given, "hl_allocator", sizeof(hl_allocator), allocator))
+                return say(error, refused);
+            if (!allocator.allocate || !allocator.release)
+                return nullRefused(error, "an allocator that lacks allocate or release");
+        }
+        if (!lendMemory({allocator.user, allocator.allocate, allocator.release}))
+            return nullRefused(error, "an allocator while there are instances with memory of the former");
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
 }
 
 hl_code hl_instance_make(const hl_asset* opened, uint32_t what, const hl_jobs* jobs, hl_instance** out,
@@ -202,7 +223,7 @@ hl_code hl_instance_save(const hl_instance* instance, void* data, size_t bytes, 
     if (!instance || !written || (!data && bytes > 0))
         return nullRefused(error, "no instance or no place for it");
     return guarded(error, [&] {
-        const std::vector<std::byte> saved = instance->instance.save();
+        const Vector<std::byte> saved = instance->instance.save();
         *written = saved.size();
         if (!data) return say(error, HL_OK, HL_NO_PLACE, "");
         if (bytes < saved.size())

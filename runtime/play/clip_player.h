@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "hairloom/asset.h"
 #include "hairloom/hairloom.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -67,15 +67,15 @@ class ClipPlayer {
     static constexpr std::uint32_t kNoFrame = 0xffffffffu;
     std::array<std::uint64_t, 3> identity_{};
     std::uint32_t level_ = 0;
-    float step_ = 0;                      ///< metres of a cell
-    std::vector<std::uint32_t> offsets_;  ///< of the strands' points
-    std::vector<std::int32_t> rest_;      ///< as clipRest()
-    std::array<std::vector<std::int32_t>, 2> cells_;
+    float step_ = 0;                 ///< metres of a cell
+    Vector<std::uint32_t> offsets_;  ///< of the strands' points
+    Vector<std::int32_t> rest_;      ///< as clipRest()
+    std::array<Vector<std::int32_t>, 2> cells_;
     std::array<std::uint32_t, 2> frames_{kNoFrame, kNoFrame};  ///< that are in cells_
     std::size_t last_ = 0;                                     ///< which of them was decoded last
     std::size_t from_ = 0, to_ = 0;                            ///< which of them are those of the moment
-    std::vector<std::uint64_t> bits_;    ///< of each strand, that were read of the block of `last_`
-    std::vector<std::uint8_t> damaged_;  ///< strands that were found to be so
+    Vector<std::uint64_t> bits_;    ///< of each strand, that were read of the block of `last_`
+    Vector<std::uint8_t> damaged_;  ///< strands that were found to be so
 };
 
 }  // namespace hairloom::runtime

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
 #include "follow/follow_gpu.h"
 #include "hairloom/capsules.h"
@@ -32,15 +31,15 @@ struct GpuCounts {
     std::uint64_t slotPoints() const { return slots() * longest; }
 };
 /// Adds what the pass GUIDES is measured by.
-GpuCounts withGuides(GpuCounts counts, const std::map<std::uint32_t, std::size_t>& strandsOf,
-                     std::size_t spheres, std::size_t capsules) {
+GpuCounts withGuides(GpuCounts counts, const Map<std::uint32_t, std::size_t>& strandsOf, std::size_t spheres,
+                     std::size_t capsules) {
     counts.blocks = gpuBlocksOf(strandsOf);
     counts.longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
     counts.spheres = gpuSpheresOf(spheres, capsules);
     return counts;
 }
 GpuCounts gpuCountsOf(const Asset& asset) {
-    std::map<std::uint32_t, std::size_t> strandsOf;
+    Map<std::uint32_t, std::size_t> strandsOf;
     for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
     std::size_t capsules = 0;
     for (const asset::Sphere& sphere : asset.spheres) capsules += sphere.joined > 0 ? 1 : 0;
@@ -103,7 +102,7 @@ void writeGpu(void*& at, const Value& value) {
 }
 
 void fillLooks(const hl_asset* asset, std::size_t count, void* out) {
-    std::vector<hl_hair> hairs(count);
+    Vector<hl_hair> hairs(count);
     hl_asset_hairs(asset, hairs.data(), sizeof(hl_hair), count, nullptr);
     for (const hl_hair& hair : hairs)
         writeGpu(out, shaders::RibbonLook{{hair.colour[0], hair.colour[1], hair.colour[2], hair.random},
@@ -164,7 +163,7 @@ std::size_t Instance::gpuBytes(std::uint32_t buffer) const {
     GpuCounts counts{roots_.size(), positions_.size(), 0, 0, 0, 0, 0};
     const std::uint32_t fill = kGpuBuffers[buffer].fill;
     if (fill == HL_GPU_BEGIN || fill == HL_GPU_STEP) {
-        std::map<std::uint32_t, std::size_t> strandsOf;
+        Map<std::uint32_t, std::size_t> strandsOf;
         for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) ++strandsOf[offsets_[s + 1] - offsets_[s]];
         counts = withGuides(counts, strandsOf, restSpheres_.size(), restCapsules_.size());
     }

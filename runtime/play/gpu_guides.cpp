@@ -17,8 +17,8 @@ static_assert(HL_GPU_SPHERES >= HAIRLOOM_CONSTANT_SPHERES);
 static_assert(sizeof(shaders::SimulationConstants) == 352 && sizeof(shaders::RodConstants) == 160,
               "HL_GPU_BUFFERS");
 
-std::map<std::uint32_t, std::size_t> strandsByPointsOf(const RestShape& shape) {
-    std::map<std::uint32_t, std::size_t> strandsOf;
+Map<std::uint32_t, std::size_t> strandsByPointsOf(const RestShape& shape) {
+    Map<std::uint32_t, std::size_t> strandsOf;
     for (const Block& block : shape.blocks) strandsOf[block.points] += block.strands;
     return strandsOf;
 }
@@ -30,13 +30,13 @@ void putGpu(std::span<std::byte> out, std::span<const T> values) {
     if (bytes.size() < out.size()) std::memset(out.data() + bytes.size(), 0, out.size() - bytes.size());
 }
 template <class T>
-void putGpu(std::span<std::byte> out, const std::vector<T>& values) {
+void putGpu(std::span<std::byte> out, const Vector<T>& values) {
     putGpu(out, std::span<const T>(values));
 }
 
 }  // namespace
 
-std::size_t gpuBlocksOf(const std::map<std::uint32_t, std::size_t>& strandsOf) {
+std::size_t gpuBlocksOf(const Map<std::uint32_t, std::size_t>& strandsOf) {
     std::size_t blocks = 0;
     for (const auto& [points, count] : strandsOf)
         blocks += count / kBlockLanes + std::min<std::size_t>(count, 2);
@@ -108,7 +108,7 @@ void GpuGuides::take(const FrameInput& input) {
     const Float3 shift = moveOrigin(input.origin_ws);
     const Float3 lowBefore = roots_.min_ws, highBefore = roots_.max_ws;
     takeFrameRoots(input.roots_ws, settings_.teleportDistance, true, roots_);
-    const std::vector<Capsule> capsulesBefore = spheres_.capsules;
+    const Vector<Capsule> capsulesBefore = spheres_.capsules;
     takeSpheres(settings_, shape_->longestStrand, {spheresBefore_, capsulesBefore}, input.spheres,
                 input.capsules, spheres_);
     takeWind(settings_, input, wind_);
@@ -126,7 +126,7 @@ void GpuGuides::take(const FrameInput& input) {
     planInput.fastest = std::numeric_limits<float>::infinity();
     const EffectPlan plan =
         planFrame(settings_, planInput, wind_, spheres_.planned, spheres_.plannedMotion, input.dt);
-    std::vector<MovingSphere> moving;
+    Vector<MovingSphere> moving;
     if (plan.on(Effect::collision)) moveSpheres(spheres_, substepsIn(settings_, input.dt), moving);
     const SubstepContext context =
         substepContext(settings_, plan, input.dt, substepsIn(settings_, input.dt), moving);
@@ -181,7 +181,7 @@ void GpuGuides::fill(std::uint32_t buffer, std::span<std::byte> out) const {
         case HL_GPU_BUFFER_ROD_STATE:
             return putGpu(out, rodStateOfSlots(*shape_, slots(), *state_));
         case HL_GPU_BUFFER_RESTS: {
-            std::vector<float> rests;
+            Vector<float> rests;
             for (const Rest& block : state_->rests) {
                 rests.push_back(block.time);
                 rests.push_back(block.asleep ? 1.0f : 0.0f);

@@ -4,19 +4,18 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "engine/gpu_frame.h"
+#include "hairloom/memory.h"
 #include "models/rods/rods.h"
 #include "shaders/rod_types.h"
 
 namespace hairloom::runtime {
 
 /// Blocks of 32 that strands fill at most, by their numbers of points.
-std::size_t gpuBlocksOf(const std::map<std::uint32_t, std::size_t>& strandsOf);
+std::size_t gpuBlocksOf(const Map<std::uint32_t, std::size_t>& strandsOf);
 /// Spheres that the kernel has room for, of so many in the asset.
 std::size_t gpuSpheresOf(std::size_t spheresOfAsset, std::size_t capsulesOfAsset);
 
@@ -43,8 +42,8 @@ class GpuGuides {
     struct Frame {
         shaders::SimulationConstants constants;
         shaders::RodConstants rods;
-        std::vector<shaders::float4> roots, waking;
-        std::vector<shaders::SphereConstants> spheres;
+        Vector<shaders::float4> roots, waking;
+        Vector<shaders::SphereConstants> spheres;
     };
     Slots slots() const;
     Float3 moveOrigin(std::array<double, 3> next);
@@ -53,12 +52,12 @@ class GpuGuides {
     SimulationSettings settings_;
     std::shared_ptr<const State> state_;
     std::size_t mostSpheres_;
-    std::vector<std::uint32_t> blocks_;
+    Vector<std::uint32_t> blocks_;
     std::uint32_t slotCount_ = 0;
     FrameWind wind_;
     FrameRoots roots_;
     FrameSpheres spheres_;
-    std::vector<Sphere> spheresBefore_;
+    Vector<Sphere> spheresBefore_;
     float substep_;
     std::optional<std::array<double, 3>> origin_;
     std::optional<Frame> frame_;

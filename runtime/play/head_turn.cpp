@@ -17,9 +17,9 @@ constexpr int kMostSweeps = 12;  ///< of a matrix of four rows; it is diagonal a
 
 using Row = std::array<double, 4>;
 using FourRows = std::array<Row, 4>;
-using Vector = std::array<double, 3>;
+using Components = std::array<double, 3>;
 
-Vector toVector(Float3 v) {
+Components toComponents(Float3 v) {
     return {double{v.x}, double{v.y}, double{v.z}};
 }
 
@@ -65,25 +65,25 @@ Row greatestEigenvector(FourRows values) {
 }  // namespace
 
 Quat headTurn(std::span<const Float3> rest, std::span<const RootFrame> roots) {
-    Vector middleBefore{}, middleNow{};
+    Components middleBefore{}, middleNow{};
     double count = 0;
     for (std::size_t s = 0; s < roots.size(); ++s) {
         RootFrame root = roots[s];
         if (!usableWithin(root, kFarthest)) continue;
-        const Vector before = toVector(rest[s]), now = toVector(root.position);
+        const Components before = toComponents(rest[s]), now = toComponents(root.position);
         for (std::size_t k = 0; k < 3; ++k) middleBefore[k] += before[k], middleNow[k] += now[k];
         ++count;
     }
     if (count == 0) return {};
     // Sums of products of coordinates, before and now (Horn 1987, Section 4.A).
-    std::array<Vector, 3> sums{};
+    std::array<Components, 3> sums{};
     for (std::size_t s = 0; s < roots.size(); ++s) {
         RootFrame root = roots[s];
         if (!usableWithin(root, kFarthest)) continue;
-        const Vector before = toVector(rest[s]), now = toVector(root.position);
-        const Vector turned[3] = {toVector(rotate(root.rotation, {1, 0, 0})),
-                                  toVector(rotate(root.rotation, {0, 1, 0})),
-                                  toVector(rotate(root.rotation, {0, 0, 1}))};
+        const Components before = toComponents(rest[s]), now = toComponents(root.position);
+        const Components turned[3] = {toComponents(rotate(root.rotation, {1, 0, 0})),
+                                      toComponents(rotate(root.rotation, {0, 1, 0})),
+                                      toComponents(rotate(root.rotation, {0, 0, 1}))};
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j)
                 sums[i][j] += (before[i] - middleBefore[i] / count) * (now[j] - middleNow[j] / count) +

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
 
 #include "engine/body_table.h"
 #include "engine/moving_body.h"
@@ -37,7 +36,7 @@ float numberWithin(const Asset& asset, std::string_view name, double min, double
 }
 
 /// Radii at root and tip that a group of settings says, or `usual`.
-std::array<float, 2> radiiOf(const Asset& asset, const std::string& group, std::array<float, 2> usual) {
+std::array<float, 2> radiiOf(const Asset& asset, const String& group, std::array<float, 2> usual) {
     const double root{usual[0]}, tip{usual[1]};
     const float radius = numberWithin(asset, group + ".rootRadius", 5e-6, 0.05, root);
     return {radius, radius * numberWithin(asset, group + ".tipScale", 0, 1, tip / root)};
@@ -66,7 +65,7 @@ std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t veloci
 }
 
 /// Of an engine at most, beside what threads work in; `strandsOf` counts strands by their points.
-std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf, bool hasBody) {
+std::size_t engineBytes(const Map<std::uint32_t, std::size_t>& strandsOf, bool hasBody) {
     // Strands of one point count fill blocks; straight ones and others are apart, and the last of each has
     // room to spare.
     std::size_t planeFloats = 0, blocks = 0, strands = 0;
@@ -90,8 +89,8 @@ std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf, b
            strands * (sizeof(RootFrame) + sizeof(std::uint32_t));
 }
 
-std::map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset) {
-    std::map<std::uint32_t, std::size_t> strandsOf;
+Map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset) {
+    Map<std::uint32_t, std::size_t> strandsOf;
     for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
     return strandsOf;
 }
@@ -111,7 +110,7 @@ std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t th
     std::size_t bytes = 2 * points * sizeof(Float3) + 2 * strands * sizeof(RootFrame) +
                         (strands + asset.guides.size() + 3) * sizeof(std::uint32_t) + sizeof(LevelSet);
     for (std::uint32_t level = 1; level < HL_LEVEL_RIGID; ++level) {
-        std::map<std::uint32_t, std::size_t> strandsOf;
+        Map<std::uint32_t, std::size_t> strandsOf;
         const std::uint32_t guides = guidesOfLevel(level, asset.strandCount());
         // Whichever guides are taken, they have no more points than as many of the longest.
         strandsOf[pointsOfLevel(level, longest)] = guides;
@@ -129,7 +128,7 @@ std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t th
 }  // namespace
 
 InstanceMemory instanceMemory(const Asset& asset) {
-    const std::map<std::uint32_t, std::size_t> strandsOf = strandsByPoints(asset);
+    const Map<std::uint32_t, std::size_t> strandsOf = strandsByPoints(asset);
     const std::uint32_t longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
     std::size_t work = 0;
     for (const Model* const model : allModels())
@@ -191,8 +190,7 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
             for (const asset::Guide& guide : asset.guides) {
                 const std::uint32_t layer = asset.layerOf(guide.strand);
                 const bool own = asset.layers[layer].ownMaterial != 0;
-                instance.radii_.ofHairs.push_back(
-                    own ? radiiOf(asset, "layer" + std::to_string(layer + 1), usual) : usual);
+                instance.radii_.ofHairs.push_back(own ? radiiOf(asset, layerGroup(layer), usual) : usual);
             }
         }
         instance.velocities_.resize(instance.positions_.size());
@@ -202,7 +200,7 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     instance.offsets_ = strands.offsets;
     if (BodyFieldRead body = asset.readBody(); body.field) {
         instance.bodyBones_ = asset.bonesOf(*body.field);
-        instance.body_ = std::make_shared<const BodyField>(std::move(*body.field));
+        instance.body_ = makeShared<const BodyField>(std::move(*body.field));
         instance.bodyPose_.resize(std::max<std::size_t>(instance.bodyBones_.size(), 1));
         instance.engine_.setBody(instance.body_);
     }

@@ -3,17 +3,18 @@
 // One character's hair as an asset has it: what hl_instance is.
 
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "hairloom/asset.h"
 #include "hairloom/engine.h"
 #include "hairloom/hairloom.h"
+#include "hairloom/memory.h"
 #include "play/clip_player.h"
 #include "play/gpu_guides.h"
 #include "play/levels.h"
@@ -35,6 +36,13 @@ struct InstanceMemory {
     std::size_t guides, hairs, levels, thread;
 };
 InstanceMemory instanceMemory(const Asset& asset);
+
+/// Of the settings that a layer's own material has.
+inline String layerGroup(std::size_t layer) {
+    std::array<char, 24> digits{};
+    const auto end = std::to_chars(digits.begin(), digits.end(), layer + 1).ptr;
+    return String("layer").append(digits.begin(), end);
+}
 
 class Instance {
   public:
@@ -64,7 +72,7 @@ class Instance {
     hl_instance_info describe() const;
     std::uint64_t hash() const;
     /// What steps change, as bytes, and back (saved.cpp).
-    std::vector<std::byte> save() const;
+    Vector<std::byte> save() const;
     Outcome load(std::span<const std::byte> bytes);
     /// All memory that frames may come to ask for (reserve.cpp).
     Outcome reserve(const hl_reserve& wanted);
@@ -88,8 +96,8 @@ class Instance {
     /// How thick a strand is: by its points, or from root to tip.
     struct Radii {
         float root, tip;
-        std::vector<float> own;                     // of each point, or none
-        std::vector<std::array<float, 2>> ofHairs;  // root and tip of each guide's, or none: as above
+        Vector<float> own;                     // of each point, or none
+        Vector<std::array<float, 2>> ofHairs;  // root and tip of each guide's, or none: as above
     };
     Instance(Engine engine, RootPoses poses, Host host)
         : engine_(std::move(engine)), poses_(std::move(poses)), host_(std::move(host)) {}
@@ -99,20 +107,20 @@ class Instance {
         // Not in the class: clang does not find it there until the whole of Instance is read.
         Levels();
         std::shared_ptr<const LevelSet> set;
-        std::vector<Engine> engines;  ///< of levels 1 …, before the rigid one
+        Vector<Engine> engines;  ///< of levels 1 …, before the rigid one
         std::uint32_t level = 0;
-        float share = 0;                   ///< of the hairs that are read
-        std::vector<std::uint32_t> taken;  ///< of the hairs that are read, as FollowHairs::evaluateSome()
+        float share = 0;              ///< of the hairs that are read
+        Vector<std::uint32_t> taken;  ///< of the hairs that are read, as FollowHairs::evaluateSome()
         /// Where roots were last, all finite, and what they were measured from; none before the first step.
-        std::vector<RootFrame> placed;
+        Vector<RootFrame> placed;
         std::optional<std::array<double, 3>> origin;
         Float3 velocity{};           ///< m/s, mean of the roots
         float motion = 0, wind = 0;  ///< m/s, greatest of the last frames; fades
         /// In the frames of the roots: from where guides are at this level to where the last one had them.
-        std::vector<Float3> fade;
+        Vector<Float3> fade;
         bool fading = false;
-        std::vector<RootFrame> simulatedRoots;  // of the level's guides
-        std::vector<Float3> simulated, moved;   // of their points
+        Vector<RootFrame> simulatedRoots;  // of the level's guides
+        Vector<Float3> simulated, moved;   // of their points
     };
     void makeLevels(const Asset& asset, const Asset::Strands& strands);
     void measureLevels(LevelSet& set);
@@ -170,20 +178,20 @@ class Instance {
 
     Engine engine_;
     std::optional<FollowHairs> hairs_;
-    std::vector<std::uint32_t> hairGroups_;  // hairs before each guide's, then all
+    Vector<std::uint32_t> hairGroups_;  // hairs before each guide's, then all
     std::optional<Levels> levels_;
     RootPoses poses_;
     Host host_;
     Radii radii_{};
-    std::vector<std::uint32_t> offsets_;
-    std::vector<asset::Sphere> restSpheres_;
-    std::vector<Capsule> restCapsules_, capsules_;
-    std::vector<Sphere> spheres_;
+    Vector<std::uint32_t> offsets_;
+    Vector<asset::Sphere> restSpheres_;
+    Vector<Capsule> restCapsules_, capsules_;
+    Vector<Sphere> spheres_;
     std::shared_ptr<const BodyField> body_;  ///< null: none
-    std::vector<std::size_t> bodyBones_;     // of a frame's bones
-    std::vector<BonePose> bodyPose_;
-    std::vector<RootFrame> roots_;
-    std::vector<Quat> turns_;
+    Vector<std::size_t> bodyBones_;          // of a frame's bones
+    Vector<BonePose> bodyPose_;
+    Vector<RootFrame> roots_;
+    Vector<Quat> turns_;
     /// What the last step was given, where all of it is a head or bones; hair that sleeps needs no other.
     struct LastFrame {
         bool known = false, hasWind = false;
@@ -191,15 +199,15 @@ class Instance {
         std::array<double, 3> origin{};
         Matrix34 head{};
         std::array<float, 3> wind{};
-        std::vector<float> bones;
+        Vector<float> bones;
     } last_;
     bool asleep_ = false;
-    std::vector<Float3> positions_, velocities_;
+    Vector<Float3> positions_, velocities_;
     std::array<double, 3> origin_{};  // of the last frame
     // Of a clip, once one was played:
     std::optional<ClipPlayer> clip_;
-    std::vector<std::uint32_t> allStrands_;
-    std::vector<Float3> rootsBefore_;
+    Vector<std::uint32_t> allStrands_;
+    Vector<Float3> rootsBefore_;
     /// positions_ and velocities_ are a clip's, and engine_ is not there yet: what only plays never pays for
     /// a simulation that could follow.
     bool playedWaits_ = false;
@@ -215,7 +223,7 @@ class Instance {
         std::uint64_t boundsOf = 0;  // state that the bounds are of
         Float3 low{}, high{};
         // Of those that asked for where points were before:
-        std::vector<Float3> positions;
+        Vector<Float3> positions;
         std::array<double, 3> origin{};
         std::uint64_t state = 0;  // of `positions`; 0: they are of no use
         bool still = false;       // the last one found them where they were
@@ -230,6 +238,7 @@ struct Instance::Result {
 
 }  // namespace hairloom::runtime
 
-struct hl_instance {
+struct hl_instance : hairloom::runtime::InMemory {
+    explicit hl_instance(hairloom::runtime::Instance made) : instance(std::move(made)) {}
     hairloom::runtime::Instance instance;
 };

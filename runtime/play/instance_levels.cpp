@@ -31,7 +31,7 @@ constexpr float kUnknown = 1;
 Instance::Levels::Levels() = default;
 
 void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
-    auto set = std::make_shared<LevelSet>(strands);
+    auto set = makeShared<LevelSet>(strands);
     levels_.emplace();
     for (const Level& level : set->coarser) {
         SimulationSettings settings = asset.simulation();

@@ -27,7 +27,7 @@ std::uint64_t spread(std::uint32_t x) {
 
 /// All guides along a curve that fills space (Morton 1966), so that neighbours on it are neighbours on the
 /// head.
-std::vector<std::uint32_t> alongCurve(const Asset::Strands& strands, std::size_t guides) {
+Vector<std::uint32_t> alongCurve(const Asset::Strands& strands, std::size_t guides) {
     Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     const auto root = [&](std::size_t g) { return strands.positions_ss[strands.offsets[g]]; };
     for (std::size_t g = 0; g < guides; ++g) {
@@ -36,16 +36,17 @@ std::vector<std::uint32_t> alongCurve(const Asset::Strands& strands, std::size_t
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
     const float size = std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-6f});
-    std::vector<std::uint64_t> codes(guides);
+    Vector<std::uint64_t> codes(guides);
     for (std::size_t g = 0; g < guides; ++g) {
         const Float3 p = (root(g) - low) * (65535.0f / size);
         const auto whole = [](float v) { return static_cast<std::uint32_t>(std::clamp(v, 0.0f, 65535.0f)); };
         codes[g] = spread(whole(p.x)) | spread(whole(p.y)) << 1u | spread(whole(p.z)) << 2u;
     }
-    std::vector<std::uint32_t> order(guides);
+    Vector<std::uint32_t> order(guides);
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return codes[a] < codes[b]; });
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return codes[a] != codes[b] ? codes[a] < codes[b] : a < b;
+    });
     return order;
 }
 
@@ -80,11 +81,11 @@ Level makeLevel(const Asset::Strands& strands, std::span<const std::uint32_t> or
     const Thinning& thinning = kThinning[number - 1];
     Level level;
     level.oneSubstep = thinning.oneSubstep;
-    std::vector<bool> taken(order.size());
+    Vector<bool> taken(order.size());
     for (std::size_t i = thinning.guides / 2; i < order.size(); i += thinning.guides) taken[order[i]] = true;
     if (!order.empty() && order.size() <= thinning.guides / 2) taken[order[0]] = true;
     level.offsets.push_back(0);
-    std::vector<std::uint32_t> placeOf(order.size());
+    Vector<std::uint32_t> placeOf(order.size());
     for (std::uint32_t g = 0; g < order.size(); ++g) {
         if (!taken[g]) continue;
         placeOf[g] = static_cast<std::uint32_t>(level.guides.size());
@@ -96,7 +97,7 @@ Level makeLevel(const Asset::Strands& strands, std::span<const std::uint32_t> or
                 sampleAt(std::span(strands.positions_ss).subspan(first, count), p, points));
         level.offsets.push_back(static_cast<std::uint32_t>(level.positions_ss.size()));
     }
-    std::vector<std::uint32_t> curve;  // places of simulated guides along it
+    Vector<std::uint32_t> curve;  // places of simulated guides along it
     for (const std::uint32_t g : order)
         if (taken[g]) curve.push_back(placeOf[g]);
     level.sources.resize(order.size());
@@ -143,7 +144,7 @@ LevelSet::LevelSet(const Asset::Strands& strands) : offsets(strands.offsets), re
         const Float3 root = strands.positions_ss[offsets[g]];
         for (std::size_t p = offsets[g]; p < offsets[g + 1]; ++p) rest[p] = rest[p] - root;
     }
-    const std::vector<std::uint32_t> order = alongCurve(strands, guides);
+    const Vector<std::uint32_t> order = alongCurve(strands, guides);
     for (std::uint32_t number = 1; number < HL_LEVEL_RIGID; ++number)
         coarser.push_back(makeLevel(strands, order, number));
 }

@@ -7,24 +7,24 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "hairloom/asset.h"
 #include "hairloom/hairloom.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
 /// Of one level between the finest, which simulates all, and the rigid one, which simulates nothing.
 struct Level {
-    bool oneSubstep;                     ///< of rods; springs need theirs
-    std::vector<std::uint32_t> guides;   ///< that are simulated, of all, ascending
-    std::vector<std::uint32_t> offsets;  ///< of their points
-    std::vector<Float3> positions_ss;    ///< of these points at rest
+    bool oneSubstep;                ///< of rods; springs need theirs
+    Vector<std::uint32_t> guides;   ///< that are simulated, of all, ascending
+    Vector<std::uint32_t> offsets;  ///< of their points
+    Vector<Float3> positions_ss;    ///< of these points at rest
     struct Sources {
         std::array<std::uint32_t, 3> guides;  ///< places in Level::guides
         std::array<float, 3> shares;          ///< sum 1
     };
-    std::vector<Sources> sources;  ///< of each of all guides
+    Vector<Sources> sources;  ///< of each of all guides
 
     std::uint32_t substepsUnder(const SimulationSettings& settings) const {
         return oneSubstep && settings.strandModel == StrandModel::rods ? 1 : settings.substeps;
@@ -41,9 +41,9 @@ struct LevelError {
 
 /// Of an asset; immutable, shared by copies of an instance.
 struct LevelSet {
-    std::vector<std::uint32_t> offsets;               ///< of all guides' points
-    std::vector<Float3> rest;                         ///< of them, from their guide's root
-    std::vector<Level> coarser;                       ///< levels 1 …; one less than the rigid one's number
+    Vector<std::uint32_t> offsets;                    ///< of all guides' points
+    Vector<Float3> rest;                              ///< of them, from their guide's root
+    Vector<Level> coarser;                            ///< levels 1 …; one less than the rigid one's number
     std::array<LevelError, HL_LEVEL_COUNT> errors{};  ///< of paths
     std::array<LevelError, HL_LEVEL_COUNT> seen{};    ///< of what is seen far off
 

@@ -71,7 +71,7 @@ void Instance::measureLevels(LevelSet& set) {
         }
     };
     for (const Measured what : {Measured::still, Measured::head, Measured::wind}) {
-        std::vector<std::vector<Float3>> finest(kMeasuredFrames / kComparedEvery);
+        Vector<Vector<Float3>> finest(kMeasuredFrames / kComparedEvery);
         Instance exact = *this;
         play(exact, what, [&](std::size_t at) { finest[at] = exact.positions_; });
         for (std::uint32_t level = 1; level < HL_LEVEL_COUNT; ++level) {
@@ -104,11 +104,11 @@ Outcome Instance::measureSpeed(const std::function<std::uint64_t()>& nanoseconds
         MeasuredFrame rest(0, false, false, pivot_);
         hair.reset(rest.frame);
         if (levels_) hair.setLevel(number, 1);
-        std::vector<Float3> places(std::max(hairPoints(), positions_.size()));
+        Vector<Float3> places(std::max(hairPoints(), positions_.size()));
         hl_read read{};
         read.hairs = hairs_ ? 1 : 0;
         read.positions = {places.data(), places.size() * sizeof(Float3), sizeof(Float3)};
-        std::vector<std::uint64_t> took;
+        Vector<std::uint64_t> took;
         for (int f = 1; f <= kRatedAfter + kRatedFrames; ++f) {
             const MeasuredFrame given(f, true, true, pivot_);
             const std::uint64_t begin = nanoseconds();

@@ -265,7 +265,7 @@ void Instance::readGuidesInto(Reading& reading) {
 
 void Instance::readHairsInto(Reading& reading) {
     showVelocities();
-    const std::vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
+    const Vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
     const std::size_t count = hairs_->pointsPerHair();
     // Fewer hairs cover what all did.
     const float wider = static_cast<float>(hairs_->hairCount()) / static_cast<float>(hairsRead());
@@ -291,7 +291,7 @@ Outcome Instance::readHairNumbers(std::span<std::uint32_t> numbers) const {
     if (numbers.size() != hairsRead())
         return Refusal{HL_WRONG_SIZE, "space for " + std::to_string(numbers.size()) + " numbers of " +
                                           std::to_string(hairsRead()) + " hairs"};
-    const std::vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
+    const Vector<std::uint32_t>& taken = levels_ ? levels_->taken : hairGroups_;
     for (std::size_t g = 0; g + 1 < taken.size(); ++g) {
         for (std::uint32_t h = taken[g]; h < taken[g + 1]; ++h) numbers[h] = hairGroups_[g] + h - taken[g];
     }

@@ -17,7 +17,7 @@ constexpr std::size_t kMostReserved = 4096;
 void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const Sphere> spheres) {
     const std::shared_ptr<const State> before = engine.state();
     // With as many capsules as spheres.
-    std::vector<Capsule> capsules;
+    Vector<Capsule> capsules;
     for (std::uint32_t s = 1; s < spheres.size() && capsules.size() < kMaxCapsules; ++s)
         capsules.push_back({s - 1, s});
     engine.keepMemory();
@@ -52,12 +52,12 @@ Outcome Instance::reserve(const hl_reserve& wanted) {
 }
 
 void Instance::grow(const hl_reserve& wanted) {
-    std::vector<RootFrame> roots(roots_.size()), fewer;
+    Vector<RootFrame> roots(roots_.size()), fewer;
     poses_.followHead(kIdentity34, roots);
     const std::size_t count = std::max<std::size_t>(wanted.spheres, restSpheres_.size());
     if (spheres_.size() < count) spheres_.resize(count);
     capsules_.reserve(kMaxCapsules);
-    std::vector<Sphere> spheres(count);
+    Vector<Sphere> spheres(count);
     for (std::size_t s = 0; s < count; ++s)
         spheres[s] = {roots.empty() ? Float3{} : roots[s % roots.size()].position, kRehearsedRadius};
     rehearse(engine_, roots, spheres);

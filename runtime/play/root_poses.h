@@ -5,9 +5,9 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
 #include "hairloom/asset.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -41,11 +41,11 @@ class RootPoses {
   private:
     void followPosed(std::span<RootFrame> roots_ws) const;
 
-    std::vector<Float3> restRoots_;
-    std::vector<asset::Root> roots_;  // empty without a scalp
-    std::vector<asset::ScalpVertex> vertices_;
-    std::vector<asset::ScalpTriangle> triangles_;
-    std::vector<Float3> rest_, posed_;  // of the vertices
+    Vector<Float3> restRoots_;
+    Vector<asset::Root> roots_;  // empty without a scalp
+    Vector<asset::ScalpVertex> vertices_;
+    Vector<asset::ScalpTriangle> triangles_;
+    Vector<Float3> rest_, posed_;  // of the vertices
     std::size_t bones_;
 };
 

@@ -35,7 +35,7 @@ class Writer {
         const auto of = std::as_bytes(values);
         bytes.insert(bytes.end(), of.begin(), of.end());
     }
-    std::vector<std::byte> bytes;
+    Vector<std::byte> bytes;
 };
 
 /// Stays at its end, with `good` false, where there is too little.
@@ -143,7 +143,7 @@ Refusal damaged(const char* words) {
 
 }  // namespace
 
-std::vector<std::byte> Instance::save() const {
+Vector<std::byte> Instance::save() const {
     settlePlayed();
     Writer writer;
     writer.value(Head{});
@@ -186,7 +186,7 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
 
     Reader reader(bytes.subspan(sizeof head));
     const auto origin = reader.value<std::array<double, 3>>();
-    std::vector<Quat> turns;
+    Vector<Quat> turns;
     reader.all(turns, turns_.size());
     const auto number = reader.value<std::uint32_t>();
     if (number > (levels_ ? std::uint32_t{HL_LEVEL_RIGID} : 0u))

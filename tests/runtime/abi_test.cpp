@@ -87,6 +87,10 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_host, user, 16, 8),
         MEMBER(hl_host, nanoseconds, 24, 8),
         MEMBER(hl_host, log, 32, 8),
+        MEMBER(hl_allocator, size, 0, 8),
+        MEMBER(hl_allocator, user, 8, 8),
+        MEMBER(hl_allocator, allocate, 16, 8),
+        MEMBER(hl_allocator, release, 24, 8),
         MEMBER(hl_clip, size, 0, 8),
         MEMBER(hl_clip, name, 8, 8),
         MEMBER(hl_clip, name_bytes, 16, 8),
@@ -201,6 +205,7 @@ TEST(Abi, StructsLieAsTheyDid) {
     EXPECT_EQ(sizeof(hl_attribute), 48u);
     EXPECT_EQ(sizeof(hl_hair), 64u);
     EXPECT_EQ(sizeof(hl_host), 40u);
+    EXPECT_EQ(sizeof(hl_allocator), 32u);
     EXPECT_EQ(sizeof(hl_read), 184u);
     EXPECT_EQ(sizeof(hl_bone), 72u);
     EXPECT_EQ(sizeof(hl_layer), 24u);
@@ -271,6 +276,8 @@ TEST(Abi, FunctionsTakeWhatTheyTook) {
     EXPECT_TRUE((isA<hl_code(Asset, const char*, std::uint32_t*, hl_error*)>(&hl_asset_find_attribute)));
     EXPECT_TRUE((isA<hl_code(Asset, hl_hair*, size_t, size_t, hl_error*)>(&hl_asset_hairs)));
     EXPECT_TRUE((isA<void(hl_host*)>(&hl_host_init)));
+    EXPECT_TRUE((isA<void(hl_allocator*)>(&hl_allocator_init)));
+    EXPECT_TRUE((isA<hl_code(const hl_allocator*, hl_error*)>(&hl_set_allocator)));
     EXPECT_TRUE(
         (isA<hl_code(Asset, std::uint32_t, const hl_host*, Hair*, hl_error*)>(&hl_instance_make_hosted)));
     EXPECT_TRUE((isA<hl_code(ConstHair, void*, size_t, size_t*, hl_error*)>(&hl_instance_save)));

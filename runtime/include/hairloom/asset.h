@@ -15,6 +15,7 @@
 #include "hairloom/body_field.h"
 #include "hairloom/follow.h"
 #include "hairloom/follow_recipe.h"
+#include "hairloom/memory.h"
 #include "hairloom/settings.h"
 #include "hairloom/strands.h"
 
@@ -70,8 +71,8 @@ class Asset {
     }
 
     struct Strands {
-        std::vector<std::uint32_t> offsets;
-        std::vector<Float3> positions_ss;
+        Vector<std::uint32_t> offsets;
+        Vector<Float3> positions_ss;
     };
     Strands strandsAtRest() const;
     /// Of the coarsest grid: no point lies farther from where it was authored; metres.
@@ -100,10 +101,10 @@ class Asset {
     DrawnHairs drawnHairs(const Strands& strands, const Host& host = {}) const;
     /// What follow hairs are made of, of an asset that has hairs. The view is of these arrays and `rest`.
     struct FollowArrays {
-        std::vector<RootPlane> planes;
+        Vector<RootPlane> planes;
         DrawnHairs drawn;
-        std::vector<Float3> shifts;
-        std::vector<float> radii;
+        Vector<Float3> shifts;
+        Vector<float> radii;
     };
     FollowArrays followArrays(const Strands& rest, const Host& host = {}) const;
     FollowView followView(const Strands& rest, const FollowArrays& arrays) const;
@@ -142,7 +143,7 @@ class Asset {
     /// Of the skin that hair collides with, as packBody() gives them, or none.
     std::span<const std::byte> body() const { return recordsOf<std::byte>(asset::kBody); }
     /// Of all bones of body(), in its order: their numbers among `bones`.
-    std::vector<std::size_t> bonesOf(const BodyField& field) const;
+    Vector<std::size_t> bonesOf(const BodyField& field) const;
     BodyFieldRead readBody() const;
     /// Of asset::kLevels levels, or none: nobody has measured them.
     std::span<const asset::MeasuredLevel> levelErrors() const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hairloom/math.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -49,22 +50,22 @@ struct BodyField {
     float cell = 0;                       ///< metres, > 0
     std::array<std::uint32_t, 3> size{};  ///< cells along x, y, z; ≥ 1
     float unit = 0;                       ///< metres of one step of `distances`
-    std::vector<std::int16_t> distances;  ///< of each corner, x fastest
-    std::vector<std::uint16_t> skins;     ///< of each corner, index of `palette`
-    std::vector<Skin> palette;
-    std::vector<std::uint16_t> blocks;  ///< of each cell, x fastest
-    std::vector<std::int8_t> values;    ///< kBlockValues of each block, x fastest
+    Vector<std::int16_t> distances;       ///< of each corner, x fastest
+    Vector<std::uint16_t> skins;          ///< of each corner, index of `palette`
+    Vector<Skin> palette;
+    Vector<std::uint16_t> blocks;  ///< of each cell, x fastest
+    Vector<std::int8_t> values;    ///< kBlockValues of each block, x fastest
     /// Of each block, its number among those that are refined where skin is folded or thin; kNoBlock for
     /// others. Empty: none is.
-    std::vector<std::uint16_t> refinements;
+    Vector<std::uint16_t> refinements;
     /// Of each refined block and each of its cells, x fastest: a block for that cell; kNoBlock for none.
-    std::vector<std::uint16_t> finer;
-    std::vector<std::string> bones;  ///< names of at most 255; empty: the body moves as a whole
+    Vector<std::uint16_t> finer;
+    Vector<String> bones;  ///< names of at most 255; empty: the body moves as a whole
     /// A box at rest: outside of it a bone moves no skin and what is near it.
     struct Box {
         Float3 low{}, high{};
     };
-    std::vector<Box> boxes;  ///< of each bone
+    Vector<Box> boxes;  ///< of each bone
 
     /// Memory of its arrays, and what a file of it takes but for names.
     std::size_t bytes() const;
@@ -126,9 +127,9 @@ class PosedBody {
     bool isWhole() const { return palette_.size() == 1 && inverse_.size() == 1; }
 
     const BodyField* field_ = nullptr;
-    std::vector<BonePose> palette_;     ///< blended
-    std::vector<BonePose> inverse_;     ///< of bones, to the body at rest
-    std::vector<std::uint8_t> usable_;  ///< of bones
+    Vector<BonePose> palette_;     ///< blended
+    Vector<BonePose> inverse_;     ///< of bones, to the body at rest
+    Vector<std::uint8_t> usable_;  ///< of bones
     std::uint32_t flattened_ = 0;
     float least_ = 1;  ///< least that a bone stretches what it carries
 };

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "hairloom/body_field.h"
 #include "hairloom/engine.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -17,7 +17,7 @@ class BodyPush {
   public:
     /// `rest_ss`: points of hairs at rest, in the body's space; hair h owns [offsets[h], offsets[h + 1]), its
     /// root first.
-    BodyPush(std::shared_ptr<const BodyField> body, std::vector<std::uint32_t> offsets,
+    BodyPush(std::shared_ptr<const BodyField> body, Vector<std::uint32_t> offsets,
              std::span<const Float3> rest_ss);
 
     /// Moves points of hairs that are deeper out of the body, straight up, so that neither they nor the
@@ -37,9 +37,9 @@ class BodyPush {
     bool liftCurve(const PosedBody& body, Hair& hair) const;
 
     std::shared_ptr<const BodyField> body_;
-    std::vector<std::uint32_t> offsets_;
-    std::vector<float> least_;         ///< of each point, metres that it keeps from the body; negative inside
-    std::vector<float> leastBetween_;  ///< likewise at three places on the way to the next point of its hair
+    Vector<std::uint32_t> offsets_;
+    Vector<float> least_;         ///< of each point, metres that it keeps from the body; negative inside
+    Vector<float> leastBetween_;  ///< likewise at three places on the way to the next point of its hair
 };
 
 }  // namespace hairloom::runtime

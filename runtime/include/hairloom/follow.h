@@ -16,10 +16,10 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "hairloom/host.h"
 #include "hairloom/math.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -126,7 +126,7 @@ struct GuideSample {
     float share;
 };
 /// Appends `count` ≥ 2 samples at even shares of the length of a guide of two points or more.
-void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples);
+void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, Vector<GuideSample>& samples);
 
 struct FollowHairs::Result {
     std::optional<FollowHairs> hairs;

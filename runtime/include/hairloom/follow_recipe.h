@@ -6,11 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "hairloom/follow.h"
 #include "hairloom/host.h"
 #include "hairloom/math.h"
+#include "hairloom/memory.h"
 
 namespace hairloom::runtime {
 
@@ -44,10 +44,10 @@ struct FollowRecipe {
 
 /// As FollowView has them: all of the first guide, then all of the next.
 struct DrawnHairs {
-    std::vector<std::array<std::uint32_t, 3>> guides;
-    std::vector<Float3> weights, rootWeights;
-    std::vector<std::array<float, 2>> wispOffsets;
-    std::vector<float> blends;
+    Vector<std::array<std::uint32_t, 3>> guides;
+    Vector<Float3> weights, rootWeights;
+    Vector<std::array<float, 2>> wispOffsets;
+    Vector<float> blends;
 };
 
 /// Triangles must name guides that there are. The same bits for any number of threads.
@@ -65,6 +65,6 @@ float polylineLength(std::span<const Float3> points);
 Float3 pointAtShare(std::span<const Float3> points, float share);
 
 /// Half the width of a wisp at each of `points` ≥ 2 points of a hair, metres: straight from root to tip.
-std::vector<float> wispRadii(float root, float tip, std::uint32_t points);
+Vector<float> wispRadii(float root, float tip, std::uint32_t points);
 
 }  // namespace hairloom::runtime

@@ -12,10 +12,10 @@
  * stand for). Older and newer callers are both served: members that the library does not know have to be 0
  * where they ask for something, and are set to 0 where they are given back. Other sizes are refused.
  *
- * No call throws, keeps state of its own, or reads beyond the sizes that it is given. Calls on different
- * instances may run at the same time; calls on one may not. Every call that can fail returns a code and,
- * where `error` is not null, says in words what was wrong. A call that fails changes nothing. Of a thread's
- * stack a call takes at most 64 KB. */
+ * No call throws, keeps state of its own but hl_set_allocator(), or reads beyond the sizes that it is given.
+ * Calls on different instances may run at the same time; calls on one may not. Every call that can fail
+ * returns a code and, where `error` is not null, says in words what was wrong. A call that fails changes
+ * nothing. Of a thread's stack a call takes at most 64 KB. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -71,6 +71,27 @@ typedef struct hl_build {
     uint32_t single_header; /* 1: for one instruction set; 0: takes the best of the machine at run time */
 } hl_build;
 HL_API hl_code hl_build_info(hl_build* build, hl_error* error);
+
+/* --- Memory --- */
+
+/* Where all memory comes from that instances hold and that calls work in; without it, C++'s operator new. Two
+ * things do not come from here: words of errors and of hl_effect.why, which calls put together by operator
+ * new and give back before they return, and what a C++ exception takes inside of a call that fails. Called
+ * from the threads that call and from those of hl_jobs. Frames ask as seldom as hl_instance_reserve says.
+ * There is no function that enlarges a piece: nothing here grows in place. */
+typedef struct hl_allocator {
+    size_t size; /* sizeof(hl_allocator), set by hl_allocator_init() */
+    void* user;
+    /* `bytes` at a multiple of `alignment`, a power of two up to 128. Null: there is no more, and the call
+     * comes back with HL_NO_MEMORY. Neither it nor `release` may throw. */
+    void* (*allocate)(void* user, size_t bytes, size_t alignment);
+    /* With the numbers that it was asked with; `data` is never null. */
+    void (*release)(void* user, void* data, size_t bytes, size_t alignment);
+} hl_allocator;
+HL_API void hl_allocator_init(hl_allocator* allocator);
+/* For all of the process, from the next call on; null: operator new. While no other call runs. HL_BAD_VALUE
+ * while there are instances, whose memory goes back where it came from, or where one function is null. */
+HL_API hl_code hl_set_allocator(const hl_allocator* allocator, hl_error* error);
 
 /* --- Assets --- */
 

@@ -30,12 +30,12 @@ RodSlots rodsOfSlots(const RestShape& shape, const Slots& slots, const RodRest& 
     const bool bends = rods.parts >= RodParts::bending;
     RodSlots made;
     made.rest = quads(bends ? std::span<const std::size_t>(kQuadTangentAndBend) : kQuadTangent);
-    const auto append = [&](const std::vector<shaders::float4>& more) {
+    const auto append = [&](const Vector<shaders::float4>& more) {
         made.rest.insert(made.rest.end(), more.begin(), more.end());
     };
     // A chain has the shape that it was authored in.
     append(bends ? quads(kQuadRotation)
-                 : std::vector<shaders::float4>(made.rest.size(), shaders::float4{0.0f, 0.0f, 0.0f, 1.0f}));
+                 : Vector<shaders::float4>(made.rest.size(), shaders::float4{0.0f, 0.0f, 0.0f, 1.0f}));
     if (rods.parts >= RodParts::twist) append(quads(kQuadAxis));
     if (rods.parts >= RodParts::section) append(quads(kQuadNormal));
     for (const shaders::float4& quad : quads(kQuadMass)) made.masses.push_back(quad.x);
@@ -44,18 +44,18 @@ RodSlots rodsOfSlots(const RestShape& shape, const Slots& slots, const RodRest& 
     return made;
 }
 
-std::vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state) {
-    std::vector<float> rods;
+Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state) {
+    Vector<float> rods;
     const auto append = [&](std::size_t own, std::size_t planes) {
-        const std::vector<float> values = state.own[own].empty()
-                                              ? std::vector<float>(planes * slots.planeSize())
-                                              : planesOfSlots(shape, slots, state.own[own], planes);
+        const Vector<float> values = state.own[own].empty()
+                                         ? Vector<float>(planes * slots.planeSize())
+                                         : planesOfSlots(shape, slots, state.own[own], planes);
         rods.insert(rods.end(), values.begin(), values.end());
     };
     append(kOwnMotion, kRodMotionPlanes);
     append(kOwnStrains, kRodStrainPlanes);
     append(kOwnLoads, 1);
-    const std::vector<float> rows = rowsOfSlots(slots, state.own[kOwnLanes].data(), kRodLaneRows);
+    const Vector<float> rows = rowsOfSlots(slots, state.own[kOwnLanes].data(), kRodLaneRows);
     rods.insert(rods.end(), rows.begin(), rows.end());
     return rods;
 }

@@ -4,24 +4,24 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "engine/slots.h"
+#include "hairloom/memory.h"
 #include "models/rods/rods.h"
 #include "shaders/rod_types.h"
 
 namespace hairloom::runtime {
 
 struct RodSlots {
-    std::vector<shaders::float4> rest;
-    std::vector<float> masses;
-    std::vector<std::uint32_t> curved;  ///< per block
+    Vector<shaders::float4> rest;
+    Vector<float> masses;
+    Vector<std::uint32_t> curved;  ///< per block
 };
 RodSlots rodsOfSlots(const RestShape& shape, const Slots& slots, const RodRest& rods);
 
 /// The planes of the device are those of motion, strains and loads, then the rows of strands; 0 where the
 /// state has none.
-std::vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state);
+Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state);
 /// The reverse.
 void rodStateToBlocks(const RestShape& shape, const Slots& slots, std::span<const float> rods, State& state);
 

@@ -4,9 +4,9 @@
 // "Rods").
 
 #include <cstdint>
-#include <vector>
 
 #include "engine/strand_model.h"
+#include "hairloom/memory.h"
 #include "models/rods/rod_block.h"
 
 namespace hairloom::runtime {
@@ -31,7 +31,7 @@ struct RodRest {
     /// Per block, as far as there are such parts: RodView's tangent and mass; bend and restRotation; axis;
     /// normal.
     Floats planes;
-    std::vector<std::uint8_t> curved;  ///< per block: it twists; empty where nothing does
+    Vector<std::uint8_t> curved;  ///< per block: it twists; empty where nothing does
 
     std::size_t planeCount() const;
 };
