@@ -3,7 +3,9 @@
 #include "hairloom/gpu.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "follow/follow_gpu.h"
 #include "hairloom/capsules.h"
@@ -16,7 +18,7 @@ namespace {
 
 static_assert(sizeof(hl_gpu_view) == sizeof(shaders::RibbonView));
 static_assert(offsetof(hl_gpu_view, points) == offsetof(shaders::RibbonView, points));
-static_assert(HL_GPU_PASS_COUNT == 4 && HL_GPU_BUFFER_COUNT == 30);
+static_assert(HL_GPU_PASS_COUNT == 4 && HL_GPU_BUFFER_COUNT == 31);
 
 constexpr std::uint64_t kRowsOfPoint = 4;  // FOLLOW_ROWS of follow.hlsli
 constexpr std::uint64_t kMostGroups = 65535;
@@ -101,18 +103,50 @@ void writeGpu(void*& at, const Value& value) {
     at = static_cast<std::byte*>(at) + sizeof value;
 }
 
-void fillLooks(const hl_asset* asset, std::size_t count, void* out) {
-    Vector<hl_hair> hairs(count);
-    hl_asset_hairs(asset, hairs.data(), sizeof(hl_hair), count, nullptr);
-    for (const hl_hair& hair : hairs)
-        writeGpu(out, shaders::RibbonLook{{hair.colour[0], hair.colour[1], hair.colour[2], hair.random},
-                                          {hair.root_radius, hair.tip_radius, 0, 0}});
+/// Least share that leaves hair `rank` of a guide with `all` of them, as takenOf() rounds it.
+float leastShare(std::uint32_t rank, std::uint32_t all) {
+    if (rank == 0) return 0;
+    float share = static_cast<float>(rank) / static_cast<float>(all);
+    // Within two steps of the quotient.
+    for (int step = 0; step < 2; ++step) share = std::nextafter(share, 0.0f);
+    while (takenOf(all, share) <= rank) share = std::nextafter(share, 2.0f);
+    return share;
 }
 
-void fillOnce(const hl_asset* opened, const Asset& asset, std::uint32_t buffer, void* out) {
-    if (buffer == HL_GPU_BUFFER_LOOKS) {
-        fillLooks(opened, asset.hairCount(), out);
-        return;
+/// Hairs in a GPU's order: whatever share is left, it is the first of them.
+Vector<std::uint32_t> gpuOrder(const Asset& asset) {
+    Vector<std::uint32_t> order(asset.hairCount());
+    std::iota(order.begin(), order.end(), 0u);
+    Vector<float> shares;
+    shares.reserve(order.size());
+    for (std::size_t guide = 0; guide < asset.guides.size(); ++guide) {
+        const std::uint32_t all = asset.hairsOf(guide);
+        for (std::uint32_t rank = 0; rank < all; ++rank) shares.push_back(leastShare(rank, all));
+    }
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return shares[a] != shares[b] ? shares[a] < shares[b] : a < b;
+    });
+    return order;
+}
+
+hl_code fillLooks(const hl_asset* asset, std::span<const std::uint32_t> order, void* out, hl_error* error) {
+    Vector<hl_hair> hairs(order.size());
+    if (const hl_code code = hl_asset_hairs(asset, hairs.data(), sizeof(hl_hair), hairs.size(), error))
+        return code;
+    for (const std::uint32_t number : order) {
+        const hl_hair& hair = hairs[number];
+        writeGpu(out, shaders::RibbonLook{{hair.colour[0], hair.colour[1], hair.colour[2], hair.random},
+                                          {hair.root_radius, hair.tip_radius, 0, 0}});
+    }
+    return HL_OK;
+}
+
+hl_code fillOnce(const hl_asset* opened, const Asset& asset, std::uint32_t buffer, void* out,
+                 hl_error* error) {
+    if (buffer == HL_GPU_BUFFER_LOOKS) return fillLooks(opened, gpuOrder(asset), out, error);
+    if (buffer == HL_GPU_BUFFER_NUMBERS) {
+        for (const std::uint32_t hair : gpuOrder(asset)) writeGpu(out, hair);
+        return HL_OK;
     }
     const Asset::Strands rest = asset.strandsAtRest();
     const Asset::FollowArrays arrays = asset.followArrays(rest);
@@ -124,9 +158,9 @@ void fillOnce(const hl_asset* opened, const Asset& asset, std::uint32_t buffer, 
     } else if (buffer == HL_GPU_BUFFER_RADII) {
         for (const float radius : view.radii) writeGpu(out, radius);
     } else {
-        for (std::size_t hair = 0; hair < view.guides.size(); ++hair)
-            writeGpu(out, followBinding(view, hair));
+        for (const std::uint32_t hair : gpuOrder(asset)) writeGpu(out, followBinding(view, hair));
     }
+    return HL_OK;
 }
 
 /// Of a sound asset that has follow hairs.
@@ -228,7 +262,7 @@ void Instance::fillGpu(std::uint32_t buffer, void* out) {
     if (fill == HL_GPU_BEGIN || fill == HL_GPU_STEP) {
         gpuGuides_->fill(buffer, {static_cast<std::byte*>(out), gpuBytes(buffer)});
     } else if (buffer == HL_GPU_BUFFER_CONSTANTS) {
-        writeGpu(out, shaders::FollowConstants{static_cast<std::uint32_t>(roots_.size()), gpuHairs_,
+        writeGpu(out, shaders::FollowConstants{static_cast<std::uint32_t>(roots_.size()), gpuHairsShown(),
                                                gpuPoints_, gpuWisps_.spread, 1, gpuWisps_.limit, 0, 0});
     } else if (buffer == HL_GPU_BUFFER_TURNS) {
         const bool onGpu = gpuGuides_ && !gpuGuides_->atBegin();
@@ -278,7 +312,7 @@ hl_code hl_gpu_fill(const hl_asset* opened, uint32_t buffer, void* data, size_t 
     return withHairs(opened, error, [&](const Asset& asset, const GpuCounts& counts) {
         const std::uint64_t wanted = kGpuBuffers[buffer].count(counts) * kGpuBuffers[buffer].element;
         if (const Outcome refused = checkGpuBytes(buffer, bytes, wanted)) return say(error, refused);
-        fillOnce(opened, asset, buffer, data);
+        if (const hl_code code = fillOnce(opened, asset, buffer, data, error)) return code;
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }
@@ -310,28 +344,63 @@ hl_code hl_gpu_step(hl_instance* instance, const hl_frame* frame, hl_error* erro
                      [](Instance& hair, const hl_frame& known) { return hair.stepGpu(known); });
 }
 
+namespace hairloom::runtime {
+namespace {
+
+/// Threads and groups of a pass by what it works on.
+hl_code sayGpuPass(std::uint32_t pass, const GpuCounts& counts, hl_gpu_pass_info* out, hl_error* error) {
+    hl_gpu_pass_info info{out->size, kGpuPasses[pass].file, kGpuPasses[pass].kind, {0, 0, 0}, 0, 0};
+    if (info.kind == HL_GPU_DRAW) {
+        info.vertices = static_cast<std::uint32_t>(2 * counts.points);
+        info.instances = static_cast<std::uint32_t>(counts.hairs);
+    } else {
+        const std::uint64_t threads = pass == HL_GPU_PASS_GUIDES  ? counts.slots()
+                                      : pass == HL_GPU_PASS_WISPS ? counts.guides
+                                                                  : counts.hairs * counts.points;
+        const std::uint64_t groups = (threads + kGpuPasses[pass].threads - 1) / kGpuPasses[pass].threads;
+        info.groups[0] = static_cast<std::uint32_t>(std::min(groups, kMostGroups));
+        info.groups[1] = static_cast<std::uint32_t>((groups + kMostGroups - 1) / kMostGroups);
+        info.groups[2] = 1;
+    }
+    giveBack(info, out, out->size);
+    return say(error, HL_OK, HL_NO_PLACE, "");
+}
+
+/// Of a pass that there is, into a struct of a size that there was.
+Outcome checkGpuPass(std::uint32_t pass, const hl_gpu_pass_info& out) {
+    if (Outcome refused = checkSize<hl_gpu_pass_info>("hl_gpu_pass_info", out.size, sizeof(hl_gpu_pass_info)))
+        return refused;
+    if (pass < HL_GPU_PASS_COUNT) return std::nullopt;
+    return Refusal{HL_BAD_VALUE, "pass " + std::to_string(pass) + " of " + std::to_string(HL_GPU_PASS_COUNT)};
+}
+
+}  // namespace
+}  // namespace hairloom::runtime
+
 hl_code hl_gpu_pass(const hl_asset* asset, uint32_t pass, hl_gpu_pass_info* out, hl_error* error) {
     if (!asset || !out) return nullRefused(error, "no asset or no place for the pass");
-    if (const Outcome refused =
-            checkSize<hl_gpu_pass_info>("hl_gpu_pass_info", out->size, sizeof(hl_gpu_pass_info)))
-        return say(error, refused);
-    if (pass >= HL_GPU_PASS_COUNT) return pastTheLast(error, "pass", pass, HL_GPU_PASS_COUNT);
+    if (const Outcome refused = checkGpuPass(pass, *out)) return say(error, refused);
     return withHairs(asset, error, [&](const Asset&, const GpuCounts& counts) {
-        hl_gpu_pass_info info{out->size, kGpuPasses[pass].file, kGpuPasses[pass].kind, {0, 0, 0}, 0, 0};
-        if (info.kind == HL_GPU_DRAW) {
-            info.vertices = static_cast<std::uint32_t>(2 * counts.points);
-            info.instances = static_cast<std::uint32_t>(counts.hairs);
-        } else {
-            const std::uint64_t threads = pass == HL_GPU_PASS_GUIDES  ? counts.slots()
-                                          : pass == HL_GPU_PASS_WISPS ? counts.guides
-                                                                      : counts.hairs * counts.points;
-            const std::uint64_t groups = (threads + kGpuPasses[pass].threads - 1) / kGpuPasses[pass].threads;
-            info.groups[0] = static_cast<std::uint32_t>(std::min(groups, kMostGroups));
-            info.groups[1] = static_cast<std::uint32_t>((groups + kMostGroups - 1) / kMostGroups);
-            info.groups[2] = 1;
-        }
-        giveBack(info, out, out->size);
-        return say(error, HL_OK, HL_NO_PLACE, "");
+        return sayGpuPass(pass, counts, out, error);
+    });
+}
+
+hl_code hl_gpu_frame_pass(const hl_instance* instance, uint32_t pass, hl_gpu_pass_info* out,
+                          hl_error* error) {
+    if (!instance || !out) return nullRefused(error, "no instance or no place for the pass");
+    return guarded(error, [&] {
+        if (const Outcome refused = checkGpuPass(pass, *out)) return say(error, refused);
+        if (!instance->instance.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");
+        const Instance& hair = instance->instance;
+        const GpuCounts counts{
+            hair.describe().guides,
+            0,
+            hair.gpuHairsShown(),
+            hair.gpuPointsOfHair(),
+            hair.gpuBytes(HL_GPU_BUFFER_BLOCKS) / kGpuBuffers[HL_GPU_BUFFER_BLOCKS].element,
+            0,
+            0};
+        return sayGpuPass(pass, counts, out, error);
     });
 }
 
@@ -347,6 +416,17 @@ hl_code hl_gpu_view_init(const hl_asset* asset, hl_gpu_view* view, hl_error* err
                  1,
                  static_cast<std::uint32_t>(counts.points),
                  static_cast<std::uint32_t>(counts.hairs)};
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_gpu_frame_view(const hl_instance* instance, hl_gpu_view* view, hl_error* error) {
+    if (!instance || !view) return nullRefused(error, "no instance or no view");
+    return guarded(error, [&] {
+        const Instance& hair = instance->instance;
+        if (!hair.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");
+        view->hairs = hair.gpuHairsShown();
+        view->specular[3] = static_cast<float>(hair.gpuHairs()) / static_cast<float>(view->hairs);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }

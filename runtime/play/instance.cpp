@@ -108,7 +108,7 @@ std::size_t sphereBytes(const Asset& asset) {
 std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread, std::size_t bodyTable) {
     const std::size_t strands = asset.strandCount(), points = asset.pointCount();
     std::size_t bytes = 2 * points * sizeof(Float3) + 2 * strands * sizeof(RootFrame) +
-                        (strands + asset.guides.size() + 3) * sizeof(std::uint32_t) + sizeof(LevelSet);
+                        (strands + 2 * asset.guides.size() + 4) * sizeof(std::uint32_t) + sizeof(LevelSet);
     for (std::uint32_t level = 1; level < HL_LEVEL_RIGID; ++level) {
         Map<std::uint32_t, std::size_t> strandsOf;
         const std::uint32_t guides = guidesOfLevel(level, asset.strandCount());
@@ -179,13 +179,16 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
     const std::array<float, 2> usual = radiiOf(asset, "material", {4e-5f, 1.6e-5f});
     instance.radii_.root = usual[0];
     instance.radii_.tip = usual[1];
+    // Levels choose among hairs that a GPU makes, too.
+    if ((wantsHairs || wantsLevels) && asset.hairCount() > 0) {
+        instance.hairGroups_.push_back(0);
+        for (std::size_t guide = 0; guide < asset.guides.size(); ++guide)
+            instance.hairGroups_.push_back(instance.hairGroups_.back() + asset.hairsOf(guide));
+    }
     if (wantsHairs && asset.hairCount() > 0) {
         FollowHairs::Result hairs = asset.followHairs(strands, instance.host_);
         if (!hairs.hairs) return {std::nullopt, std::move(hairs.error)};
         instance.hairs_ = std::move(hairs.hairs);
-        instance.hairGroups_.push_back(0);
-        for (std::size_t guide = 0; guide < asset.guides.size(); ++guide)
-            instance.hairGroups_.push_back(instance.hairGroups_.back() + asset.hairsOf(guide));
         if (hasMaterials(asset)) {
             for (const asset::Guide& guide : asset.guides) {
                 const std::uint32_t layer = asset.layerOf(guide.strand);

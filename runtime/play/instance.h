@@ -61,6 +61,12 @@ class Instance {
     Outcome read(hl_read& read, bool wantsBounds = true);
     /// What the kernels of hairs are given each frame (gpu.cpp): number HL_GPU_BUFFER_… into `bytes`.
     bool hasGpuHairs() const { return gpuHairs_ > 0; }
+    /// Of the hairs in a GPU's order: all, unless a level leaves some out.
+    std::uint32_t gpuHairsShown() const {
+        return levels_ && !hairGroups_.empty() ? levels_->taken.back() : gpuHairs_;
+    }
+    std::uint32_t gpuHairs() const { return gpuHairs_; }
+    std::uint32_t gpuPointsOfHair() const { return gpuPoints_; }
     std::size_t gpuBytes(std::uint32_t buffer) const;
     void fillGpu(std::uint32_t buffer, void* data);
     Outcome checkGpuGuides(std::uint32_t buffer) const;

@@ -326,9 +326,7 @@ void Instance::takeHairs(float share) {
     levels_->share = share;
     levels_->taken.assign(hairGroups_.size(), 0);
     for (std::size_t g = 0; g + 1 < hairGroups_.size(); ++g) {
-        const auto all = static_cast<float>(hairGroups_[g + 1] - hairGroups_[g]);
-        levels_->taken[g + 1] = levels_->taken[g] + static_cast<std::uint32_t>(std::max(
-                                                        std::min(all, 1.0f), std::ceil(all * share)));
+        levels_->taken[g + 1] = levels_->taken[g] + takenOf(hairGroups_[g + 1] - hairGroups_[g], share);
     }
 }
 

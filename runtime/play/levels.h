@@ -4,7 +4,9 @@
 // guide that is not simulated keeps its own rest shape and takes over, in the frames of the roots, how far
 // the nearest simulated ones have moved from theirs.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -65,5 +67,11 @@ void showGuides(const LevelSet& set, const Level& level, std::span<const RootFra
                 std::span<Float3> positions_ws);
 /// Each goes with its root as it is at rest.
 void showRigid(const LevelSet& set, std::span<const RootFrame> roots_ws, std::span<Float3> positions_ws);
+
+/// Hairs of a guide with `all` of them that a share of them leaves: one at least.
+inline std::uint32_t takenOf(std::uint32_t all, float share) {
+    const auto most = static_cast<float>(all);
+    return static_cast<std::uint32_t>(std::max(std::min(most, 1.0f), std::ceil(most * share)));
+}
 
 }  // namespace hairloom::runtime

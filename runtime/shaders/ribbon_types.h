@@ -13,7 +13,7 @@ struct RibbonView {
     float4 eye;       ///< where hairs are measured from; w unused
     float4 toLight;   ///< of unit length; w: exponent of the highlight
     float4 light;     ///< linear; w: share that comes from everywhere
-    float4 specular;  ///< of the highlight, linear; w unused
+    float4 specular;  ///< of the highlight, linear; w: how much wider hairs are, 0: as they are
     float pixelSize;  ///< metres that a pixel covers at a metre's distance
     float minPixels;  ///< narrower hairs are as wide and let as much light through
     uint points;      ///< per hair

@@ -13,7 +13,8 @@ Ribbon main(uint vertex : SV_VertexID, uint hair : SV_InstanceID) {
     const float3 across = cross(along, toEye);
     const float3 side = across * rsqrt(max(dot(across, across), 1e-30));
     const RibbonLook look = gLooks[hair];
-    const float wanted = lerp(look.radii.x, look.radii.y, float(p) / float(last));
+    const float wider = gView.specular.w > 0.0 ? gView.specular.w : 1.0;
+    const float wanted = wider * lerp(look.radii.x, look.radii.y, float(p) / float(last));
     const float radius = max(wanted, 0.5 * gView.minPixels * gView.pixelSize * length(toEye));
     Ribbon o;
     o.position = mul(gView.clipFromWorld, float4(here + side * ((vertex & 1u) != 0u ? radius : -radius), 1));

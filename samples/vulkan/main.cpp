@@ -2,7 +2,8 @@
 // Plays a runtime asset with Vulkan 1.3: the CPU steps guides, or with --gpu a kernel does. The kernels of
 // share/hairloom-runtime/shaders make all hairs of them and draw them as ribbons, and nothing is read back
 // but the last image, which is written as PPM.
-//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--compare]
+//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--share S] [--compare]
+// --share makes and draws that share of the hairs, above 0 to 1, as a character far off has them.
 // --compare reads the hairs of each frame back and says how far they are from hl_instance_read_hairs().
 
 #include <hairloom/gpu.h>
@@ -212,22 +213,38 @@ void look(const hl_asset_info& asset, hl_gpu_view& view) {
 }
 
 /// Metres: how far hairs in the device's buffer lie from those of the CPU at most, and in the mean of
-/// squares.
-void compare(const Buffer& made, const std::vector<float>& expected, double& farthest, double& squares) {
+/// squares. `slots`: where the device has each of the CPU's hairs.
+void compare(const Buffer& made, const std::vector<std::uint32_t>& slots, const std::vector<float>& expected,
+             double& farthest, double& squares) {
     const auto* const at = static_cast<const float*>(made.mapped);
     double sum = 0;
-    const std::size_t points = expected.size() / 3;
+    const std::size_t points = expected.size() / 3, ofHair = points / slots.size();
     for (std::size_t p = 0; p < points; ++p) {
+        const std::size_t there = slots[p / ofHair] * ofHair + p % ofHair;
         double squared = 0;
         for (std::size_t c = 0; c < 3; ++c) {
             const double apart =
-                static_cast<double>(at[4 * p + c]) - static_cast<double>(expected[3 * p + c]);
+                static_cast<double>(at[4 * there + c]) - static_cast<double>(expected[3 * p + c]);
             squared += apart * apart;
         }
         farthest = std::max(farthest, std::sqrt(squared));
         sum += squared;
     }
     squares = std::max(squares, std::sqrt(sum / static_cast<double>(points)));
+}
+
+/// Where the device has each of the hairs that the CPU reads: it makes those first that are left longest.
+std::vector<std::uint32_t> slotsOf(const hl_instance* onCpu, const Buffer& numbers, std::uint32_t hairs) {
+    std::vector<std::uint32_t> read(hairs), slots(hairs), slotOf(numbers.bytes / sizeof(std::uint32_t), ~0u);
+    hl_error error{};
+    check(hl_instance_hair_numbers(onCpu, read.data(), read.size(), &error), error);
+    const auto* const known = static_cast<const std::uint32_t*>(numbers.mapped);
+    for (std::uint32_t slot = 0; slot < hairs; ++slot) slotOf[known[slot]] = slot;
+    for (std::uint32_t hair = 0; hair < hairs; ++hair) {
+        slots[hair] = slotOf[read[hair]];
+        if (slots[hair] == ~0u) fail("the device makes other hairs than the CPU reads");
+    }
+    return slots;
 }
 
 void writeImage(const char* name, const Buffer& pixels) {
@@ -241,9 +258,10 @@ void writeImage(const char* name, const Buffer& pixels) {
 }  // namespace
 
 int main(int count, char** words) {
-    if (count < 3) fail("vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--compare]");
+    if (count < 3) fail("vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--share S] [--compare]");
     const char* image = nullptr;
     int frames = 60;
+    float share = 1;
     bool comparing = false, onGpu = false;
     for (int i = 3; i < count; ++i) {
         const std::string word = words[i];
@@ -253,6 +271,8 @@ int main(int count, char** words) {
             onGpu = true;
         else if (word == "-o" && i + 1 < count)
             image = words[++i];
+        else if (word == "--share" && i + 1 < count)
+            share = std::strtof(words[++i], nullptr);
         else if (word == "--frames" && i + 1 < count)
             frames = std::max(1, std::atoi(words[++i]));
         else
@@ -265,9 +285,12 @@ int main(int count, char** words) {
     hairloom::game::Asset asset;
     hairloom::game::Instance hair, onCpu;
     if (!asset.open(bytes.data(), size, &error)) fail(error.words);
-    if (!hair.make(asset, HL_GUIDES, nullptr, &error)) fail(error.words);
+    if (!hair.make(asset, HL_GUIDES | HL_LEVELS, nullptr, &error)) fail(error.words);
+    if (!hair.setLevel(HL_LEVEL_FINEST, share, &error)) fail(error.words);
     // There to compare with, and for nothing else.
-    if (comparing && !onCpu.make(asset, HL_HAIRS, nullptr, &error)) fail(error.words);
+    if (comparing && (!onCpu.make(asset, HL_HAIRS | HL_LEVELS, nullptr, &error) ||
+                      !onCpu.setLevel(HL_LEVEL_FINEST, share, &error)))
+        fail(error.words);
 
     const Gpu gpu;
     std::vector<Buffer> buffers;
@@ -283,12 +306,13 @@ int main(int count, char** words) {
     std::vector<Pass> passes(HL_GPU_PASS_COUNT);
     for (std::uint32_t p = 0; p < HL_GPU_PASS_COUNT; ++p) {
         passes[p].info.size = sizeof passes[p].info;
-        check(hl_gpu_pass(asset.get(), p, &passes[p].info, &error), error);
+        check(hl_gpu_frame_pass(hair.get(), p, &passes[p].info, &error), error);
         bindBuffers(gpu, buffers, p, passes[p]);
         makePipeline(gpu, words[2], passes[p]);
     }
     hl_gpu_view view;
     check(hl_gpu_view_init(asset.get(), &view, &error), error);
+    check(hl_gpu_frame_view(hair.get(), &view, &error), error);
     look(asset.describe(), view);
     std::memcpy(buffers[HL_GPU_BUFFER_VIEW].mapped, &view, sizeof view);
 
@@ -311,6 +335,9 @@ int main(int count, char** words) {
         gpu.image(kDepth, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
     const Buffer pixels = gpu.buffer(std::size_t{4} * kWidth * kHeight, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     std::vector<float> expected;
+    const std::vector<std::uint32_t> slots =
+        comparing ? slotsOf(onCpu.get(), buffers[HL_GPU_BUFFER_NUMBERS], view.hairs)
+                  : std::vector<std::uint32_t>();
     double farthest = 0, squares = 0;
     const float wind[3] = {2, 0, 1};
     for (int f = 1; f <= frames; ++f) {
@@ -328,7 +355,7 @@ int main(int count, char** words) {
         draw(gpu, passes, onGpu ? HL_GPU_PASS_GUIDES : HL_GPU_PASS_WISPS, colour, depth, pixels);
         if (!comparing) continue;
         if (!onCpu.step(frame, &error) || !onCpu.readHairs(expected, &error)) fail(error.words);
-        compare(buffers[HL_GPU_BUFFER_POINTS], expected, farthest, squares);
+        compare(buffers[HL_GPU_BUFFER_POINTS], slots, expected, farthest, squares);
     }
     if (image) writeImage(image, pixels);
     std::size_t uploaded = 0;

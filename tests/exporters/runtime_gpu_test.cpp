@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "core/groom/groom.h"
 #include "hairloom/gpu.h"
+#include "tests/exporters/decorated_sample.h"
 #include "tests/exporters/levels_sample.h"
 #include "tests/runtime/allocations.h"
 
@@ -16,6 +19,14 @@ namespace {
 using game::Error;
 using game::Instance;
 using testing::HasSubstr;
+
+/// Which hair is where on a GPU.
+std::vector<std::uint32_t> numbersOfGpu(const game::Asset& asset) {
+    std::vector<std::uint32_t> numbers(asset.describe().hairs);
+    EXPECT_EQ(hl_gpu_fill(asset.get(), HL_GPU_BUFFER_NUMBERS, numbers.data(), 4 * numbers.size(), nullptr),
+              HL_OK);
+    return numbers;
+}
 
 class RuntimeGpu : public RuntimeLevels {
   protected:
@@ -59,11 +70,77 @@ TEST_F(RuntimeGpu, LooksAreThoseOfTheHairs) {
     ASSERT_EQ(hl_asset_hairs(asset_.get(), hairs.data(), sizeof(hl_hair), hairs.size(), nullptr), HL_OK);
     std::vector<float> looks(8 * hairs.size());
     ASSERT_EQ(hl_gpu_fill(asset_.get(), HL_GPU_BUFFER_LOOKS, looks.data(), 4 * looks.size(), nullptr), HL_OK);
+    const std::vector<std::uint32_t> numbers = numbersOfGpu(asset_);
     for (std::size_t h = 0; h < hairs.size(); ++h) {
-        EXPECT_EQ(std::memcmp(&looks[8 * h], hairs[h].colour, 12), 0);
-        EXPECT_EQ(looks[8 * h + 3], hairs[h].random);
-        EXPECT_EQ(looks[8 * h + 4], hairs[h].root_radius);
-        EXPECT_EQ(looks[8 * h + 5], hairs[h].tip_radius);
+        const hl_hair& hair = hairs[numbers[h]];
+        EXPECT_EQ(std::memcmp(&looks[8 * h], hair.colour, 12), 0);
+        EXPECT_EQ(looks[8 * h + 3], hair.random);
+        EXPECT_EQ(looks[8 * h + 4], hair.root_radius);
+        EXPECT_EQ(looks[8 * h + 5], hair.tip_radius);
+    }
+}
+
+TEST_F(RuntimeGpu, AShareOfTheHairsIsTheFirstOfThem) {
+    // Guides of two layers have other numbers of hairs.
+    const std::vector<std::byte> bytes = written(decorated());
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    const std::vector<std::uint32_t> numbers = numbersOfGpu(asset);
+    std::vector<std::uint32_t> all = numbers;
+    std::sort(all.begin(), all.end());
+    for (std::size_t h = 0; h < all.size(); ++h) ASSERT_EQ(all[h], h) << "each hair once";
+    Instance onGpu, onCpu;
+    ASSERT_TRUE(onGpu.make(asset, HL_GUIDES | HL_LEVELS));
+    ASSERT_TRUE(onCpu.make(asset, HL_HAIRS | HL_LEVELS));
+    Error error;
+    std::size_t fewest = all.size();
+    std::vector<float> shares{1e-6f, 1};
+    for (const float ofGuide : {3.0f, 6.0f}) {
+        for (float rank = 1; rank < ofGuide; ++rank) {
+            for (const float past : {0.0f, 2.0f}) {
+                const float share = rank / ofGuide;
+                shares.insert(shares.end(), {share, std::nextafter(share, past),
+                                             std::nextafter(std::nextafter(share, past), past)});
+            }
+        }
+    }
+    for (const float share : shares) {
+        ASSERT_TRUE(onGpu.setLevel(HL_LEVEL_FINEST, share));
+        ASSERT_TRUE(onCpu.setLevel(HL_LEVEL_FINEST, share));
+        const hl_instance_info info = onCpu.describe();
+        std::vector<std::uint32_t> read(info.hairs);
+        ASSERT_EQ(hl_instance_hair_numbers(onCpu.get(), read.data(), read.size(), nullptr), HL_OK);
+        ASSERT_LE(read.size(), numbers.size());
+        std::vector<std::uint32_t> drawn(numbers.begin(),
+                                         numbers.begin() + static_cast<std::ptrdiff_t>(read.size()));
+        std::sort(drawn.begin(), drawn.end());
+        EXPECT_EQ(drawn, read) << "share " << static_cast<double>(share);
+        hl_gpu_pass_info pass{};
+        pass.size = sizeof pass;
+        ASSERT_EQ(hl_gpu_frame_pass(onGpu.get(), HL_GPU_PASS_RIBBONS, &pass, &error), HL_OK) << error.what();
+        EXPECT_EQ(pass.instances, info.hairs);
+        ASSERT_EQ(hl_gpu_frame_pass(onGpu.get(), HL_GPU_PASS_HAIRS, &pass, &error), HL_OK);
+        EXPECT_EQ(pass.groups[0], (info.hairs * info.points_per_hair + 63) / 64);
+        hl_gpu_view view;
+        ASSERT_EQ(hl_gpu_view_init(asset.get(), &view, nullptr), HL_OK);
+        ASSERT_EQ(hl_gpu_frame_view(onGpu.get(), &view, nullptr), HL_OK);
+        EXPECT_EQ(view.hairs, info.hairs);
+        EXPECT_FLOAT_EQ(view.specular[3], static_cast<float>(all.size()) / static_cast<float>(info.hairs));
+        std::array<std::uint32_t, 8> constants{};
+        ASSERT_EQ(hl_gpu_fill_frame(onGpu.get(), HL_GPU_BUFFER_CONSTANTS, constants.data(), sizeof constants,
+                                    &error),
+                  HL_OK);
+        EXPECT_EQ(constants[1], info.hairs);
+        fewest = std::min(fewest, read.size());
+    }
+    EXPECT_EQ(fewest, asset.describe().guides) << "one of each guide";
+    // Passes of guides are those of all hairs.
+    for (const std::uint32_t pass : {HL_GPU_PASS_GUIDES, HL_GPU_PASS_WISPS}) {
+        hl_gpu_pass_info whole{}, some{};
+        whole.size = some.size = sizeof whole;
+        ASSERT_EQ(hl_gpu_pass(asset.get(), pass, &whole, nullptr), HL_OK);
+        ASSERT_EQ(hl_gpu_frame_pass(onGpu.get(), pass, &some, nullptr), HL_OK);
+        EXPECT_EQ(some.groups[0], whole.groups[0]);
     }
 }
 
@@ -229,6 +306,11 @@ TEST_F(RuntimeGpu, WrongWordsAreRefusedAndNothingIsWritten) {
     info.size = 7;
     refused(hl_gpu_buffer(asset, 0, &info, &error), HL_WRONG_SIZE, "hl_gpu_buffer_info");
     refused(hl_gpu_view_init(asset, nullptr, &error), HL_BAD_VALUE, "no view");
+    refused(hl_gpu_frame_view(instance, nullptr, &error), HL_BAD_VALUE, "no view");
+    refused(hl_gpu_frame_pass(nullptr, 0, &pass, &error), HL_BAD_VALUE, "no instance");
+    refused(hl_gpu_frame_pass(instance, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 4 of 4");
+    pass.size = 5;
+    refused(hl_gpu_frame_pass(instance, 0, &pass, &error), HL_WRONG_SIZE, "hl_gpu_pass_info");
     // Hair of guides alone.
     Groom bald = hair();
     bald.interpolation.followPerGuide = 0;

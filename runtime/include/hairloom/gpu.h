@@ -19,6 +19,9 @@
  * Run what hl_gpu_pass() says in the order of HL_GPU_PASSES, with a barrier after each. Buffers of
  * HL_GPU_BEGIN, HL_GPU_STEP and SCRATCH are for the pass GUIDES alone.
  *
+ * Hairs are in the order in which a level leaves them out: those that a smaller hair_share reads come first.
+ * NUMBERS says which of hl_asset_hairs() each is.
+ *
  * Binding: in Direct3D register `number` of class B (constants), T (read) or U (written); in Vulkan set 0,
  * binding `number` + HL_GPU_VULKAN_B, _T or _U, uniform buffers for B and storage buffers for T and U. */
 
@@ -48,6 +51,7 @@ extern "C" {
     X(RADII, 4, HAIR_SAMPLES, ONCE, "of a wisp, from root to tip, metres")                         \
     X(BINDINGS, 80, HAIRS, ONCE, "how much of which guides each hair takes")                       \
     X(LOOKS, 32, HAIRS, ONCE, "linear colour, random number, radii at root and tip, metres, 0, 0") \
+    X(NUMBERS, 4, HAIRS, ONCE, "which of hl_asset_hairs() each hair is, for tables of your own")   \
     X(ROWS, 16, GUIDE_ROWS, DEVICE, "what WISPS hands to HAIRS")                                   \
     X(POINTS, 16, HAIR_POINTS, DEVICE, "of all hairs, metres less hl_frame.origin, and 1")         \
     X(VIEW, 144, ONE, HOST, "hl_gpu_view")                                                         \
@@ -147,7 +151,7 @@ HL_API hl_code hl_gpu_buffer(const hl_asset* asset, uint32_t buffer, hl_gpu_buff
 /* `bytes` as hl_gpu_buffer() says. HL_BAD_VALUE of a buffer that is not HL_GPU_ONCE. */
 HL_API hl_code hl_gpu_fill(const hl_asset* asset, uint32_t buffer, void* data, size_t bytes, hl_error* error);
 /* Of an instance of that asset, at any level, made with or without HL_HAIRS; takes memory at the first call.
- * All hairs are made, whatever the level's hair_share is. */
+ */
 HL_API hl_code hl_gpu_fill_frame(hl_instance* instance, uint32_t buffer, void* data, size_t bytes,
                                  hl_error* error);
 
@@ -171,7 +175,12 @@ typedef struct hl_gpu_pass_info {
     uint32_t groups[3];           /* to dispatch */
     uint32_t vertices, instances; /* to draw as triangle strips without vertex buffers, of both faces */
 } hl_gpu_pass_info;
+/* Of all hairs. */
 HL_API hl_code hl_gpu_pass(const hl_asset* asset, uint32_t pass, hl_gpu_pass_info* out, hl_error* error);
+/* Of the hairs that the instance's hair_share leaves (hl_instance_set_level, of an instance with HL_LEVELS):
+ * fewer groups of HAIRS and instances of RIBBONS. */
+HL_API hl_code hl_gpu_frame_pass(const hl_instance* instance, uint32_t pass, hl_gpu_pass_info* out,
+                                 hl_error* error);
 
 /* The constant block of RIBBONS: Kajiya and Kay's hair in the light of a lamp. Space of what is read: metres,
  * less hl_frame.origin. */
@@ -180,13 +189,16 @@ typedef struct hl_gpu_view {
     float eye[4];
     float to_light[4]; /* of unit length; the exponent of the highlight, 40 */
     float light[4];    /* linear; share of it that comes from everywhere, 0.15 */
-    float specular[4]; /* of the highlight, linear, 0.25 each; 0 */
+    float specular[4]; /* of the highlight, linear, 0.25 each; how much wider hairs are, 0: as they are */
     float pixel_size;  /* metres that a pixel covers at a metre's distance: 2 tan(fov_y / 2) / height */
     float min_pixels;  /* narrower hairs are as wide, and a share of their pixels is left out; 1 */
     uint32_t points, hairs;
 } hl_gpu_view;
 /* All but clip_from_world, eye and pixel_size, which become 0. */
 HL_API hl_code hl_gpu_view_init(const hl_asset* asset, hl_gpu_view* view, hl_error* error);
+/* After another hair_share: sets `hairs` and specular[3], so that fewer hairs cover as much, and nothing
+ * else. */
+HL_API hl_code hl_gpu_frame_view(const hl_instance* instance, hl_gpu_view* view, hl_error* error);
 
 #ifdef __cplusplus
 }

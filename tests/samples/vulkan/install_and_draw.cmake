@@ -57,6 +57,16 @@ foreach(style IN ITEMS short shoulder)
     if(NOT output MATCHES "at most, ([0-9]\\.?[0-9]*e-(0[5-9]|1[0-9])|0|0\\.0001[0-9]*) m root mean square")
         message(FATAL_ERROR "${style}: expected 0.0002 m root mean square of the CPU's at most")
     endif()
+    # A share of them: other dispatches, the same hairs as the CPU reads then.
+    run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${style}.hairrt"
+        "${shaders}" --frames 5 --share 0.3 --compare)
+    message("${style}, a share of the hairs: ${output}")
+    if(output MATCHES "VUID|Validation")
+        message(FATAL_ERROR "${style}: Vulkan's validation layer speaks")
+    endif()
+    if(NOT output MATCHES "1[0-9][0-9][0-9][0-9] hairs, .*apart from the CPU's: ([0-9]\\.?[0-9]*e-0[6-9]|0) m at most")
+        message(FATAL_ERROR "${style}: expected about a third of 36000 hairs within 0.00001 m of the CPU's")
+    endif()
     # All but hair is one grey.
     run(convert "${image}" -fuzz 2% -fill white -opaque "srgb(188,188,188)" -fill black +opaque white -format "%[fx:int(1000*(1-mean))]" info:)
     if(output LESS 60 OR output GREATER 900)
