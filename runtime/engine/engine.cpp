@@ -2,6 +2,7 @@
 // The public face: sizes are checked here, and nowhere behind it.
 #include "hairloom/engine.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/checks.h"
@@ -93,6 +94,7 @@ std::shared_ptr<const State> Engine::state() const {
 
 void Engine::keepMemory() {
     impl_->keepsMemory_ = true;
+    if (impl_->meetsBody()) impl_->state_.body.reserve(std::max<std::size_t>(impl_->body_->bones.size(), 1));
 }
 
 bool Engine::setState(const State& state) {
