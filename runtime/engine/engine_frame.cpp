@@ -420,6 +420,9 @@ void Engine::Impl::step(const FrameInput& input) {
         moveSpheres(spheres_, substeps_, movingSpheres_);
     }
 
+    // Where there is no memory for them nothing has moved yet.
+    state_.spheres.reserve(spheres_.given);
+    state_.capsules.reserve(spheres_.capsules.size());
     const Frame frame = makeFrame(input);
     if (hairGrid_.isOn() && !plan_.stages().empty())
         hairGrid_.update(*shape_, state_, nextRoots_, settings_, frame.context.h, substeps_, host_);

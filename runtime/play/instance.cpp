@@ -417,12 +417,15 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
             return refuse("is " + std::to_string(values[c]) + "; expected " + std::to_string(field->min) +
                           " to " + std::to_string(field->max));
     }
-    settlePlayed();
-    if (const std::string why = engine_.setSettings(settings); !why.empty())
+    // In a copy: where memory ends in the middle, this one is as it was.
+    Instance changed(*this);
+    changed.settlePlayed();
+    if (const std::string why = changed.engine_.setSettings(settings); !why.empty())
         return Refusal{HL_BAD_VALUE, why};
-    if (levels_) setSettingsOfLevels(settings);
-    leaveGpu();
-    asleep_ = false;
+    if (changed.levels_) changed.setSettingsOfLevels(settings);
+    changed.leaveGpu();
+    changed.asleep_ = false;
+    *this = std::move(changed);
     return std::nullopt;
 }
 
