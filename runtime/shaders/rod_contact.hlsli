@@ -63,11 +63,38 @@ bool touchSphere(uint k, float3 origin, RodNode node, out RodTouch touch) {
     return dot(to, to) <= farthest * farthest;
 }
 
-void press(RodTouch touch, bool held, RodNode node, inout RodContact c) {
-    if (held) rodPress(touch, held, node, 1.0 / gFrame.h, gFrame.substep.friction, gFrame.substep.restitution, c);
-}
-
 /// All strands of a group look at the same sphere at a time: one read of a constant serves them.
 #define EACH_SPHERE(k) \
     [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) \
         if ((gReachable & (1u << (k & 31u))) != 0u)
+
+/// What the spheres do to a node that hold it, which may be outside by `slack` metres; whether any is near it. Of those
+/// that press alike, as spheres along a capsule do, one that another keeps the node off does not hold it back, and
+/// friction is by the force of all of them together (RodStrip::pressedBySeveral()).
+RodContact contactOf(float3 origin, RodNode node, float slack, out bool near) {
+    RodContact found = noContact();
+    float friction = gFrame.substep.friction, least = -1e9;
+    near = false;
+    [loop] for (uint pass = 0; pass < 3; ++pass) {
+        float deepest = -1e9;
+        found = noContact();
+        EACH_SPHERE(k) {
+            RodTouch touch;
+            if (touchSphere(k, origin, node, touch)) {
+                near = true;
+                if (rodHolds(touch, slack) && touch.depth >= least) {
+                    deepest = max(deepest, touch.depth);
+                    rodPress(touch, true, node, 1.0 / gFrame.h, friction, gFrame.substep.restitution, found);
+                }
+            }
+        }
+        const float alike = rodPressAlike(found);
+        if (alike <= 1.0) break;
+        if (pass == 0) {
+            least = min(deepest, 0.0);
+        } else {
+            friction = gFrame.substep.friction / alike;
+        }
+    }
+    return found;
+}

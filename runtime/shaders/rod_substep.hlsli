@@ -98,15 +98,8 @@ RodNode nodeOf(uint p, float3 moved, float3 tangent, float3 position, float weig
 
 /// The contacts of segment j's outer node, as predicted.
 RodContact meet(uint j, RodNode node) {
-    RodContact found = noContact();
-    bool near = false;
-    EACH_SPHERE(k) {
-        RodTouch touch;
-        if (touchSphere(k, rootAtEnd(), node, touch)) {
-            near = true;
-            press(touch, rodHolds(touch, rodSlackAfter(node.load)), node, found);
-        }
-    }
+    bool near;
+    const RodContact found = contactOf(rootAtEnd(), node, rodSlackAfter(node.load), near);
     gTouched = max(gTouched, found.touching);
     gNear = gNear || near;
     setNear(j, near);
@@ -370,12 +363,8 @@ bool lookAgain(bool isFirst, bool runs) {
         if (isNear(i)) {
             const RodNode node = nodeOf(i + 1, moved, tangent, position, aimed.w);
             const float slack = rodSlackOf(contact(i), moved - predictedDisplacement(i));
-            RodContact found = noContact();
-            EACH_SPHERE(k) {
-                RodTouch touch;
-                if (touchSphere(k, rootAtEnd(), node, touch)) press(touch, rodHolds(touch, slack), node, found);
-            }
-            setContact(i, found);
+            bool near;
+            setContact(i, contactOf(rootAtEnd(), node, slack, near));
         }
         const RodContact met = contact(i);
         touched = max(touched, met.touching);

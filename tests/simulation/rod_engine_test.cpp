@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "core/simulation/reference/converge.h"
@@ -127,6 +128,54 @@ TEST(RodsConverge, OnACapsule) {
     EXPECT_LT(two, 4.0);
     EXPECT_LT(thirtyTwo, 1.0);
     EXPECT_LT(thirtyTwo, 0.7 * eight);
+}
+
+/// The tip of a rod lies on a bar and slides along it, where gravity leans by 0.48: friction holds up to 0.3.
+Swing slideOnABar(std::size_t frames, std::vector<reference::Sphere> bar,
+                  std::vector<std::array<std::size_t, 2>> capsules) {
+    Swing result{straightStrand(1, 0.2), {}};
+    for (std::size_t f = 1; f <= frames; ++f) {
+        reference::Frame frame{static_cast<double>(kFrameTime),
+                               static_cast<double>(f) * static_cast<double>(kFrameTime),
+                               {reference::Root{}},
+                               {}};
+        frame.spheres = bar;
+        frame.capsules = capsules;
+        result.frames.push_back(frame);
+    }
+    return result;
+}
+
+TEST(RodsConverge, FrictionCountsOnceWhereCapsulesMeet) {
+    runtime::SimulationSettings s = rods();
+    s.clampedPoints = 1;
+    s.angularStiffness = 1e-6f;
+    s.dampingTime = s.bendDampingTime = s.airDrag = 0.0f;
+    s.collisionRadiusRoot = s.collisionRadiusTip = 0.0f;
+    s.friction = 0.3f;
+    s.gravity = {0.0f, -9.0f, 9.0f * 0.48f};
+    const Vec3d start(0.2, -0.05, -0.3), middle(0.2, -0.05, 0.0), end(0.2, -0.05, 0.3);
+    const std::vector<reference::Sphere> ends{{start, 0.05}, {end, 0.05}},
+        joined{{start, 0.05}, {middle, 0.05}, {end, 0.05}};
+    const Swing one = slideOnABar(15, ends, {{0, 1}});
+    const reference::Root root;
+    const auto right = reference::converged(one.strands, s, {&root, 1}, one.frames, {2e-5, 4, 256, 2});
+    ASSERT_TRUE(right && right->report.failed == 0);
+    const double due = right->positions_ws.back().back().z();
+    EXPECT_GT(due, 0.03);
+    const auto slid = [&](const Swing& swing) {
+        return engineRun(swing, withSteps(s, runtime::Integrator::verlet, 16)).back().back().z();
+    };
+    EXPECT_NEAR(slid(one), due, 0.05 * due);
+    EXPECT_NEAR(slid(slideOnABar(15, joined, {{0, 1}, {1, 2}})), due, 0.05 * due);
+    // The same bar twice, and the reference's own chain.
+    EXPECT_NEAR(
+        slid(slideOnABar(15, {{start, 0.05}, {end, 0.05}, {start, 0.05}, {end, 0.05}}, {{0, 1}, {2, 3}})),
+        due, 0.05 * due);
+    const auto chain = reference::converged(
+        one.strands, s, {&root, 1}, slideOnABar(15, joined, {{0, 1}, {1, 2}}).frames, {2e-5, 4, 256, 2});
+    ASSERT_TRUE(chain && chain->report.failed == 0);
+    EXPECT_NEAR(chain->positions_ws.back().back().z(), due, 0.01 * due);
 }
 
 }  // namespace

@@ -324,20 +324,20 @@ class RodStrip {
         return context_.collisionRadiusAtRoot +
                along * (context_.collisionRadiusAtTip - context_.collisionRadiusAtRoot);
     }
-    void press(const RodTouch& touch, RodMask held, const RodNode& node, RodContact& contact) const {
+    void press(const RodTouch& touch, RodMask held, const RodNode& node, V friction,
+               RodContact& contact) const {
         if (hn::AllFalse(D(), held)) return;
-        rodPress(touch, held, node, all(1.0f / context_.h), all(context_.friction), all(context_.restitution),
-                 contact);
+        rodPress(touch, held, node, all(1.0f / context_.h), friction, all(context_.restitution), contact);
     }
     void meet(RodPoint& point, V3 tangent, V3 position, std::uint32_t p) {
         const RodNode node = nodeOf(point, point.displacement, tangent, position, p);
-        point.contact = noContact();
         auto near = noLane();
-        forEachShape(rootPosition(), node, p, hn::Not(noLane()), [&](const RodTouch& touch, RodMask here) {
-            near = either(near, here);
-            const V slack = context_.body ? bodySlackAfter(touch, node) : rodSlackAfter(node.load);
-            press(touch, rodHolds(touch, slack), node, point.contact);
-        });
+        point.contact =
+            contactOf(rootPosition(), node, p, hn::Not(noLane()), [&](const RodTouch& touch, RodMask here) {
+                near = either(near, here);
+                return rodHolds(touch,
+                                context_.body ? bodySlackAfter(touch, node) : rodSlackAfter(node.load));
+            });
         touched_ = hn::Max(touched_, point.contact.touching);
         near_ = either(near_, near);
         point.near = hn::IfThenElseZero(near, all(1.0f));
@@ -356,6 +356,14 @@ class RodStrip {
     void searchStep();
     RodMask mayTouch(std::uint32_t j) const;
     bool anyMayTouch() const;
+    template <class Holds>
+    RodContact contactOf(V3 root, const RodNode& node, std::uint32_t p, RodMask near, const Holds& holds);
+    template <class Holds>
+    RodContact pressedBy(V3 root, const RodNode& node, std::uint32_t p, RodMask near, V friction,
+                         const Holds& holds);
+    template <class Holds>
+    RodContact pressedBySeveral(V3 root, const RodNode& node, std::uint32_t p, RodMask near, V least,
+                                const Holds& holds);
     template <class Visit>
     void forEachNode(Visit&& visit);
     bool lookAgain(int look);

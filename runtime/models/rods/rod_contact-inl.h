@@ -74,6 +74,8 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
     }
 }
 
+constexpr float kAnyDepth = 1e9f;  ///< metres
+
 /// A body that comes fast is many times as deep in a strand as what one step can turn: it pushes by so many
 /// metres a step, in so many steps at most, until no node is deeper than so many metres.
 constexpr float kBodyPush = 8e-3f;

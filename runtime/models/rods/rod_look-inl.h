@@ -15,7 +15,49 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-constexpr float kAnyDepth = 1e9f;  ///< metres
+/// What the shapes that `holds` names do to a node.
+template <bool kBends, bool kTwists, bool kContacts>
+template <class Holds>
+RodContact RodStrip<kBends, kTwists, kContacts>::contactOf(V3 root, const RodNode& node, std::uint32_t p,
+                                                           RodMask near, const Holds& holds) {
+    V deepest = all(-kAnyDepth);
+    const RodContact found =
+        pressedBy(root, node, p, near, all(context_.friction), [&](const RodTouch& touch, RodMask here) {
+            const auto held = holds(touch, here);
+            deepest = choose(held, hn::Max(deepest, touch.depth), deepest);
+            return held;
+        });
+    if (HWY_LIKELY(hn::AllTrue(D(), rodPressAlike(found) <= all(1.0f)))) return found;
+    return pressedBySeveral(root, node, p, near, hn::Min(deepest, hn::Zero(D())), holds);
+}
+
+template <bool kBends, bool kTwists, bool kContacts>
+template <class Holds>
+RodContact RodStrip<kBends, kTwists, kContacts>::pressedBy(V3 root, const RodNode& node, std::uint32_t p,
+                                                           RodMask near, V friction, const Holds& holds) {
+    RodContact found = noContact();
+    forEachShape(root, node, p, near, [&](const RodTouch& touch, RodMask here) {
+        press(touch, holds(touch, here), node, friction, found);
+    });
+    return found;
+}
+
+/// Of shapes that press alike, as two capsules do at the end that they share: one that another keeps the node
+/// off does not hold it back, and friction is by the force of all of them together.
+template <bool kBends, bool kTwists, bool kContacts>
+template <class Holds>
+HWY_NOINLINE RodContact RodStrip<kBends, kTwists, kContacts>::pressedBySeveral(V3 root, const RodNode& node,
+                                                                               std::uint32_t p, RodMask near,
+                                                                               V least, const Holds& holds) {
+    const auto deep = [&](const RodTouch& touch, RodMask here) {
+        return both(holds(touch, here), touch.depth >= least);
+    };
+    const V friction = all(context_.friction);
+    const RodContact found = pressedBy(root, node, p, near, friction, deep);
+    const V alike = rodPressAlike(found);
+    if (hn::AllTrue(D(), alike <= all(1.0f))) return found;
+    return pressedBy(root, node, p, near, friction / alike, deep);
+}
 
 /// Lanes whose outer node of segment j is near a shape, or has come there since it was last seen.
 template <bool kBends, bool kTwists, bool kContacts>
@@ -121,10 +163,9 @@ bool RodStrip<kBends, kTwists, kContacts>::lookAgain(int look) {
     if (hn::AllFalse(D(), wrong)) return false;
     forEachNode([&](RodPoint& point, const RodNode& node, std::uint32_t p, RodMask lanes) {
         const V slack = rodSlackOf(point.contact, point.newDisplacement - point.displacement);
-        RodContact found = noContact();
-        forEachShape(root, node, p, point.near > hn::Zero(D()), [&](const RodTouch& touch, RodMask) {
-            press(touch, both(lanes, rodHolds(touch, slack)), node, found);
-        });
+        const RodContact found =
+            contactOf(root, node, p, point.near > hn::Zero(D()),
+                      [&](const RodTouch& touch, RodMask) { return both(lanes, rodHolds(touch, slack)); });
         point.contact = rodChosen(wrong, found, point.contact);
     });
     // Other lanes take the same step again.
