@@ -115,6 +115,20 @@ void settle(Contact contact, uint first, uint end, float collisionRadius, float3
     }
 }
 
+#if HAIR_SPHERES != 1
+/// Of spheres of several sets: a point that one set leaves in a sphere of another goes out as settle() has it, among
+/// all of them. Whether it was in one.
+bool settleSets(uint p, float3 root, float step, inout float3 at, inout float3 before) {
+    Contact none;
+    none.centre = float3(1e6, 0, 0);  // no circle is common with what is so far away: the first way out is the shortest
+    none.step = none.from = float3(0, 0, 0);
+    none.reach = 0.0;
+    const float3 began = at;
+    settle(none, 0, gFrame.sphereCount, collisionRadiusAt(p), root, step, at, before);
+    return any(began != at);
+}
+#endif
+
 /// Whether a position lies in one of the spheres but `own`.
 bool insideOthers(float3 at, uint own, uint first, uint end, float collisionRadius, float3 root, float step) {
     bool inside = false;

@@ -260,5 +260,12 @@ void collide(bool backward) {
         set.count = min(gFrame.sphereCount - set.first, uint(SPHERE_SET));
         collideWith(set, backward);
     }
+    if (gFrame.sphereCount > SPHERE_SET) EACH_OWN_POINT(i) {
+        float3 at = gPosition[i], before = gPrevious[i];
+        if (pointOf(i) >= FIRST_FREE && settleSets(pointOf(i), set.root, set.step, at, before)) {
+            gPosition[i] = at;
+            gPrevious[i] = before;
+        }
+    }
 #endif
 }

@@ -43,4 +43,13 @@ void collide(bool backward) {
             }
         }
     }
+#if HAIR_SPHERES != 1
+    if (gFrame.sphereCount > SPHERE_SET) EACH for (uint r = FIRST_FREE; r < POINTS; ++r) {
+        float3 at = position(r), before = previous(r);
+        if (settleSets(r, root, step, at, before)) {
+            setPosition(r, at);
+            setPrevious(r, before);
+        }
+    }
+#endif
 }

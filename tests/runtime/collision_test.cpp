@@ -421,6 +421,31 @@ TEST(Collision, HandlesManySpheres) {
         EXPECT_NEAR(length(FreePoints::position(engine, k) - spheres[k].center_ws), 0.1f, 5e-6f) << k;
 }
 
+TEST(Collision, SpheresOfDifferentSetsHaveCommonEdges) {
+    // Each sphere overlaps one that is 70 numbers behind it: points between the two lie in both.
+    FreePoints points;
+    std::vector<Sphere> spheres;
+    constexpr int kPairs = 70;
+    for (const float side : {-0.09f, 0.09f}) {
+        for (int k = 0; k < kPairs; ++k)
+            spheres.push_back({{side + 0.5f * static_cast<float>(k), 0.0f, 0.0f}, 0.1f});
+    }
+    for (int k = 0; k < kPairs; ++k) {
+        const float x = 0.5f * static_cast<float>(k);
+        for (const float side : {-0.004f, 0.0f, 0.004f}) points.add({x + side, 0.03f, 0.005f});
+    }
+    Engine engine = points.engine();
+    run(engine, points.strands, 1, 1e-3f, spheres);
+    for (std::size_t n = 0; n < 3 * kPairs; ++n) {
+        const Float3 at = FreePoints::position(engine, n);
+        EXPECT_LT(penetration(at, spheres), 1e-5) << n;
+        // The circle that both have in common is the nearest way out.
+        const Float3 off = at - spheres[n / 3].center_ws - Float3{0.09f, 0.0f, 0.0f};
+        EXPECT_NEAR(off.x, 0.0f, 1e-4f) << n;
+        EXPECT_NEAR(std::hypot(off.y, off.z), std::sqrt(0.1f * 0.1f - 0.09f * 0.09f), 1e-4f) << n;
+    }
+}
+
 /// Metres by which a sphere is inside of a segment with its collision radius, sampled along it.
 double depthBetweenPoints(std::span<const Float3> points, const SimulationSettings& s, const Sphere& sphere) {
     double deepest = -1e9;

@@ -15,6 +15,7 @@
 #include "engine/lanes-inl.h"
 #include "engine/spheres-inl.h"
 #include "hwy/highway.h"
+#include "models/springs/collide_segments-inl.h"
 #include "models/springs/near-inl.h"
 #include "models/springs/spring_block-inl.h"
 
@@ -296,9 +297,74 @@ class Contacts {
     std::size_t touchCount_ = 0;
 };
 
+/// Of spheres of several sets: points that one set leaves in spheres of another go out as Contacts::settle()
+/// has it, among all of them.
+HWY_NOINLINE void settleSets(const SpringBlock& block, const LaneFrame& lanes, const SubstepContext& context,
+                             const float* collisionRadii) {
+    constexpr int kSteps = 16;
+    const float step = static_cast<float>(context.index + 1);
+    const float widest = std::max(context.collisionRadiusAtRoot, context.collisionRadiusAtTip);
+    const auto centreOf = [&](const MovingSphere& sphere) { return sphere.from_ws + sphere.step * step; };
+    forEachPart(block, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
+        const V3 root = load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * all(step);
+        WideBox world = WideBox::empty();
+        world.add(boxOf(block, lane, begin, end), root);
+        const Box box = world.reduced();
+        const auto holdsAny = [&](const MovingSphere& sphere) HWY_ATTR {
+            const Float3 centre_ws = centreOf(sphere);
+            const auto gap = [](float low, float high, float at) {
+                return std::fmax(std::fmax(low - at, at - high), 0.0f);
+            };
+            const Float3 away{gap(box.low.x, box.high.x, centre_ws.x),
+                              gap(box.low.y, box.high.y, centre_ws.y),
+                              gap(box.low.z, box.high.z, centre_ws.z)};
+            const float most = sphere.radius + widest;
+            if (dot(away, away) > most * most) return false;
+            auto inside = noLane();
+            for (std::uint32_t p = begin; p < end; ++p) {
+                const V3 at = load3(block.position, std::size_t{p} * kBlockLanes + lane);
+                const V depth = depthIn(at + root - all3(centre_ws), all(sphere.radius + collisionRadii[p]));
+                inside = hn::Or(inside, depth > hn::Zero(D()));
+            }
+            return !hn::AllFalse(D(), inside);
+        };
+        bool isFree = true;
+        for (const MovingSphere& sphere : context.spheres) isFree = isFree && !holdsAny(sphere);
+        if (HWY_LIKELY(isFree)) return true;
+        for (std::uint32_t p = begin; p < end; ++p) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            // No circle is common with what is so far away: the first way out is the shortest.
+            Contact last{noLane(), all3({1e6f, 0.0f, 0.0f}), zero3(), hn::Zero(D()), zero3()};
+            for (int k = 0; k < kSteps; ++k) {
+                const V3 at = load3(block.position, i);
+                V deepest = hn::Zero(D());
+                Contact next = last;
+                for (const MovingSphere& sphere : context.spheres) {
+                    const V3 centre = all3(centreOf(sphere)) - root;
+                    const V reach = all(sphere.radius + collisionRadii[p]);
+                    const V depth = depthIn(at - centre, reach);
+                    const auto deeper = depth > deepest;
+                    deepest = hn::Max(deepest, depth);
+                    next.centre = select(deeper, centre, next.centre);
+                    next.step = select(deeper, all3(sphere.step), next.step);
+                    next.reach = hn::IfThenElse(deeper, reach, next.reach);
+                }
+                next.touching = deepest > hn::Zero(D());
+                if (HWY_LIKELY(hn::AllFalse(D(), next.touching))) break;
+                auto meet = next.touching;
+                const V3 onCircle = nearestOfCircle(at, last, next.centre, next.reach, meet);
+                next.from = select(meet, onCircle, at - next.centre);
+                last = next;
+                respond(block, context, i, last);
+            }
+        }
+        return true;
+    });
+}
+
 /// Pushes points, with their collision radius, out of spheres (Eq. 14). Where spheres overlap, a point that
-/// one of them pushes into others goes to their common edge. Of more than SphereSet::kMax spheres this holds
-/// within each kMax of them. `fromList` is what farthestFromList() says where there is a list.
+/// one of them pushes into others goes to their common edge. `fromList` is what farthestFromList() says where
+/// there is a list.
 template <bool kBackward>
 HWY_INLINE void collidePoints(const SpringBlock& block, LaneFrame& lanes, const SubstepContext& context,
                               float fromList) {
@@ -321,68 +387,7 @@ HWY_INLINE void collidePoints(const SpringBlock& block, LaneFrame& lanes, const 
         springLanes(lanes).near.overlapsKnown = 0;
         Contacts<kBackward>(block, lanes, part, spheres, collisionRadii, springLanes(lanes).near).run();
     }
-}
-
-/// Pushes segments out of spheres as cylinders (Choe, Choi, Ko 2005): the point of a segment's axis that is
-/// nearest to the centre keeps the collision radius there. Its two points share the push as their levers and
-/// masses of 1 have it, and the impulse with restitution (Eq. 20) and friction likewise. A clamped point
-/// does not move: where it is inside itself nothing turns the segment out, and where the sphere is nearer to
-/// it than a tenth of the segment the lever of the other would be too short.
-HWY_NOINLINE void collideSegments(const SpringBlock& block, const LaneFrame& lanes,
-                                  const SubstepContext& context) {
-    alignas(64) float collisionRadii[kMaxPoints];
-    fillCollisionRadii(block, context, collisionRadii);
-    const V zero = hn::Zero(D()), one = all(1.0f);
-    const V step = all(static_cast<float>(context.index + 1));
-    for (std::uint32_t p = std::max(block.firstFree, 1u); p < block.points; ++p) {
-        const bool innerMoves = p - 1 >= block.firstFree;
-        const V innerMass = all(innerMoves ? 1.0f : 0.0f);
-        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-            const std::size_t outer = std::size_t{p} * kBlockLanes + lane, inner = outer - kBlockLanes;
-            const V3 root = load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * step;
-            for (const MovingSphere& sphere : context.spheres) {
-                const V3 centre =
-                    all3(sphere.from_ws + sphere.step * static_cast<float>(context.index + 1)) - root;
-                const V3 a = load3(block.position, inner), b = load3(block.position, outer), edge = b - a;
-                const V along = dot(centre - a, edge) / hn::Max(dot(edge, edge), all(1e-20f));
-                const V t = hn::Min(hn::Max(along, zero), one), left = one - t;
-                const V3 from = a + edge * t - centre;
-                const V reach = all(sphere.radius + collisionRadii[p - 1]) +
-                                all(collisionRadii[p] - collisionRadii[p - 1]) * t;
-                // Points themselves have met the sphere already.
-                auto between = hn::And(along > zero, along < one);
-                if (!innerMoves) {
-                    const V3 clamped = a - centre;
-                    const V itsReach = all(sphere.radius + collisionRadii[p - 1]);
-                    between = hn::And(between, dot(clamped, clamped) >= itsReach * itsReach);
-                    between = hn::And(between, t >= all(0.1f));
-                }
-                const auto touching = hn::And(between, dot(from, from) < reach * reach);
-                if (HWY_LIKELY(hn::AllFalse(D(), touching))) continue;
-                const Direction direction = directionOf(from);
-                const V3 normal = direction.from * direction.inverse;
-                const V3 beforeA = load3(block.previous, inner), beforeB = load3(block.previous, outer);
-                const V3 wayA = a - beforeA, wayB = b - beforeB;
-                const V3 relative = wayA + (wayB - wayA) * t - all3(sphere.step);
-                const V speed = dot(relative, normal), approach = hn::Max(zero - speed, zero);
-                const V3 sliding = relative - normal * speed;
-                const V impulse = approach * all(1.0f + context.restitution);
-                const V slid = hn::Sqrt(hn::Max(dot(sliding, sliding), all(1e-30f)));
-                const V lost = hn::Min(all(context.friction) * impulse / slid, one);
-                const V3 push = normal * (reach - direction.length);
-                const V3 change = normal * impulse - sliding * lost;
-                const V lever = one / hn::Max(left * left * innerMass + t * t, all(1e-6f));
-                const auto move = [&](std::size_t i, V3 at, V3 before, V share) HWY_ATTR {
-                    const V3 placed = at + push * share;
-                    store3(select(touching, placed, at), block.position, i);
-                    store3(select(touching, placed - ((at - before) + change * share), before),
-                           block.previous, i);
-                };
-                move(outer, b, beforeB, lever * t);
-                if (innerMoves) move(inner, a, beforeA, lever * left);
-            }
-        }
-    }
+    if (context.spheres.size() > SphereSet::kMax) settleSets(block, lanes, context, collisionRadii);
 }
 
 template <bool kBackward>
