@@ -15,6 +15,7 @@ def register() -> None:
     for one in _CLASSES:
         bpy.utils.register_class(one)
     bpy.types.Curves.hairloom = bpy.props.PointerProperty(type=panel.HairloomCurves)
+    bpy.types.Object.hairloom_capsule = panel.CAPSULE
     simulate.register()
     if wrong := problem():
         print(f"Hairloom: {wrong}")
@@ -22,6 +23,7 @@ def register() -> None:
 
 def unregister() -> None:
     simulate.unregister()
+    del bpy.types.Object.hairloom_capsule
     del bpy.types.Curves.hairloom
     for one in reversed(_CLASSES):
         bpy.utils.unregister_class(one)

@@ -153,16 +153,25 @@ def spheres_in(collection: bpy.types.Collection | None) -> list[bpy.types.Object
     return [one for one in collection.all_objects if one.type == "EMPTY" and one.empty_display_type == "SPHERE"]
 
 
+def capsules_between(balls: list[bpy.types.Object]) -> np.ndarray:
+    """Pairs of numbers of those that are joined."""
+    number = {ball.name: i for i, ball in enumerate(balls)}
+    pairs = [(i, number[ball.hairloom_capsule.name]) for i, ball in enumerate(balls) if ball.hairloom_capsule and ball.hairloom_capsule.name in number]
+    return np.array([pair for pair in pairs if pair[0] != pair[1]], np.uint32).reshape(-1, 2)
+
+
 def _send_spheres(obj: bpy.types.Object, groom: hairloom.Groom, unit: np.ndarray, metres: float) -> None:
     into = obj.matrix_world.inverted()
-    rows = []
+    rows, balls = [], []
     for ball in spheres_in(obj.data.hairloom.colliders):
         radius = ball.empty_display_size * max(map(abs, ball.matrix_world.to_scale())) * metres
         centre = np.array([into @ ball.matrix_world.translation], np.float32) * unit
         if radius > 0:
             rows.append([*to_y_up(centre)[0], radius])
+            balls.append(ball)
     if rows:
         groom.spheres = np.array(rows, np.float32)
+        groom.capsules = capsules_between(balls)
 
 
 def make_spheres(obj: bpy.types.Object, groom: hairloom.Groom) -> None:
@@ -172,12 +181,16 @@ def make_spheres(obj: bpy.types.Object, groom: hairloom.Groom) -> None:
     collection = bpy.data.collections.new(f"{obj.name} colliders")
     for parent in obj.users_collection:
         parent.children.link(collection)
+    balls = []
     for number, (centre, radius) in enumerate(zip(to_z_up(groom.spheres), groom.spheres[:, 3])):
         ball = bpy.data.objects.new(f"{obj.name} sphere {number + 1}", None)
         ball.empty_display_type, ball.empty_display_size = "SPHERE", float(radius)
         ball.location = centre
         ball.parent = obj.parent
         collection.objects.link(ball)
+        balls.append(ball)
+    for first, second in groom.capsules:
+        balls[first].hairloom_capsule = balls[second]
     obj.data.hairloom.colliders = collection
 
 

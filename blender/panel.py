@@ -33,6 +33,19 @@ class HairloomCurves(bpy.types.PropertyGroup):
     pre_roll: IntProperty(name="Pre-roll", description="Frames that the hair settles before the first", min=0, max=1000)
 
 
+def is_ball(obj: bpy.types.Object) -> bool:
+    return obj.type == "EMPTY" and obj.empty_display_type == "SPHERE"
+
+
+# Of an empty of the type Sphere.
+CAPSULE = PointerProperty(
+    name="Capsule with",
+    description="Hair collides with the hull of both spheres where both are colliders of it",
+    type=bpy.types.Object,
+    poll=lambda self, other: other != self and is_ball(other),
+)
+
+
 class HAIRLOOM_PT_hair(bpy.types.Panel):
     bl_label = "Hairloom"
     bl_space_type = "VIEW_3D"
@@ -46,6 +59,9 @@ class HAIRLOOM_PT_hair(bpy.types.Panel):
             layout.label(text=wrong, icon="ERROR")
             return
         obj = context.active_object
+        if obj is not None and is_ball(obj):
+            layout.prop(obj, "hairloom_capsule")
+            return
         if obj is None or obj.type != "CURVES":
             layout.label(text="Select hair, or bring some in")
             layout.operator("hairloom.bring_back", text="Bring In…", icon="IMPORT")

@@ -79,14 +79,16 @@ def _evaluated_vertices(surface: bpy.types.Object, graph: bpy.types.Depsgraph, e
     return points.reshape(-1, 3)
 
 
-def _spheres(obj: bpy.types.Object, graph: bpy.types.Depsgraph, metres: float) -> np.ndarray:
-    rows = []
+def _spheres(obj: bpy.types.Object, graph: bpy.types.Depsgraph, metres: float) -> tuple[np.ndarray, list[bpy.types.Object]]:
+    """Centres and radii, and whose they are."""
+    rows, balls = [], []
     for ball in convert.spheres_in(settings(obj).colliders):
         now = ball.evaluated_get(graph).matrix_world
         radius = ball.empty_display_size * max(map(abs, now.to_scale())) * metres
         if radius > 0:
             rows.append((*(TO_Y_UP @ np.array(now.translation) * metres), radius))
-    return np.array(rows, np.float32).reshape(-1, 4)
+            balls.append(ball)
+    return np.array(rows, np.float32).reshape(-1, 4), balls
 
 
 def _state(obj: bpy.types.Object, live_bodies: Bodies, surface: bpy.types.Object | None, metres: float, graph: bpy.types.Depsgraph) -> State:
@@ -101,7 +103,7 @@ def _state(obj: bpy.types.Object, live_bodies: Bodies, surface: bpy.types.Object
         head = np.eye(4, dtype=np.float32)
         head[:3, :3] = TO_Y_UP @ np.array(rotation.to_matrix()) @ TO_Z_UP
         head[:3, 3] = TO_Y_UP @ np.array(location) * metres
-    return State(scalp, head, _spheres(obj, graph, metres), live_bodies.matrices(graph))
+    return State(scalp, head, _spheres(obj, graph, metres)[0], live_bodies.matrices(graph))
 
 
 def _make(scene: bpy.types.Scene, obj: bpy.types.Object, graph: bpy.types.Depsgraph) -> Live:
@@ -122,7 +124,10 @@ def _make(scene: bpy.types.Scene, obj: bpy.types.Object, graph: bpy.types.Depsgr
         groom.set_scalp(rest, corners, starts)
     own = settings(obj)
     bodies = Bodies.of(scene, obj, surface, metres)
-    groom.spheres = np.empty((0, 4), np.float32)
+    # Each frame has them where they are then. What is joined is so from the start.
+    groom.capsules = np.empty((0, 2), np.uint32)
+    groom.spheres, balls = _spheres(obj, graph, metres)
+    groom.capsules = convert.capsules_between(balls)
     bodies.bake(groom, own.cell / 1000)
     state = _state(obj, bodies, surface, metres, graph)
     live = Live(groom.live(**state.given()), bodies, metres, scene.frame_current, state, surface.name if surface else None)

@@ -173,6 +173,29 @@ class Exchange(InScene):
         self.assertAlmostEqual(made.empty_display_size, 0.09, places=6)
         np.testing.assert_allclose(made.location, (0.1, 0.2, 0.2), atol=1e-6)
 
+    def test_capsules_go_along_and_come_with_a_project(self) -> None:
+        obj = self.hair(self.head())
+        balls = bpy.data.collections.new("balls")
+        bpy.context.scene.collection.children.link(balls)
+        made = []
+        for number in range(3):
+            ball = bpy.data.objects.new(f"ball {number}", None)
+            ball.empty_display_type, ball.empty_display_size, ball.location = "SPHERE", 0.03, (0.1 * number, 0.3, 1.9)
+            balls.objects.link(ball)
+            made.append(ball)
+        made[2].hairloom_capsule = made[0]
+        obj.data.hairloom.colliders = balls
+        bpy.context.view_layer.update()
+        bpy.ops.hairloom.send(filepath=self.path())
+        groom = hairloom.Groom.open(self.path())
+        (pair,) = groom.capsules.tolist()
+        self.assertEqual(sorted(round(float(groom.spheres[i, 0]), 3) for i in pair), [0, 0.2])
+        bpy.context.view_layer.objects.active = None
+        bpy.ops.hairloom.bring_back(filepath=self.path())
+        joined = [one for one in bpy.context.active_object.data.hairloom.colliders.objects if one.hairloom_capsule]
+        self.assertEqual(len(joined), 1)
+        self.assertEqual(sorted(round(one.location.x, 3) for one in (joined[0], joined[0].hairloom_capsule)), [0, 0.2])
+
     def test_scale_and_units_become_metres(self) -> None:
         obj = self.hair(self.head())
         obj.parent.scale = (0.5, 0.5, 0.5)

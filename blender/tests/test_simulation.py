@@ -90,16 +90,28 @@ class Simulation(InScene):
         self.assertLess(depth.max(), 0.004)
 
     def test_colliders_push_hair(self) -> None:
-        for kind in ("sphere", "mesh"):
+        for kind in ("sphere", "capsule", "mesh"):
             with self.subTest(kind):
                 self.setUp()
                 obj = self.hair(self.head())
                 balls = bpy.data.collections.new("colliders")
                 bpy.context.scene.collection.children.link(balls)
+                ends = []
                 if kind == "sphere":
                     ball = bpy.data.objects.new("ball", None)
                     ball.empty_display_type, ball.empty_display_size = "SPHERE", 0.08
                     balls.objects.link(ball)
+                elif kind == "capsule":
+                    # Its middle is where the ball is, its ends are out of reach.
+                    ball = bpy.data.objects.new("middle", None)
+                    for y in (-1, 1):
+                        end = bpy.data.objects.new("end", None)
+                        end.empty_display_type, end.empty_display_size, end.location = "SPHERE", 0.08, (0, y, 0)
+                        end.parent = ball
+                        balls.objects.link(end)
+                        ends.append(end)
+                    ends[0].hairloom_capsule = ends[1]
+                    bpy.context.scene.collection.objects.link(ball)
                 else:
                     ball = self.head("ball", 0.08)
                     for one in list(ball.users_collection):

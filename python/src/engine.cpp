@@ -102,8 +102,25 @@ void reset(PyEngine& self, nb::handle positions, nb::handle rotations) {
     self.time = 0;
 }
 
+/// Pairs of the spheres that a frame has.
+std::vector<runtime::Capsule> joinedBy(nb::handle capsules, std::size_t spheres) {
+    std::vector<runtime::Capsule> joined;
+    if (capsules.is_none()) return joined;
+    const Input<std::array<std::uint32_t, 2>> given("capsules", capsules);
+    if (given.values().size() > runtime::kMaxCapsules)
+        raiseArgument("capsules", fmt::format("has {} rows", given.values().size()),
+                      fmt::format("at most {}", runtime::kMaxCapsules));
+    for (const auto& [first, second] : given.values()) {
+        if (first >= spheres || second >= spheres || first == second)
+            raiseArgument("capsules", fmt::format("joins the spheres {} and {}", first, second),
+                          fmt::format("two different ones of the {} spheres", spheres));
+        joined.push_back({first, second});
+    }
+    return joined;
+}
+
 void step(PyEngine& self, double dt, nb::handle positions, nb::handle rotations, nb::handle spheres,
-          const std::optional<std::array<float, 3>>& wind) {
+          const std::optional<std::array<float, 3>>& wind, nb::handle capsules) {
     const Use use(self.inUse, kTheEngine);
     if (!(dt > 0 && dt <= 1)) raiseArgument("dt", fmt::format("is {}", dt), "above 0 s, at most 1 s");
     const auto roots = rootsOf(self, positions, rotations);
@@ -116,11 +133,13 @@ void step(PyEngine& self, double dt, nb::handle positions, nb::handle rotations,
             balls.push_back({{ball.x(), ball.y(), ball.z()}, ball.w()});
         }
     }
+    const std::vector<runtime::Capsule> joined = joinedBy(capsules, balls.size());
     runtime::FrameInput input;
     input.dt = static_cast<float>(dt);
     input.time = self.time + dt;
     input.roots_ws = roots;
     input.spheres = balls;
+    input.capsules = joined;
     if (wind) {
         const Float3 velocity{(*wind)[0], (*wind)[1], (*wind)[2]};
         if (!(runtime::length(velocity) <= 1000))
@@ -202,16 +221,18 @@ void bindEngine(nb::module_& module) {
              "world space. root_rotations: float32 (strands, 4), quaternions x, y, z, w. None leaves the "
              "strands as authored.")
         .def("step", &step, "dt"_a, "root_positions"_a.none(), "root_rotations"_a.none() = nb::none(),
-             "spheres"_a.none() = nb::none(), "wind"_a.none() = nb::none(),
+             "spheres"_a.none() = nb::none(), "wind"_a.none() = nb::none(), "capsules"_a.none() = nb::none(),
              nb::sig("def step(self, dt: float, root_positions: object, root_rotations: object | None = "
                      "None, spheres: object | "
-                     "None = None, wind: tuple[float, float, float] | None = None) -> None"),
+                     "None = None, wind: tuple[float, float, float] | None = None, capsules: object | None = "
+                     "None) -> None"),
              "Advances by dt seconds, above 0 and at most 1, to the roots at the end of the frame. Releases "
              "the GIL.\n\n"
              "root_positions and root_rotations as in reset(). spheres: float32 (k, 4), centre and radius > "
              "0, metres, world space. "
              "Sphere i is sphere i of the frame before. wind: m/s, at most 1000, in place of the settings' "
-             "own.\n\n"
+             "own. capsules: uint32 (k, 2), at most 256, the numbers of two of the spheres each, whose hull "
+             "is a tapered capsule.\n\n"
              "Raises ArgumentError for other types or shapes, and BusyError while another thread uses this "
              "engine.")
         .def("positions", &enginePositions, "out"_a.none() = nb::none(),

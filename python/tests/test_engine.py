@@ -55,6 +55,23 @@ class Engines(unittest.TestCase):
         with self.assertRaises(hairloom.Error):
             blown.set_settings({"gravity": 3})
 
+    def test_a_capsule_holds_what_its_spheres_miss(self) -> None:
+        # A bar below the middles of the rows, whose ends are out of their reach.
+        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        middle = (low + high) / 2
+        ends = np.array([[-1, middle[1], middle[2] + 0.015, 0.02], [1, middle[1], middle[2] + 0.015, 0.02]], np.float32)
+
+        def inside(engine: hairloom.Engine) -> float:
+            points = engine.positions()
+            return float(0.02 - np.hypot(points[:, 1] - middle[1], points[:, 2] - middle[2] - 0.015).min())
+
+        missed, held = self.make(), self.make()
+        for _ in range(60):
+            missed.step(DT, self.roots, spheres=ends)
+            held.step(DT, self.roots, spheres=ends, capsules=np.array([[0, 1]], np.uint32))
+        self.assertGreater(inside(missed), 2e-3)
+        self.assertLess(inside(held), 1e-3)
+
     def test_output_arrays_are_filled_in_place(self) -> None:
         out = np.zeros((160, 3), np.float32)
         self.assertIs(self.engine.positions(out), out)
@@ -79,6 +96,10 @@ class Engines(unittest.TestCase):
             {"root_positions": None},
             {"root_positions": self.roots, "root_rotations": np.zeros((20, 3), np.float32)},
             {"root_positions": self.roots, "spheres": np.array([[0, 0, 0, -1]], np.float32)},
+            {"root_positions": self.roots, "capsules": np.array([[0, 1]], np.uint32)},
+            {"root_positions": self.roots, "spheres": np.ones((2, 4), np.float32), "capsules": np.array([[0, 0]], np.uint32)},
+            {"root_positions": self.roots, "spheres": np.ones((2, 4), np.float32), "capsules": np.array([[0, 2]], np.uint32)},
+            {"root_positions": self.roots, "spheres": np.ones((2, 4), np.float32), "capsules": np.array([[0, 1]], np.int32)},
             {"root_positions": self.roots, "wind": (1e9, 0, 0)},
             {"root_positions": self.roots, "dt": 0},
             {"root_positions": self.roots, "dt": float("nan")},
