@@ -8,6 +8,7 @@
 
 #include "core/cost/benchmark_scenes.h"
 #include "core/stability/strand_set.h"
+#include "hairloom/capsules.h"
 #include "hairloom/engine.h"
 #include "tests/gpu_simulation/cpu_frame.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
@@ -378,6 +379,37 @@ TEST_F(RodRun, OriginsThatMoveChangeNothing) {
         both.step(input);
     }
     EXPECT_LE(both.meanDistance(), 1e-4);
+}
+
+/// The device meets spheres along a capsule, the CPU the capsule itself.
+TEST_F(RodRun, StrandsLieOnACapsuleAsOnTheCpu) {
+    StrandSet strands;
+    for (std::uint32_t i = 0; i < 8; ++i)
+        strands.add({0.0f, 0.0f, 0.015f * static_cast<float>(i)}, {1.0f, 0.0f, 0.0f}, 0.015f, 12);
+    SimulationSettings s = rods();
+    s.restGravity = 0.0f;
+    s.angularStiffness = 0.05f;
+    s.collisionRadiusRoot = s.collisionRadiusTip = 0.0f;
+    // Neither end reaches a strand.
+    const std::vector<runtime::Sphere> ends{{{0.09f, -0.08f, -0.2f}, 0.05f}, {{0.09f, -0.07f, 0.3f}, 0.05f}};
+    const std::vector<runtime::Capsule> capsules{{0, 1}};
+    const std::vector<RootFrame> roots = strands.roots();
+    Both held(strands, s, options()), missed(strands, s, options());
+    for (int f = 1; f <= 20; ++f) {
+        runtime::FrameInput input{kFrame, f / 60.0, roots};
+        input.spheres = ends;
+        missed.step(input);
+        input.capsules = capsules;
+        held.step(input);
+    }
+    EXPECT_GT(RodRun::farthest(held.onGpu(), missed.onGpu()), 0.03) << "without it they fall past";
+    // Between two of the spheres the surface lies up to half a millimetre lower.
+    EXPECT_LT(held.meanDistance(), 0.0006);
+    EXPECT_LT(held.farthest(), 0.003);
+    for (const Float3& x : held.onGpu()) {
+        const runtime::Sphere nearest = runtime::nearestOfCapsule(ends[0], ends[1], x);
+        EXPECT_LT(nearest.radius - length(x - nearest.center_ws), 0.001f);
+    }
 }
 
 }  // namespace
