@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# measure_contact.sh OUT [PAGE [NAME...]]: fits the skin collider to the sample hairstyles, and to bare hair on the heads and characters of
-# ../shared/data where that is. Moves them for a second: in wind of 3 m/s by a clip, a nod and a spin, and at 5 m/s to a dead stop. Prints how
-# deep drawn hair comes into the mesh as a table, which replaces the one between the marks of PAGE (docs/contact.md) where that is named.
+# measure_contact.sh OUT [PAGE [NAME...]]: makes both tables of docs/contact.md. Fits the skin collider to the sample hairstyles, and to bare
+# hair on the heads and characters of ../shared/data where that is. Moves them for a second: in wind of 3 m/s by a clip, a nod and a spin, and
+# at 5 m/s to a dead stop. Prints how deep drawn hair comes into the mesh as a table. Without NAMEs it runs `bench contact`, too, for what else
+# is measured where hair touches. Both replace those between the marks of PAGE (docs/contact.md) where that is named.
 set -euo pipefail
 
 top=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
@@ -26,25 +27,30 @@ bare() {
     esac
     "$HAIRLOOM_CLI" create --mesh "$data/$2" "${@:3}" --count 1000 --length 0.2 -o "$out/$1-few.hairloom" --force > "$out/$1.txt" 2>&1
 }
+all=
 if [ ${#names[@]} -eq 0 ]; then
+    all=1
     names=(short shoulder long bob afro braid)
-    [ ! -d "$data/animated" ] || names+=(sintel makehuman cesium-man green-man)
+    [ ! -d "$data/animated" ] || names+=(sintel makehuman cesium-man green-man cesium-man+spheres green-man+spheres)
 fi
 echo '{"keys": [{"t": 0, "translate": [0, 0, 0]}, {"t": 0.3, "translate": [1.5, 0, 0]}]}' > "$out/stop.json"
 for name in "${names[@]}"; do
+    # NAME+spheres: with 12 fitted spheres in place of the skin.
+    base=${name%+*} fit=field
+    [ "$base" = "$name" ] || fit=${name#*+}
     motions=(nod spin "$out/stop.json")
-    if [ -f "samples/hairstyles/$name.conf" ]; then
-        [ -f "$out/$name.hairloom" ] || samples/make_hairstyle.sh --project-only "$name" "$out" > "$out/$name.txt"
-        "$HAIRLOOM_CLI" set "$out/$name.hairloom" interpolation.followPerGuide=2 -o "$out/$name-few.hairloom" --force > /dev/null
+    if [ -f "samples/hairstyles/$base.conf" ]; then
+        [ -f "$out/$base.hairloom" ] || samples/make_hairstyle.sh --project-only "$base" "$out" > "$out/$base.txt"
+        "$HAIRLOOM_CLI" set "$out/$base.hairloom" interpolation.followPerGuide=2 -o "$out/$base-few.hairloom" --force > /dev/null
         motions+=(clip:nod_and_turn)
     else
-        bare "$name"
-        case $name in
+        bare "$base"
+        case $base in
             cesium-man) motions=(clip:Anim_0) ;;
             green-man) motions=(clip:3_attack) ;;
         esac
     fi
-    "$HAIRLOOM_CLI" colliders "$out/$name-few.hairloom" --fit field -o "$out/$name-skin.hairloom" --force --json \
+    "$HAIRLOOM_CLI" colliders "$out/$base-few.hairloom" --fit "$fit" -o "$out/$name-skin.hairloom" --force --json \
         > "$out/$name-fit.json" 2> "$out/$name-fit.txt"
     rm -f "$out/$name"-{clip,nod,spin,stop}.json
     for motion in "${motions[@]}"; do
@@ -68,7 +74,12 @@ for name in names:
         cells.append(f"{report['max_mesh_penetration_mm']:.1f} ({report['max_guide_penetration_mm']:.1f})" if report else "")
         authored = report["authored_depth_mm"] if report else authored
     fit = json.load(open(f"{out}/{name}-fit.json"))
-    print(f"| {name} | {' | '.join(cells)} | {authored:.1f} | {fit['worst_gap_mm']:.1f} | {fit['bytes'] / 1000:.0f} |")
+    size = f"{fit['bytes'] / 1000:.0f}" if "bytes" in fit else ""
+    print(f"| {name.replace('+', ', ')} | {' | '.join(cells)} | {authored:.1f} | {fit['worst_gap_mm']:.1f} | {size} |")
 PY
 cat "$table"
 [ -z "$page" ] || samples/put_table.sh "$table" "$page"
+[ -n "$all" ] || exit 0
+"$HAIRLOOM_CLI" bench contact --force -o "$out/marks" > "$out/marks.txt"
+cat "$out/marks/contact.md"
+[ -z "$page" ] || samples/put_table.sh "$out/marks/contact.md" "$page" marks

@@ -24,7 +24,7 @@ TEST(Benchmarks, AreNamedOnceAndSayWhatTheyMeasure) {
         EXPECT_FALSE(benchmark.measures.empty()) << benchmark.name;
     }
     for (const char* name : {"sim", "interpolate", "gpu-sim", "render", "place", "io", "brush", "runtime",
-                             "momentum", "spheres", "thesis"})
+                             "momentum", "spheres", "thesis", "contact"})
         EXPECT_TRUE(names.contains(name)) << name;
 }
 
@@ -51,6 +51,10 @@ TEST(Benchmarks, OfTheThesisWriteTheirFilesAndRows) {
     EXPECT_EQ(momentum.report["rows"].size(), 16u);
     EXPECT_EQ(files(spheres), (std::set<std::string>{"spheres.md", "spheres.svg"}));
     EXPECT_EQ(spheres.report["rows"].size(), 10u);
+    const Outcome contact = quick("contact");
+    EXPECT_EQ(files(contact), (std::set<std::string>{"contact.md"}));
+    for (const auto& row : contact.report["rows"])
+        EXPECT_EQ(row["met"], row["value"].get<double>() <= row["mark"].get<double>()) << row["name"];
     const std::set<std::string> made = files(thesis);
     for (const char* name : {"thesis.md", "figure-25.png", "figure-26.png"})
         EXPECT_TRUE(made.contains(name)) << name;
