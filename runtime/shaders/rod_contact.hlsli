@@ -75,7 +75,7 @@ RodContact contactOf(float3 origin, RodNode node, float slack, out bool near) {
     RodContact found = noContact();
     float friction = gFrame.substep.friction, least = -1e9;
     near = false;
-    [loop] for (uint pass = 0; pass < 3; ++pass) {
+    [loop] for (uint turn = 0; turn < 3u; ++turn) {
         float deepest = -1e9;
         found = noContact();
         EACH_SPHERE(k) {
@@ -90,7 +90,7 @@ RodContact contactOf(float3 origin, RodNode node, float slack, out bool near) {
         }
         const float alike = rodPressAlike(found);
         if (alike <= 1.0) break;
-        if (pass == 0) {
+        if (turn == 0u) {
             least = min(deepest, 0.0);
         } else {
             friction = gFrame.substep.friction / alike;
