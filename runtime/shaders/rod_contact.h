@@ -91,14 +91,16 @@ ROD_FUNCTION void rodPress(RodTouch touch, RodMask held, RodNode node, Real pace
     const Real depth = touch.depth + choose(bounces, back, none);
     const Real k = choose(held, node.stiffness, none);
     // Coulomb, with the force of the last substep, of a new contact with what stops the node alone, and at
-    // most what holds it. What slides goes on with the last change of its speed. What was stuck has hardly
-    // moved: where it gives way it slides by what the force beyond friction does to its own mass.
+    // most what holds it. What slides goes on with the last change of its speed, and what has just come less
+    // what friction takes of its own mass. What was stuck has hardly moved: where it gives way it slides by
+    // what the force beyond friction does to that.
     const Real3 slip = negMad3(n, dot(n, moved), moved);
     const Real3 next = slip + negMad3(n, dot(n, node.faster), node.faster) * (ROD_NUMBER(1.0) / pace);
     const Real size = root(dot(slip, slip)), fresh = node.weight * maximum(depth, none);
     const Real most = choose(node.load == none, fresh, absolute(node.load)) * friction;
     const Real excess = maximum(mad(k, size, none - most), none) / node.weight;
-    const Real slid = choose(node.load > none, maximum(size, excess), root(dot(next, next)));
+    const Real goes = root(dot(next, next)), taken = choose(node.load == none, most / node.weight, none);
+    const Real slid = choose(node.load > none, maximum(size, excess), maximum(goes - taken, none));
     const Real grip = minimum(most / maximum(slid, ROD_NUMBER(1e-12)), k);
     const Real g = choose(held, grip, none), push = k * depth;
     const Real3 nn = n * (k - g);
