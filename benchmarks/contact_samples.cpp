@@ -86,7 +86,7 @@ class OfSample {
 
     Status storms(std::vector<ContactRow>& rows) const {
         CertificateOptions options;
-        options.storms = quick_ ? 2 : 500;
+        options.storms = quick_ ? 2 : 200;
         const auto tally = runStorms(groom_, options);
         if (!tally) return tl::unexpected(tally.error());
         rows.push_back({fmt::format("{}, of {} storms not calm after 15 s", name_, options.storms),
