@@ -20,6 +20,7 @@ struct RodNode {
     Real load;           ///< force of its contacts in the last substep; negative where it slid
     Real step;           ///< h_e, seconds
     Real radius;         ///< metres that it keeps from shapes
+    Real fresh;          ///< 1: a new contact slides by what friction leaves of its way, 0: by its way
 };
 
 /// A shape, as a node meets it: the plane that takes its place, in this substep, for this node.
@@ -99,7 +100,8 @@ ROD_FUNCTION void rodPress(RodTouch touch, RodMask held, RodNode node, Real pace
     const Real size = root(dot(slip, slip)), fresh = node.weight * maximum(depth, none);
     const Real most = choose(node.load == none, fresh, absolute(node.load)) * friction;
     const Real excess = maximum(mad(k, size, none - most), none) / node.weight;
-    const Real goes = root(dot(next, next)), taken = choose(node.load == none, most / node.weight, none);
+    const Real goes = root(dot(next, next));
+    const Real taken = choose(node.load == none, node.fresh * most / node.weight, none);
     const Real slid = choose(node.load > none, maximum(size, excess), maximum(goes - taken, none));
     const Real grip = minimum(most / maximum(slid, ROD_NUMBER(1e-12)), k);
     const Real g = choose(held, grip, none), push = k * depth;

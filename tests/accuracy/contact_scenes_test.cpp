@@ -32,7 +32,7 @@ TEST(RodContact, AStrandOverABarHasTheTensionsOfACapstan) {
     for (const float friction : {0.2f, 0.5f, 0.8f}) {
         for (const std::uint32_t substeps : {2u, 8u}) {
             const Capstan found = strandOverABar(friction, substeps);
-            EXPECT_NEAR(found.ratio, found.due, 0.03 * found.due) << friction << ' ' << substeps;
+            EXPECT_NEAR(found.ratio, found.due, 0.04 * found.due) << friction << ' ' << substeps;
             // The strand's weight on the bar adds to it.
             EXPECT_GT(found.due, std::exp(static_cast<double>(friction) * found.wrap));
             EXPECT_LT(found.due, 1.4 * std::exp(static_cast<double>(friction) * found.wrap));

@@ -316,7 +316,8 @@ class RodStrip {
                 stiffness,
                 hn::Load(D(), rod_.load + node),
                 step_,
-                all(radiusOf(p))};
+                all(radiusOf(p)),
+                all(context_.body ? 0.0f : 1.0f)};
     }
     /// Metres that node p keeps from shapes.
     float radiusOf(std::uint32_t p) const {

@@ -27,7 +27,8 @@ RodContact RodStrip<kBends, kTwists, kContacts>::contactOf(V3 root, const RodNod
             deepest = choose(held, hn::Max(deepest, touch.depth), deepest);
             return held;
         });
-    if (HWY_LIKELY(hn::AllTrue(D(), rodPressAlike(found) <= all(1.0f)))) return found;
+    // Folds of skin hold by several planes in turn: what presses there twice calms it.
+    if (context_.body || HWY_LIKELY(hn::AllTrue(D(), rodPressAlike(found) <= all(1.0f)))) return found;
     return pressedBySeveral(root, node, p, near, hn::Min(deepest, hn::Zero(D())), holds);
 }
 
