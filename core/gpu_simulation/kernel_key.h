@@ -13,7 +13,7 @@ namespace hairloom::gpu_simulation {
 
 /// Where a strand is between the substeps of a frame (runtime/shaders/storage.hlsli).
 /// With `lanes` a thread has one or two points, with `wisps` each strand a work group, whose first thread
-/// takes it (Rünz 2012, Section 6.1); Direct3D 11 has `threads` in the place of both.
+/// takes it (Rünz 2012, Section 6.1). Direct3D 11 has `threads` in the place of `lanes`.
 enum class StrandStorage : std::uint32_t { threads, groups, buffers, lanes, wisps };
 
 /// A block falls asleep as one: whether its strands are in several work groups.

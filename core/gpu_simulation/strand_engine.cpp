@@ -34,7 +34,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     impl->run.settings = settings;
     LayoutOptions layout = options.layout;
     const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
-    if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
+    if (direct3d && layout.storage.value_or(StrandStorage::lanes) == StrandStorage::lanes)
         layout.storage = StrandStorage::threads;
     if (direct3d) layout.members = 1;
     if (!layout.storage) layout.storage = gpuModelOf(settings.strandModel).storage;

@@ -170,8 +170,9 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(4, positions);
     write(batch.model.state.slot, batch.model.state.buffer);
     write(7, batch.scratch);
-    write(8, batch.gathered);
-    write(gpuModelOf(batch.key.model).velocitySlot(batch.key), velocities);
+    const GpuModel& ofModel = gpuModelOf(batch.key.model);
+    write(ofModel.gatheredSlot, batch.gathered);
+    write(ofModel.velocitySlot(batch.key), velocities);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
     model->setConstants(list, context, run.wind.wind, substep, batch);

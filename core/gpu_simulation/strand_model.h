@@ -66,6 +66,8 @@ struct GpuModel {
     std::size_t (*scratchPlanes)(const KernelKey& key);
     /// Where velocities are written to.
     std::uint32_t (*velocitySlot)(const KernelKey& key);
+    /// Where work groups of a block that fall asleep as one leave what they have seen.
+    std::uint32_t gatheredSlot;
     /// As kernelError().
     std::string (*error)(const runtime::SimulationSettings& settings);
     /// What strands are in where nobody asks for another; none: as LayoutOptions says.

@@ -146,7 +146,12 @@ void main(uint3 groupId : SV_GroupID, uint index : SV_GroupIndex) {
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
-    if (slept && sleepsOn(block, gThreadInGroup, strands, rested)) return;
+    if (slept) {
+        lookAtRoots(block, gThreadInGroup);
+        lookForSpheres(block, gThreadInGroup);
+        GroupMemoryBarrierWithGroupSync();
+        if (sleepsOn(block, gThreadInGroup, strands, rested)) return;
+    }
 #endif
     loadState();
 #if HAIR_SPHERES

@@ -21,7 +21,12 @@ void main(uint3 groupId : SV_GroupID, uint thread : SV_GroupIndex) {
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
-    if (slept && sleepsOn(block, thread, strands, rested)) return;
+    if (slept) {
+        lookAtRoots(block, thread);
+        lookForSpheres(block, thread);
+        GroupMemoryBarrierWithGroupSync();
+        if (sleepsOn(block, thread, strands, rested)) return;
+    }
     lookAtRoots(block, thread);
 #endif
     ALONE {

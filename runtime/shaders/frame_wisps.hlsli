@@ -15,18 +15,21 @@ void main(uint3 groupId : SV_GroupID, uint lane : SV_GroupIndex) {
     gPointCount = gBlocks[block].x;
 #endif
     if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
-    bool slept = false;
+    // All threads come to each barrier, also where a block sleeps: Microsoft's compiler takes none behind a branch on what a
+    // buffer holds.
+    bool runs = true, slept = false;
 #if HAIR_SLEEP
     float rested = gRests[2 * block];
     slept = gRests[2 * block + 1] != 0.0;
+    GroupMemoryBarrierWithGroupSync();
+    lookAtRoots(block, lane);
+    if (slept) lookForSpheres(block, lane);
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
-    if (slept && sleepsOn(block, lane, strands, rested)) return;
-    lookAtRoots(block, lane);
-    GroupMemoryBarrierWithGroupSync();
+    if (slept) runs = !sleepsOn(block, lane, strands, rested);
 #endif
-    if (lane == 0) {
+    if (runs && lane == 0) {
         loadState();
         // What fell asleep has no speed.
         if (slept) {
@@ -44,5 +47,7 @@ void main(uint3 groupId : SV_GroupID, uint lane : SV_GroupIndex) {
 #endif
     }
     GroupMemoryBarrierWithGroupSync();
-    [loop] for (uint q = lane; q < POINTS; q += HAIR_THREADS) writePosition(q);
+    if (runs) {
+        [loop] for (uint q = lane; q < POINTS; q += HAIR_THREADS) writePosition(q);
+    }
 }

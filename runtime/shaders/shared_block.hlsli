@@ -10,14 +10,16 @@ void lookAtRoots(uint block, uint lane) {
     }
 }
 
-/// Whether a block that was asleep stays so in this frame, to which each of its work groups comes alike. All threads of the
-/// group come by. `rested`: seconds for which it has been slow.
-bool sleepsOn(uint block, uint lane, uint strands, inout float rested) {
-    lookAtRoots(block, lane);
+/// Looks, with all threads of the group, whether a sphere that has changed comes near a strand of the block.
+void lookForSpheres(uint block, uint lane) {
     [loop] for (uint s = lane; s < HAIRLOOM_GROUP_STRANDS; s += HAIR_THREADS) {
         if (sphereNear(gRootsTo[2 * (block * HAIRLOOM_GROUP_STRANDS + s)].xyz)) InterlockedOr(gGroupNear, 1u);
     }
-    GroupMemoryBarrierWithGroupSync();
+}
+
+/// Whether a block that was asleep stays so in this frame, to which each of its work groups comes alike, after both looks and a
+/// barrier. `rested`: seconds for which it has been slow.
+bool sleepsOn(uint block, uint lane, uint strands, inout float rested) {
     if (gGroupMoved != 0u || gGroupNear != 0u || gFrame.wakeAll != 0u) {
         rested = 0.0;
         return false;

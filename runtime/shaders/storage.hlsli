@@ -40,13 +40,16 @@ RWStructuredBuffer<float4> gPositions_ws : register(u4);  // in the caller's ord
 #define REPORT_ASLEEP 2    // strands
 #define REPORT_GUARDED 3   // rods whose speeds were taken back
 
-// Direct3D 11.0 has u0 to u7; scratch memory takes the last where strands live in the buffers.
+// Direct3D 11.0 has u0 to u7; scratch memory takes the last where strands live in the buffers. Threads that share a rod, and
+// velocities of springs in buffers, are Vulkan's.
 #if HAIR_RODS
 #define HAIR_VELOCITIES_REGISTER u6
+#define HAIR_GATHERED_REGISTER u8
 #elif HAIR_STORAGE == 2
 #define HAIR_VELOCITIES_REGISTER u8
 #else
 #define HAIR_VELOCITIES_REGISTER u7
+#define HAIR_GATHERED_REGISTER u6
 #endif
 
 #if HAIR_BEND == 1
@@ -77,7 +80,7 @@ StructuredBuffer<float4> gTargets : register(t3);
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
 #endif
 #if HAIR_SLEEP && (HAIR_STORAGE >= 3 || HAIR_MEMBERS > 1)
-RWStructuredBuffer<uint> gGathered : register(u8);   // per block: of its work groups, see shared_block.hlsli
+RWStructuredBuffer<uint> gGathered : register(HAIR_GATHERED_REGISTER);  // per block: of its work groups, see shared_block.hlsli
 #endif
 #if HAIR_VELOCITIES
 RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  // m/s, in the caller's order

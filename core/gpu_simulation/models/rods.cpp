@@ -147,6 +147,7 @@ const GpuModel& gpuRods() {
         .defines = defines,
         .scratchPlanes = scratchPlanes,
         .velocitySlot = velocitySlot,
+        .gatheredSlot = 8,
         .error = [](const runtime::SimulationSettings&) { return std::string(); },
         // A thread takes a rod, and finds those of its neighbours beside it.
         .storage = StrandStorage::threads,

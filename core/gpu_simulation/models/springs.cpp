@@ -225,6 +225,7 @@ const GpuModel& gpuSprings() {
         .defines = defines,
         .scratchPlanes = scratchPlanes,
         .velocitySlot = velocitySlot,
+        .gatheredSlot = 6,
         .error = error,
         .storage = {},
         .make = []() -> std::unique_ptr<DeviceStrands> { return std::make_unique<DeviceSprings>(); }};
