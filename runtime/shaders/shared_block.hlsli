@@ -3,16 +3,23 @@
 // it has seen, and the last of them judges.
 #if HAIR_SLEEP
 
+// The threads of a group share the strands of their block.
+#if HAIR_THREADS == HAIRLOOM_GROUP_STRANDS
+#define STRANDS_OF_BLOCK(s) [unroll] for (uint s = lane, turn = 0u; turn < 1u; ++turn)
+#else
+#define STRANDS_OF_BLOCK(s) [loop] for (uint s = lane; s < HAIRLOOM_GROUP_STRANDS; s += HAIR_THREADS)
+#endif
+
 /// Looks, with all threads of the group, whether a root of the block moves in this frame.
 void lookAtRoots(uint block, uint lane) {
-    [loop] for (uint s = lane; s < HAIRLOOM_GROUP_STRANDS; s += HAIR_THREADS) {
+    STRANDS_OF_BLOCK(s) {
         if (rootMoves(block * HAIRLOOM_GROUP_STRANDS + s)) InterlockedOr(gGroupMoved, 1u);
     }
 }
 
 /// Looks, with all threads of the group, whether a sphere that has changed comes near a strand of the block.
 void lookForSpheres(uint block, uint lane) {
-    [loop] for (uint s = lane; s < HAIRLOOM_GROUP_STRANDS; s += HAIR_THREADS) {
+    STRANDS_OF_BLOCK(s) {
         if (sphereNear(gRootsTo[2 * (block * HAIRLOOM_GROUP_STRANDS + s)].xyz)) InterlockedOr(gGroupNear, 1u);
     }
 }

@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <thread>
 
 #include "core/base/file.h"
 #include "core/gpu/validation.h"
+#include "core/gpu_simulation/strand_model.h"
 #include "core/stability/strand_set.h"
 #include "runtime/shaders/simulation_types.h"
 #include "shaders/shaders.h"
@@ -263,6 +265,25 @@ TEST_F(Permutation, PlansChangeWithoutWaiting) {
     EXPECT_GT(served, 0);
     EXPECT_TRUE(engine.plan().on(runtime::Effect::length));
     EXPECT_FLOAT_EQ(engine.settings().gravity.y, 0.0f);
+}
+
+/// Feature level 11.0 of Direct3D has eight writable buffers, u0 to u7, and no two of a kernel share one.
+TEST_F(Permutation, AGroupPerWispWritesToEightBuffersAtMost) {
+    runtime::PlanInput scene;
+    scene.settings = springSettings();
+    scene.strandCount = 1;
+    scene.longestPointCount = 16;
+    scene.longestStrand = 1.0f;
+    BatchShape wisps{16, true, false, StrandStorage::wisps};
+    wisps.strands = 1;
+    wisps.together = true;
+    const KernelKey key = keyFor(runtime::plan(scene), scene.settings, wisps, 0, true);
+    ASSERT_TRUE(key.sleep && key.velocities);
+    const GpuModel& springs = gpuModelOf(key.model);
+    std::set<std::uint32_t> slots{0, 1, 2, 3, 4};  // state, roots, rests, report, positions
+    slots.insert({springs.gatheredSlot, springs.velocitySlot(key)});
+    EXPECT_EQ(slots.size(), 7u);
+    EXPECT_LT(*slots.rbegin(), 8u);
 }
 
 /// Its system of coil springs has a thread for each strand, whatever the batch is laid out for; no other is
