@@ -202,6 +202,12 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (engine->gpu) methodOptions.backend = engine->gpu->engine();
     auto simulation = Simulation::make(*groom, pose, methodOptions);
     if (!simulation) return tl::unexpected(simulation.error());
+    if (!options.style.empty()) {
+        const auto style = openGroom(options.style);
+        if (!style) return tl::unexpected(style.error());
+        if (auto set = simulation->setStyle(style->positions()); !set)
+            return fail(fmt::format("{}: {}", options.style, set.error().message()));
+    }
     const Report advice = adviceReport(*groom, dt);
     std::optional<FrameRecorder> recorder;
     if (!options.record.empty()) {
@@ -326,7 +332,11 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
            "lattice around the head, or the strand engine with hair as particles or on a flow grid in place "
            "of simulation.hairHair")
         ->check(CLI::IsMember({"strands", "projective", "chain", "lattice", "particles", "hybrid"}));
-    job.add_flag("--hair-hair", options.hairHair, "Turns on simulation.hairHair, hair-hair collision");
+    job.add_flag("--hair-hair", options.hairHair,
+                 "Turns on simulation.hairHair, hair-hair collision of rods and projective equations");
+    job.add_option("--style", options.style,
+                   "Groom of the same strands, whose shape they turn to from the first frame on. Of projective "
+                   "equations");
     std::vector<CLI::Option*> added = job.get_options();
     added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));
     return added;
@@ -362,7 +372,7 @@ JobRun declare(CLI::App& job) {
     // It has two seconds, the head at rest and a solver of its own.
     for (const char* other :
          {"--frames", "--pre-roll", "--handles", "--fps", "--engine", "--backend", "--device", "--motion",
-          "--character", "--method", "--hair-hair", "--record", "--against", "--take"})
+          "--character", "--method", "--hair-hair", "--style", "--record", "--against", "--take"})
         sag->excludes(other);
     return [options](const std::string&) {
         return withOutputs(

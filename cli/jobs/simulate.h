@@ -28,6 +28,7 @@ struct SimulateOptions {
     std::string character;
     std::string method = "strands";
     bool hairHair = false;
+    std::string style;
     bool sag = false;
     bool take = false;
     std::string record;

@@ -63,6 +63,11 @@ Status MovingHair::setSettings(const runtime::SimulationSettings& settings) {
     return std::visit([&](auto& hair) { return hair.setSettings(settings); }, hair_);
 }
 
+Status MovingHair::setStyle(std::span<const Vec3f> restPositions) {
+    if (auto* const cpu = std::get_if<Simulation>(&hair_)) return cpu->setStyle(restPositions);
+    return fail("strands on a GPU take no style while they run", "expected the method 'projective'");
+}
+
 void MovingHair::setColliders(std::vector<CollisionSphere> spheres) {
     std::visit([&](auto& hair) { hair.setSpheres(std::move(spheres)); }, hair_);
 }

@@ -53,6 +53,9 @@ class MovingHair {
     /// From the next step on, wind included. Errors, which leave all as it was: settings out of range or
     /// without a kernel, a method that is not the strand engine.
     Status setSettings(const runtime::SimulationSettings& settings);
+    /// The shape that strands turn to from the next step on (Simulation::setStyle). Errors as there, and on a
+    /// GPU.
+    Status setStyle(std::span<const Vec3f> restPositions);
     /// In place of the groom's spheres, from the next step on.
     void setColliders(std::vector<CollisionSphere> spheres);
     /// Whether a GPU reports where all strands are, for marks that are drawn on them.

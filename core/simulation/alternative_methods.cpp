@@ -136,6 +136,14 @@ class SegmentMethod : public AlternativeMethod {
         solver_.readVelocities(velocities_ws);
         return true;
     }
+    Status setStyle(std::span<const runtime::Float3> restPositions_ss) override {
+        if constexpr (requires { solver_.setStyle(restPositions_ss); }) {
+            if (const std::string why = solver_.setStyle(restPositions_ss); !why.empty())
+                return tl::unexpected(errorOfWords(why));
+            return {};
+        }
+        return StrandMethod::setStyle(restPositions_ss);
+    }
 
   protected:
     void place(const SceneInput& scene, const HeadPose& pose) override { solver_.reset(scene.rootsAt(pose)); }

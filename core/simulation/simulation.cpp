@@ -93,6 +93,11 @@ Status Simulation::setSettings(const runtime::SimulationSettings& settings) {
     return {};
 }
 
+Status Simulation::setStyle(std::span<const Vec3f> restPositions) {
+    return impl_->method->setStyle(
+        {reinterpret_cast<const runtime::Float3*>(restPositions.data()), restPositions.size()});
+}
+
 void Simulation::setSpheres(std::vector<CollisionSphere> spheres) {
     impl_->scene.setSpheres(std::move(spheres));
 }

@@ -48,6 +48,11 @@ class StrandMethod {
     virtual Status setSettings(const runtime::SimulationSettings&) {
         return fail("this method cannot change settings while it runs");
     }
+    /// The shape that strands turn to from the next step on, by point, in place of the authored one. An error
+    /// leaves all as it was.
+    virtual Status setStyle(std::span<const runtime::Float3>) {
+        return fail("this method takes no style while it runs", "expected the method 'projective'");
+    }
     /// All that changes from step to step, for another engine to go on from (runtime::Engine::state()); null
     /// where it cannot be had.
     virtual std::shared_ptr<const runtime::State> state() const { return nullptr; }

@@ -163,7 +163,7 @@ void Player::reset() {
         requests.playing = false;
         requests.steps = 0;
         requests.restart = true;
-        requests.regroomed = false;
+        requests.regroomed = requests.restyled = false;
         requests.groom.reset();
         requests.motion.reset();
         requests.offset.setIdentity();
@@ -322,7 +322,7 @@ void Player::documentChanged(editing::Part parts) {
         if (playing_ && sameStrands && !contains(parts, editing::kScalpParts)) {
             request([&](WorkerRequests& requests) {
                 requests.groom = std::make_shared<const Groom>(groom);
-                requests.regroomed = true;
+                requests.restyled = true;
             });
             clearCache();
             return;

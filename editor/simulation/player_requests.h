@@ -23,6 +23,7 @@ struct Player::WorkerRequests {
     int steps = 0;
     bool restart = true;     ///< simulation and motion are made anew from `groom`
     bool regroomed = false;  ///< the strands of `groom` stand elsewhere or are others in looks; they go on
+    bool restyled = false;   ///< likewise, and the method may turn them there
     std::shared_ptr<RenderJobs> jobs;
     EngineWish wish = EngineWish::cpu;
     bool wishChanged = false;

@@ -102,6 +102,8 @@ void Player::setEngineShown(const EngineChoice& choice) {
 bool Player::prepare(Playing& playing, WorkerRequests& taken) {
     if (taken.wishChanged) playing.deviceFailed = false;
     const bool begins = taken.restart || !playing.transport.isMoving();
+    if (taken.restyled && !begins && !taken.regroomed && !taken.wishChanged && playing.groom)
+        taken.regroomed = !playing.transport.restyle(*playing.groom);
     if (!begins && !taken.regroomed && !taken.wishChanged) return true;
     MovingStart start;
     if (begins) {
@@ -261,7 +263,8 @@ void Player::run() {
             }
             if (requests_->steps > 0) --requests_->steps;
             taken = *requests_;
-            requests_->restart = requests_->regroomed = requests_->wishChanged = requests_->changed = false;
+            requests_->restart = requests_->regroomed = requests_->restyled = requests_->wishChanged =
+                requests_->changed = false;
         }
         due = std::chrono::steady_clock::now() +
               std::chrono::microseconds(std::llround(1e6f / taken.pace.framesPerSecond));

@@ -24,6 +24,9 @@ class Transport {
     Status startThere(std::shared_ptr<RenderJobs> jobs, std::shared_ptr<const Groom> groom,
                       std::shared_ptr<const HeadMotion> motion, const MovingStart& start);
     void stop();
+    /// The shape that strands turn to from the next step on. False, and nothing is changed, where the method
+    /// has to be made anew for it.
+    bool restyle(const Groom& groom) { return here_ && here_->setStyle(groom.positions()); }
     bool isMoving() const { return here_ || there_; }
 
     /// Advances by `dt` seconds to the head of `pose`, and writes there where strands are. `changed`: the

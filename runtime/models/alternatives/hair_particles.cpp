@@ -12,10 +12,8 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr float kSpacings = 2.5f;  // of the hair, in a radius that nobody gave
-constexpr std::size_t kMaxCells = std::size_t{1} << 21;
 constexpr std::size_t kPerJob = 256;
 constexpr float kCourant = 0.4f;
-constexpr std::uint32_t kNowhere = 0xffffffffu;
 
 /// The cubic spline of Monaghan 1992 and its slope over the distance, (dW/dr)/r, for q = 2 r/radius below 2.
 struct Kernel {
@@ -34,10 +32,6 @@ struct Kernel {
         return slopeScale * (q < 1.0f ? -3.0f + 2.25f * q : -0.75f * left * left / q);
     }
 };
-
-std::array<float, 3> components(Float3 v) {
-    return {v.x, v.y, v.z};
-}
 
 }  // namespace
 
@@ -63,64 +57,8 @@ HairParticles::Result HairParticles::make(const StrandsView& strands, const Hair
     return {std::move(made), {}};
 }
 
-/// Cells of a radius at least, whose particles stand side by side.
 void HairParticles::sort(std::span<const Float3> positions) {
-    std::array<float, 3> high{};
-    bool any = false;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (!countsIn(positions[i], speeds_[i])) continue;
-        const auto at = components(positions[i]);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            low_[axis] = any ? std::min(low_[axis], at[axis]) : at[axis];
-            high[axis] = any ? std::max(high[axis], at[axis]) : at[axis];
-        }
-        any = true;
-    }
-    for (double cell = static_cast<double>(radius_);; cell *= 2.0) {
-        double count = 1.0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double width =
-                any ? static_cast<double>(high[axis]) - static_cast<double>(low_[axis]) : 0.0;
-            const double along = std::floor(width / cell) + 1.0;
-            count *= along;
-            size_[axis] = static_cast<std::uint32_t>(std::min(along, 1e9));
-        }
-        cell_ = static_cast<float>(cell);
-        if (count <= static_cast<double>(kMaxCells)) break;
-    }
-    starts_.assign(std::size_t{size_[0]} * size_[1] * size_[2] + 1, 0);
-    cells_.assign(positions.size(), kNowhere);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (!countsIn(positions[i], speeds_[i])) continue;
-        const auto at = components(positions[i]);
-        std::uint32_t cell = 0;
-        for (std::size_t axis = 3; axis-- > 0;) {
-            const auto along = static_cast<std::uint32_t>((at[axis] - low_[axis]) / cell_);
-            cell = cell * size_[axis] + std::min(along, size_[axis] - 1);
-        }
-        cells_[i] = cell;
-        ++starts_[cell + 1];
-    }
-    for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
-    order_.resize(positions.size());
-    std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (cells_[i] != kNowhere) order_[next[cells_[i]]++] = static_cast<std::uint32_t>(i);
-    }
-}
-
-/// visit(j) for the particles of the 27 cells around.
-template <class Visit>
-void HairParticles::forNeighbours(std::size_t i, const Visit& visit) const {
-    const std::uint32_t cell = cells_[i];
-    const std::uint32_t x = cell % size_[0], y = cell / size_[0] % size_[1], z = cell / size_[0] / size_[1];
-    for (std::uint32_t k = z > 0 ? z - 1 : 0; k <= std::min(z + 1, size_[2] - 1); ++k) {
-        for (std::uint32_t j = y > 0 ? y - 1 : 0; j <= std::min(y + 1, size_[1] - 1); ++j) {
-            const std::uint32_t row = (k * size_[1] + j) * size_[0];
-            const std::uint32_t first = row + (x > 0 ? x - 1 : 0), last = row + std::min(x + 1, size_[0] - 1);
-            for (std::uint32_t at = starts_[first]; at < starts_[last + 1]; ++at) visit(order_[at]);
-        }
-    }
+    cells_.sort(positions, radius_, [&](std::size_t i) { return countsIn(positions[i], speeds_[i]); });
 }
 
 void HairParticles::measure(std::span<const Float3> positions, std::vector<float>& densities) {
@@ -128,9 +66,9 @@ void HairParticles::measure(std::span<const Float3> positions, std::vector<float
     const Kernel kernel(radius_);
     inParallel(host_, positions.size(), kPerJob, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (cells_[i] == kNowhere) continue;
+            if (!cells_.has(i)) continue;
             float sum = 0.0f;
-            forNeighbours(i, [&](std::size_t j) {
+            cells_.around(i, [&](std::size_t j) {
                 const float q = length(positions[j] - positions[i]) * kernel.inverseHalf;
                 if (q < 2.0f) sum += masses_[j] * kernel.at(q);
             });
@@ -152,7 +90,7 @@ HairParticles::Report HairParticles::apply(std::span<const Float3> positions_ws,
         const float density = densities_[i], rest = restDensities_[i];
         const float above = rest > 0.0f ? std::clamp(density / rest - 1.0f, 0.0f, 1.0f) : 0.0f;
         pushes_[i] = density > 0.0f ? rest * above / (density * density) : 0.0f;
-        if (cells_[i] == kNowhere) ++report.leftOut;
+        if (!cells_.has(i)) ++report.leftOut;
     }
     const float fastest = kCourant * radius_ / dt;
     const float push = std::min(settings_.stiffness, fastest * fastest) * dt;
@@ -162,9 +100,9 @@ HairParticles::Report HairParticles::apply(std::span<const Float3> positions_ws,
     inParallel(host_, masses_.size(), kPerJob, [&](std::size_t begin, std::size_t end) {
         std::uint64_t found = 0;
         for (std::size_t i = begin; i < end; ++i) {
-            if (cells_[i] == kNowhere) continue;
+            if (!cells_.has(i)) continue;
             Float3 change;
-            forNeighbours(i, [&](std::size_t j) {
+            cells_.around(i, [&](std::size_t j) {
                 const Float3 away = positions_ws[i] - positions_ws[j];
                 const float q = length(away) * kernel.inverseHalf;
                 if (j == i || !(q < 2.0f)) return;
@@ -187,7 +125,7 @@ HairParticles::Report HairParticles::apply(std::span<const Float3> positions_ws,
 std::size_t HairParticles::bytes() const {
     const std::size_t floats =
         masses_.size() + densities_.size() + restDensities_.size() + pushes_.size() + 3 * speeds_.size();
-    return sizeof(HairParticles) + 4 * (floats + starts_.size() + order_.size() + cells_.size());
+    return sizeof(HairParticles) + 4 * floats + cells_.bytes();
 }
 
 }  // namespace hairloom::runtime

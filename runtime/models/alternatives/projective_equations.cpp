@@ -13,6 +13,8 @@ namespace {
 
 constexpr float kRigid = 1e12f;  // 1/s²; a stiffer joint does not move
 constexpr std::size_t kStrandsPerJob = 16;
+constexpr float kSameRoot = 1e-5f;    // metres
+constexpr float kSameLength = 1e-3f;  // of a stick
 
 }  // namespace
 
@@ -23,6 +25,8 @@ struct ProjectiveEquations::Substep {
     Float3 pull;             ///< gravity less the acceleration of the root
     Float3 airRoot, airTip;  ///< m/s
     float share;             ///< of the frame, at the end of the substep
+    float seconds;           ///< since the start of the frame, likewise
+    bool jumps;              ///< the root does: hair around is where it was
     float h;                 ///< seconds
     float decay;             ///< share of its rate that damping leaves a stick
 };
@@ -35,6 +39,7 @@ ProjectiveEquations::Result ProjectiveEquations::make(const StrandsView& strands
     ProjectiveEquations made;
     made.host_ = std::move(host);
     made.offsets_.assign(strands.offsets.begin(), strands.offsets.end());
+    made.rest_.assign(strands.restPositions_ss.begin(), strands.restPositions_ss.end());
     const std::size_t points = strands.restPositions_ss.size();
     made.sticks_.resize(points);
     made.motions_.resize(points);
@@ -58,8 +63,52 @@ ProjectiveEquations::Result ProjectiveEquations::make(const StrandsView& strands
 
 std::string ProjectiveEquations::setSettings(const SimulationSettings& settings) {
     if (std::string error = validationError(settings); !error.empty()) return error;
+    const bool met = settings_.hairHair;
+    const float reach = settings_.hairHairCell;
     settings_ = settings;
     wind_ = makeWind(settings);
+    if (!settings.hairHair) {
+        near_ = {};
+        starts_ws_ = {};
+    } else if (!met || reach != settings.hairHairCell) {
+        near_.make({offsets_, rest_}, settings.hairHairCell);
+        starts_ws_.resize(rest_.size());
+    }
+    fillSticks();
+    return {};
+}
+
+std::string ProjectiveEquations::setStyle(std::span<const Float3> restPositions_ss) {
+    if (restPositions_ss.empty()) {
+        styles_ = {};
+        fillSticks();
+        return {};
+    }
+    if (restPositions_ss.size() != rest_.size())
+        return "the style has " + std::to_string(restPositions_ss.size()) + " points; expected " +
+               std::to_string(rest_.size());
+    for (std::size_t p = 0; p < rest_.size(); ++p) {
+        if (!isFinite(restPositions_ss[p]))
+            return "point " + std::to_string(p) + " of the style is no number; expected metres";
+    }
+    for (std::size_t s = 0; s < roots_.size(); ++s) {
+        if (length(restPositions_ss[offsets_[s]] - rest_[offsets_[s]]) > kSameRoot)
+            return "strand " + std::to_string(s) +
+                   " of the style grows elsewhere; expected the roots of the strands";
+        for (std::uint32_t p = offsets_[s] + 1; p < offsets_[s + 1]; ++p) {
+            const float wanted = length(restPositions_ss[p] - restPositions_ss[p - 1]);
+            if (std::abs(wanted - sticks_[p].length) > kSameRoot + kSameLength * sticks_[p].length)
+                return "segment " + std::to_string(p - offsets_[s]) + " of strand " + std::to_string(s) +
+                       " is " + std::to_string(wanted) + " m long in the style; expected " +
+                       std::to_string(sticks_[p].length) + ", as sticks keep their length";
+        }
+    }
+    styles_.resize(rest_.size());
+    for (std::size_t s = 0; s < roots_.size(); ++s) {
+        const Quat toRoot = conjugate(roots_[s].rest.rotation);
+        for (std::uint32_t p = offsets_[s] + 1; p < offsets_[s + 1]; ++p)
+            styles_[p] = rotate(toRoot, restPositions_ss[p] - restPositions_ss[p - 1]);
+    }
     fillSticks();
     return {};
 }
@@ -70,6 +119,7 @@ void ProjectiveEquations::fillSticks() {
     for (std::size_t s = 0; s < roots_.size(); ++s) {
         const Float3 gravity = rotate(conjugate(roots_[s].rest.rotation), settings_.gravity);
         const std::uint32_t root = offsets_[s], segments = offsets_[s + 1] - root - 1;
+        Quat frame;  // of the stick's parent in the style, against the root
         for (std::uint32_t j = 0; j < segments; ++j) {
             Stick& stick = sticks_[root + j + 1];
             const float l = stick.length;
@@ -79,7 +129,12 @@ void ProjectiveEquations::fillSticks() {
             const double slope = rod > 0.0 ? 3.0 * rod / (0.5 * (l + inner) * std::pow(l, 3.0)) : 0.0;
             stick.fixed = j + 1 < settings_.clampedPoints || !(slope < static_cast<double>(kRigid));
             stick.bend = stick.fixed ? 0.0f : static_cast<float>(slope);
-            aimAgainst(stick, gravity * settings_.restGravity);
+            const Quat toFrame = conjugate(frame);
+            styleStick(stick,
+                       stick.fixed || styles_.empty() ? Float3{} : rotate(toFrame, styles_[root + j + 1]));
+            aimAgainst(stick, rotate(toFrame, gravity) * settings_.restGravity);
+            const StickMotion styled{stick.thetaStyle, stick.phiStyle, 0.0f, 0.0f, {}};
+            if (!styles_.empty()) frame = carriedFrame(stick, styled, frame);
         }
     }
 }
@@ -109,11 +164,20 @@ bool ProjectiveEquations::step(const FrameInput& input) {
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
     spheres_.take(input, settings_.teleportDistance);
     const WindyFrame frame(wind_, input);
+    if (settings_.hairHair) findNearHair();
     const auto strands = [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) runStrand(static_cast<std::uint32_t>(s), frame);
     };
     inParallel(host_, strandCount(), kStrandsPerJob, strands);
     return true;
+}
+
+void ProjectiveEquations::findNearHair() {
+    for (std::size_t s = 0; s < roots_.size(); ++s) {
+        for (std::uint32_t p = offsets_[s]; p < offsets_[s + 1]; ++p)
+            starts_ws_[p] = roots_[s].now.position + positions_[p];
+    }
+    near_.find(starts_ws_, velocities_, host_);
 }
 
 void ProjectiveEquations::runStrand(std::uint32_t strand, const WindyFrame& frame) {
@@ -136,7 +200,7 @@ void ProjectiveEquations::runStrand(std::uint32_t strand, const WindyFrame& fram
         const float share = static_cast<float>(i + 1) / count;
         runSubstep(strand,
                    {between(path.from, path.to, share), root.velocity, settings_.gravity - path.acceleration,
-                    air.atRoot(share), air.atTip(share), share, h, decay});
+                    air.atRoot(share), air.atTip(share), share, share * dt, path.jumps, h, decay});
     }
 }
 
@@ -154,6 +218,7 @@ void ProjectiveEquations::runSubstep(std::uint32_t strand, const Substep& subste
             motion.frame = frame;
         } else {
             turnStick(stick, motion, frame, forcesOn(p, frame, along, substep));
+            if (settings_.hairHair && !substep.jumps) keepApart(p, frame, substep);
             collide(p, frame, along, substep);
         }
         const Float3 position =
@@ -197,6 +262,21 @@ void ProjectiveEquations::collide(std::uint32_t point, Quat frame, float along, 
         const Float3 centre_ws = sphere.from_ws + sphere.motion * substep.share;
         pushOut(sticks_[point], motions_[point], rotate(conjugate(frame), centre_ws - joint_ws),
                 sphere.radius + collisionRadius);
+    }
+}
+
+/// One stick after the other, nearest first.
+void ProjectiveEquations::keepApart(std::uint32_t point, Quat frame, const Substep& substep) {
+    const Stick& stick = sticks_[point];
+    StickMotion& motion = motions_[point];
+    const Float3 joint_ws = substep.root.position + positions_[point - 1];
+    for (const NearSticks::Near& near : near_.of(point)) {
+        const Float3 tip_ws = joint_ws + rotate(frame, polarOf(stick, motion).direction) * stick.length;
+        const Float3 place_ws = near_.nearest(near.stick, tip_ws, substep.seconds);
+        const float apart = length(tip_ws - place_ws);
+        if (!(apart < near.reach)) continue;
+        pushOut(stick, motion, rotate(conjugate(frame), place_ws - joint_ws),
+                apart + 0.5f * settings_.hairHairStrength * (near.reach - apart));
     }
 }
 

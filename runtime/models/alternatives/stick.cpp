@@ -58,15 +58,28 @@ Stick makeStick(Float3 segment, Float3 up) {
     return stick;
 }
 
+void styleStick(Stick& stick, Float3 segment) {
+    stick.thetaStyle = stick.phiStyle = 0.0f;
+    const float size = length(segment);
+    if (!(size > kShortestStick) || !(stick.length > kShortestStick)) return;
+    stick.thetaStyle = std::clamp(std::atan2(dot(segment, stick.side), dot(segment, stick.along)),
+                                  -kMostStyled, kMostStyled);
+    stick.phiStyle = std::asin(std::clamp(dot(segment, stick.pole) / size, -1.0f, 1.0f));
+}
+
 void aimAgainst(Stick& stick, Float3 gravity) {
-    stick.thetaAim = stick.phiAim = 0.0f;
+    stick.thetaAim = stick.thetaStyle;
+    stick.phiAim = stick.phiStyle;
     if (!(stick.bend > 0.0f)) return;
+    const StickMotion styled{stick.thetaStyle, stick.phiStyle, 0.0f, 0.0f, {}};
     const float lift = -leverOf(stick) / stick.bend;
-    const float theta = lift * dot(gravity, stick.side), phi = lift * dot(gravity, stick.pole);
+    const float theta =
+        lift * std::cos(stick.phiStyle) * dot(gravity, acrossMeridian(stick, stick.thetaStyle));
+    const float phi = lift * dot(gravity, polarOf(stick, styled).byPhi);
     const float size = std::max(std::hypot(theta, phi), 1.0f);
     if (!std::isfinite(size)) return;
-    stick.thetaAim = theta / size;
-    stick.phiAim = phi / size;
+    stick.thetaAim += theta / size;
+    stick.phiAim += phi / size;
 }
 
 /// Rünz 2012, Eq. 1, on a stick of inertia m l²/3: u_i = cosφ · l/2 is the lever's projection on the equator,

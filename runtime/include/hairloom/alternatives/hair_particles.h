@@ -3,13 +3,13 @@
 // Hair as a continuum of particles, after Hadap and Magnenat-Thalmann 2001, "Modeling dynamic hair as a
 // continuum" (Rünz 2012, Section 3.1), by smoothed particles (Monaghan 1992).
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "hairloom/alternatives/point_cells.h"
 #include "hairloom/host.h"
 #include "hairloom/math.h"
 #include "hairloom/strands.h"
@@ -67,8 +67,6 @@ class HairParticles {
     HairParticles() = default;
 
     void sort(std::span<const Float3> positions);
-    template <class Visit>
-    void forNeighbours(std::size_t i, const Visit& visit) const;
     void measure(std::span<const Float3> positions, std::vector<float>& densities);
 
     HairParticleSettings settings_;
@@ -77,11 +75,7 @@ class HairParticles {
     std::vector<float> masses_, densities_, restDensities_;
     std::vector<float> pushes_;  // p/ρ² without K
     std::vector<Float3> speeds_;
-    // Particles by cell, in the order of the points; those that do not count are in none.
-    std::array<float, 3> low_{};
-    std::array<std::uint32_t, 3> size_{};
-    float cell_ = 0.0f;
-    std::vector<std::uint32_t> starts_, order_, cells_;
+    PointCells cells_;  // of a radius at least
 };
 
 struct HairParticles::Result {

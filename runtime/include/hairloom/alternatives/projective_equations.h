@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// One-dimensional projective equations (Anjyo, Usami, Kurihara 1992; Rünz 2012, Section 3.1 and Eq. 1).
+// One-dimensional projective equations (Anjyo, Usami, Kurihara 1992; Rünz 2012, Section 3.1 and Eq. 1), with
+// what later work adds to them: hair that bends around the head, keeps its distance from other hair, and
+// takes on a style (Lee and Ko 2001; Jung, Rettig, Klar and Lehr 2005).
 
 #include <cstdint>
 #include <optional>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "hairloom/alternatives/moving_spheres.h"
+#include "hairloom/alternatives/near_sticks.h"
 #include "hairloom/alternatives/stick.h"
 #include "hairloom/host.h"
 #include "hairloom/settings.h"
@@ -36,12 +39,17 @@ struct WindyFrame;
 ///
 /// Limits: a stick feels its own weight, the air and the acceleration of its root, but nothing of the sticks
 /// beyond it. A strand therefore swings as fast as one of its sticks, faster with more segments, and sags
-/// less than a rod of the same stiffness. No torsion, no hair against hair. Away from the equator of its
+/// less than a rod of the same stiffness. No torsion. Away from the equator of its
 /// polar system θ lags by cos²φ (the inertia in Eq. 1 is constant). Collision pushes the tips of sticks out
 /// of one sphere after the other, without friction, rebound or impulse from the sphere; a stick whose whole
 /// reach lies inside a sphere points away from its centre. Of the settings it ignores integrator,
 /// lengthMethod, lengthIterations, maximalExtension, springFrequency, angularMethod, collisionResponse,
-/// friction, restitution, penaltyFrequency and sleep.
+/// friction, restitution, penaltyFrequency, sleep, and of hair-hair collision friction and cohesion.
+///
+/// Hair-hair collision (SimulationSettings::hairHair): in each substep the tip of a stick is turned away from
+/// the sticks of other strands that NearSticks finds, as from a sphere, by half of what hairHairStrength asks
+/// of its reach: the other stick turns as well. Its reach is hairHairCell. Spheres come after hair and win.
+/// The other sticks are those of the frame's start, so that the bits do not depend on threads.
 class ProjectiveEquations {
   public:
     struct Result;
@@ -54,6 +62,11 @@ class ProjectiveEquations {
     bool reset(std::span<const RootFrame> roots_ws);
     /// From the next step on; empty, or why they are refused.
     std::string setSettings(const SimulationSettings& settings);
+    /// The shape that sticks turn to from the next step on, in place of the authored one: target angles of
+    /// each strand, of at most kMostStyled from the authored ones at each stick (a later stick makes up for
+    /// the rest). Metres, in the scalp's rest space, by point. Empty: as authored. Errors,
+    /// in words, which change nothing: another number of points, points that are no numbers, other roots or lengths.
+    std::string setStyle(std::span<const Float3> restPositions_ss);
     /// Advances by input.dt. A dt that is not above 0 changes nothing, one above 1000 s counts as 1000 s;
     /// roots that are no position within 1e6 m stay where they were; spheres that are none are left out.
     /// Allocates only for more spheres than ever before.
@@ -79,6 +92,8 @@ class ProjectiveEquations {
     void runSubstep(std::uint32_t strand, const Substep& substep);
     StickForces forcesOn(std::uint32_t point, Quat frame, float along, const Substep& substep) const;
     void collide(std::uint32_t point, Quat frame, float along, const Substep& substep);
+    void keepApart(std::uint32_t point, Quat frame, const Substep& substep);
+    void findNearHair();
 
     SimulationSettings settings_;
     Host host_;
@@ -90,6 +105,11 @@ class ProjectiveEquations {
     std::vector<Float3> positions_;     // by point, from the root, world axes
     std::vector<Float3> velocities_;    // by point, world
     MovingSpheres spheres_;
+    std::vector<Float3> rest_;  // by point, scalp's rest space
+    std::vector<Float3>
+        styles_;       // segments of the style, by outer point, in the root's rest frame; empty: none
+    NearSticks near_;  // while hair meets hair
+    std::vector<Float3> starts_ws_;  // likewise, by point
 };
 
 struct ProjectiveEquations::Result {

@@ -13,11 +13,12 @@ inline constexpr float kShortestStick = 1e-9f;  ///< metres; what is shorter has
 
 /// A segment as authored, in the rest frame of its strand's root.
 struct Stick {
-    Float3 along, side, pole;              ///< right-handed: rest direction, θ towards side, φ towards pole
-    float length = 0.0f;                   ///< metres
-    float bend = 0.0f;                     ///< restoring angular acceleration per angle, 1/s²
-    float thetaAim = 0.0f, phiAim = 0.0f;  ///< angles to which the restoring torque alone would take it
-    bool fixed = false;                    ///< keeps its rest direction in its parent's frame
+    Float3 along, side, pole;  ///< right-handed: rest direction, θ towards side, φ towards pole
+    float length = 0.0f;       ///< metres
+    float bend = 0.0f;         ///< restoring angular acceleration per angle, 1/s²
+    float thetaStyle = 0.0f, phiStyle = 0.0f;  ///< angles of the shape that it is to have; 0: as authored
+    float thetaAim = 0.0f, phiAim = 0.0f;      ///< angles to which the restoring torque alone would take it
+    bool fixed = false;                        ///< keeps its rest direction in its parent's frame
 };
 
 struct StickMotion {
@@ -37,7 +38,12 @@ Polar polarOf(const Stick& stick, const StickMotion& motion);
 /// of upright hair is any direction across it.
 Stick makeStick(Float3 segment, Float3 up);
 
-/// Angles that an authored shape needs to hang in `gravity` (m/s², root's rest frame), of at most one radian.
+/// The angles of `segment`, in the parent's frame, as thetaStyle and phiStyle; of at most kMostStyled.
+void styleStick(Stick& stick, Float3 segment);
+inline constexpr float kMostStyled = 2.0f;  ///< radians from the authored shape
+
+/// Aims beyond the angles of the style, by at most one radian, so that it hangs in `gravity` (m/s², in the
+/// parent's frame in that shape).
 void aimAgainst(Stick& stick, Float3 gravity);
 
 /// What acts on a stick within one substep.
