@@ -206,7 +206,7 @@ Result<Report> simulate(const SimulateOptions& options) {
         const auto style = openGroom(options.style);
         if (!style) return tl::unexpected(style.error());
         if (auto set = simulation->setStyle(style->positions()); !set)
-            return fail(fmt::format("{}: {}", options.style, set.error().message()));
+            return tl::unexpected(inFile(set.error(), options.style));
     }
     const Report advice = adviceReport(*groom, dt);
     std::optional<FrameRecorder> recorder;
@@ -334,9 +334,10 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
         ->check(CLI::IsMember({"strands", "projective", "chain", "lattice", "particles", "hybrid"}));
     job.add_flag("--hair-hair", options.hairHair,
                  "Turns on simulation.hairHair, hair-hair collision of rods and projective equations");
-    job.add_option("--style", options.style,
-                   "Groom of the same strands, whose shape they turn to from the first frame on. Of projective "
-                   "equations");
+    job.add_option(
+        "--style", options.style,
+        "Groom of the same strands, whose shape they turn to from the first frame on. Of projective "
+        "equations");
     std::vector<CLI::Option*> added = job.get_options();
     added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));
     return added;

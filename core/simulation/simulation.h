@@ -84,9 +84,10 @@ class Simulation {
     /// Other settings from the next step on, without a jump; wind is one of them. Errors, which leave all as
     /// it was: settings out of range, a method other than the strand engine on the CPU.
     Status setSettings(const runtime::SimulationSettings& settings);
-    /// The shape that strands turn to from the next step on, in place of the authored one: of the same strands
-    /// on the same roots, in the order of the groom's points; metres, at rest. Errors, which leave all as it
-    /// was: another number of points, other roots or lengths, a method that has no angles to aim at.
+    /// The shape that strands turn to from the next step on, in place of the authored one: of the same
+    /// strands on the same roots, in the order of the groom's points; metres, at rest. Errors, which leave
+    /// all as it was: another number of points, other roots or lengths, a method that has no angles to aim
+    /// at.
     Status setStyle(std::span<const Vec3f> restPositions);
     /// Collision spheres in place of the groom's, from the next step on.
     void setSpheres(std::vector<CollisionSphere> spheres);

@@ -69,7 +69,7 @@ class ProjectiveEquations {
     std::string setStyle(std::span<const Float3> restPositions_ss);
     /// Advances by input.dt. A dt that is not above 0 changes nothing, one above 1000 s counts as 1000 s;
     /// roots that are no position within 1e6 m stay where they were; spheres that are none are left out.
-    /// Allocates only for more spheres than ever before.
+    /// Allocates only for more spheres than ever before, and while hair meets hair.
     bool step(const FrameInput& input);
 
     std::uint32_t strandCount() const { return static_cast<std::uint32_t>(roots_.size()); }
