@@ -145,6 +145,35 @@ TEST_F(CliMotion, OtherMethodsReportAndRecordAlike) {
     EXPECT_NE(asFlag["state_hash"], engine["state_hash"]);
 }
 
+TEST_F(CliMotion, ProjectiveHairTurnsToAStyleAndKeepsApart) {
+    runJson(createArguments());
+    std::ofstream(folder / "bend.json")
+        << R"({"hairloom_script": 1, "operations": [{"op": "bend", "sidewaysDegrees": 60}]})";
+    runJson("groom hair.hairloom --script bend.json -o bent.hairloom");
+    const std::string still = "simulate hair.hairloom --frames 60 --fps 30 --method projective ";
+    const std::string asBent =
+        "simulate bent.hairloom --frames 60 --fps 30 --method projective --record bent.frames";
+    runJson(asBent);
+    const auto authored = runJson(still + "--against bent.frames"),
+               turned = runJson(still + "--against bent.frames --style bent.hairloom");
+    EXPECT_NE(authored["state_hash"], turned["state_hash"]);
+    EXPECT_GT(authored["error_mm"], 2.0);
+    EXPECT_LT(turned["error_mm"], 0.5 * authored["error_mm"].get<double>());
+    EXPECT_LT(turned["max_stretch"], 1e-4);
+    EXPECT_EQ(runJson(still)["state_hash"], authored["state_hash"]);
+    EXPECT_NE(runJson(still + "--motion nod --hair-hair")["state_hash"],
+              runJson(still + "--motion nod")["state_hash"]);
+    const Outcome engine = run("simulate hair.hairloom --style bent.hairloom");
+    EXPECT_EQ(engine.exitCode, 1);
+    EXPECT_THAT(engine.errors, HasSubstr("expected the method 'projective'"));
+    std::ofstream(folder / "long.json")
+        << R"({"hairloom_script": 1, "operations": [{"op": "set_length", "length": 0.3}]})";
+    runJson("groom hair.hairloom --script long.json -o long.hairloom");
+    const Outcome longer = run(still + "--style long.hairloom");
+    EXPECT_EQ(longer.exitCode, 1);
+    EXPECT_THAT(longer.errors, HasSubstr("long.hairloom: segment 1 of strand 0"));
+}
+
 TEST_F(CliMotion, AccuracyMeasuresAGridAndWritesAReport) {
     runJson(createArguments());
     const auto report = runJson(

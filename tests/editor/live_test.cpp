@@ -151,6 +151,27 @@ TEST_F(LiveTest, EditsArriveWhileItPlays) {
     }
 }
 
+/// Projective equations turn to what is brushed, so that no frame jumps back to the authored shape.
+TEST_F(LiveTest, ABrushStylesHairThatMovesByProjectiveEquations) {
+    ASSERT_TRUE(parts().player.setMotion("spin"));
+    trigger("play.toggle");
+    auto* method = window->findChild<QComboBox*>("play-method");
+    ASSERT_TRUE(method);
+    method->setCurrentIndex(1);
+    ASSERT_TRUE(played(1.0));
+    const std::size_t frames = parts().player.frame()->stats.frames;
+    ASSERT_GT(frames, 2u);
+    trigger("tool.comb");
+    const std::uint64_t authored = hash();
+    const QPoint middle(viewport().width() / 2, viewport().height() / 2);
+    drag({middle, middle + QPoint(20, 5), middle + QPoint(60, 20)});
+    ASSERT_NE(hash(), authored);
+    ASSERT_TRUE(played(now() + 0.3));
+    EXPECT_GT(parts().player.frame()->stats.frames, frames) << "the same simulation goes on";
+    EXPECT_EQ(parts().player.frame()->stats.nanCount, 0u);
+    trigger("play.reset");
+}
+
 TEST_F(LiveTest, WhatChangedWhileItPlaysStaysOnTheOtherDevice) {
     simulateOn(SimulateOn::Cpu);
     trigger("play.toggle");
