@@ -38,13 +38,18 @@ std::uint32_t layersThatFit(RenderOptions options, const gpu::DeviceInfo& device
     return layers;
 }
 
-std::uint32_t fragmentsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device) {
+std::uint32_t fragmentsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device,
+                               const HairCount& hair) {
     constexpr std::uint64_t kOfTexel = 16;            // as many as dense hair has in one of usual size
     constexpr std::uint64_t kOfSmallMap = 1u << 22u;  // whose texels have more
     if (options.shadows != Shadows::adaptive) return 0;
     const std::uint64_t texels = std::uint64_t{options.shadowResolution} * options.shadowResolution;
+    // Pieces of hair cover two texels across and one more at each end.
+    const std::uint64_t ofHair =
+        2 * (2 * hair.strands * options.shadowResolution + 2 * hair.segments * options.subdivisions);
     const std::uint64_t wanted =
-        std::min<std::uint64_t>(std::max(kOfTexel * texels, kOfSmallMap), options.shadowFragments);
+        std::min({std::max(kOfTexel * texels, kOfSmallMap), std::uint64_t{options.shadowFragments},
+                  std::max(ofHair, std::uint64_t{kMinShadowFragments})});
     constexpr std::uint64_t kShareOfMemory = 16;
     std::uint64_t bytes = device.maxBufferBytes;
     if (device.memoryBytes > 0) bytes = std::min(bytes, device.memoryBytes / kShareOfMemory);

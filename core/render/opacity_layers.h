@@ -21,8 +21,15 @@ std::uint32_t layersThatFit(RenderOptions options, const gpu::DeviceInfo& device
 /// opacity maps have the first hair's depth as the last of them. A node of adaptive maps takes one.
 std::uint32_t opacityWords(Shadows shadows, std::uint32_t layers);
 
-/// Pieces of hair in texels that the lists of an adaptive map hold on this device; 0 for other shadows.
-std::uint32_t fragmentsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device);
+/// Hair in the numbers that lists of an adaptive map are sized by.
+struct HairCount {
+    std::uint64_t strands = 0, segments = 0;
+};
+
+/// Pieces of hair in texels that the lists of an adaptive map hold on this device, no more than that hair can
+/// have while each strand is at most twice as long as the light's view is wide; 0 for other shadows.
+std::uint32_t fragmentsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device,
+                               const HairCount& hair);
 
 /// How layers grow from one to the next, as the shaders know it; 0: LayerEnds::early.
 float growthOf(const RenderOptions& options);

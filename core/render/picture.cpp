@@ -69,8 +69,17 @@ Status sayWhatListsLeft(gpu::Device& device, const Renderer& renderer, Picture& 
         return status;
     const auto most = static_cast<std::uint32_t>(picture.plan.buffer(BufferId::lightFragments).elements /
                                                  HAIRLOOM_LISTED_WORDS);
-    std::uint32_t found = 0;
-    for (std::size_t i = 0; i < counts.size(); i += 2) found = std::max(found, counts[i]);
+    std::uint32_t found = 0, left = 0;
+    for (std::size_t i = 0; i < counts.size(); i += 2) {
+        found = std::max(found, counts[i]);
+        left = std::max(left, counts[i] - std::min(counts[i], counts[i + 1]));
+    }
+    if (found <= most && left > 0) {
+        picture.plan.passes[static_cast<std::size_t>(Pass::opacity)].why += fmt::format(
+            "; some texels have more hair than the 4096 pieces that a list holds, so a random part of it "
+            "counts as all ({} of {} pieces are left out)",
+            left, found);
+    }
     if (found > most) {
         picture.plan.passes[static_cast<std::size_t>(Pass::opacity)].why += fmt::format(
             "; {} pieces of hair in texels are more than the {} that lists hold, so a random "

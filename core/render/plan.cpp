@@ -86,8 +86,8 @@ class Planner {
         buffer(BufferId::firstHair, square * facts_.shadowLights, 4, first,
                "first hair seen from the lights");
         const std::uint32_t count = layerCount(options_);
-        buffer(BufferId::layerCounts, square * (adaptive ? 1 : count), 4, layers,
-               adaptive ? "where the lists of one light's texels begin"
+        buffer(BufferId::layerCounts, square * (adaptive ? 2 : count), 4, layers,
+               adaptive ? "where the lists of one light's texels begin, and what they have"
                         : "fibres of one light's layers during counting");
         buffer(BufferId::fragmentCounts, std::uint64_t{2} * facts_.shadowLights, 4, adaptive,
                "pieces of hair in texels, and those in lists");

@@ -60,6 +60,13 @@ float listedShare(std::uint32_t all, std::uint32_t most) {
     return all <= most ? 1.0f : 0.98f * static_cast<float>(most) / static_cast<float>(all);
 }
 
+/// As adaptive.hlsli has them.
+constexpr std::uint32_t kListedOfTexel = 4096;
+float listedShareOfTexel(std::uint32_t found) {
+    return found <= kListedOfTexel ? 1.0f
+                                   : 0.94f * static_cast<float>(kListedOfTexel) / static_cast<float>(found);
+}
+
 }  // namespace
 
 void LightMaps::forget() {
@@ -146,16 +153,23 @@ void LightMaps::listFragments(const RibbonBatch& all, const shaders::RasterConst
     std::unique_ptr<RibbonTiles> tiles = counts ? tilesOf(batch, raster) : takeTiles(batch, raster);
     const std::atomic_ref<std::uint32_t> found(listed[2 * raster.square]);
     const std::atomic_ref<std::uint32_t> linked(listed[2 * raster.square + 1]);
-    const float share = counts ? 1 : listedShare(found.load(), raster.fragments);
-    const auto least = static_cast<std::uint32_t>(share * 4294967040.0f);
+    const float ofAll = counts ? 1 : listedShare(found.load(), raster.fragments);
     const auto left = static_cast<std::size_t>(raster.window.x);
     const auto top = static_cast<std::size_t>(raster.window.y);
     const auto columns = static_cast<std::size_t>(raster.window.z);
+    const std::size_t texels = columns * static_cast<std::size_t>(raster.window.w);
     const auto listOne = [&](const RibbonPiece& piece, std::uint32_t item, const RibbonHits& hits,
                              std::size_t h) {
         const auto x = static_cast<std::size_t>(piece.originX + static_cast<int>(hits.x[h]));
         const auto y = static_cast<std::size_t>(piece.originY + static_cast<int>(hits.y[h]));
         const std::size_t texel = (y - top) * columns + (x - left);
+        // A tile has its texels for itself.
+        if (counts) {
+            ++begins[texels + texel];
+            return;
+        }
+        const float share = min(ofAll, listedShareOfTexel(begins[texels + texel]));
+        const auto least = static_cast<std::uint32_t>(share * 4294967040.0f);
         if (share < 1 && chanceOf(item, static_cast<std::uint32_t>(texel)) >= least) return;
         const std::uint32_t place = linked.fetch_add(1, std::memory_order_relaxed);
         if (place >= raster.fragments) return;
@@ -164,7 +178,7 @@ void LightMaps::listFragments(const RibbonBatch& all, const shaders::RasterConst
         std::uint32_t* const fragment = &fragments[std::size_t{HAIRLOOM_LISTED_WORDS} * place];
         fragment[0] = asuint(hits.depth[h]);
         fragment[1] = static_cast<std::uint32_t>(cover * kFibreCount / share + 0.5f);
-        fragment[2] = begins[texel];  // a tile has its texels for itself
+        fragment[2] = begins[texel];
         begins[texel] = place + 1;
     };
     parallelUntil(stop_, tiles->count(), 1, [&](std::size_t begin, std::size_t end) {
@@ -174,7 +188,7 @@ void LightMaps::listFragments(const RibbonBatch& all, const shaders::RasterConst
                 for (std::size_t h = 0; h < hits.count; ++h) {
                     if (!(hits.depth[h] >= 0 && hits.depth[h] <= 1)) continue;
                     ++here;
-                    if (!counts) listOne(piece, item, hits, h);
+                    listOne(piece, item, hits, h);
                 }
             });
             if (counts) found.fetch_add(here, std::memory_order_relaxed);

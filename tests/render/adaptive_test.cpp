@@ -251,6 +251,72 @@ TEST_F(AdaptiveTest, ListsThatAreFullTakeAPartForTheWholeAndSaySo) {
     EXPECT_EQ(why().find("lists hold"), std::string::npos) << why();
 }
 
+/// Strands one above the other over 8 cm, and a sheet that makes the light's view wider.
+struct Column {
+    TestStrands strands;
+    RenderScene scene;
+
+    Column(std::uint32_t count, float opacity) {
+        const Sheets sheet({0}, opacity);
+        strands = sheet.strands;
+        scene = sheet.scene;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float y = -0.08f * static_cast<float>(i + 1) / static_cast<float>(count);
+            strands.add({Vec3f(0.001f, y, 0.049f), Vec3f(0.099f, y, 0.049f)}, 0.001f);
+        }
+        const auto material = scene.strands[0].material;
+        scene.strands = {strands.view()};
+        scene.strands[0].material = material;
+    }
+};
+
+/// Fibres of the texels that have many.
+std::vector<double> fullTexels(const NodeTexels& texels) {
+    std::vector<double> fibres;
+    for (std::size_t last = texels.nodes - 1; last < texels.words.size(); last += texels.nodes) {
+        const double here = 64.0 * (texels.words[last] & 0xffffu) / 65535;
+        if (here > 4) fibres.push_back(here);
+    }
+    return fibres;
+}
+
+/// One thread sorts a list, so that no texel's grows without end. As many fibres in half as many strands,
+/// each of twice the opacity, fit.
+TEST_F(AdaptiveTest, ATexelsListIsBoundedAndThePlanSaysSo) {
+    const Column half(3500, 0.004f), all(7000, 0.002f);
+    const auto processor = software::makeDevice();
+    for (gpu::Device* const on : {device.get(), processor.get()}) {
+        const auto whole = readNodes(*on, half.scene, nodes(8)), part = readNodes(*on, all.scene, nodes(8));
+        ASSERT_TRUE(whole && part);
+        EXPECT_EQ(whole->listed, whole->found);
+        const std::vector<double> expected = fullTexels(*whole), found = fullTexels(*part);
+        ASSERT_GE(expected.size(), 50u);
+        ASSERT_EQ(found.size(), expected.size());
+        EXPECT_LT(part->listed, part->found - found.size() * 2700);
+        EXPECT_GT(part->listed, found.size() * 3600);
+        double sum = 0, sumExpected = 0;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_NEAR(found[i], expected[i], 0.08 * expected[i]);
+            sum += found[i];
+            sumExpected += expected[i];
+        }
+        EXPECT_NEAR(sum, sumExpected, 0.01 * sumExpected);
+        const auto again = readNodes(*on, all.scene, nodes(8));
+        ASSERT_TRUE(again) << again.error().message();
+        EXPECT_EQ(again->words, part->words) << "which are taken does not depend on threads";
+    }
+    RenderScene scene = all.scene;
+    scene.camera.eye_ws = {0.05f, 0.3f, 0.3f};
+    scene.camera.target_ws = {0.05f, 0, 0.05f};
+    RenderOptions options = nodes(8);
+    options.width = options.height = 16;
+    options.frames = 1;
+    const auto picture = renderPicture(*device, scene, options);
+    ASSERT_TRUE(picture) << picture.error().message();
+    const std::string why = picture->plan.passes[static_cast<std::size_t>(Pass::opacity)].why;
+    EXPECT_NE(why.find("4096 pieces that a list holds"), std::string::npos) << why;
+}
+
 // As the other kinds of shadows, over hair combed down from a crown.
 TEST_F(AdaptiveTest, IsNearerToCountedFibresThanThreeLayersOrFourSlices) {
     const TestHead head(1500);

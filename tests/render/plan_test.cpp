@@ -88,7 +88,7 @@ TEST(RenderPlan, EachKindOfShadowHasItsPasses) {
     EXPECT_FALSE(adaptive.runs(Pass::firstHair));
     EXPECT_TRUE(adaptive.runs(Pass::opacity));
     EXPECT_EQ(adaptive.buffer(BufferId::opacity).bytes(), 2u * 64u * 64u * 8u * 4u);
-    EXPECT_EQ(adaptive.buffer(BufferId::layerCounts).bytes(), 64u * 64u * 4u);
+    EXPECT_EQ(adaptive.buffer(BufferId::layerCounts).bytes(), 2u * 64u * 64u * 4u);
     EXPECT_EQ(adaptive.buffer(BufferId::lightFragments).bytes(), 1000u * 12u);
     EXPECT_EQ(adaptive.buffer(BufferId::fragmentCounts).bytes(), 2u * 2u * 4u);
     EXPECT_FALSE(deep.has(BufferId::lightFragments) || maps.has(BufferId::fragmentCounts));
@@ -135,17 +135,21 @@ TEST(RenderPlan, MoreLayersTakeMoreTexturesAndFewerWhereThereIsNoRoom) {
     RenderOptions adaptive = options(Shadows::adaptive);
     adaptive.shadowNodes = 16;
     EXPECT_EQ(chooseWays(adaptive, 1, true, small).shadowNodes, 7u);
-    EXPECT_EQ(fragmentsThatFit(adaptive, small), 64u * 64u * 4u * 7u / 12u);
+    const HairCount much{100'000, 1'000'000};
+    EXPECT_EQ(fragmentsThatFit(adaptive, small, much), 64u * 64u * 4u * 7u / 12u);
     gpu::DeviceInfo large = small;
     large.maxBufferBytes = std::uint64_t{1} << 32u;
-    EXPECT_EQ(fragmentsThatFit(adaptive, large), 1u << 22u) << "texels of small maps hold much hair";
+    EXPECT_EQ(fragmentsThatFit(adaptive, large, much), 1u << 22u) << "texels of small maps hold much hair";
     adaptive.shadowResolution = 1024;
-    EXPECT_EQ(fragmentsThatFit(adaptive, large), 16u << 20u);
+    EXPECT_EQ(fragmentsThatFit(adaptive, large, much), 16u << 20u);
     adaptive.shadowResolution = 4096;
-    EXPECT_EQ(fragmentsThatFit(adaptive, large), kMaxShadowFragments);
+    EXPECT_EQ(fragmentsThatFit(adaptive, large, much), kMaxShadowFragments);
+    // 200 strands of 3 segments, each cut into as many pieces as the options say: two texels across.
+    EXPECT_EQ(fragmentsThatFit(adaptive, large, {200, 600}), 4u * (200 * 4096 + 600 * adaptive.subdivisions));
+    EXPECT_EQ(fragmentsThatFit(adaptive, large, {1, 1}), kMinShadowFragments);
     large.memoryBytes = std::uint64_t{16} * 12'000'000;
-    EXPECT_EQ(fragmentsThatFit(adaptive, large), 1'000'000u) << "a sixteenth of the memory";
-    EXPECT_EQ(fragmentsThatFit(options(), large), 0u);
+    EXPECT_EQ(fragmentsThatFit(adaptive, large, much), 1'000'000u) << "a sixteenth of the memory";
+    EXPECT_EQ(fragmentsThatFit(options(), large, much), 0u);
     for (RenderOptions* wrong : {&asked, &maps}) {
         wrong->shadowLayers = 12;
         EXPECT_FALSE(check(*wrong, small));
