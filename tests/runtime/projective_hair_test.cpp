@@ -2,6 +2,7 @@
 // What later work adds to projective equations: hair keeps apart from hair, and takes on a style.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <random>
 
 #include "hairloom/alternatives/projective_equations.h"
@@ -45,11 +46,8 @@ TEST(ProjectiveHair, TipsKeepTheirReachFromOtherSticks) {
     s.gravity = {0.0f, -9.81f, 0.0f};
     s.dampingTime = 0.05f;
     EXPECT_LT(distanceOfTips(s), 0.002f) << "without it they hang side by side";
-    // Tips at the reach of each other: the other stick's nearest place is its tip or just before it.
-    EXPECT_NEAR(distanceOfTips(meeting(s)), kReach, 0.05f * kReach);
-    const float weak = distanceOfTips(meeting(s, 0.05f));
-    EXPECT_LT(weak, 0.95f * kReach);
-    EXPECT_GT(weak, 0.004f);
+    // Their weight takes back in a frame what they are turned apart in it.
+    EXPECT_NEAR(distanceOfTips(meeting(s)), kReach, 0.12f * kReach);
     EXPECT_LT(distanceOfTips(meeting(s, 0.0f)), 0.002f);
 }
 
@@ -68,59 +66,61 @@ TEST(ProjectiveHair, AnAuthoredStyleIsLeftAlone) {
     for (std::size_t p = 0; p < a.size(); ++p) EXPECT_LT(length(a[p] - b[p]), 1e-5f) << p;
 }
 
-/// Hair that a turn of the head blows into other hair: how near its tips come to other strands, by looking at
+/// Mean over strands of the share of the reach by which the tip is too near to another strand, by looking at
 /// all of them.
-double deepest(const Strands& strands, const std::vector<Float3>& now) {
-    double most = 0.0;
+double crowding(const Strands& strands, const std::vector<Float3>& now) {
+    double sum = 0.0;
     for (std::uint32_t s = 0; s < strands.count(); ++s) {
-        for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
-            for (std::uint32_t q = 1; q < now.size(); ++q) {
-                if (q >= strands.offsets[s] && q < strands.offsets[s + 1]) continue;
-                if (std::ranges::find(strands.offsets, q) != strands.offsets.end()) continue;
-                const auto apart = [&](const std::vector<Float3>& of) {
-                    const Float3 along = of[q] - of[q - 1], from = of[p] - of[q - 1];
-                    const double share = std::clamp(
-                        static_cast<double>(dot(from, along)) / static_cast<double>(dot(along, along)), 0.0,
-                        1.0);
-                    return static_cast<double>(length(from - along * static_cast<float>(share)));
-                };
-                const double reach = std::min(static_cast<double>(kReach), apart(strands.points));
-                most = std::max(most, 1.0 - apart(now) / reach);
+        const std::uint32_t tip = strands.offsets[s + 1] - 1;
+        double nearest = static_cast<double>(kReach);
+        for (std::uint32_t t = 0; t < strands.count(); ++t) {
+            for (std::uint32_t q = strands.offsets[t] + 1; t != s && q < strands.offsets[t + 1]; ++q) {
+                const Float3 along = now[q] - now[q - 1], from = now[tip] - now[q - 1];
+                const float share = std::clamp(dot(from, along) / dot(along, along), 0.0f, 1.0f);
+                nearest = std::min(nearest, static_cast<double>(length(from - along * share)));
             }
         }
+        sum += 1.0 - nearest / static_cast<double>(kReach);
     }
-    return most;
+    return sum / strands.count();
 }
 
-TEST(ProjectiveHair, BlownHairStaysOutOfOtherHair) {
+/// Twelve strands 2 cm apart hang side by side; then their roots are brought to 5 mm of each other, half of
+/// the reach. Stiff hair splays.
+TEST(ProjectiveHair, CrowdedHairSplays) {
     Strands strands;
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
     for (int i = 0; i < 12; ++i) {
-        Float3 out{uniform(random), -1.0f + 0.3f * uniform(random), uniform(random)};
+        Float3 out{0.05f * uniform(random), -1.0f, 0.05f * uniform(random)};
         out = out * (1.0f / length(out));
         strands.add({0.02f * static_cast<float>(i % 4), 0.0f, 0.02f * static_cast<float>(i / 4)}, out, 0.02f,
                     5);
     }
     SimulationSettings s = bare();
-    s.gravity = {3.0f, -9.81f, 0.0f};
+    s.gravity = {0.0f, -9.81f, 0.0f};
+    s.angularStiffness = 0.3f;
     s.dampingTime = 0.1f;
     s.substeps = 8;
     const auto settled = [&](const SimulationSettings& settings) {
         ProjectiveEquations sticks = makeMethod<ProjectiveEquations>(strands, settings);
-        double most = 0.0;
-        for (int f = 0; f < 120; ++f) {
-            run(sticks, strands, 1);
+        std::vector<RootFrame> roots = strands.roots();
+        double sum = 0.0;
+        for (int f = 0; f < 150; ++f) {
+            const float size = std::max(1.0f - 0.02f * static_cast<float>(f), 0.25f);
+            for (std::uint32_t r = 0; r < strands.count(); ++r)
+                roots[r].position = strands.points[strands.offsets[r]] * size;
+            sticks.step({1.0f / 60.0f, f / 60.0, roots, {}});
             EXPECT_LT(worstStretch(strands, positionsOf(sticks)), 2e-5);
-            if (f >= 60) most = std::max(most, deepest(strands, positionsOf(sticks)));
+            if (f >= 90) sum += crowding(strands, positionsOf(sticks)) / 60.0;
         }
-        return most;
+        return sum;
     };
-    const double open = settled(s), met = settled(meeting(s));
-    RecordProperty("open", std::to_string(open));
-    RecordProperty("met", std::to_string(met));
-    EXPECT_GT(open, 0.6) << "share of its reach that a tip is too near";
-    EXPECT_LT(met, 0.35);
+    const double open = settled(s), half = settled(meeting(s, 0.5f)), met = settled(meeting(s));
+    EXPECT_GT(open, 0.45);
+    EXPECT_LT(half, 0.5 * open);
+    EXPECT_LT(met, 0.5 * half);
+    EXPECT_LT(met, 0.08);
 }
 
 TEST(ProjectiveHair, SameBitsForAnyNumberOfThreads) {
@@ -142,49 +142,87 @@ TEST(ProjectiveHair, SameBitsForAnyNumberOfThreads) {
     }
 }
 
-/// All sticks within reach, by looking at each of them.
-TEST(ProjectiveHair, NearSticksAreThoseOfALookAtAll) {
+/// What sticks ask of a tip, by looking at each of them in double precision.
+TEST(ProjectiveHair, TipsAreAskedWhatALookAtAllSticksSays) {
+    using Vec = std::array<double, 3>;
+    const auto minus = [](const Vec& a, const Vec& b) { return Vec{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+    const auto plus = [](const Vec& a, const Vec& b, double t) {
+        return Vec{a[0] + b[0] * t, a[1] + b[1] * t, a[2] + b[2] * t};
+    };
+    const auto inner = [](const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    const auto wide = [](const std::vector<Float3>& of, std::size_t i) {
+        return Vec{static_cast<double>(of[i].x), static_cast<double>(of[i].y), static_cast<double>(of[i].z)};
+    };
     Strands strands;
     std::mt19937 random(3);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
-    for (int i = 0; i < 40; ++i) {
-        Float3 out{uniform(random), uniform(random), uniform(random)};
+    const auto vector = [&](float size) {
+        return Float3{uniform(random), uniform(random), uniform(random)} * size;
+    };
+    for (int i = 0; i < 100; ++i) {
+        Float3 out = vector(1.0f);
         out = out * (1.0f / length(out));
-        strands.add({0.03f * uniform(random), 0.03f * uniform(random), 0.03f * uniform(random)}, out, 0.01f,
-                    4);
+        strands.add(vector(0.02f), out, 0.01f, 4);
     }
-    std::vector<Float3> now = strands.points;
-    for (Float3& p : now) p = p + Float3{uniform(random), uniform(random), uniform(random)} * 0.002f;
-    const std::vector<Float3> velocities(now.size(), {0.5f, 0.0f, 0.0f});
+    std::vector<Float3> now = strands.points, velocities;
+    for (std::uint32_t s = 0; s < strands.count(); ++s) {
+        const Float3 moved = vector(0.006f);
+        for (std::uint32_t p = strands.offsets[s]; p < strands.offsets[s + 1]; ++p) now[p] = now[p] + moved;
+    }
+    for (std::size_t p = 0; p < now.size(); ++p) velocities.push_back(vector(1.0f));
     NearSticks near;
     near.make(strands.view(), 0.004f);
     near.find(now, velocities, {});
-    std::size_t found = 0, full = 0;
+    std::size_t pushed = 0, braked = 0, alone = 0;
     for (std::uint32_t s = 0; s < strands.count(); ++s) {
         for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
-            std::vector<std::pair<float, std::uint32_t>> all;
+            Vec push{}, brake{};
+            double mostPush = 0, mostBrake = 0;
             for (std::uint32_t t = 0; t < strands.count(); ++t) {
                 for (std::uint32_t q = strands.offsets[t] + 1; t != s && q < strands.offsets[t + 1]; ++q) {
-                    const float apart = length(nearestOnStick(now[q - 1], now[q], now[p]) - now[p]);
-                    if (apart <= 0.008f) all.emplace_back(apart, q);
+                    double share = 0;
+                    const auto apart = [&](const std::vector<Float3>& of) {
+                        const Vec along = minus(wide(of, q), wide(of, q - 1)),
+                                  from = minus(wide(of, p), wide(of, q - 1));
+                        share = std::clamp(inner(from, along) / inner(along, along), 0.0, 1.0);
+                        return plus(from, along, -share);
+                    };
+                    const Vec atRest = apart(strands.points), here = apart(now);
+                    const double distance = std::sqrt(inner(here, here));
+                    const double depth = std::min(0.004, std::sqrt(inner(atRest, atRest))) - distance;
+                    if (!(depth > 0)) continue;
+                    const Vec other = plus(wide(velocities, q - 1),
+                                           minus(wide(velocities, q), wide(velocities, q - 1)), share);
+                    const double closing = -inner(minus(wide(velocities, p), other), here) / distance;
+                    push = plus(push, here, 0.5 * depth / distance);
+                    brake = plus(brake, here, 0.5 * std::max(closing, 0.0) / distance);
+                    mostPush = std::max(mostPush, 0.5 * depth);
+                    mostBrake = std::max(mostBrake, 0.5 * closing);
                 }
             }
-            std::ranges::sort(all);
-            if (all.size() > NearSticks::kMost) ++full;
-            all.resize(std::min(all.size(), NearSticks::kMost));
-            ASSERT_EQ(near.of(p).size(), all.size()) << p;
-            for (std::size_t i = 0; i < all.size(); ++i) {
-                const NearSticks::Near& one = near.of(p)[i];
-                EXPECT_EQ(one.stick, all[i].second) << p;
-                EXPECT_LE(one.reach, 0.004f);
-                const Float3 later = near.nearest(one.stick, now[p] + Float3{0.05f, 0.0f, 0.0f}, 0.1f);
-                EXPECT_NEAR(length(later - now[p] - Float3{0.05f, 0.0f, 0.0f}), all[i].first, 1e-6f);
-                ++found;
-            }
+            const auto limited = [&](const Vec& v, double most) {
+                const double size = std::sqrt(inner(v, v));
+                return plus(Vec{}, v, size > most ? most / size : 1.0);
+            };
+            push = limited(push, mostPush);
+            brake = limited(brake, mostBrake);
+            const NearSticks::Away& found = near.of(p);
+            EXPECT_LT(length(found.push - Float3{static_cast<float>(push[0]), static_cast<float>(push[1]),
+                                                 static_cast<float>(push[2])}),
+                      2e-6f)
+                << p;
+            EXPECT_LT(length(found.brake - Float3{static_cast<float>(brake[0]), static_cast<float>(brake[1]),
+                                                  static_cast<float>(brake[2])}),
+                      2e-3f)
+                << p;
+            pushed += mostPush > 0 ? 1 : 0;
+            braked += mostBrake > 0 ? 1 : 0;
+            alone += mostPush > 0 ? 0 : 1;
         }
     }
-    EXPECT_GT(found, 200u);
-    EXPECT_GT(full, 3u) << "more than are kept";
+    EXPECT_GT(pushed, 60u);
+    EXPECT_GT(braked, 40u);
+    EXPECT_GT(alone, 60u);
 }
 
 /// Each strand of another curve than authored, with segments as long.

@@ -25,8 +25,8 @@ struct ProjectiveEquations::Substep {
     Float3 pull;             ///< gravity less the acceleration of the root
     Float3 airRoot, airTip;  ///< m/s
     float share;             ///< of the frame, at the end of the substep
-    float seconds;           ///< since the start of the frame, likewise
-    bool jumps;              ///< the root does: hair around is where it was
+    float pushed;            ///< share of what pushes it out of other hair in the frame
+    float braked;            ///< likewise of what takes it out of its way
     float h;                 ///< seconds
     float decay;             ///< share of its rate that damping leaves a stick
 };
@@ -196,11 +196,13 @@ void ProjectiveEquations::runStrand(std::uint32_t strand, const WindyFrame& fram
     const std::uint32_t substeps = substepsIn(settings_, dt);
     const float count = static_cast<float>(substeps), h = dt / count;
     const float decay = settings_.dampingTime > 0.0f ? std::exp(-h / settings_.dampingTime) : 1.0f;
+    // Where the root jumps, the hair around it was elsewhere.
+    const float pushed = settings_.hairHair && !path.jumps ? settings_.hairHairStrength : 0.0f;
     for (std::uint32_t i = 0; i < substeps; ++i) {
         const float share = static_cast<float>(i + 1) / count;
-        runSubstep(strand,
-                   {between(path.from, path.to, share), root.velocity, settings_.gravity - path.acceleration,
-                    air.atRoot(share), air.atTip(share), share, share * dt, path.jumps, h, decay});
+        runSubstep(strand, {between(path.from, path.to, share), root.velocity,
+                            settings_.gravity - path.acceleration, air.atRoot(share), air.atTip(share), share,
+                            pushed / count, i == 0 ? pushed : 0.0f, h, decay});
     }
 }
 
@@ -209,6 +211,7 @@ void ProjectiveEquations::runSubstep(std::uint32_t strand, const Substep& subste
     const std::uint32_t root = offsets_[strand], end = offsets_[strand + 1];
     velocities_[root] = substep.rootVelocity;
     Quat frame = substep.root.rotation;
+    NearSticks::Away carried;
     for (std::uint32_t p = root + 1; p < end; ++p) {
         const Stick& stick = sticks_[p];
         StickMotion& motion = motions_[p];
@@ -218,7 +221,7 @@ void ProjectiveEquations::runSubstep(std::uint32_t strand, const Substep& subste
             motion.frame = frame;
         } else {
             turnStick(stick, motion, frame, forcesOn(p, frame, along, substep));
-            if (settings_.hairHair && !substep.jumps) keepApart(p, frame, substep);
+            if (substep.pushed > 0.0f) keepApart(p, frame, substep, carried);
             collide(p, frame, along, substep);
         }
         const Float3 position =
@@ -265,19 +268,25 @@ void ProjectiveEquations::collide(std::uint32_t point, Quat frame, float along, 
     }
 }
 
-/// One stick after the other, nearest first.
-void ProjectiveEquations::keepApart(std::uint32_t point, Quat frame, const Substep& substep) {
+/// What is asked of a tip, less what the sticks before it have moved it by on their way.
+void ProjectiveEquations::keepApart(std::uint32_t point, Quat frame, const Substep& substep,
+                                    NearSticks::Away& carried) {
+    const auto left = [](Float3 asked, Float3 has) {
+        const float size = length(asked);
+        if (!(size > 0.0f)) return Float3{};
+        const Float3 direction = asked * (1.0f / size);
+        return direction * std::max(size - dot(has, direction), 0.0f);
+    };
     const Stick& stick = sticks_[point];
     StickMotion& motion = motions_[point];
-    const Float3 joint_ws = substep.root.position + positions_[point - 1];
-    for (const NearSticks::Near& near : near_.of(point)) {
-        const Float3 tip_ws = joint_ws + rotate(frame, polarOf(stick, motion).direction) * stick.length;
-        const Float3 place_ws = near_.nearest(near.stick, tip_ws, substep.seconds);
-        const float apart = length(tip_ws - place_ws);
-        if (!(apart < near.reach)) continue;
-        pushOut(stick, motion, rotate(conjugate(frame), place_ws - joint_ws),
-                apart + 0.5f * settings_.hairHairStrength * (near.reach - apart));
-    }
+    const NearSticks::Away& away = near_.of(point);
+    const Float3 along = rotate(frame, polarOf(stick, motion).direction);
+    const auto across = [&](Float3 v) { return v - along * dot(v, along); };
+    const Float3 push = across(left(away.push * substep.pushed, carried.push));
+    const Float3 brake = across(left(away.brake * substep.braked, carried.brake));
+    const Quat toFrame = conjugate(frame);
+    nudge(stick, motion, rotate(toFrame, push), rotate(toFrame, brake));
+    carried = {carried.push + push, carried.brake + brake};
 }
 
 bool ProjectiveEquations::readPositions(std::span<Float3> positions_ws) const {

@@ -150,6 +150,19 @@ void pushOut(const Stick& stick, StickMotion& motion, Float3 centre, float reach
     motion.phi = phi;
 }
 
+void nudge(const Stick& stick, StickMotion& motion, Float3 shift, Float3 speed) {
+    const Polar polar = polarOf(stick, motion);
+    // Near a pole θ moves nothing, and takes no part.
+    const float cosine = std::cos(motion.phi);
+    const float byTheta = cosine / (std::max(cosine * cosine, 0.01f) * stick.length),
+                byPhi = 1.0f / stick.length;
+    const auto turn = [](float angle) { return std::clamp(angle, -0.5f, 0.5f); };
+    motion.theta = wrapped(motion.theta + turn(dot(shift, polar.acrossMeridian) * byTheta));
+    motion.phi = wrapped(motion.phi + turn(dot(shift, polar.byPhi) * byPhi));
+    motion.thetaRate += dot(speed, polar.acrossMeridian) * byTheta;
+    motion.phiRate += dot(speed, polar.byPhi) * byPhi;
+}
+
 Quat carriedFrame(const Stick& stick, const StickMotion& motion, Quat frame) {
     if (!(stick.length > kShortestStick)) return frame;
     frame = frame * turnAbout(stick.pole, motion.theta) * turnAbout(stick.side, -motion.phi);

@@ -46,10 +46,10 @@ struct WindyFrame;
 /// lengthMethod, lengthIterations, maximalExtension, springFrequency, angularMethod, collisionResponse,
 /// friction, restitution, penaltyFrequency, sleep, and of hair-hair collision friction and cohesion.
 ///
-/// Hair-hair collision (SimulationSettings::hairHair): in each substep the tip of a stick is turned away from
-/// the sticks of other strands that NearSticks finds, as from a sphere, by half of what hairHairStrength asks
-/// of its reach: the other stick turns as well. Its reach is hairHairCell. Spheres come after hair and win.
-/// The other sticks are those of the frame's start, so that the bits do not depend on threads.
+/// Hair-hair collision (SimulationSettings::hairHair): the tip of a stick is turned out of the reach of the
+/// sticks of other strands that NearSticks finds at the start of a frame, evenly over its substeps, by the
+/// share hairHairStrength, and stops moving towards them. Its reach is hairHairCell. Spheres come after hair
+/// and win. Sticks that pass through each other within a frame are not seen.
 class ProjectiveEquations {
   public:
     struct Result;
@@ -65,7 +65,8 @@ class ProjectiveEquations {
     /// The shape that sticks turn to from the next step on, in place of the authored one: target angles of
     /// each strand, of at most kMostStyled from the authored ones at each stick (a later stick makes up for
     /// the rest). Metres, in the scalp's rest space, by point. Empty: as authored. Errors,
-    /// in words, which change nothing: another number of points, points that are no numbers, other roots or lengths.
+    /// in words, which change nothing: another number of points, points that are no numbers, other roots or
+    /// lengths.
     std::string setStyle(std::span<const Float3> restPositions_ss);
     /// Advances by input.dt. A dt that is not above 0 changes nothing, one above 1000 s counts as 1000 s;
     /// roots that are no position within 1e6 m stay where they were; spheres that are none are left out.
@@ -92,7 +93,7 @@ class ProjectiveEquations {
     void runSubstep(std::uint32_t strand, const Substep& substep);
     StickForces forcesOn(std::uint32_t point, Quat frame, float along, const Substep& substep) const;
     void collide(std::uint32_t point, Quat frame, float along, const Substep& substep);
-    void keepApart(std::uint32_t point, Quat frame, const Substep& substep);
+    void keepApart(std::uint32_t point, Quat frame, const Substep& substep, NearSticks::Away& carried);
     void findNearHair();
 
     SimulationSettings settings_;

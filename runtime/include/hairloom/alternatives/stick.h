@@ -67,6 +67,10 @@ std::optional<Float3> directionOut(Float3 direction, float length, Float3 centre
 /// its joint, in the plane of joint, centre and tip, until the tip is at that distance.
 void pushOut(const Stick& stick, StickMotion& motion, Float3 centre, float reach);
 
+/// Turns a stick so that its tip moves by the part of `shift` (metres) across the stick, by at most half a
+/// radian in each angle, and by as much of `speed` (m/s) from then on; both in the parent's frame.
+void nudge(const Stick& stick, StickMotion& motion, Float3 shift, Float3 speed);
+
 /// The frame that the stick hands to its child.
 Quat carriedFrame(const Stick& stick, const StickMotion& motion, Quat frame);
 
