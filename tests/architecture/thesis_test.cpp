@@ -82,9 +82,9 @@ TEST(Thesis, WhatWorksHasAFileATestAndAWayToReachIt) {
         EXPECT_FALSE(row.how.empty()) << row.number;
     }
     const std::string said = std::to_string(counts["works"]) + " work, " + std::to_string(counts["partly"]) +
-                             " work partly, " + std::to_string(counts["missing"]) +
-                             (counts["missing"] == 1 ? " is" : " are") + " missing, and " +
-                             std::to_string(counts["background"]) + " are background";
+                             (counts["partly"] == 1 ? " works" : " work") + " partly, " +
+                             std::to_string(counts["missing"]) + (counts["missing"] == 1 ? " is" : " are") +
+                             " missing, and " + std::to_string(counts["background"]) + " are background";
     EXPECT_NE(textOf("docs/thesis.md").find(said), std::string::npos) << said;
 }
 
