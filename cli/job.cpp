@@ -14,6 +14,8 @@
 namespace hairloom::cli {
 namespace {
 
+/// Of errors that no input should meet, and that therefore name nothing that would have been right.
+constexpr const char* kUnforeseen = "please report it with the command and its input";
 /// Writes manifests of its parts whatever was asked for.
 constexpr std::string_view kOwnManifest = "sweep";
 
@@ -36,7 +38,7 @@ JobRun declareJob(const Job& job, CLI::App& app) {
     return [&app, run, unit](const std::string& commandLine) -> Result<Report> {
         setUnitOfHairFiles(*unit);
         auto report = run(commandLine);
-        if (!report) return tl::unexpected(inFile(report.error(), worksOn(app)));
+        if (!report) return tl::unexpected(expecting(inFile(report.error(), worksOn(app)), kUnforeseen));
         return report;
     };
 }

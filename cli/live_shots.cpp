@@ -33,7 +33,8 @@ Status LiveShots::giveMaterial(float seconds) {
     Groom now = authored_;  // shares its arrays
     now.material = materialAt(*line_, line_->timeAt(seconds), authored_.material);
     if (!scene_.setMaterials(now, view_))
-        return fail("the keys of the material change which strands look otherwise");
+        return fail("the keys of the material change which strands look otherwise",
+                    "expected keys that leave tubes and the looks of layers as they are");
     return showMaterials(renderer_, scene_, true, true);
 }
 

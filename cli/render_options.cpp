@@ -267,9 +267,10 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
     auto* frame = job.add_option(
         "--frame", options->frame,
         "Frame of the record, counted from 0, or of the simulation in 1/60 s, or at the time line's "
-        "frame rate");
+        "frame rate. Needs --record or --motion");
     auto* frames =
-        job.add_option("--frames", options->frames, "Frames FIRST,LAST[,STEP] to render, one image each")
+        job.add_option("--frames", options->frames,
+                       "Frames FIRST,LAST[,STEP] to render, one image each. Needs --record or --motion")
             ->check(CLI::Range(0, 1'000'000'000))
             ->delimiter(',')
             ->excludes(frame);
@@ -338,7 +339,9 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
         const bool moves = !options->record.empty() || !options->motion.empty();
         for (const CLI::Option* option : {frame, frames}) {
             if (option->count() > 0 && !moves)
-                throw CLI::RequiresError(option->get_name(), "--record or --motion");
+                throw CLI::RequiresError(option->get_name(),
+                                         "--record or --motion, because hair rests without them. "
+                                         "--motion timeline plays the project's motion");
         }
         if (options->engine == "software" && (options->chooseDevice || options->backend != "any"))
             throw CLI::ExcludesError("--engine software", options->chooseDevice ? "--device" : "--backend");

@@ -49,6 +49,7 @@ class CurvesWriter {
           watch_(options.watch),
           unreal_(unreal) {
         if (unreal) groupNames_ = unrealGroupNames(groom, strands);
+        if (!groupNames_.empty()) strands.names.emplace_back(kGroupName);
         file_.reserve(roomOf(strands, attributes_));
         if (frames_ == nullptr) return;
         times_ = {static_cast<std::uint32_t>(frames_->points.size()), 1 / frames_->framesPerSecond, {}};

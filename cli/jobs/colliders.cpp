@@ -49,7 +49,9 @@ Status fitField(Groom& groom, const Actor* actor, const CollidersOptions& option
 /// As many as were asked for, else as few as come as close as was asked for, but not more than a fit may
 /// have; joined in capsules where these are wanted.
 Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& options, Report& report) {
-    if (!groom.scalp) return failIn(options.input, {}, "there is no head to fit spheres to");
+    if (!groom.scalp)
+        return failIn(options.input, {}, "there is no head to fit spheres to",
+                      "expected a groom on a head: create, or import --mesh");
     editing::SphereFitOptions wanted;
     if (options.near > 0) wanted.region = editing::facesNearHair(groom, static_cast<float>(options.near));
     const auto error = static_cast<float>(1e-3 * options.error);

@@ -28,7 +28,9 @@ struct SpheresOptions {
 
 Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOptions& options,
                                             Report& report) {
-    if (!groom.scalp) return failIn(options.input, {}, "there is no head to fit spheres to");
+    if (!groom.scalp)
+        return failIn(options.input, {}, "there is no head to fit spheres to",
+                      "expected a groom on a head: create, or import --mesh");
     editing::SphereFitOptions wanted;
     wanted.count = options.fit;
     wanted.seed = options.seed;

@@ -56,7 +56,8 @@ Result<RunPreview> previewRun(const Groom& groom, const HeadMotion& motion, cons
     auto simulation = Simulation::make(hair.groom, preview.poses.front(), {});
     if (!simulation) return tl::unexpected(simulation.error());
     for (std::size_t frame = 0; frame < preview.poses.size(); ++frame) {
-        if (cancelled && cancelled()) return fail("the preview was cancelled");
+        if (cancelled && cancelled())
+            return fail("the preview was cancelled", "expected it to run to its end");
         if (frame > 0) simulation->step(1 / measured.options.time.framesPerSecond, preview.poses[frame]);
         preview.positions_ws.push_back(points.read(simulation->positions_ws()));
     }

@@ -45,7 +45,8 @@ class Counted {
 };
 
 Status unlessCancelled(const WorkPrecisionOptions& options) {
-    if (options.cancelled && options.cancelled()) return fail("measuring was cancelled");
+    if (options.cancelled && options.cancelled())
+        return fail("measuring was cancelled", "expected it to run to its end");
     return {};
 }
 

@@ -57,7 +57,7 @@ EvenHair evenHair(const Hair& hair, std::uint32_t stations) {
 }
 
 tl::unexpected<Error> stopped() {
-    return fail("stopped before it was done");
+    return fail("stopped before it was done", "expected it to run to its end");
 }
 
 }  // namespace hairloom::cards

@@ -132,7 +132,8 @@ Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& mot
     const std::size_t total = 1 + (1 + static_cast<std::size_t>(offCount)) * options.repeats;
     std::size_t done = 1;
     const auto runOnce = [&](Variant& variant) -> Status {
-        if (options.cancelled && options.cancelled()) return fail("measuring the effects was cancelled");
+        if (options.cancelled && options.cancelled())
+            return fail("measuring the effects was cancelled", "expected it to run to its end");
         auto result = runScene(variant.hair, poses, options.time, {});
         if (!result) return tl::unexpected(result.error());
         variant.times.push_back(scale * result->millisecondsPerFrame);

@@ -57,7 +57,8 @@ Result<std::vector<CollisionSphere>> fitPart(const ScalpMesh& mesh, const Sphere
     options.count = count;
     options.region = part.faces;
     auto fit = fitSpheres(mesh, options);
-    if (!fit) return fail(fmt::format("group '{}': {}", part.name, fit.error().message()));
+    if (!fit)
+        return fail(fmt::format("group '{}': {}", part.name, fit.error().problem), fit.error().expected);
     return std::move(fit->spheres);
 }
 
@@ -71,7 +72,8 @@ Result<SphereFit> fitSpheresToParts(const ScalpMesh& mesh, std::span<const Spher
     std::vector<CollisionSphere> spheres;
     FaceSet faces;
     for (std::size_t p = 0; p < parts.size(); ++p) {
-        if (cancelled && *cancelled) return fail("cancelled");
+        if (cancelled && *cancelled)
+            return fail("fitting spheres was cancelled", "expected it to run to its end");
         auto fitted = fitPart(mesh, parts[p], of[p]);
         if (!fitted) return tl::unexpected(fitted.error());
         for (std::size_t s = 0; s < fitted->size(); ++s) {

@@ -26,7 +26,8 @@ Status ValidationDevice::beforeCreation(const std::string& what) {
         return {};
     }
     creationsLeft_.reset();
-    return fail("creating " + what + ": out of device memory");
+    return fail("creating " + what + ": out of device memory",
+                "expected a device with more memory, less hair, or the CPU");
 }
 
 void ValidationDevice::failCreation(std::uint64_t calls) {
@@ -116,7 +117,8 @@ Result<SubmissionPtr> ValidationDevice::submit(std::unique_ptr<CommandList> list
     if (checked == nullptr) return fail("no command list of this device to submit");
     if (submissionsLeft_ && (*submissionsLeft_)-- == 0) {
         lost_ = true;
-        return fail("submitting work: the device is lost");
+        return fail("submitting work: the device is lost",
+                    "expected a device that finishes its work: try again, another device, or the CPU");
     }
     if (checked->error()) return tl::unexpected(*checked->error());
     auto submission = inner_->submit(checked->takeInner());

@@ -274,7 +274,8 @@ class Measuring {
     }
 
     Result<render::Picture> draw(const Settings& settings) {
-        if (options_.cancelled && options_.cancelled()) return fail("measuring was cancelled");
+        if (options_.cancelled && options_.cancelled())
+            return fail("measuring was cancelled", "expected it to run to its end");
         const auto shown = shownFor(settings);
         if (!shown) return tl::unexpected(shown.error());
         return render::renderPicture(device_, (*shown)->renderer, settings.picture);

@@ -24,11 +24,11 @@ Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& ran
     auto simulation = Simulation::make(begun, pose);
     if (!simulation) return tl::unexpected(simulation.error());
     for (std::uint32_t frame = 0; frame < range.preRoll; ++frame) {
-        if (!before(frame)) return fail("it was cancelled");
+        if (!before(frame)) return fail("it was cancelled", "expected it to run to its end");
         for (std::uint32_t step = 1; step <= steps; ++step) simulation->step(pace.dt(), pose);
     }
     for (std::uint32_t frame = 0; frame < range.count; ++frame) {
-        if (!before(range.preRoll + frame)) return fail("it was cancelled");
+        if (!before(range.preRoll + frame)) return fail("it was cancelled", "expected it to run to its end");
         for (std::uint32_t step = 1; frame > 0 && step <= steps; ++step) {
             const float time = timeOf(frame, step);
             if (auto given = keyed.give(*simulation, time); !given) return given;

@@ -180,7 +180,8 @@ Status VideoFile::add(const render::Image& frame) {
     ++impl_->frames;
     if (impl_->encoder.send(std::as_bytes(std::span(frame.rgba)))) return {};
     const auto why = impl_->answer();
-    return why ? Status(failIn(impl_->name, {}, "the video writer ended early"))
+    return why ? Status(failIn(impl_->name, {}, "the video writer ended early",
+                               "expected a disk that is not full, or --animation F.webp"))
                : tl::unexpected(why.error());
 }
 

@@ -78,12 +78,13 @@ Camera frame(View view, const Box3f& bounds_ws, float aspect) {
 
 Status check(const Camera& camera) {
     if (!camera.eye_ws.allFinite() || !camera.target_ws.allFinite() || !camera.up_ws.allFinite()) {
-        return fail("the camera has a number that is not finite");
+        return fail("the camera has a number that is not finite", "expected finite numbers");
     }
     const Vec3f forward = camera.target_ws - camera.eye_ws;
-    if (!(forward.norm() > 0)) return fail("the camera's eye and target are the same point");
+    if (!(forward.norm() > 0))
+        return fail("the camera's eye and target are the same point", "expected two points");
     if (!(forward.normalized().cross(camera.up_ws.normalized()).norm() > 1e-4f)) {
-        return fail("the camera's up direction lies along its view");
+        return fail("the camera's up direction lies along its view", "expected a direction across it");
     }
     if (!(camera.verticalFov >= 1 && camera.verticalFov <= 150)) {
         return fail(fmt::format("a field of view of {} degrees", camera.verticalFov), "1 to 150");

@@ -66,14 +66,15 @@ Status check(std::span<const Light> lights) {
         if (!light.position_ws.allFinite() || !light.intensity.allFinite() || !light.radiance.allFinite() ||
             !light.halfAcross_ws.allFinite() || !light.halfUp_ws.allFinite() ||
             !light.facing_ws.allFinite()) {
-            return fail("a light with a number that is not finite");
+            return fail("a light with a number that is not finite", "expected finite numbers");
         }
         const bool isArea = light.kind == LightKind::rectangle || light.kind == LightKind::disc;
         if (isArea && !(light.halfAcross_ws.cross(light.halfUp_ws).norm() > 0))
-            return fail("an area that gives off light and has no size");
+            return fail("an area that gives off light and has no size", "expected sides with a length");
         if (!light.toLight_ws.allFinite() || !(light.toLight_ws.norm() > 0) ||
             !light.irradiance.allFinite()) {
-            return fail("a light without a direction or with a colour that is not finite");
+            return fail("a light without a direction or with a colour that is not finite",
+                        "expected a direction with a length, and finite numbers");
         }
     }
     return {};

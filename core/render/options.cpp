@@ -52,7 +52,7 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (!(o.shadowBlur >= 0 && o.shadowBlur <= kMaxShadowBlur)) {
         return fail(fmt::format("shadows blurred by {} pixels", o.shadowBlur), "0 to 32");
     }
-    if (!(o.detail >= 0 && o.detail <= 100)) return fail("a detail outside 0 to 100 pixels");
+    if (!(o.detail >= 0 && o.detail <= 100)) return fail("a detail outside 0 to 100 pixels", "0 to 100");
     if (o.temporal && (o.frames != 1 || o.shadowBlur > 0))
         return fail("frames that join those before them as an average or with blurred shadows",
                     "one of them");
@@ -67,7 +67,8 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
         o.ribbons != Ribbons::automatic) {
         return fail("hair blended in its order and not rasterised by kernels", "ribbons by kernels");
     }
-    if (!(o.exposure > 0) || !(o.exposure < 1e6f)) return fail("an exposure that is not positive");
+    if (!(o.exposure > 0) || !(o.exposure < 1e6f))
+        return fail("an exposure that is not positive", "above 0, below 1e6");
     return {};
 }
 

@@ -459,7 +459,9 @@ Result<std::vector<Vec3f>> TakeReader::Impl::readNext() {
 
 Result<RecordedFrame> TakeReader::frame(std::uint64_t index) {
     Impl& impl = *impl_;
-    if (!impl.coder) return failIn(impl.name, {}, "is read without its groom");
+    if (!impl.coder)
+        return failIn(impl.name, {}, "is read without its groom",
+                      "expected the groom that it was recorded of");
     if (index >= impl.info.frames)
         return failIn(impl.name, {}, fmt::format("has no frame {}", index),
                       fmt::format("it has {} frames, counted from 0", impl.info.frames));

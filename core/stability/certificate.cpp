@@ -168,7 +168,7 @@ Result<StormTally> runStorms(const Groom& groom, const CertificateOptions& optio
             if (options.progress) options.progress(++done, ends.size());
         }
     });
-    if (cancelled) return fail("certifying was cancelled");
+    if (cancelled) return fail("certifying was cancelled", "expected it to run to its end");
     StormTally tally;
     tally.first = options.first;
     tally.storms = options.storms;

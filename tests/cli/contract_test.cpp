@@ -38,6 +38,7 @@ TEST_F(Contract, ErrorsOfAJobNameAFileAndWhatWasExpected) {
     runJson(createArguments());
     runJson("export hair.hairloom --format ply -o whole.ply");
     runJson("export hair.hairloom --format runtime -o whole.hairrt");
+    runJson("export hair.hairloom --format hair -o strands.hair");
     cut("whole.ply", 600, "cut.ply");
     cut("whole.hairrt", 10, "short.hairrt");
     cut("whole.hairrt", 1000, "cut.hairrt");
@@ -62,6 +63,9 @@ TEST_F(Contract, ErrorsOfAJobNameAFileAndWhatWasExpected) {
         {"groom hair.hairloom --script empty.json -o x.hairloom", "empty.json"},
         {"simulate hair.hairloom --motion empty.json --frames 1", "empty.json"},
         {"accuracy hair.hairloom -o x --peers none", "none"},
+        {"spheres strands.hair --fit 4 -o x.hairloom", "strands.hair"},
+        {"colliders strands.hair --fit spheres -o x.hairloom", "strands.hair"},
+        {"colliders strands.hair --fit field -o x.hairloom", "strands.hair"},
     };
     for (const auto& [words, file] : wrong) {
         std::string arguments = words;
@@ -175,6 +179,8 @@ TEST_F(Contract, HairsForUnrealHaveTheirGuidesMarked) {
     const Json alone = runJson("export hair.hairloom --target unreal -o guides.abc");
     EXPECT_EQ(alone["strands"], 300);
     EXPECT_FALSE(alone["names"].get<std::set<std::string>>().contains("groom_guide"));
+    EXPECT_FALSE(alone["names"].get<std::set<std::string>>().contains("groom_group_name"))
+        << "no layer has a name of its own";
 }
 
 TEST_F(Contract, AccuracyHasOtherSimulatorsBeside) {

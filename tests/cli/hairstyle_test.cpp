@@ -2,6 +2,7 @@
 // What a hairstyle withstands and costs, and how it leaves: for other heads, other programs, layer by layer.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "importers/scene.h"
@@ -160,6 +161,8 @@ TEST_F(Hairstyle, LayersAreMadeByScriptsShownAndExportedAlone) {
     const std::vector<std::string> names = hairs["names"];
     EXPECT_THAT(names, testing::Contains("groom_id"));
     EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+    const std::vector<std::string> unreal = runJson("export red.hairloom --target unreal -o u.abc")["names"];
+    EXPECT_EQ(std::ranges::count(unreal, "groom_group_name"), 1);
     EXPECT_TRUE(runJson("import red.abc -o again.hairloom")["resampled_fps"].is_null());
     EXPECT_EQ(hairs["strands"], 280 * 8 + 20 * 4);
     EXPECT_EQ(runJson("export red.hairloom --format runtime -o red.hairrt")["strands"], 300);

@@ -317,6 +317,8 @@ TEST_F(Outputs, OptionsThatDoNotGoWithTheOthersAreWrongUsage) {
         {"simulate g.hairloom --pre-roll 9 --sag", "exclude each other"},
         {"simulate g.hairloom --sag --take -o f.hairloom", "exclude each other"},
         {"render g.hairloom -o f.png --motion hop", "there is no motion 'hop'"},
+        {"render g.hairloom -o f.png --frame 3", "--frame needs --record or --motion, because hair rests"},
+        {"render g.hairloom -o f.png --frames 0,3", "--motion timeline plays the project's motion"},
         {"effects g.hairloom --motion hop", "there is no motion 'hop'"},
         {"budget g.hairloom --ms 1 --motion hop", "there is no motion 'hop'"},
         {"accuracy g.hairloom -o f --motion hop", "there is no motion 'hop'"},

@@ -32,7 +32,8 @@ const char* reason(HRESULT result) {
 }  // namespace
 
 tl::unexpected<Error> failed(HRESULT result, const std::string& what) {
-    return fail(fmt::format("{}: {} (0x{:08x})", what, reason(result), static_cast<std::uint32_t>(result)));
+    return fail(fmt::format("{}: {} (0x{:08x})", what, reason(result), static_cast<std::uint32_t>(result)),
+                "expected what the device can do: try another device, less hair, or the CPU");
 }
 
 bool meansLost(HRESULT result) {

@@ -24,7 +24,8 @@ Result<std::unique_ptr<gpu::Device>> openDevice(std::uint32_t index, const Devic
                                                 const DeviceOptions& options) {
     const auto adapters = listAdapters();
     if (!adapters) return tl::unexpected(adapters.error());
-    if (index >= adapters->size()) return fail("GPU '" + info.name + "' has gone");
+    if (index >= adapters->size())
+        return fail("GPU '" + info.name + "' has gone", "expected one of `devices`");
     IDXGIAdapter1* adapter = (*adapters)[index].Get();
     auto context = std::make_shared<Context>();
     context->info = info;

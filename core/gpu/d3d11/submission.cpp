@@ -52,7 +52,8 @@ Status SubmissionImpl::wait() {
         if (FAILED(r)) return context_->failed(r, "waiting for the GPU");
         const std::chrono::duration<double> waited = Clock::now() - start;
         if (waited.count() > context_->timeoutSeconds) {
-            return fail("waiting for the GPU: it did not finish in time");
+            return fail("waiting for the GPU: it did not finish in time",
+                        "expected a device that finishes its work: try another device, or the CPU");
         }
         // Most work is done within milliseconds, which is what the shortest sleep takes.
         if (waited.count() < 0.002) {

@@ -41,7 +41,8 @@ Result<std::shared_ptr<TextureImpl>> TextureImpl::create(const ContextPtr& conte
     HRESULT r = context->device->CreateTexture2D(&info, content.empty() ? nullptr : &data, &result->handle);
     if (SUCCEEDED(r)) r = result->createViews(context->device.Get());
     if (r == E_INVALIDARG) {
-        return fail(what + ": the device has no such combination of format, usage and samples");
+        return fail(what + ": the device has no such combination of format, usage and samples",
+                    "expected another device, or fewer samples (--aa)");
     }
     if (FAILED(r)) return context->failed(r, what);
     return result;

@@ -34,8 +34,32 @@ std::string toString(VkResult result) {
     }
 }
 
+namespace {
+
+std::string whatHelps(VkResult result) {
+    switch (result) {
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+            return "expected more memory, or less hair";
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        case VK_ERROR_OUT_OF_POOL_MEMORY:
+        case VK_ERROR_TOO_MANY_OBJECTS:
+            return "expected a device with more memory, less hair, or the CPU";
+        case VK_ERROR_DEVICE_LOST:
+        case VK_TIMEOUT:
+            return "expected a device that finishes its work: try again, another device, or the CPU";
+        case VK_ERROR_INITIALIZATION_FAILED:
+        case VK_ERROR_LAYER_NOT_PRESENT:
+        case VK_ERROR_INCOMPATIBLE_DRIVER:
+            return "expected a driver of Vulkan 1.3 that is installed";
+        default:
+            return "expected what the device can do: try another device, or the CPU";
+    }
+}
+
+}  // namespace
+
 tl::unexpected<Error> failed(VkResult result, const std::string& what) {
-    return fail(fmt::format("{}: {}", what, toString(result)));
+    return fail(fmt::format("{}: {}", what, toString(result)), whatHelps(result));
 }
 
 }  // namespace hairloom::gpu::vulkan

@@ -36,7 +36,7 @@ Result<std::shared_ptr<BufferImpl>> BufferImpl::create(const ContextPtr& context
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(context->device, result->handle, &needs);
     const auto memory = context->allocator.allocate(needs, use, false);
-    if (!memory) return fail(what + ": " + memory.error().problem);
+    if (!memory) return fail(what + ": " + memory.error().problem, memory.error().expected);
     result->memory = *memory;
     r = vkBindBufferMemory(context->device, result->handle, memory->block->memory, memory->offset);
     if (r != VK_SUCCESS) return context->failed(r, what);

@@ -81,7 +81,8 @@ Result<std::unique_ptr<gpu::Device>> DeviceImpl::create(std::uint32_t index, con
     context->instance = std::move(*instance);
     const auto physical = context->instance->physicalDevices();
     if (!physical) return tl::unexpected(physical.error());
-    if (index >= physical->size()) return fail("GPU '" + info.name + "' has gone");
+    if (index >= physical->size())
+        return fail("GPU '" + info.name + "' has gone", "expected one of `devices`");
     context->info = info;
     context->physical = (*physical)[index];
     context->timeoutSeconds = options.timeoutSeconds;

@@ -33,7 +33,7 @@ Result<std::uint32_t> Allocator::chooseType(std::uint32_t typeBits, MemoryUse us
             if ((properties_.memoryTypes[i].propertyFlags & flags) == flags) return i;
         }
     }
-    return fail("the device has no memory type for this resource");
+    return fail("the device has no memory type for this resource", "expected another device, or the CPU");
 }
 
 Result<MemoryBlock*> Allocator::addBlock(std::uint64_t size, std::uint32_t type, MemoryUse use, bool image) {

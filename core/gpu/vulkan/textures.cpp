@@ -61,14 +61,15 @@ Result<std::shared_ptr<TextureImpl>> TextureImpl::create(const ContextPtr& conte
     VkResult r = vkGetPhysicalDeviceImageFormatProperties(context->physical, info.format, info.imageType,
                                                           info.tiling, info.usage, 0, &limits);
     if (r != VK_SUCCESS || (limits.sampleCounts & desc.samples) == 0) {
-        return fail(what + ": the device has no such combination of format, usage and samples");
+        return fail(what + ": the device has no such combination of format, usage and samples",
+                    "expected another device, or fewer samples (--aa)");
     }
     r = vkCreateImage(context->device, &info, nullptr, &result->handle);
     if (r != VK_SUCCESS) return context->failed(r, what);
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(context->device, result->handle, &needs);
     const auto memory = context->allocator.allocate(needs, MemoryUse::DeviceLocal, true);
-    if (!memory) return fail(what + ": " + memory.error().problem);
+    if (!memory) return fail(what + ": " + memory.error().problem, memory.error().expected);
     result->memory = *memory;
     r = vkBindImageMemory(context->device, result->handle, memory->block->memory, memory->offset);
     if (r != VK_SUCCESS) return context->failed(r, what);

@@ -17,7 +17,8 @@ Status runFrames(Solver solver, std::span<const Root> start, std::span<const Fra
     result.report = {};
     result.positions_ws.clear();
     for (const Frame& frame : frames) {
-        if (goal.cancelled && goal.cancelled()) return fail("the reference was cancelled");
+        if (goal.cancelled && goal.cancelled())
+            return fail("the reference was cancelled", "expected it to run to its end");
         if (result.report.failed > 0) options.halvings = kHalvingsOnceFailed;
         const StepReport report = solver.step(frame, options);
         result.report.steps += report.steps;
