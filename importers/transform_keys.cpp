@@ -58,13 +58,31 @@ class Keys {
     void put(double time, const TransformParts& parts) {
         const float seconds = seconds_(time);
         Track<Vec3f>& places = channel_.translation;
-        if (!std::isfinite(seconds) || (!places.times.empty() && seconds <= places.times.back())) return;
+        if (!std::isfinite(seconds) || (!places.times.empty() && seconds < places.times.back())) return;
+        if (!places.times.empty() && seconds == places.times.back() && !makePlace(seconds)) {
+            places.values.back() = parts.place.cast<float>();
+            channel_.rotation.values.back() = parts.turn.cast<float>();
+            channel_.scale.values.back() = parts.factors.cast<float>();
+            return;
+        }
         for (std::vector<float>* const track :
              {&places.times, &channel_.rotation.times, &channel_.scale.times})
             track->push_back(seconds);
         places.values.push_back(parts.place.cast<float>());
         channel_.rotation.values.push_back(parts.turn.cast<float>());
         channel_.scale.values.push_back(parts.factors.cast<float>());
+    }
+
+    /// Where motion jumps, two keys would have one time: the last one moves as little as numbers allow. False
+    /// where another is there.
+    bool makePlace(float seconds) {
+        const float before = std::nextafter(seconds, -HUGE_VALF);
+        const std::vector<float>& times = channel_.translation.times;
+        if (times.size() > 1 && times[times.size() - 2] >= before) return false;
+        for (std::vector<float>* const track :
+             {&channel_.translation.times, &channel_.rotation.times, &channel_.scale.times})
+            track->back() = before;
+        return true;
     }
 
     const std::function<Result<Eigen::Affine3d>(double)>& at_;

@@ -121,6 +121,11 @@ class Builder {
             std::array<double, 4> numbers{};
             for (std::size_t c = 0; c < components; ++c) numbers[c] = value.numbers[joint * components + c];
             const std::optional<T> key = make(numbers);
+            // Where values jump, the key before is as near as numbers allow.
+            const float before = std::nextafter(seconds, -HUGE_VALF);
+            const std::size_t keys = track.times.size();
+            if (keys > 0 && track.times.back() == seconds && (keys == 1 || track.times[keys - 2] < before))
+                track.times.back() = before;
             const bool isLater = track.times.empty() || seconds > track.times.back();
             if (!key || !std::isfinite(seconds)) {
                 ++lost_;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "importers/usd_files.h"
+#include "importers/usd_value_clips.h"
 
 namespace hairloom {
 namespace {
@@ -70,6 +71,7 @@ void mergeAttribute(UsdAttribute& strong, UsdAttribute&& weak) {
     if (strong.displayName.empty()) strong.displayName = std::move(weak.displayName);
     if (strong.interpolation.empty()) strong.interpolation = std::move(weak.interpolation);
     if (strong.elementSize == 1) strong.elementSize = weak.elementSize;
+    strong.isOfClips = strong.isOfClips && weak.isOfClips;
     if (strong.hasValue()) return;
     strong.value = std::move(weak.value);
     strong.samples = std::move(weak.samples);
@@ -102,7 +104,6 @@ void merge(UsdPrim& strong, UsdPrim&& weak) {
     if (!strong.instanceable) strong.instanceable = weak.instanceable;
     if (strong.displayName.empty()) strong.displayName = std::move(weak.displayName);
     strong.customTexts.merge(weak.customTexts);
-    strong.hasClips = strong.hasClips || weak.hasClips;
     for (UsdAttribute& attribute : weak.attributes) {
         if (UsdAttribute* const found = strong.find(attribute.name))
             mergeAttribute(*found, std::move(attribute));
@@ -136,17 +137,22 @@ double ratesOf(const UsdMetadata& metadata) {
 
 class Composer {
   public:
-    Composer(std::string file, const std::filesystem::path& folder) : files_(std::move(file), folder) {}
+    Composer(std::string file, const std::filesystem::path& folder)
+        : files_(std::move(file), folder),
+          clips_(files_, [this](std::string text) { note(stage_.notFollowed, std::move(text)); }) {}
 
     Result<UsdStage> run(std::vector<std::byte>&& bytes) {
         std::string key;
         auto layer = files_.first(std::move(bytes), key);
         if (!layer) return tl::unexpected(layer.error());
         Stack& stack = stacks_[key];
-        addLayer(std::move(*layer), key, {}, stack, {});
+        UsdStrongerClips clips;
+        addLayer(std::move(*layer), key, {}, stack, {}, clips);
         stage_.metadata = stack.metadata;
+        if (clips_.isFull()) return tooMuch();
         if (!isAnyComposed(stack.root)) {
             stage_.root = std::move(stack.root);
+            eraseUndeclared(stage_.root);
             return std::move(stage_);
         }
         stage_.root.name = "";
@@ -154,9 +160,8 @@ class Composer {
             UsdPrim prim = expand(stack, spec, "/" + spec.name, {}, 0);
             stage_.root.children.push_back(std::move(prim));
         }
-        if (prims_ > kMaxPrims || numbers_ > kMaxNumbers)
-            return fail("the stage has more prims or numbers than are kept once it is composed",
-                        fmt::format("expected at most {} prims and {} numbers", kMaxPrims, kMaxNumbers));
+        if (isFull() || clips_.isFull()) return tooMuch();
+        eraseUndeclared(stage_.root);
         return std::move(stage_);
     }
 
@@ -170,6 +175,11 @@ class Composer {
     /// Weaker layers' choice of variants gives way to these.
     using Stronger = std::vector<const UsdPrim*>;
 
+    static tl::unexpected<Error> tooMuch() {
+        return fail("the stage has more prims or numbers than are kept once it is composed",
+                    fmt::format("expected at most {} prims and {} numbers", kMaxPrims, kMaxNumbers));
+    }
+
     void note(std::vector<std::string>& list, std::string text) {
         constexpr std::size_t kMost = 64;
         if (list.size() < kMost && std::ranges::find(list, text) == list.end())
@@ -177,19 +187,20 @@ class Composer {
     }
 
     void addLayer(UsdLayer&& layer, const std::string& key, const UsdTimeOffset& time, Stack& stack,
-                  std::vector<std::string> above) {
+                  std::vector<std::string> above, UsdStrongerClips& clips) {
         signArcs(layer.root, key);
         moveInTime(layer.root, time);
+        clips_.addTo(layer.root, key, time, clips);
         for (const std::string& repeated : layer.repeated) note(stage_.repeated, repeated);
         for (const std::string& left : layer.leftOut) note(stage_.notFollowed, left);
         if (above.empty()) stack.metadata = std::move(layer.metadata);
         merge(stack.root, std::move(layer.root));
         above.push_back(key);
-        for (const UsdArc& below : layer.subLayers) addSubLayer(below, key, time, stack, above);
+        for (const UsdArc& below : layer.subLayers) addSubLayer(below, key, time, stack, above, clips);
     }
 
     void addSubLayer(const UsdArc& below, const std::string& key, const UsdTimeOffset& time, Stack& stack,
-                     const std::vector<std::string>& above) {
+                     const std::vector<std::string>& above, UsdStrongerClips& clips) {
         const auto leave = [&](const std::string& why) {
             note(stage_.notFollowed, fmt::format("the layer \"{}\": {}", below.asset, why));
         };
@@ -202,7 +213,7 @@ class Composer {
         const double ratio = ratesOf(stack.metadata) / ratesOf(layer->metadata);
         addLayer(std::move(*layer), *found,
                  {time.scale * below.time.offset + time.offset, time.scale * below.time.scale * ratio}, stack,
-                 above);
+                 above, clips);
     }
 
     bool isFull() const { return prims_ > kMaxPrims || numbers_ > kMaxNumbers; }
@@ -219,7 +230,6 @@ class Composer {
         own.customTexts = spec.customTexts;
         own.inactiveIds = spec.inactiveIds;
         numbers_ += own.inactiveIds.all().size();
-        own.hasClips = spec.hasClips;
         ++prims_;
         for (const UsdAttribute& attribute : spec.attributes) {
             numbers_ += attribute.value.numbers.size();
@@ -349,8 +359,9 @@ class Composer {
             std::string own = *key;
             auto layer = files_.open(own);
             known->second.isBroken = !layer;
+            UsdStrongerClips clips;
             if (layer)
-                addLayer(std::move(*layer), own, {}, known->second, {});
+                addLayer(std::move(*layer), own, {}, known->second, {}, clips);
             else
                 leave(layer.error().message());
         }
@@ -387,6 +398,7 @@ class Composer {
     }
 
     UsdFiles files_;
+    UsdValueClips clips_;
     std::map<std::string, Stack> stacks_;
     std::set<std::pair<const Stack*, std::string>> following_;
     UsdStage stage_;

@@ -135,6 +135,12 @@ class Reader {
             }
             addTimes(one.levels, times);
         }
+        // What holds until values jump is no frame of its own.
+        constexpr double kJump = 1e-6;
+        for (auto time = times.begin(); time != times.end();) {
+            const auto next = std::next(time);
+            time = next != times.end() && *next - *time < kJump ? times.erase(time) : next;
+        }
         times_.assign(times.begin(), times.end());
         if (!std::ranges::all_of(times_, [](double time) { return std::isfinite(time); }))
             return fail("a time of a sample is not finite", "expected time codes");

@@ -76,7 +76,6 @@ class Walk {
         const std::string purpose = own.empty() ? purposeAbove : own;
         Levels levels = above;
         levels.push_back({&prim, false, 0});
-        if (prim.hasClips) leaveOut(prim, path, "has value clips, which are not followed");
         if (isOf(prim, shape_)) {
             if (purpose == "proxy")
                 leaveOut(prim, path, "is a proxy of what images show");

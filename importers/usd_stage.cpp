@@ -40,6 +40,7 @@ void UsdListEdits<T>::over(const UsdListEdits& weaker) {
 
 template struct UsdListEdits<UsdArc>;
 template struct UsdListEdits<std::int64_t>;
+template struct UsdListEdits<std::string>;
 
 const UsdAttribute* UsdPrim::find(std::string_view attribute) const {
     const auto found = std::ranges::find(attributes, attribute, &UsdAttribute::name);

@@ -36,6 +36,7 @@ struct UsdAttribute {
     std::string interpolation;  ///< "vertex" …, or empty
     std::string displayName;    ///< for people; may be empty
     double elementSize = 1;
+    bool isOfClips = false;  ///< value clips alone have it, which declare nothing
 
     bool hasValue() const { return value.isThere() || !samples.empty(); }
 };
@@ -59,6 +60,9 @@ inline bool isSame(const UsdArc& a, const UsdArc& b) {
 inline bool isSame(std::int64_t a, std::int64_t b) {
     return a == b;
 }
+inline bool isSame(const std::string& a, const std::string& b) {
+    return a == b;
+}
 
 /// A list as a layer edits it.
 template <class T>
@@ -76,6 +80,9 @@ using UsdArcs = UsdListEdits<UsdArc>;
 
 struct UsdVariantSet;
 
+/// Of a dictionary and those in it, by their keys: "default:assetPaths".
+using UsdDictionary = std::map<std::string, UsdValue, std::less<>>;
+
 struct UsdPrim {
     enum class Specifier : std::uint8_t { Def, Over, Class };
     std::string type, name;
@@ -90,7 +97,8 @@ struct UsdPrim {
     UsdListEdits<std::int64_t> inactiveIds;         ///< instances that an instancer leaves out
     std::map<std::string, std::string> selections;  ///< variant of each set
     std::vector<UsdVariantSet> variantSets;
-    bool hasClips = false;  ///< values that lie in other files, time by time
+    UsdDictionary clips;                 ///< values that lie in other files, time by time: sets of these
+    UsdListEdits<std::string> clipSets;  ///< their order
 
     const UsdAttribute* find(std::string_view attribute) const;
     UsdAttribute* find(std::string_view attribute);

@@ -133,8 +133,10 @@ class Parser {
         return true;
     }
 
-    /// { dictionary a = { string b = "text" } }, of which texts are kept: "a:b". `key` is of what it lies in.
-    bool customTexts(UsdPrim& prim_, const std::string& key, int depth) {
+    /// { dictionary a = { string b = "text" } }, a value for each key: "a:b". `key` is of what it lies in.
+    /// `keep` takes the key, the type and the value.
+    template <class Keep>
+    bool dictionary(const std::string& key, int depth, const Keep& keep) {
         if (depth > kMaxDepth)
             return in_.wrong("dictionaries are nested too deep", fmt::format("expected {}", kMaxDepth));
         if (!in_.need('{')) return false;
@@ -152,15 +154,36 @@ class Parser {
             if (!key.empty()) name = key + ':' + name;
             if (!in_.need('=')) return false;
             if (type == "dictionary") {
-                if (!customTexts(prim_, name, depth + 1)) return false;
+                if (!dictionary(name, depth + 1, keep)) return false;
             } else {
                 UsdValue value;
                 if (!in_.value(value)) return false;
-                if (type == "string" && !isList && value.texts.size() == 1)
-                    prim_.customTexts[name] = std::move(value.texts.front());
+                keep(name, isList ? type + "[]" : type, std::move(value));
             }
             in_.take(';'), in_.take(',');
         }
+        return true;
+    }
+
+    bool customTexts(UsdPrim& prim_) {
+        return dictionary({}, 0, [&](const std::string& key, const std::string& type, UsdValue&& value) {
+            if (type == "string" && value.texts.size() == 1)
+                prim_.customTexts[key] = std::move(value.texts.front());
+        });
+    }
+
+    bool clips(UsdPrim& prim_) {
+        return dictionary({}, 0, [&](const std::string& key, const std::string&, UsdValue&& value) {
+            prim_.clips[key] = std::move(value);
+        });
+    }
+
+    /// ["a", "b"], or None.
+    bool texts(UsdListEdits<std::string>& into, ListEdit edit) {
+        std::vector<std::string> ignored, &list = editedList(into, edit, ignored);
+        UsdValue value;
+        if (!in_.value(value)) return false;
+        list.insert(list.end(), value.texts.begin(), value.texts.end());
         return true;
     }
 
@@ -263,12 +286,14 @@ class Parser {
             else if (key == "variants")
                 good = selections(prim_.selections);
             else if (key == "customData" && in_.peek() == '{')
-                good = customTexts(prim_, {}, 0);
-            else if (key == "clips")
-                prim_.hasClips = true;
+                good = customTexts(prim_);
+            else if (key == "clips" && in_.peek() == '{')
+                good = clips(prim_);
+            else if (key == "clipSets")
+                good = texts(prim_.clipSets, edit);
             else
                 return false;
-            return key != "clips";
+            return true;
         });
     }
 

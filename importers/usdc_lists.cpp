@@ -20,9 +20,7 @@ Status UsdcValues::readOffset(UsdTimeOffset& time) {
 }
 
 /// An entry is a name, a jump over what the value needs, and the value.
-Status UsdcValues::readDictionary(const std::string& key,
-                                  std::map<std::string, std::string, std::less<>>& texts,
-                                  std::uint32_t depth) {
+Status UsdcValues::readDictionary(const std::string& key, const KeepValue& keep, std::uint32_t depth) {
     constexpr std::uint64_t kEntry = sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t);
     constexpr std::uint32_t kMaxDepth = 32;
     constexpr std::uint64_t kMaxTexts = 1 << 16u;
@@ -45,25 +43,45 @@ Status UsdcValues::readDictionary(const std::string& key,
         if (!bits) return tl::unexpected(bits.error());
         const UsdcValue value{*bits};
         const std::string own = key.empty() ? file_.string(*name) : key + ':' + file_.string(*name);
-        if (value.type() == String && value.isInlined() && !value.isArray()) {
-            texts[own] = file_.string(value.payload());
-        } else if (value.type() == Dictionary && !value.isInlined()) {
-            const std::uint64_t behind = in_.position();
+        const std::uint64_t behind = in_.position();
+        if (value.type() == Dictionary && !value.isInlined()) {
             if (auto status = in_.seek(value.payload(), "a dictionary"); !status) return status;
-            if (auto status = readDictionary(own, texts, depth + 1); !status) return status;
-            if (auto status = in_.seek(behind, "a dictionary"); !status) return status;
+            if (auto status = readDictionary(own, keep, depth + 1); !status) return status;
+        } else if (auto status = keep(own, value); !status) {
+            return status;
         }
+        if (auto status = in_.seek(behind, "a dictionary"); !status) return status;
     }
     return {};
 }
 
+Status UsdcValues::readDictionaryOf(const UsdcValue& value, const KeepValue& keep) {
+    if (value.type() != Dictionary || value.isInlined()) return {};
+    if (auto status = in_.seek(value.payload(), "a dictionary"); !status) return status;
+    return readDictionary({}, keep, 0);
+}
+
 Result<std::map<std::string, std::string, std::less<>>> UsdcValues::textsIn(const UsdcValue& value) {
     std::map<std::string, std::string, std::less<>> texts;
-    if (value.type() != Dictionary || value.isInlined()) return texts;
-    if (auto status = in_.seek(value.payload(), "a dictionary"); !status)
-        return tl::unexpected(status.error());
-    if (auto status = readDictionary({}, texts, 0); !status) return tl::unexpected(status.error());
+    const auto keep = [&](const std::string& key, const UsdcValue& one) -> Status {
+        if (one.type() == String && one.isInlined() && !one.isArray())
+            texts[key] = file_.string(one.payload());
+        return {};
+    };
+    if (auto status = readDictionaryOf(value, keep); !status) return tl::unexpected(status.error());
     return texts;
+}
+
+Result<UsdDictionary> UsdcValues::valuesIn(const UsdcValue& value) {
+    UsdDictionary values;
+    const auto keep = [&](const std::string& key, const UsdcValue& one) -> Status {
+        auto read = valueOf(one);
+        if (!read) return tl::unexpected(read.error());
+        values[key] = std::move(*read);
+        return {};
+    };
+    if (auto status = readDictionaryOf(value, keep); !status) return tl::unexpected(status.error());
+    return values;
 }
 
 Result<UsdArc> UsdcValues::item(std::uint8_t kind) {
@@ -82,8 +100,8 @@ Result<UsdArc> UsdcValues::item(std::uint8_t kind) {
         if (auto status = readOffset(arc.time); !status) return tl::unexpected(status.error());
     }
     if (kind == ReferenceListOp) {
-        std::map<std::string, std::string, std::less<>> ignored;
-        if (auto status = readDictionary({}, ignored, 0); !status) return tl::unexpected(status.error());
+        const auto ignore = [](const std::string&, const UsdcValue&) { return Status(); };
+        if (auto status = readDictionary({}, ignore, 0); !status) return tl::unexpected(status.error());
     }
     return arc;
 }
@@ -156,6 +174,22 @@ Result<UsdListEdits<std::int64_t>> UsdcValues::wholesOf(const UsdcValue& value) 
         if (!count) return tl::unexpected(count.error());
         if (auto status = keep(*count); !status) return tl::unexpected(status.error());
         return in_.readArray<std::int64_t>(*count, "a list of numbers");
+    });
+}
+
+Result<UsdListEdits<std::string>> UsdcValues::textEditsOf(const UsdcValue& value) {
+    if (value.isInlined() || value.type() != StringListOp) return UsdListEdits<std::string>();
+    if (auto status = in_.seek(value.payload(), "a list of texts"); !status)
+        return tl::unexpected(status.error());
+    return editsBy<std::string>([&]() -> Result<std::vector<std::string>> {
+        const auto count = in_.read<std::uint64_t>("the length of a list");
+        if (!count) return tl::unexpected(count.error());
+        if (auto status = keep(*count); !status) return tl::unexpected(status.error());
+        const auto indices = in_.readArray<std::uint32_t>(*count, "a list of texts");
+        if (!indices) return tl::unexpected(indices.error());
+        std::vector<std::string> texts;
+        for (const std::uint32_t index : *indices) texts.push_back(file_.string(index));
+        return texts;
     });
 }
 

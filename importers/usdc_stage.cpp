@@ -131,7 +131,6 @@ class Reader {
             if (name == "active") prim.active = payload != 0;
             if (name == "instanceable") prim.instanceable = payload != 0;
             if (name == "displayName") prim.displayName = file_.string(payload);
-            if (name == "clips") prim.hasClips = true;
             if (name == "primChildren") childNames = values_.tokensOf(field.value);
             if (name == "variantSelection") {
                 auto selections = values_.selectionsOf(field.value);
@@ -147,6 +146,16 @@ class Reader {
                 auto texts = values_.textsIn(field.value);
                 if (!texts) return tl::unexpected(texts.error());
                 prim.customTexts = std::move(*texts);
+            }
+            if (name == "clips") {
+                auto clips = values_.valuesIn(field.value);
+                if (!clips) return tl::unexpected(clips.error());
+                prim.clips = std::move(*clips);
+            }
+            if (name == "clipSets") {
+                auto sets = values_.textEditsOf(field.value);
+                if (!sets) return tl::unexpected(sets.error());
+                prim.clipSets = std::move(*sets);
             }
             if (auto status = readArcs(name, field.value, prim); !status) return status;
         }

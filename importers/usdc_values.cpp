@@ -278,7 +278,7 @@ Result<UsdValue> UsdcValues::textsOf(const UsdcValue& value) {
     const auto indices = in_.readArray<std::uint32_t>(*count, "texts");
     if (!indices) return tl::unexpected(indices.error());
     for (const std::uint32_t index : *indices)
-        result.texts.push_back(value.type() == String ? file_.string(index) : file_.token(index));
+        result.texts.push_back(value.type() == Token ? file_.token(index) : file_.string(index));
     return result;
 }
 

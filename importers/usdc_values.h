@@ -2,6 +2,7 @@
 #pragma once
 // The values of a binary USD file, from what its fields say of them.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ class UsdcValues {
     Result<std::map<std::string, std::string>> selectionsOf(const UsdcValue& value);
     /// Texts of a dictionary and of those in it, by their keys: "hairloom:settings".
     Result<std::map<std::string, std::string, std::less<>>> textsIn(const UsdcValue& value);
+    /// All of a dictionary and of those in it, by their keys.
+    Result<UsdDictionary> valuesIn(const UsdcValue& value);
+    /// A list of texts; nothing of other types.
+    Result<UsdListEdits<std::string>> textEditsOf(const UsdcValue& value);
     /// Files below a layer, with what its field of their times says.
     Result<std::vector<UsdArc>> subLayersOf(const UsdcValue& names, const UsdcValue& times);
     /// A list of names; empty where it is damaged, since their order alone is at stake.
@@ -59,9 +64,10 @@ class UsdcValues {
     template <class T, class Read>
     Result<UsdListEdits<T>> editsBy(Read read);
     Status readOffset(UsdTimeOffset& time);
-    /// Texts, and those of dictionaries in it, by keys that begin with `key`.
-    Status readDictionary(const std::string& key, std::map<std::string, std::string, std::less<>>& texts,
-                          std::uint32_t depth);
+    /// Gives its values and those of dictionaries in it to `keep`, by keys that begin with `key`.
+    using KeepValue = std::function<Status(const std::string& key, const UsdcValue& value)>;
+    Status readDictionary(const std::string& key, const KeepValue& keep, std::uint32_t depth);
+    Status readDictionaryOf(const UsdcValue& value, const KeepValue& keep);
 
     const UsdcFile& file_;
     ByteReader in_;
