@@ -16,6 +16,9 @@ namespace hairloom {
 HairWriter cardWriter(const char* name, const char* label, const char* carries, ExportTarget target,
                       const char* suffix, WriteCards write);
 
+/// Whether a format of cards has levels of strands, too, where they are asked for.
+bool holdsStrandLevels(const HairWriter& writer);
+
 /// For formats that have no springs.
 LeftBehind springsLeftBehind();
 /// For formats that have no joints.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cards and shells as USD's text: a mesh for each level with a UsdPreviewSurface, whose textures go beside
-// the file. All levels are items of UsdLod, by distance. The variant set "lod" shows one of them to programs
-// that do not know UsdLod (LOD0, the nearest, where nothing is chosen), and leaves all to those that do
+// Cards, shells and strands as USD's text: a mesh or curves for each level with a UsdPreviewSurface, whose
+// textures go beside the file. All levels are items of UsdLod, by distance. The variant set "lod" shows one
+// of them to programs that do not know UsdLod (LOD0, the nearest, where nothing is chosen), and leaves all to
+// those that do
 // ("UsdLod"). The same chain gives the same bytes.
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "exporters/card_files.h"
 #include "exporters/usd_curves.h"
@@ -24,6 +27,36 @@ void writeVertexArray(std::string& out, const std::string& name, std::span<const
     out += fmt::format("                {} = ", name);
     writeNumbers(out, numbers, components);
     out += " (\n                    interpolation = \"vertex\"\n                )\n";
+}
+
+/// Hairs of a level of strands, which have the colour and the width of each of their points.
+std::string curvesText(const std::string& name, const cards::Hair& hair) {
+    std::vector<float> widths;
+    widths.reserve(hair.radii.size());
+    for (const float radius : hair.radii) widths.push_back(2 * radius);
+    const Vec3f half = Vec3f::Constant(*std::ranges::max_element(hair.radii));
+    std::array<Vec3f, 2> extent = extentOf(hair.positions_ws);
+    extent[0] -= half;
+    extent[1] += half;
+    std::vector<std::int32_t> counts;
+    for (std::size_t s = 0; s < hair.strandCount(); ++s)
+        counts.push_back(static_cast<std::int32_t>(hair.offsets[s + 1] - hair.offsets[s]));
+    std::string out = fmt::format(
+        "            def BasisCurves \"{0}\" (\n                prepend apiSchemas = "
+        "[\"MaterialBindingAPI\"]\n"
+        "            )\n            {{\n                rel material:binding = </hair/materials/{0}>\n"
+        "                uniform token type = \"linear\"\n                uniform token wrap = "
+        "\"nonperiodic\"\n                float3[] extent = ",
+        name);
+    writeNumbers(out, numbersOf(extent), 3);
+    out += "\n                int[] curveVertexCounts = ";
+    writeNumbers(out, std::span<const std::int32_t>(counts), 1);
+    out += "\n                point3f[] points = ";
+    writeNumbers(out, numbersOf(hair.positions_ws), 3);
+    out += '\n';
+    writeVertexArray(out, "float[] widths", widths, 1);
+    writeVertexArray(out, "color3f[] primvars:displayColor", numbersOf(hair.albedo), 3);
+    return out + "            }\n";
 }
 
 std::string meshText(const std::string& name, const LevelArrays& arrays) {
@@ -141,29 +174,38 @@ std::string heuristicText(std::span<const Vec3f> nearest, std::span<const float>
 }
 
 Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesystem::path& path) {
-    std::string meshes, materials;
+    std::string shapes, materials;
     CardFiles files(1);
     std::vector<std::string> levels;
     std::vector<float> distances;  ///< from which on each level but the first is seen
     std::vector<Vec3f> nearest;
     NameGiver names(isLegalInUsd);
     for (const Level& level : hair.chain.levels) {
-        if (level.spec.kind == cards::LevelKind::strands) continue;
-        const LevelArrays arrays = cards::arraysOf(level, hair.chain.rig);
         const std::string name = names.give(level.name);
-        auto textures = cards::textureFilesOf(level, arrays, path.stem().string(), hair.cancelled);
-        if (!textures) return tl::unexpected(textures.error());
-        meshes += meshText(name, arrays);
+        cards::TextureFiles textures;
+        const std::vector<Vec3f>* positions = nullptr;
+        LevelArrays arrays;
+        if (const auto* strands = std::get_if<cards::Hair>(&level.content)) {
+            positions = &strands->positions_ws;
+            shapes += curvesText(name, *strands);
+        } else {
+            arrays = cards::arraysOf(level, hair.chain.rig);
+            auto made = cards::textureFilesOf(level, arrays, path.stem().string(), hair.cancelled);
+            if (!made) return tl::unexpected(made.error());
+            textures = std::move(*made);
+            positions = &arrays.positions_ws;
+            shapes += meshText(name, arrays);
+        }
         if (levels.empty())
-            nearest = arrays.positions_ws;
+            nearest = *positions;
         else
             distances.push_back(static_cast<float>(cards::distanceOf(level.spec.headPx)));
         levels.push_back(name);
-        materials += materialText(name, level, *textures);
-        for (auto& [beside, bytes] : textures->files)
+        materials += materialText(name, level, textures);
+        for (auto& [beside, bytes] : textures.files)
             files.emplace_back(path.parent_path() / beside, std::move(bytes));
     }
-    if (levels.empty()) return fail("no level that a mesh can hold", "one of cards or a shell");
+    if (levels.empty()) return fail("there are no levels", "one of strands, cards or a shell");
     const std::string text = fmt::format(
         "#usda 1.0\n(\n    defaultPrim = \"hair\"\n    doc = \"Hairloom\"\n    metersPerUnit = 1\n"
         "    upAxis = \"Y\"\n)\n\ndef Xform \"hair\" (\n    variants = {{\n        string lod = \"LOD0\"\n"
@@ -172,7 +214,7 @@ Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesyste
         "        int lod:default:index = 0\n        rel lod:heuristics = </hair/distance>\n\n{}    }}\n\n{}\n"
         "    def Scope \"materials\"\n    {{\n{}    }}\n"
         "    variantSet \"lod\" = {{\n{}    }}\n}}\n",
-        meshes, heuristicText(nearest, distances), materials, variantsText(levels));
+        shapes, heuristicText(nearest, distances), materials, variantsText(levels));
     const auto bytes = std::as_bytes(std::span(text));
     files.front() = {path, {bytes.begin(), bytes.end()}};
     auto companions = writeTogether(files);
@@ -184,10 +226,16 @@ Result<WrittenCards> writeCardUsd(const CardsToWrite& hair, const std::filesyste
                           "multiply displayColor in yourself, because UsdPreviewSurface cannot"}}};
 }
 
+constexpr const char* kName = "usda-cards";
+
 }  // namespace
 
+bool holdsStrandLevels(const HairWriter& writer) {
+    return writer.name == kName;
+}
+
 HairWriter usdaCardsWriter() {
-    return cardWriter("usda-cards", "Cards as USD .usda",
+    return cardWriter(kName, "Cards as USD .usda",
                       "levels by distance (UsdLod) and as variants, with textures next to the file",
                       {"cards-usd", "Engines without strands: cards (USD)", "", {}}, "usda", writeCardUsd);
 }

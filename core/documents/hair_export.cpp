@@ -19,6 +19,7 @@
 #include "core/simulation/body_push.h"
 #include "core/simulation/simulation.h"
 #include "core/stability/certificate.h"
+#include "exporters/card_files.h"
 
 namespace hairloom {
 namespace {
@@ -177,6 +178,18 @@ void sayHowSampled(const SampledMotion& sampled, const MotionSampling& sampling,
              "time", "simulate more frames at both ends, and export those between them"});
 }
 
+/// Levels that cards and shells take over from.
+std::vector<WrittenLevel> strandLevels(const cards::Chain& chain) {
+    std::vector<WrittenLevel> levels;
+    for (const cards::Level& level : chain.levels) {
+        if (level.spec.kind != cards::LevelKind::strands) continue;
+        const cards::Difference& off = level.difference;
+        levels.push_back({level.name, 0, level.triangles, level.bytes, cards::distanceOf(level.spec.headPx),
+                          off.coverage, off.flip, off.light});
+    }
+    return levels;
+}
+
 Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, const HairWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
     if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
@@ -189,6 +202,15 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, 
     auto written = std::get<WriteCards>(writer.writer)({*chain, colliders, groom, wanted.cancel}, path);
     if (!written) return tl::unexpected(written.error());
     ExportReport report = levelReport(*chain, groom);
+    if (holdsStrandLevels(writer)) {
+        const std::vector<WrittenLevel> nearer = strandLevels(*chain);
+        report.levels.insert(report.levels.begin(), nearer.begin(), nearer.end());
+        std::ranges::stable_sort(report.levels, {}, &WrittenLevel::distance);
+        for (const cards::Level& level : chain->levels) {
+            if (const auto* hair = std::get_if<cards::Hair>(&level.content))
+                report.points += hair->positions_ws.size();
+        }
+    }
     report.format = writer.name;
     report.bytes = std::filesystem::file_size(whereWritten(path));
     report.companions = std::move(written->companions);

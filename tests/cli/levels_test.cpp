@@ -145,6 +145,27 @@ TEST_F(LodJob, CardsAreExportedAsGltf) {
     EXPECT_NEAR(few["levels"][0]["distance_m"], 5.8, 0.01);
 }
 
+TEST_F(LodJob, UsdHasLevelsOfStrandsBesideCards) {
+    makeHair();
+    const auto report = runJson(
+        "export hair.hairloom --format usda-cards --levels strands:1@256,strands:0.25@128,cards:12@64 -o "
+        "l.usda");
+    ASSERT_EQ(report["levels"].size(), 3u);
+    EXPECT_EQ(report["levels"][0]["cards"], 0);
+    EXPECT_NEAR(report["levels"][0]["coverage"], 1, 0.02) << "all strands, beside themselves";
+    EXPECT_LT(report["levels"][1]["triangles"], report["levels"][0]["triangles"]);
+    EXPECT_GT(report["levels"][2]["cards"], 0);
+    EXPECT_LT(report["levels"][1]["distance_m"], report["levels"][2]["distance_m"]);
+    const std::string text = readText(folder / "l.usda");
+    for (const char* part : {"LODRootAPI", "LODDistanceHeuristic", "def BasisCurves", "def Mesh", "\"LOD2\""})
+        EXPECT_THAT(text, HasSubstr(part));
+    // Programs that do not know UsdLod see one level, and so do we.
+    EXPECT_EQ(runJson("import l.usda -o back.hairloom")["strands"], 400);
+    EXPECT_EQ(
+        runJson("export hair.hairloom --format usda-cards --levels cards:12@64 -o c.usda")["levels"].size(),
+        1u);
+}
+
 TEST_F(LodJob, SpringsAreFittedForTheRateOfTheEngine) {
     makeHair();
     const std::string levels = "export hair.hairloom --levels cards:12@64 --format ";

@@ -1,14 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""usd_card_judge.py FILE.usda…: has Pixar's usd-core judge cards, each variant of them, and its UsdLod choose levels by
-distance; fails on any error."""
+"""usd_card_judge.py FILE.usda…: has Pixar's usd-core judge cards and strands, each variant of them, and its UsdLod choose
+levels by distance; fails on any error."""
 
 import sys
 
 from pxr import Gf, Usd, UsdGeom, UsdLod, UsdShade, UsdValidation
 
 
+def strands_of(curves):
+    """Of curves that are sound, in a material: a number of points and a width for each, an extent that holds them."""
+    counts, points, widths = (a.Get() for a in (curves.GetCurveVertexCountsAttr(), curves.GetPointsAttr(), curves.GetWidthsAttr()))
+    colours = UsdGeom.PrimvarsAPI(curves).GetPrimvar("displayColor")
+    material, _ = UsdShade.MaterialBindingAPI(curves.GetPrim()).ComputeBoundMaterial()
+    if sum(counts) != len(points) or len(widths) != len(points) or len(colours.Get()) != len(points) or min(counts) < 2:
+        raise SystemExit(f"{curves.GetPath()}: arrays of other lengths than the points")
+    if not material or curves.GetWidthsInterpolation() != "vertex" or min(widths) < 0 or max(widths) > 0.01:
+        raise SystemExit(f"{curves.GetPath()}: no material, or widths of {min(widths)} to {max(widths)} m")
+    own, shown = curves.GetExtentAttr().Get(), UsdGeom.Boundable.ComputeExtentFromPlugins(curves, Usd.TimeCode.Default())
+    if any(abs(a - b) > 1e-5 for low, high in zip(own, shown) for a, b in zip(low, high)):
+        raise SystemExit(f"{curves.GetPath()}: an extent of {own}; expected {shown}")
+    return len(counts)
+
+
 def triangles_of(mesh):
-    """Of a mesh that is sound, in a material; says what is wrong with others."""
+    """Of a mesh that is sound, in a material, or strands of curves; says what is wrong with others."""
+    if isinstance(mesh, UsdGeom.BasisCurves):
+        return strands_of(mesh)
     counts = mesh.GetFaceVertexCountsAttr().Get()
     points = mesh.GetPointsAttr().Get()
     sound, why = UsdGeom.Mesh.ValidateTopology(mesh.GetFaceVertexIndicesAttr().Get(), counts, len(points))
@@ -19,7 +36,8 @@ def triangles_of(mesh):
 
 
 def meshes_of(stage):
-    return [UsdGeom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]
+    shapes = [prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh) or prim.IsA(UsdGeom.BasisCurves)]
+    return [UsdGeom.Mesh(prim) if prim.IsA(UsdGeom.Mesh) else UsdGeom.BasisCurves(prim) for prim in shapes]
 
 
 def check_levels(file, stage, count):
@@ -62,7 +80,7 @@ def main():
             raise SystemExit(f"{file}: the levels of UsdLod are not those of the variants")
         check_levels(file, stage, len(levels))
         errors = UsdValidation.ValidationContext(validators).Validate(stage)
-        print(f"{file}: {len(errors)} errors, triangles of its levels {triangles}")
+        print(f"{file}: {len(errors)} errors, triangles or strands of its levels {triangles}")
         for error in errors:
             print(f"  {error.GetName()}: {error.GetMessage()}")
         failed = failed or bool(errors) or not triangles
