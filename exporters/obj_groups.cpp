@@ -12,8 +12,10 @@ bool isLegalInObj(char c, bool) {
 std::string objGroup(const ExportedPart& part) {
     std::string title = part.displayName;
     for (char& c : title) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == '#' || c == '\\') c = ' ';
+        if (static_cast<unsigned char>(c) < 0x20 || c == '#') c = ' ';
     }
+    // At the end of a line it would join the next.
+    if (title.ends_with('\\')) title.back() = ' ';
     // A part alone is called "hair" whatever its layer is.
     const bool isAlone = !title.empty() && part.name == "hair";
     const std::string group = isAlone ? NameGiver(isLegalInObj).give(title) : part.name;

@@ -101,12 +101,36 @@ bool UsdaScanner::takeString(std::string& into) {
             if (!isLong) return wrong("a text is not closed", "expected its quotation mark");
             ++line_;
         }
-        if (text_[at_] == '\\' && at_ + 1 < text_.size()) ++at_;
-        into += text_[at_++];
+        if (text_[at_] == '\\' && at_ + 1 < text_.size())
+            takeEscape(into);
+        else
+            into += text_[at_++];
     }
     if (at_ >= text_.size()) return wrong("a text is not closed", "expected its quotation mark");
     at_ += end.size();
     return true;
+}
+
+/// As OpenUSD's TfEscapeString() has them: \n and the like, numbers of one byte in hexadecimals and octals;
+/// others are the character itself.
+void UsdaScanner::takeEscape(std::string& into) {
+    constexpr std::string_view kNames = "abfnrtv", kBytes = "\a\b\f\n\r\t\v";
+    const char c = text_[++at_];
+    const auto takeNumber = [&](int base, std::size_t digits) {
+        const std::string_view rest = text_.substr(at_, digits);
+        std::uint8_t byte = 0;
+        const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), byte, base);
+        if (error != std::errc()) return false;
+        into += static_cast<char>(byte);
+        at_ += static_cast<std::size_t>(end - rest.data());
+        return true;
+    };
+    if (c >= '0' && c <= '7' && takeNumber(8, 3)) return;
+    ++at_;
+    if (c == 'x' && takeNumber(16, 2)) return;
+    if (c == '\n') ++line_;
+    const std::size_t name = kNames.find(c);
+    into += name == std::string_view::npos ? c : kBytes[name];
 }
 
 bool UsdaScanner::takeUntil(std::string_view close, std::string& into) {

@@ -47,6 +47,7 @@ class UsdaScanner {
 
   private:
     void skip();
+    void takeEscape(std::string& into);
     bool takeUntil(std::string_view close, std::string& into);
     bool scalar(UsdValue& value);
     bool namedScalar(UsdValue& value);

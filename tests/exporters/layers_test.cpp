@@ -117,11 +117,11 @@ TEST_F(LayersOut, OneLayerKeepsItsNameAndNoneIsMadeUp) {
     for (const std::string format : {"usda", "usdc", "abc", "obj-lines"}) {
         SCOPED_TRACE(format);
         Groom groom = helices({3, 4});
-        groom.layers[0].name = "Brows / left";
+        groom.layers[0].name = "Brows / C:\\left";
         const auto named = importStrands(write(groom, format));
         ASSERT_TRUE(named) << named.error().message();
         ASSERT_EQ(named->groom.layers.size(), 1u);
-        EXPECT_EQ(named->groom.layers[0].name, "Brows / left");
+        EXPECT_EQ(named->groom.layers[0].name, "Brows / C:\\left");
         const auto plain = importStrands(write(helices({3, 4}), format));
         ASSERT_TRUE(plain) << plain.error().message();
         ASSERT_EQ(plain->groom.layers.size(), 1u);

@@ -64,6 +64,13 @@ class UsdStages : public testing::Test {
     const TemporaryFolder folder;
 };
 
+TEST_F(UsdStages, EscapesInTextsAreTheirCharacters) {
+    const auto imported = readText(kHead + curves("a", 1, 0, "", R"(displayName = "\x48air\40\"\\\"\x2e")") +
+                                   curves("b", 1, 1, "", R"(displayName = '\'B\303\244rte\q')"));
+    ASSERT_TRUE(imported) << imported.error().message();
+    EXPECT_THAT(layers(*imported), ElementsAre("Hair \"\\\".", "'B\xc3\xa4rteq"));
+}
+
 TEST_F(UsdStages, WhatIsNotShownStaysOutAndIsTold) {
     const auto imported = readText(
         kHead + curves("shown", 3) + curves("off", 2, 1, "", "active = false") +
