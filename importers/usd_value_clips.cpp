@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 28u;
 constexpr std::size_t kMaxClips = 4096;  ///< files of a set
+constexpr std::size_t kMaxPlays = 65536;
+constexpr std::size_t kMaxAttributes = 16384;
 /// Time codes before a jump at which what is left still holds, as USD's own library has it
 /// (UsdTimeCode::SafeStep).
 constexpr double kBeforeJump = 4.440892098500626e-9;
@@ -80,18 +82,16 @@ const UsdPrim* primAt(const UsdPrim& root, std::string_view path) {
     return prim;
 }
 
-using Attributes = std::map<std::string, std::vector<const UsdAttribute*>>;
+/// An attribute of each clip that has samples of it, by the clip's index.
+using OfClips = std::map<std::size_t, const UsdAttribute*>;
+using Attributes = std::map<std::string, OfClips>;
 
-/// Attributes of a clip's prim and of those below it, by "/kid.size"; of clip `index` of `count`.
-void collect(const UsdPrim& prim, const std::string& path, std::size_t index, std::size_t count,
-             Attributes& into) {
+/// Attributes of the prim of a clip and of those below it, by "/kid.size".
+void collect(const UsdPrim& prim, const std::string& path, std::size_t index, Attributes& into) {
     for (const UsdAttribute& attribute : prim.attributes) {
-        if (attribute.samples.empty()) continue;
-        auto& ofClips = into[path + "." + attribute.name];
-        ofClips.resize(count);
-        ofClips[index] = &attribute;
+        if (!attribute.samples.empty()) into[path + "." + attribute.name][index] = &attribute;
     }
-    for (const UsdPrim& child : prim.children) collect(child, path + "/" + child.name, index, count, into);
+    for (const UsdPrim& child : prim.children) collect(child, path + "/" + child.name, index, into);
 }
 
 /// What the manifest has: nothing else is looked up in clips.
@@ -324,7 +324,7 @@ void UsdValueClips::addSet(UsdPrim& prim, const Set& set) {
     for (const std::size_t index : used) {
         const UsdLayer* const layer = open(set, set.assets[index], "clip", clips);
         const UsdPrim* const of = layer == nullptr ? nullptr : primAt(layer->root, set.primPath);
-        if (of != nullptr) collect(*of, "", index, set.assets.size(), attributes);
+        if (of != nullptr) collect(*of, "", index, attributes);
     }
     std::map<std::string, const UsdAttribute*> declared;
     if (!set.manifest.empty()) {
@@ -333,8 +333,13 @@ void UsdValueClips::addSet(UsdPrim& prim, const Set& set) {
         if (of != nullptr) collectDeclared(*of, "", declared);
         std::erase_if(attributes, [&](const auto& one) { return !declared.contains(one.first); });
         for (const auto& [path, attribute] : declared) {
-            if (attribute->value.isThere()) attributes[path].resize(set.assets.size());
+            if (attribute->value.isThere()) attributes.try_emplace(path);
         }
+    }
+    if (attributes.size() > kMaxAttributes) {
+        note_(fmt::format("{}: they have {} attributes, and at most {} are read", set.words,
+                          attributes.size(), kMaxAttributes));
+        return;
     }
     for (const auto& [path, ofClips] : attributes) {
         UsdAttribute& into = placeOf(prim, path);
@@ -344,48 +349,64 @@ void UsdValueClips::addSet(UsdPrim& prim, const Set& set) {
         otherwise.isBlock = true;
         if (manifest != declared.end() && manifest->second->value.isThere())
             otherwise = manifest->second->value;
-        const auto any = std::ranges::find_if(ofClips, [](const auto* one) { return one != nullptr; });
-        if (into.type.empty()) into.type = any != ofClips.end() ? (*any)->type : manifest->second->type;
+        if (into.type.empty())
+            into.type = ofClips.empty() ? manifest->second->type : ofClips.begin()->second->type;
         into.samples = samplesOf(set, ofClips, otherwise);
     }
 }
 
 UsdValue UsdValueClips::timed(const UsdAttribute& attribute, double time) {
     UsdValue value = valueAt(attribute, time);
-    numbers_ += value.numbers.size();
+    numbers_ += 1 + value.numbers.size();
     return value;
 }
 
 /// Samples in the stage's time: those of the clip that is active, where its time changes its pace, and where
 /// a clip begins. Between them values go straight, as in USD's own library.
 std::map<double, UsdValue> UsdValueClips::samplesOf(const Set& set,
-                                                    const std::vector<const UsdAttribute*>& ofClips,
+                                                    const std::map<std::size_t, const UsdAttribute*>& ofClips,
                                                     const UsdValue& otherwise) {
     std::map<double, UsdValue> samples;
     for (std::size_t a = 0; a < set.active.size() && !isFull(); ++a) {
         const bool isFirst = a == 0, isLast = a + 1 == set.active.size();
         const double begin = isFirst ? -HUGE_VAL : set.active[a].stage,
                      end = isLast ? HUGE_VAL : set.active[a + 1].stage;
-        const UsdAttribute* const attribute = ofClips[static_cast<std::size_t>(set.active[a].clip)];
-        if (attribute == nullptr) {
+        const auto playing = ofClips.find(static_cast<std::size_t>(set.active[a].clip));
+        if (playing == ofClips.end()) {
+            numbers_ += 1 + otherwise.numbers.size();
             if (!set.interpolates) samples.insert_or_assign(set.active[a].stage, otherwise);
             continue;
         }
+        const UsdAttribute* const attribute = playing->second;
         std::map<double, double> moments;  // of the clip, by those of the stage
         const auto add = [&](double stage, double clip) {
+            constexpr std::uint64_t kCost = 8;  // in numbers, of one that is looked up
+            numbers_ += kCost;
             if (stage >= begin && stage < end) moments.insert_or_assign(stage, clip);
         };
         add(set.active[a].stage, clipTimeAt(set.times, set.time, set.active[a].stage));
-        for (const auto& [time, value] : attribute->samples) {
-            if (set.times.empty()) add(inTime(set.time, time), time);
-            for (std::size_t k = 0; k + 1 < set.times.size(); ++k) {
-                const Knot &from = set.times[k], &to = set.times[k + 1];
-                if (to.stage - from.stage < 2 * kBeforeJump) continue;
-                const double share = (time - from.clip) / (to.clip - from.clip);
-                if (share > 0 && share < 1) add(from.stage + share * (to.stage - from.stage), time);
+        if (set.times.empty()) {
+            for (const auto& [time, value] : attribute->samples) add(inTime(set.time, time), time);
+        }
+        const auto behind = std::ranges::upper_bound(set.times, begin, {}, &Knot::stage);
+        for (auto to = behind; to != set.times.end() && !isFull(); ++to) {
+            if (to == set.times.begin()) {
+                add(to->stage, to->clip);
+                continue;
+            }
+            const Knot& from = *std::prev(to);
+            if (from.stage >= end) break;
+            add(to->stage, to->clip);
+            if (to->stage - from.stage < 2 * kBeforeJump || to->clip == from.clip) continue;
+            // Samples that the clip passes on the way.
+            const auto last = attribute->samples.lower_bound(std::max(from.clip, to->clip));
+            for (auto one = attribute->samples.upper_bound(std::min(from.clip, to->clip)); one != last;
+                 ++one) {
+                const double share = (one->first - from.clip) / (to->clip - from.clip);
+                add(from.stage + share * (to->stage - from.stage), one->first);
+                if (isFull()) break;
             }
         }
-        for (const Knot& knot : set.times) add(knot.stage, knot.clip);
         // What is held before the first and behind the last needs no samples.
         const double first = attribute->samples.begin()->first, last = attribute->samples.rbegin()->first;
         const auto isHeld = [&](double one, double other) {

@@ -39,7 +39,8 @@ class UsdValueClips {
     void addSet(UsdPrim& prim, const Set& set);
     UsdLayer* open(const Set& set, const std::string& asset, const char* what, Clips& clips);
     UsdValue timed(const UsdAttribute& attribute, double time);
-    std::map<double, UsdValue> samplesOf(const Set& set, const std::vector<const UsdAttribute*>& ofClips,
+    std::map<double, UsdValue> samplesOf(const Set& set,
+                                         const std::map<std::size_t, const UsdAttribute*>& ofClips,
                                          const UsdValue& otherwise);
 
     UsdFiles& files_;
