@@ -169,7 +169,9 @@ struct UsdValueClips::Set {
     std::string manifest, primPath;
     std::vector<Knot> active;  ///< whose second number is that of a file
     std::vector<Knot> times;
-    bool interpolates = false;  ///< where a clip lacks values: between those beside it
+    /// Where a clip lacks values: straight from the last of the clip before to the first of the next. (USD's
+    /// own library 26.11 may jump where a gap begins, if the clip before has samples behind that.)
+    bool interpolates = false;
 };
 
 /// The files of a set that are open, by their keys.

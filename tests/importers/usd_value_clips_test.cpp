@@ -124,9 +124,11 @@ TEST_F(ValueClips, MissingValuesAreThoseOfTheManifestOrOfThoseBeside) {
         "asset[] assetPaths = [@./c0.usda@, @./c1.usda@, @./none.usda@]\n"
         "double2[] active = [(0, 0), (2, 2), (3, 1)]\n"
         "double2[] times = [(0, 0), (2, 2), (3, 0), (5, 2)]\n";
-    write("between", curves(clips + "bool interpolateMissingClipValues = true"));
-    // 11 at 1 s, 20 at 3 s.
-    expectHeights("between", {10, 10.5f, 11, 13.25f, 15.5f, 17.75f, 20, 20.5f, 21, 25.5f, 30});
+    write("between", curves("asset[] assetPaths = [@./c0.usda@, @./c1.usda@, @./none.usda@]\n"
+                            "double2[] active = [(0, 0), (3, 2), (5, 2), (7, 1)]\n"
+                            "bool interpolateMissingClipValues = true"));
+    expectHeights("between",
+                  {10, 10.5f, 11, 11.5f, 12, 13.8f, 15.6f, 17.4f, 19.2f, 21, 22.8f, 24.6f, 26.4f, 28.2f, 30});
     write("manifest", "over \"clip\"\n{\n    point3f[] points = " + line(50) + "\n}\n");
     write("declared", curves(clips + "asset manifestAssetPath = @./manifest.usda@"));
     expectHeights("declared", {10, 10.5f, 11, 30.5f, 50, 35, 20, 20.5f, 21, 25.5f, 30});

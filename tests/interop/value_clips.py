@@ -96,8 +96,6 @@ def make(folder, number, rng):
         if rng.random() < 0.8:
             clips["times"] = Vt.Vec2dArray([Gf.Vec2d(*pair) for pair in random_times(rng, active)])
     if rng.random() < 0.3:
-        clips["interpolateMissingClipValues"] = True
-    if rng.random() < 0.3:
         manifest = layer(folder, f"{name}.manifest.{ext}")
         prim = Sdf.CreatePrimInLayer(manifest, "/clip")
         points = Sdf.AttributeSpec(prim, "points", Sdf.ValueTypeNames.Point3fArray)
