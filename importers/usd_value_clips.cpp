@@ -375,8 +375,16 @@ std::map<double, UsdValue> UsdValueClips::samplesOf(const Set& set,
                      end = isLast ? HUGE_VAL : set.active[a + 1].stage;
         const auto playing = ofClips.find(static_cast<std::size_t>(set.active[a].clip));
         if (playing == ofClips.end()) {
-            numbers_ += 1 + otherwise.numbers.size();
-            if (!set.interpolates) samples.insert_or_assign(set.active[a].stage, otherwise);
+            if (set.interpolates) continue;
+            // Up to the last time that is told of it, from where values go to the next clip's.
+            std::vector<double> moments{set.active[a].stage};
+            const auto behindLast = std::ranges::lower_bound(set.times, end, {}, &Knot::stage);
+            if (!isLast && behindLast != set.times.begin() && std::prev(behindLast)->stage > begin)
+                moments.push_back(std::prev(behindLast)->stage);
+            for (const double stage : moments) {
+                numbers_ += 1 + otherwise.numbers.size();
+                samples.insert_or_assign(stage, otherwise);
+            }
             continue;
         }
         const UsdAttribute* const attribute = playing->second;

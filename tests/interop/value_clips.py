@@ -174,7 +174,8 @@ def compare(cli, folder, path):
         for attribute in ("points", "xformOp:translate"):
             found = made.GetPrimAtPath(prim).GetAttribute(attribute)
             codes.update(found.GetTimeSamples() if found else [])
-    if len(codes) < 2 or any(positions(made, code) is None for code in codes):
+    shapes = [positions(made, code) for code in sorted(codes)]
+    if any(shape is None for shape in shapes) or all(shape == shapes[0] for shape in shapes):
         return None
     record, project, out = path + ".frames", path + ".hairloom", path + ".out.usda"
     came = run(cli, "import", path, "-o", project, "--record", record, "--fps", str(RATE), "--force")
