@@ -145,7 +145,7 @@ int main(int argc, char** argv) {
         if (options.profile) printProfile();
         return exitCode;
     } catch (const hairloom::cli::WrongUsage& error) {
-        return failUsage(error.error(), options.json);
+        return failUsage(hairloom::expecting(error.error(), "see hairloom-cli JOB --help"), options.json);
     } catch (const std::bad_alloc&) {
         return failWith({{}, {}, "the job ran out of memory", "expected a smaller input, or more memory"},
                         options.json);
