@@ -10,6 +10,7 @@
 #include "cli/backend.h"
 #include "cli/body_notes.h"
 #include "cli/documents.h"
+#include "cli/error_report.h"
 #include "cli/job.h"
 #include "cli/jobs/simulate.h"
 #include "cli/motions.h"
@@ -149,8 +150,55 @@ Result<Report> sagOf(const Groom& groom, const SimulateOptions& options) {
     return report;
 }
 
-/// The groom with the frame as its authored shape, and how well that holds.
-Result<Groom> take(Groom groom, std::span<const Vec3f> positions_ws, const HeadPose& pose, Report& report) {
+/// What --engine says, and where it says nothing --backend.
+Result<JobEngine> engineOf(const SimulateOptions& options, const Groom& groom) {
+    if (options.engine.empty() && options.backend == "cpu")
+        return JobEngine{{EngineKind::cpu, "the default"}, nullptr};
+    if (options.engine == "auto" && options.method != "strands")
+        return JobEngine{{EngineKind::cpu, "only the strand engine runs on a GPU"}, nullptr};
+    std::optional<gpu::Backend> backend;
+    if (options.backend != "cpu") backend = kGpuBackends.at(options.backend);
+    return chooseJobEngine(options.engine.empty() ? "gpu" : options.engine, backend, options.device, groom);
+}
+
+/// The groom whose time line repeats, whatever it says itself.
+void repeatTimeLine(Groom& groom) {
+    if (!groom.timeLine || groom.timeLine->loop) return;
+    TimeLine line = *groom.timeLine;
+    line.loop = true;
+    groom.timeLine = std::make_shared<const TimeLine>(std::move(line));
+}
+
+void checkLoopOptions(const SimulateOptions& options, std::uint64_t frames) {
+    if (frames < 2 || options.loopBlend > frames)
+        throw WrongUsage(fmt::format("--loop of {} frames with --loop-blend {}", frames, options.loopBlend),
+                         "expected at least two frames, and no longer blend");
+}
+
+/// The frame as it is recorded and saved.
+std::span<const Vec3f> shownFrame(std::optional<LoopCloser>& loop, const Simulation& simulation) {
+    return loop ? loop->close(simulation.positions_ws()) : simulation.positions_ws();
+}
+
+}  // namespace
+
+Report loopReport(const LoopReport& loop) {
+    if (!loop.after.isClosed())
+        log::warning("the loop is not closed: its end is {:.2f} mm and {:.0f} mm/s from its start",
+                     loop.after.mm, loop.after.mmPerSecond);
+    return Report{{"frames", loop.frames},
+                  {"blend", loop.blend},
+                  {"seam_mm", loop.after.mm},
+                  {"seam_mm_s", loop.after.mmPerSecond},
+                  {"seam_before_blend_mm", loop.before.mm},
+                  {"seam_before_blend_mm_s", loop.before.mmPerSecond},
+                  {"head_mm", loop.headMm},
+                  {"blend_mm_s", loop.blendMmPerSecond},
+                  {"closed", loop.after.isClosed()}};
+}
+
+Result<Groom> groomOfFrame(Groom groom, std::span<const Vec3f> positions_ws, const HeadPose& pose,
+                           Report& report) {
     editing::Document document(std::move(groom));
     const std::vector<Vec3f> shape = restPositions(document.groom(), positions_ws, pose);
     auto command = editing::takeShape(document.model(), shape, true);
@@ -163,25 +211,14 @@ Result<Groom> take(Groom groom, std::span<const Vec3f> positions_ws, const HeadP
     return taken;
 }
 
-/// What --engine says, and where it says nothing --backend.
-Result<JobEngine> engineOf(const SimulateOptions& options, const Groom& groom) {
-    if (options.engine.empty() && options.backend == "cpu")
-        return JobEngine{{EngineKind::cpu, "the default"}, nullptr};
-    if (options.engine == "auto" && options.method != "strands")
-        return JobEngine{{EngineKind::cpu, "only the strand engine runs on a GPU"}, nullptr};
-    std::optional<gpu::Backend> backend;
-    if (options.backend != "cpu") backend = kGpuBackends.at(options.backend);
-    return chooseJobEngine(options.engine.empty() ? "gpu" : options.engine, backend, options.device, groom);
-}
-
-}  // namespace
-
 Result<Report> simulate(const SimulateOptions& options) {
     checkMotion(options.motion);
     auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     if (auto status = overrideSettings(*groom, options); !status) return tl::unexpected(status.error());
     if (options.sag) return sagOf(*groom, options);
+    const auto authoredLine = groom->timeLine;
+    if (options.loop) repeatTimeLine(*groom);
     const auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
     const MotionSpan span =
@@ -189,8 +226,16 @@ Result<Report> simulate(const SimulateOptions& options) {
     const FramePace& pace = span.pace;
     const std::uint32_t steps = pace.steps();
     const float dt = pace.dt();
+    std::optional<LoopCloser> loop;
+    if (options.loop) {
+        checkLoopOptions(options, span.frames);
+        if (auto status = checkHeadRepeats(**motion, *groom, pace, span.frames); !status)
+            return tl::unexpected(status.error());
+        loop.emplace(groom->offsets.view(), span.frames, options.loopBlend, pace.framesPerSecond);
+    }
+    std::uint64_t repeated = 0;  // frames before the recorded ones, without the pre-roll
     const auto timeOf = [&](std::uint64_t frame, std::uint32_t step) {
-        return pace.timeOf(static_cast<float>(frame) - static_cast<float>(options.handles), step);
+        return pace.timeOf(static_cast<float>(repeated + frame) - static_cast<float>(options.handles), step);
     };
     const runtime::SimulationSettings authored = groom->simulation;
     KeyedSettings keyed(**motion, authored, timeOf(0, steps));
@@ -211,9 +256,10 @@ Result<Report> simulate(const SimulateOptions& options) {
     const Report advice = adviceReport(*groom, dt);
     std::optional<FrameRecorder> recorder;
     if (!options.record.empty()) {
-        auto opened = FrameRecorder::open(
-            options.record, *groom, pace.framesPerSecond,
-            takeNotes(options.motion, *groom, std::string(engineName(engine->choice.kind)), pace.preRoll));
+        std::string noted =
+            takeNotes(options.motion, *groom, std::string(engineName(engine->choice.kind)), pace.preRoll);
+        if (loop) noted = withLoop(noted, {0, span.frames, options.loopBlend});
+        auto opened = FrameRecorder::open(options.record, *groom, pace.framesPerSecond, std::move(noted));
         if (!opened) return tl::unexpected(opened.error());
         recorder.emplace(std::move(*opened));
     }
@@ -226,38 +272,54 @@ Result<Report> simulate(const SimulateOptions& options) {
 
     std::optional<DrawnDepthMeter> depth = depthMeter(*groom);
     const std::uint64_t frames = span.frames + 2 * options.handles;
-    Progress progress("simulating", pace.preRoll + frames);
+    const std::uint64_t settling = loop ? options.loopRepeats * span.frames : 0;  // at most
+    Progress progress("simulating", pace.preRoll + settling + frames);
     for (std::uint64_t frame = 1; frame <= pace.preRoll; ++frame) {
         for (std::uint32_t step = 1; step <= steps; ++step) simulation->step(dt, pose);
         if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
         progress.done(frame);
     }
-    for (std::uint64_t frame = 1; frame <= frames; ++frame) {
+    const auto stepFrame = [&](std::uint64_t frame) -> Status {
         for (std::uint32_t step = 1; step <= steps; ++step) {
             const float time = timeOf(frame, step);
-            if (const auto given = keyed.give(*simulation, time); !given)
-                return tl::unexpected(given.error());
+            if (auto given = keyed.give(*simulation, time); !given) return given;
             pose = (*motion)->poseAt(time);
             simulation->step(dt, pose);
         }
-        if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
+        return simulation->status();
+    };
+    std::uint32_t repeats = 0;
+    for (bool isSettled = false; loop && !isSettled && repeats < options.loopRepeats; ++repeats) {
+        for (std::uint64_t frame = 1; frame <= span.frames; ++frame) {
+            if (const auto stepped = stepFrame(frame); !stepped) return tl::unexpected(stepped.error());
+            loop->lead(simulation->positions_ws());
+            progress.done(pace.preRoll + repeated + frame);
+        }
+        repeated += span.frames;
+        // The first repeat begins with hair at rest.
+        const auto seam = loop->endRepeat();
+        isSettled = seam && seam->isClosed();
+    }
+    std::vector<Vec3f> last;
+    for (std::uint64_t frame = 1; frame <= frames; ++frame) {
+        if (const auto stepped = stepFrame(frame); !stepped) return tl::unexpected(stepped.error());
+        const std::span<const Vec3f> shown = shownFrame(loop, *simulation);
         if (depth) {
             // A tenth of a gigabyte for ten million points that nothing follows.
             const auto velocities_ws =
                 groom->interpolation.followPerGuide > 0 ? simulation->velocities_ws() : std::vector<Vec3f>();
-            depth->add(frame, simulation->positions_ws(), velocities_ws, inWorld(pose));
+            depth->add(frame, shown, velocities_ws, inWorld(pose));
         }
         if (recorder) {
-            if (auto added = recorder->add(simulation->positions_ws(), inWorld(pose)); !added) {
+            if (auto added = recorder->add(shown, inWorld(pose)); !added)
                 return tl::unexpected(added.error());
-            }
         }
         if (comparison) {
-            if (auto compared = comparison->add(*groom, frame - 1, simulation->positions_ws()); !compared) {
+            if (auto compared = comparison->add(*groom, frame - 1, shown); !compared)
                 return tl::unexpected(compared.error());
-            }
         }
-        progress.done(pace.preRoll + frame);
+        if (frame == frames) last.assign(shown.begin(), shown.end());
+        progress.done(pace.preRoll + settling + frame);
     }
 
     Report report = statsReport(*groom, simulation->stats());
@@ -276,10 +338,15 @@ Result<Report> simulate(const SimulateOptions& options) {
         report["record"] = options.record;
     }
     reportDepth(depth, report);
+    if (loop) {
+        report["loop"] = loopReport(loop->report());
+        report["loop"]["repeats"] = repeats;
+    }
     if (!options.output.empty()) {
         groom->simulation = authored;  // what is keyed is in the time line
-        Result<Groom> kept = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
-        if (options.take) kept = take(*groom, simulation->positions_ws(), pose, report);
+        groom->timeLine = authoredLine;
+        Result<Groom> kept = posedGroom(*groom, last, inWorld(pose));
+        if (options.take) kept = groomOfFrame(*groom, last, pose, report);
         if (!kept) return tl::unexpected(kept.error());
         if (auto saved = saveProject(*kept, options.output); !saved) return tl::unexpected(saved.error());
         report["output"] = options.output;
@@ -338,6 +405,13 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
         "--style", options.style,
         "Groom of the same strands, whose shape they turn to from the first frame on. Of projective "
         "equations");
+    job.add_option("--loop-blend", options.loopBlend,
+                   "Frames at the end of a loop that are blended into those before its first one. 0 blends "
+                   "nothing")
+        ->check(CLI::Range(0, 10'000));
+    job.add_option("--loop-repeats", options.loopRepeats,
+                   "Repeats that settle a loop at most, before the one that is kept")
+        ->check(CLI::Range(1, 1000));
     std::vector<CLI::Option*> added = job.get_options();
     added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(before.size()));
     return added;
@@ -349,6 +423,10 @@ JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SimulateOptions>();
     job.add_option("groom", options->input, "Project or hair file")->required();
     addSimulationOptions(job, *options);
+    auto* loop = job.add_flag("--loop", options->loop,
+                              "Simulate repeats of --frames until hair ends each as the last one, then one "
+                              "more that closes: its last frame leads to its first");
+    for (const char* of : {"--loop-blend", "--loop-repeats"}) job.get_option(of)->needs(loop);
     auto* sag =
         job.add_flag("--sag", options->sag,
                      "Let the authored shape hang under gravity and contact for two seconds. Reports how far "
@@ -361,7 +439,8 @@ JobRun declare(CLI::App& job) {
                        "Frame 0 of the motion keeps its time: keys before it and the end of clips "
                        "move the first handles")
             ->check(CLI::Range(0, 1000))
-            ->needs(record);
+            ->needs(record)
+            ->excludes(loop);
     job.add_option("--against", options->against,
                    "Record of the same groom and frames, to measure the distance from");
     auto* output = job.add_option("-o,--output", options->output, "Project to write, with the last frame")
@@ -373,7 +452,7 @@ JobRun declare(CLI::App& job) {
     // It has two seconds, the head at rest and a solver of its own.
     for (const char* other :
          {"--frames", "--pre-roll", "--handles", "--fps", "--engine", "--backend", "--device", "--motion",
-          "--character", "--method", "--hair-hair", "--style", "--record", "--against", "--take"})
+          "--character", "--method", "--hair-hair", "--style", "--record", "--against", "--take", "--loop"})
         sag->excludes(other);
     return [options](const std::string&) {
         return withOutputs(

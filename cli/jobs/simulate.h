@@ -5,10 +5,12 @@
 #include <CLI/App.hpp>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "cli/job.h"
+#include "core/simulation/loop.h"
 
 namespace hairloom::cli {
 
@@ -31,6 +33,9 @@ struct SimulateOptions {
     std::string style;
     bool sag = false;
     bool take = false;
+    bool loop = false;
+    std::uint64_t loopBlend = kLoopBlend;  ///< frames
+    std::uint32_t loopRepeats = kLoopRepeats;
     std::string record;
     std::string against;
     std::string output;
@@ -40,5 +45,12 @@ struct SimulateOptions {
 std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& options);
 
 Result<Report> simulate(const SimulateOptions& options);
+
+/// "loop" of a report; warns of one that is not closed.
+Report loopReport(const LoopReport& loop);
+/// The groom with the frame as its authored shape, on the head at rest, as rods that carry their weight.
+/// `report` gets how well that holds. Errors: those of editing::takeShape().
+Result<Groom> groomOfFrame(Groom groom, std::span<const Vec3f> positions_ws, const HeadPose& pose,
+                           Report& report);
 
 }  // namespace hairloom::cli

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <system_error>
+#include <tuple>
 
 #include "cli/documents.h"
 #include "cli/error_report.h"
@@ -17,8 +20,11 @@
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/base/write_rules.h"
+#include "core/documents/motions.h"
+#include "core/documents/take_edit.h"
 #include "core/documents/take_export.h"
 #include "core/documents/takes.h"
+#include "core/groom/file/project_file.h"
 #include "core/live/film.h"
 #include "core/simulation/frame_record.h"
 
@@ -41,9 +47,15 @@ struct TakesOptions {
     std::string removed;
     std::vector<std::string> renamed;
     std::vector<std::string> compared;
+    std::string closed;
+    std::string resimulated;
+    std::string shaped;
+    std::string to;                   ///< name of the take that the first two make
+    std::optional<std::uint64_t> at;  ///< frame of the latter two
     std::string format;
-    std::vector<std::uint64_t> range;  ///< first and last frame to export; empty: all
+    std::vector<std::uint64_t> range;  ///< first and last frame to export or to close; empty: all
     bool loops = false;
+    std::string what = "guides";
     std::string size = "640x640";
     std::string camera = "three-quarter";
     std::string output;
@@ -61,6 +73,7 @@ Report rowOfTake(const Take& take, const Groom& groom) {
                 points > 0 ? Report(static_cast<double>(info.bytes) / points) : Report()},
                {"max_error_mm", 1e3 * static_cast<double>(info.largestError)},
                {"motion", motion.empty() ? Report() : Report(motion)},
+               {"loops", loopOfNotes(info.notes).has_value()},
                {"finished", info.isFinished},
                {"groom_changed", info.shapeHash != takeShapeHash(groom)},
                {"file", take.file.string()}};
@@ -106,24 +119,24 @@ Result<fs::path> takeFor(const TakesOptions& options, const std::string& name, c
 
 // --- Recording ---
 
-Result<Report> recordTake(TakesOptions& options) {
-    const auto path = takePath(options.simulation.input, options.record);
+/// Runs what writes a take of that name, and adds the take's row to its report.
+Result<Report> withNewTake(const TakesOptions& options, const std::string& name,
+                           const std::function<Result<Report>(const fs::path&)>& write) {
+    const auto path = takePath(options.simulation.input, name);
     if (!path) throw WrongUsage(path.error());
     std::error_code code;
     if (!fs::is_regular_file(options.simulation.input, code))
         return failIn(options.simulation.input, {}, "is not a file", "expected a project or hair file");
     findTakes(options.simulation.input);  // what was cut off gets its name before another takes it
     if (fs::exists(*path, code) && !writeRules().force)
-        return failIn(path->string(), {}, fmt::format("there is a take '{}' already", options.record),
+        return failIn(path->string(), {}, fmt::format("there is a take '{}' already", name),
                       "expected another name, or --force");
     const fs::path folder = takesFolder(options.simulation.input);
     fs::create_directory(folder, code);
     if (code)
         return failIn(folder.string(), {}, "the folder cannot be made: " + code.message(),
                       "expected a folder that can be written");
-    options.simulation.record = path->string();
-    auto report =
-        withOutputs({{path->string(), content::kTake}}, [&] { return simulate(options.simulation); });
+    auto report = withOutputs({{path->string(), content::kTake}}, [&] { return write(*path); });
     if (!report) {
         fs::remove(folder, code);  // where nothing is in it
         return report;
@@ -132,11 +145,19 @@ Result<Report> recordTake(TakesOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     const auto reader = TakeReader::open(*path);
     if (!reader) return tl::unexpected(reader.error());
-    (*report)["takes"] = Report::array({rowOfTake({options.record, *path, reader->info(), {}}, *groom)});
+    (*report)["takes"] = Report::array({rowOfTake({name, *path, reader->info(), {}}, *groom)});
     return report;
 }
 
-// --- Export ---
+Result<Report> recordTake(TakesOptions& options) {
+    options.simulation.loop = options.loops;
+    return withNewTake(options, options.record, [&](const fs::path& path) {
+        options.simulation.record = path.string();
+        return simulate(options.simulation);
+    });
+}
+
+// --- Takes of takes ---
 
 /// The frames that are asked for. Throws WrongUsage where the take has no such.
 std::pair<std::uint64_t, std::uint64_t> rangeOf(const TakesOptions& options, const TakeInfo& info) {
@@ -150,11 +171,92 @@ std::pair<std::uint64_t, std::uint64_t> rangeOf(const TakesOptions& options, con
     return {options.range[0], options.range[1]};
 }
 
+struct OpenedTake {
+    Groom groom;
+    TakeReader reader;
+};
+Result<OpenedTake> openTake(const TakesOptions& options, const std::string& name) {
+    auto groom = openGroom(options.simulation.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const auto path = takeFor(options, name, *groom);
+    if (!path) return tl::unexpected(path.error());
+    auto reader = TakeReader::open(*path);
+    if (!reader) return tl::unexpected(reader.error());
+    if (auto status = reader->use(*groom); !status) return tl::unexpected(status.error());
+    return OpenedTake{std::move(*groom), std::move(*reader)};
+}
+
+WorkWatch watchOf(Progress& progress) {
+    WorkWatch watch;
+    watch.progress = [&progress](double share) { progress.done(static_cast<std::size_t>(100 * share)); };
+    return watch;
+}
+
+Result<Report> closeTake(const TakesOptions& options) {
+    auto take = openTake(options, options.closed);
+    if (!take) return tl::unexpected(take.error());
+    const std::uint64_t blend = options.simulation.loopBlend;
+    LoopToMake wanted{0, 0, blend, {}};
+    if (options.range.empty()) {
+        const auto repeat = lastRepeat(take->reader.info(), take->groom, blend);
+        if (!repeat) return tl::unexpected(repeat.error());
+        std::tie(wanted.first, wanted.last) = *repeat;
+    } else {
+        std::tie(wanted.first, wanted.last) = rangeOf(options, take->reader.info());
+    }
+    return withNewTake(options, options.to, [&](const fs::path& path) -> Result<Report> {
+        Progress progress("closing", 100);
+        wanted.watch = watchOf(progress);
+        const auto made = makeLoop(take->reader, take->groom, wanted, path);
+        if (!made) return tl::unexpected(made.error());
+        Report report{{"loop", loopReport(*made)}};
+        report["loop"]["first"] = wanted.first;
+        report["loop"]["last"] = wanted.last;
+        return report;
+    });
+}
+
+Result<Report> resimulateTake(const TakesOptions& options) {
+    auto take = openTake(options, options.resimulated);
+    if (!take) return tl::unexpected(take.error());
+    const std::string name = motionOfNotes(take->reader.info().notes);
+    const auto motion = makeMotion(name.empty() ? "none" : name, {}, take->groom);
+    if (!motion) return tl::unexpected(motion.error());
+    return withNewTake(options, options.to, [&](const fs::path& path) -> Result<Report> {
+        Progress progress("simulating", 100);
+        const TakeToResume wanted{*options.at, options.simulation.frames.value_or(0), watchOf(progress)};
+        const auto made = resumeTake(take->reader, take->groom, **motion, name, wanted, path);
+        if (!made) return tl::unexpected(made.error());
+        return Report{{"kept", made->kept}, {"simulated", made->simulated}, {"head_mm", made->headMm}};
+    });
+}
+
+Result<Report> shapeOfTake(const TakesOptions& options) {
+    auto take = openTake(options, options.shaped);
+    if (!take) return tl::unexpected(take.error());
+    const auto frame = take->reader.frame(*options.at);
+    if (!frame) return tl::unexpected(frame.error());
+    Report report{{"frame", *options.at}};
+    const auto groom = groomOfFrame(take->groom, frame->positions_ws, frame->pose, report);
+    if (!groom) return tl::unexpected(groom.error());
+    if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+    report["output"] = options.output;
+    return report;
+}
+
+// --- Export ---
+
 Result<Report> exportFrames(TakeReader& reader, const Groom& groom,
                             std::pair<std::uint64_t, std::uint64_t> range, const TakesOptions& options) {
     Progress progress("exporting", 100);
     TakeToExport wanted{options.exported, options.format, range.first, range.second, options.loops, {}};
-    wanted.watch.progress = [&](double share) { progress.done(static_cast<std::size_t>(100 * share)); };
+    wanted.hair = options.what == "all"     ? ExportedHair::all
+                  : options.what == "hairs" ? ExportedHair::hairs
+                                            : ExportedHair::guides;
+    wanted.watch = watchOf(progress);
+    // All of a take that repeats is a clip that does.
+    if (options.format == "runtime" && range.second - range.first + 1 == reader.info().frames)
+        wanted.loops = wanted.loops || loopOfNotes(reader.info().notes).has_value();
     const auto written = exportTake(reader, groom, wanted, options.output);
     if (!written) return tl::unexpected(written.error());
     if (options.format == kRecordFormat)
@@ -202,18 +304,18 @@ Result<Report> exportFilm(const TakeInfo& info, std::pair<std::uint64_t, std::ui
 }
 
 Result<Report> exportNamed(const TakesOptions& options) {
-    const auto groom = openGroom(options.simulation.input);
-    if (!groom) return tl::unexpected(groom.error());
     if (options.loops && options.format != "runtime")
         throw WrongUsage("--loop with --format " + options.format, "expected it with --format runtime");
-    const auto path = takeFor(options, options.exported, *groom);
+    if (options.what != "guides" && !canExportHairs(options.format))
+        throw WrongUsage(fmt::format("--what {} with --format {}", options.what, options.format),
+                         "expected it with a format of export with animation, as abc");
+    auto take = openTake(options, options.exported);
+    if (!take) return tl::unexpected(take.error());
+    const auto range = rangeOf(options, take->reader.info());
+    if (!isFilmFormat(options.format)) return exportFrames(take->reader, take->groom, range, options);
+    const auto path = existingTake(options.simulation.input, options.exported);
     if (!path) return tl::unexpected(path.error());
-    auto reader = TakeReader::open(*path);
-    if (!reader) return tl::unexpected(reader.error());
-    if (auto status = reader->use(*groom); !status) return tl::unexpected(status.error());
-    const auto range = rangeOf(options, reader->info());
-    if (isFilmFormat(options.format)) return exportFilm(reader->info(), range, *path, options);
-    return exportFrames(*reader, *groom, range, options);
+    return exportFilm(take->reader.info(), range, *path, options);
 }
 
 std::string_view kindOfExport(const std::string& format) {
@@ -254,8 +356,33 @@ Result<Report> distanceOfTakes(const TakesOptions& options) {
     return report;
 }
 
+/// Options that CLI11 cannot tie to one of several others.
+void checkTogether(const TakesOptions& options, const CLI::App& job) {
+    const auto given = [&](const char* name) { return job.count(name) > 0; };
+    const auto needs = [&](const char* name, const std::string& ways, bool has) {
+        if (given(name) && !has) throw WrongUsage(fmt::format("{} without {}", name, ways), "expected both");
+    };
+    const bool makes = given("--close") || given("--resimulate");
+    needs("--to", "--close or --resimulate", makes);
+    needs("--at", "--resimulate or --shape", given("--resimulate") || given("--shape"));
+    needs("--frames", "--record or --resimulate", given("--record") || given("--resimulate"));
+    needs("--range", "--export or --close", given("--export") || given("--close"));
+    needs("--loop", "--record or --export", given("--record") || given("--export"));
+    needs("--loop-repeats", "--loop", options.loops && given("--record"));
+    needs("--loop-blend", "--loop or --close", (options.loops && given("--record")) || given("--close"));
+    needs("--output", "--export or --shape", given("--export") || given("--shape"));
+    if (makes && !given("--to")) throw WrongUsage("--to is missing", "the name of the take to make");
+    if (given("--resimulate") && !given("--at")) throw WrongUsage("--at is missing", "a frame of the take");
+    if (given("--shape") && (!given("--at") || !given("--output")))
+        throw WrongUsage("--shape needs --at and -o", "--shape NAME --at FRAME -o G2.hairloom");
+}
+
 Result<Report> runTakes(TakesOptions& options) {
     if (!options.record.empty()) return recordTake(options);
+    if (!options.closed.empty()) return closeTake(options);
+    if (!options.resimulated.empty()) return resimulateTake(options);
+    if (!options.shaped.empty())
+        return withOutputs({{options.output, content::kProject}}, [&] { return shapeOfTake(options); });
     if (!options.exported.empty()) {
         if (options.format.empty() || options.output.empty())
             throw WrongUsage("--export needs --format and -o", "--export NAME --format abc -o F.abc");
@@ -292,32 +419,58 @@ JobRun declare(CLI::App& job) {
         job.add_option("--compare", options->compared,
                        "Names of two takes of the same groom, to measure the distance between their points")
             ->expected(2);
-    const std::vector<CLI::Option*> ways{record, exported, removed, renamed, compared};
+    auto* closed = job.add_option("--close", options->closed,
+                                  "Name of a take to make a loop of, under the name --to: the end of --range "
+                                  "is blended into the frames before it");
+    auto* resimulated = job.add_option(
+        "--resimulate", options->resimulated,
+        "Name of a take to keep up to the frame --at, and to simulate from there with the groom's settings "
+        "and motion as they are now, under the name --to");
+    auto* shaped =
+        job.add_option("--shape", options->shaped,
+                       "Name of a take whose frame --at becomes the authored shape that -o writes, "
+                       "on the head at rest, as rods that carry their weight");
+    const std::vector<CLI::Option*> ways{record,   exported, removed,     renamed,
+                                         compared, closed,   resimulated, shaped};
     for (CLI::Option* one : ways) {
         for (CLI::Option* other : ways) {
             if (one != other) one->excludes(other);
         }
     }
-    for (CLI::Option* option : addSimulationOptions(job, options->simulation)) option->needs(record);
+    const std::vector<CLI::Option*> shared = addSimulationOptions(job, options->simulation);
+    for (CLI::Option* option : shared) {
+        const std::string name = option->get_name();
+        if (name != "--frames" && name != "--loop-blend" && name != "--loop-repeats") option->needs(record);
+    }
+    job.add_option("--to", options->to, "Name of the take to make");
+    job.add_option("--at", options->at, "Frame of the take, counted from 0")
+        ->check(CLI::Range(0, 1'000'000'000));
     job.add_option("--format", options->format,
                    "frames is a record of simulate, runtime an asset whose clip a game plays without "
                    "simulating, webp an "
                    "animated image, mp4 a video. The others are formats of export with animation")
         ->check(CLI::IsMember(takeFormats()))
         ->needs(exported);
-    job.add_option("--range", options->range, "FIRST,LAST frame of the take to export (default: all)")
+    job.add_option("--range", options->range,
+                   "FIRST,LAST frame of the take to export (default: all) or to close (default: the last "
+                   "repeat of the time line)")
         ->check(CLI::Range(0, 1'000'000'000))
-        ->delimiter(',')
-        ->needs(exported);
-    job.add_flag("--loop", options->loops, "Of runtime: the clip loops, with its first frame after the last")
+        ->delimiter(',');
+    job.add_flag("--loop", options->loops,
+                 "Of a recording: as --loop of simulate. Of runtime: the clip loops, with its first frame "
+                 "after the last, as that of a take that was recorded or closed as a loop does");
+    job.add_option("--what", options->what,
+                   "As --what of export, of formats of export with animation: guides, hairs or all")
+        ->check(CLI::IsMember({"guides", "hairs", "all"}))
         ->needs(exported);
     job.add_option("--size", options->size, "Image size WxH of webp and mp4 in pixels")->needs(exported);
     job.add_option("--camera", options->camera, "Camera position of webp and mp4")
         ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter", "top", "bottom"}))
         ->needs(exported);
-    job.add_option("-o,--output", options->output, "File to export to")->needs(exported);
+    job.add_option("-o,--output", options->output, "File to export to, or project of --shape");
     // An empty name says nothing of what to do.
-    return [options, ways](const std::string&) {
+    return [options, ways, &job](const std::string&) {
+        checkTogether(*options, job);
         for (const CLI::Option* way : ways) {
             for (const std::string& name : way->results()) {
                 if (auto path = takePath(options->simulation.input, name); !path)

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
 
 #include "core/base/output_batch.h"
-#include "core/documents/hair_export.h"
 #include "core/simulation/frame_record.h"
 
 namespace hairloom {
@@ -75,8 +75,11 @@ Result<ExportReport> exportClip(TakeReader& reader, const Groom& groom, const Ha
 Result<ExportReport> exportStrands(TakeReader& reader, const Groom& groom, const HairWriter& writer,
                                    const TakeToExport& wanted, const std::filesystem::path& path) {
     // A frame holds the head's vertices and spheres, and bones as matrices.
-    const std::size_t vectors =
-        reader.info().points + (groom.scalp ? groom.scalp->vertexCount() : 0) + groom.spheres.size();
+    // Follow hairs come beside the strands that they follow.
+    const std::size_t drawn =
+        wanted.hair == ExportedHair::guides ? 0 : groom.interpolation.followPerGuide + std::size_t{1};
+    const std::size_t vectors = reader.info().points * (1 + drawn) +
+                                (groom.scalp ? groom.scalp->vertexCount() : 0) + groom.spheres.size();
     const double bytes =
         static_cast<double>(wanted.last - wanted.first + 1) * static_cast<double>(vectors * sizeof(Vec3f));
     if (bytes > kMostHeld)
@@ -84,6 +87,7 @@ Result<ExportReport> exportStrands(TakeReader& reader, const Groom& groom, const
             fmt::format("frames {} to {} take {:.1f} GB of memory", wanted.first, wanted.last, bytes / 1e9),
             fmt::format("expected at most {:.0f} GB: export fewer frames at once", kMostHeld / 1e9));
     HairToExport hair;
+    hair.hair = wanted.hair;
     hair.firstFrame = static_cast<double>(wanted.first);
     hair.cancel = wanted.watch.cancelled;
     constexpr double kReading = 0.3;  // of the time
@@ -91,6 +95,13 @@ Result<ExportReport> exportStrands(TakeReader& reader, const Groom& groom, const
         hair.progress = [&](std::string_view, double share) {
             wanted.watch.progress(kReading + (1 - kReading) * share);
         };
+    // Wisps widen by their speed, known from the frame before.
+    if (wanted.hair != ExportedHair::guides && wanted.first > 0) {
+        auto before = reader.frame(wanted.first - 1);
+        if (!before) return tl::unexpected(before.error());
+        hair.frames.push_back(std::move(*before));
+        hair.framesBefore = 1;
+    }
     const auto status =
         visitFrames(reader, wanted, wanted.watch.part(0, kReading), [&](RecordedFrame frame) -> Status {
             hair.frames.push_back(std::move(frame));
@@ -108,6 +119,12 @@ std::vector<std::string> takeExportFormats() {
         if (writer.animates || writer.holdsClips) names.push_back(writer.name);
     }
     return names;
+}
+
+bool canExportHairs(std::string_view format) {
+    return format != kRecordFormat && std::ranges::any_of(hairWriters(), [&](const HairWriter& writer) {
+               return writer.name == format && writer.animates;
+           });
 }
 
 Result<ExportReport> exportTake(TakeReader& reader, const Groom& groom, const TakeToExport& wanted,

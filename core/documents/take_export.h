@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/work_watch.h"
+#include "core/documents/hair_export.h"
 #include "core/simulation/take_file.h"
 #include "exporters/strands.h"
 
@@ -20,11 +22,16 @@ inline constexpr const char* kRecordFormat = "frames";
 /// strands that move.
 std::vector<std::string> takeExportFormats();
 
+/// Whether follow hairs may be written, not the strands alone: an asset for games makes them itself, and a
+/// record is of what was simulated.
+bool canExportHairs(std::string_view format);
+
 struct TakeToExport {
-    std::string name;                   ///< that a clip gets
-    std::string format;                 ///< one of takeExportFormats()
-    std::uint64_t first = 0, last = 0;  ///< frames, counted from 0, both in the file
-    bool loops = false;                 ///< of a clip: behind the last frame comes the first
+    std::string name;                          ///< that a clip gets
+    std::string format;                        ///< one of takeExportFormats()
+    std::uint64_t first = 0, last = 0;         ///< frames, counted from 0, both in the file
+    bool loops = false;                        ///< of a clip: behind the last frame comes the first
+    ExportedHair hair = ExportedHair::guides;  ///< of formats that canExportHairs()
     WorkWatch watch{};
 };
 

@@ -161,9 +161,39 @@ std::string motionOfNotes(const std::string& notes) {
     return found != read->end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+std::string withLoop(const std::string& notes, const LoopNotes& loop) {
+    auto read = parseJson("notes", notes);
+    nlohmann::ordered_json all = nlohmann::ordered_json::object();
+    if (read && read->is_object()) all = std::move(*read);
+    all["loop"] = {{"first", loop.first}, {"frames", loop.frames}, {"blend", loop.blend}};
+    return all.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::optional<LoopNotes> loopOfNotes(const std::string& notes) {
+    const auto read = parseJson("notes", notes);
+    if (!read || !read->is_object()) return std::nullopt;
+    const auto loop = read->find("loop");
+    if (loop == read->end() || !loop->is_object()) return std::nullopt;
+    const auto number = [&](const char* name) -> std::uint64_t {
+        const auto found = loop->find(name);
+        return found != loop->end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
+    };
+    return LoopNotes{number("first"), number("frames"), number("blend")};
+}
+
 std::optional<float> timeLineSeconds(const TakeInfo& info, std::uint64_t frame) {
     if (motionOfNotes(info.notes) != kTimeLineMotion) return std::nullopt;
-    return static_cast<float>(frame + 1) / info.framesPerSecond;
+    const auto loop = loopOfNotes(info.notes);
+    return static_cast<float>((loop ? loop->first : 0) + frame + 1) / info.framesPerSecond;
+}
+
+std::uint64_t frameAtTimeLine(const TakeInfo& info, float seconds) {
+    const double number =
+        std::round(static_cast<double>(seconds) * static_cast<double>(info.framesPerSecond)) - 1;
+    const auto frame = static_cast<std::uint64_t>(std::max(number, 0.0));
+    const auto loop = loopOfNotes(info.notes);
+    if (!loop || info.frames == 0) return frame;
+    return (frame + info.frames - loop->first % info.frames) % info.frames;
 }
 
 Result<TakeDifference> compareTakes(const fs::path& a, const fs::path& b, const Groom& groom,

@@ -49,9 +49,22 @@ std::string takeNotes(const std::string& motion, const Groom& groom, const std::
 /// "motion" of such notes; empty where they have none.
 std::string motionOfNotes(const std::string& notes);
 
+/// Of a take that repeats: behind its last frame comes its first.
+struct LoopNotes {
+    std::uint64_t first = 0;  ///< frame of the motion's own that is frame 0 here
+    std::uint64_t frames = 0, blend = 0;
+};
+/// The notes of a take, with "loop" as well.
+std::string withLoop(const std::string& notes, const LoopNotes& loop);
+/// Nothing of a take that does not repeat.
+std::optional<LoopNotes> loopOfNotes(const std::string& notes);
+
 /// Seconds behind the start of the time line at a frame of a take of that, whose first frame is the one
-/// behind the start. Nothing of takes of other motions.
+/// behind the start, or the first of a repeat. Nothing of takes of other motions.
 std::optional<float> timeLineSeconds(const TakeInfo& info, std::uint64_t frame);
+/// The other way: the frame of such a take nearest to that time, at least 0; it need not have it. Of a loop
+/// it has it.
+std::uint64_t frameAtTimeLine(const TakeInfo& info, float seconds);
 
 /// Distances of points of the same number in frames of the same number, millimetres.
 struct TakeDifference {
