@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/base/output_batch.h"
+#include "core/documents/takes.h"
 #include "core/simulation/take_file.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
@@ -73,6 +74,7 @@ TakeExportDialog::TakeExportDialog(const QString& name, std::filesystem::path ta
       messages_(messages),
       form_(new QFormLayout),
       format_(new QComboBox),
+      what_(new QComboBox),
       first_(frameBox("takeFirst", "First frame to export", info.frames)),
       last_(frameBox("takeLast", "Last frame to export", info.frames)),
       loops_(new QCheckBox("Loop")),
@@ -94,6 +96,12 @@ TakeExportDialog::TakeExportDialog(const QString& name, std::filesystem::path ta
     note_->setProperty("role", "dim");
     note_->setWordWrap(true);
     form_->addRow(QString(), note_);
+    what_->addItem("Guides: the strands of the document", static_cast<int>(ExportedHair::guides));
+    what_->addItem("Rendered hairs: what the viewport shows", static_cast<int>(ExportedHair::hairs));
+    what_->setObjectName("takeWhat");
+    what_->setToolTip(
+        "Choose guides for programs that interpolate hair themselves. Choose rendered hairs for all others");
+    form_->addRow("Hair", what_);
     last_->setValue(last_->maximum());
     auto* range = new QWidget;
     auto* ends = new QHBoxLayout(range);
@@ -104,6 +112,7 @@ TakeExportDialog::TakeExportDialog(const QString& name, std::filesystem::path ta
     form_->addRow("Frames", range);
     loops_->setObjectName("takeLoops");
     loops_->setToolTip("The clip starts again after its last frame");
+    loops_->setChecked(loopOfNotes(info.notes).has_value());
     form_->addRow("Clip", loops_);
     summary_->setObjectName("takeWillExport");
     summary_->setWordWrap(true);
@@ -123,6 +132,10 @@ TakeExportDialog::TakeExportDialog(const QString& name, std::filesystem::path ta
     showRows();
 }
 
+bool TakeExportDialog::canChooseHair(const std::string& format) const {
+    return document_.groom().interpolation.followPerGuide > 0 && canExportHairs(format);
+}
+
 TakeToExport TakeExportDialog::wanted() const {
     TakeToExport asked;
     asked.name = name_.toStdString();
@@ -130,6 +143,8 @@ TakeToExport TakeExportDialog::wanted() const {
     asked.first = static_cast<std::uint64_t>(first_->value());
     asked.last = static_cast<std::uint64_t>(last_->value());
     const HairWriter* const writer = writerOfTake(asked.format);
+    asked.hair = canChooseHair(asked.format) ? static_cast<ExportedHair>(what_->currentData().toInt())
+                                             : ExportedHair::guides;
     asked.loops = writer != nullptr && writer->holdsClips && loops_->isChecked();
     return asked;
 }
@@ -138,6 +153,7 @@ void TakeExportDialog::showRows() {
     const TakeToExport asked = wanted();
     const HairWriter* const writer = writerOfTake(asked.format);
     form_->setRowVisible(loops_, writer != nullptr && writer->holdsClips);
+    form_->setRowVisible(what_, canChooseHair(asked.format));
     note_->setText(noteOfTake(asked.format));
     const bool runsForward = asked.first <= asked.last;
     const bool hasChanged = info_.shapeHash != takeShapeHash(document_.groom());

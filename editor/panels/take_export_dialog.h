@@ -36,6 +36,8 @@ class TakeExportDialog : public QDialog {
     void choosePath();
     void showRows();
     TakeToExport wanted() const;
+    /// Whether follow hairs are there and may be written.
+    bool canChooseHair(const std::string& format) const;
 
     QString name_;
     std::filesystem::path take_;
@@ -46,7 +48,7 @@ class TakeExportDialog : public QDialog {
     std::vector<std::string> formats_ = takeExportFormats();
     std::vector<SaveFormat> files_;  ///< of each format
     QFormLayout* form_;
-    QComboBox* format_;
+    QComboBox *format_, *what_;
     QSpinBox *first_, *last_;
     QCheckBox* loops_;
     QLabel *note_, *summary_;

@@ -2,7 +2,6 @@
 #include "editor/panels/take_view.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/documents/motions.h"
 #include "core/documents/takes.h"
@@ -119,11 +118,7 @@ void TakeView::followPlayHead() {
     if (!take_ || !player_.isScrubbed() || motionOfNotes(take_->info().notes) != kTimeLineMotion) return;
     setPlaying(false);
     const TimeLine& line = timeLineOf(document_.groom());
-    // Its first frame is the one behind the start.
-    const double number = std::round(static_cast<double>(player_.lineTime() - line.start) *
-                                     static_cast<double>(take_->info().framesPerSecond)) -
-                          1;
-    showFrame(static_cast<std::uint64_t>(std::max(number, 0.0)));
+    showFrame(frameAtTimeLine(take_->info(), player_.lineTime() - line.start));
 }
 
 void TakeView::startClock() {

@@ -18,6 +18,7 @@
 #include "editor/fields/blocks.h"
 #include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
+#include "editor/panels/take_actions.h"
 #include "editor/panels/take_export_dialog.h"
 #include "editor/panels/take_view.h"
 #include "editor/style/icons.h"
@@ -44,7 +45,12 @@ class TakesPanel : public QWidget {
           tasks_(parts.tasks),
           messages_(parts.messages),
           player_(parts.player),
-          view_(new TakeView(parts, this)) {
+          view_(new TakeView(parts, this)),
+          actions_(new TakeActions(
+              parts, *view_,
+              {[this] { return selected(); }, [this](const QString& name) { return fileOf(name); },
+               [this](const QString& stem) { return freeName(stem); }},
+              this)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -186,6 +192,8 @@ class TakesPanel : public QWidget {
         remove_ =
             pushButton("takeDelete", "Delete…", "Delete the file of the selected take", [this] { remove(); });
         layout.addWidget(shape_);
+        layout.addWidget(actions_);
+        connect(actions_, &TakeActions::made, this, [this](const QString& name) { fill(name); });
         for (QPushButton* button : {export_, rename_, remove_}) row->addWidget(button);
         layout.addLayout(row);
     }
@@ -240,6 +248,8 @@ class TakesPanel : public QWidget {
                        .arg(static_cast<double>(take.info.framesPerSecond))
                        .arg(1e3 * static_cast<double>(take.info.largestError), 0, 'f', 3);
             if (!take.info.isFinished) tip += "Its recording was interrupted";
+            if (const auto loop = loopOfNotes(take.info.notes))
+                tip.front() += QString(". Repeats every %L1 frames").arg(loop->frames);
             if (take.info.shapeHash != shape) tip += "The groom or its head has changed shape since";
         }
         if (tip.size() > 1 || !take.problem.empty()) row->setIcon(kTakeColumn, icon("warning"));
@@ -259,6 +269,13 @@ class TakesPanel : public QWidget {
         for (int i = 1;; ++i) {
             const QString name = QString("take %1").arg(i);
             if (document_.path().isEmpty() || fileIsFree(name)) return name;
+        }
+    }
+    /// The stem itself where it is free.
+    QString freeName(const QString& stem) const {
+        for (int i = 1;; ++i) {
+            const QString name = i == 1 ? stem : QString("%1 %2").arg(stem).arg(i);
+            if (document_.path().isEmpty() || fileOf(name).empty() || fileIsFree(name)) return name;
         }
     }
 
@@ -431,6 +448,7 @@ class TakesPanel : public QWidget {
         const bool shown = view_->isShown();
         for (QWidget* widget : std::initializer_list<QWidget*>{play_, slider_, speed_, other_, shape_})
             widget->setEnabled(shown && !records);
+        actions_->setActive(shown && !records);
         for (QPushButton* button : {export_, rename_, remove_})
             button->setEnabled(!selected().isEmpty() && !records);
         if (!shown) number_->setText({});
@@ -443,6 +461,7 @@ class TakesPanel : public QWidget {
     Messages& messages_;
     Player& player_;
     TakeView* view_;
+    TakeActions* actions_;
     QLineEdit* name_ = nullptr;
     QPushButton *record_ = nullptr, *play_ = nullptr, *shape_ = nullptr, *export_ = nullptr,
                 *rename_ = nullptr, *remove_ = nullptr;

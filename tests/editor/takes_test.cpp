@@ -15,6 +15,7 @@
 #include "core/base/file.h"
 #include "core/documents/takes.h"
 #include "core/simulation/frame_record.h"
+#include "editor/panels/new_take_dialog.h"
 #include "editor/panels/take_export_dialog.h"
 #include "importers/strands.h"
 #include "tests/editor/window_fixture.h"
@@ -162,6 +163,120 @@ TEST_F(TakesTest, AFrameBecomesTheRestShapeAndIsUndone) {
     EXPECT_EQ(window->statusLine().message(), "Frame 11 is now the rest shape");
     document().undo();
     EXPECT_EQ(hash(), before);
+}
+
+TEST_F(TakesTest, ATakeIsMadeALoop) {
+    ASSERT_TRUE(parts().player.setMotion("nod"));
+    record("nod", 112);
+    const std::uint64_t frames = TakeReader::open(*takePath(project(), "nod"))->info().frames;
+    onceAsked<NewTakeDialog>([&](NewTakeDialog& dialog) {
+        EXPECT_EQ(dialog.name(), "nod loop");
+        auto* make = dialog.findChild<QPushButton*>("newTakeMake");
+        auto* words = dialog.findChild<QLabel*>("newTakeWords");
+        // A nod comes back after 48 frames.
+        dialog.findChild<QSpinBox*>("loopFirst")->setValue(4);
+        EXPECT_FALSE(make->isEnabled());
+        EXPECT_TRUE(words->text().contains("4 frames before it")) << words->text().toStdString();
+        dialog.findChild<QSpinBox*>("loopFirst")->setValue(60);
+        dialog.findChild<QSpinBox*>("loopLast")->setValue(107);
+        EXPECT_TRUE(make->isEnabled());
+        EXPECT_TRUE(words->text().startsWith("48 frames")) << words->text().toStdString();
+        if (isDrawn()) {
+            QCoreApplication::processEvents();
+            QDir().mkpath(HAIRLOOM_SCREENSHOTS);
+            EXPECT_TRUE(onScreen().save(HAIRLOOM_SCREENSHOTS "/take-loop.png"));
+        }
+        make->click();
+    });
+    click("takeLoop");
+    finishWork();
+    EXPECT_EQ(said().rfind("“nod loop” closes within 0.00 mm", 0), 0u) << said();
+    EXPECT_EQ(rows(), (QStringList{"nod", "nod loop"}));
+    const auto info = TakeReader::open(*takePath(project(), "nod loop"))->info();
+    EXPECT_EQ(info.frames, 48u);
+    ASSERT_TRUE(loopOfNotes(info.notes));
+    EXPECT_EQ(loopOfNotes(info.notes)->first, 60u);
+    // It is shown, and says in the list that it repeats.
+    EXPECT_EQ(get<QSlider>("takeFrame")->maximum(), 47);
+    EXPECT_EQ(shown(), frameOf("nod loop", 0));
+    EXPECT_EQ(frameOf("nod loop", 0), frameOf("nod", 60));
+    EXPECT_TRUE(get<QTreeWidget>("takes")->currentItem()->toolTip(0).contains("Repeats every 48 frames"));
+    // A clip of it loops unless somebody says otherwise.
+    exportAs("runtime", 0, 47, inFolder("loop.hairrt"), [](TakeExportDialog& dialog) {
+        EXPECT_TRUE(dialog.findChild<QCheckBox*>("takeLoops")->isChecked());
+    });
+    finishWork();
+    EXPECT_EQ(kindOfFile("loop.hairrt"), "a runtime asset");
+    // A range after which the head is elsewhere makes nothing.
+    select("nod");
+    onceAsked<NewTakeDialog>([&](NewTakeDialog& dialog) {
+        dialog.findChild<QSpinBox*>("loopFirst")->setValue(60);
+        dialog.findChild<QSpinBox*>("loopLast")->setValue(90);
+        dialog.findChild<QPushButton*>("newTakeMake")->click();
+    });
+    click("takeLoop");
+    finishWork();
+    EXPECT_NE(said().find("repeats every 31 frames"), std::string::npos) << said();
+    EXPECT_EQ(rows().size(), 2);
+    EXPECT_GT(frames, 107u);
+}
+
+TEST_F(TakesTest, ATakeIsSimulatedAnewFromTheFrameThatIsShown) {
+    record("rest", 20);
+    const std::uint64_t frames = TakeReader::open(*takePath(project(), "rest"))->info().frames;
+    Groom windy = groom();
+    windy.simulation.windSpeed = 12;
+    change("Wind", windy);
+    select("rest");
+    get<QSlider>("takeFrame")->setValue(9);
+    onceAsked<NewTakeDialog>([&](NewTakeDialog& dialog) {
+        EXPECT_EQ(dialog.findChild<QSpinBox*>("resimulateAt")->value(), 9);
+        EXPECT_EQ(dialog.findChild<QSpinBox*>("resimulateFrames")->value(), static_cast<int>(frames) - 10);
+        dialog.findChild<QSpinBox*>("resimulateFrames")->setValue(30);
+        dialog.findChild<QPushButton*>("newTakeMake")->click();
+    });
+    click("takeResimulate");
+    finishWork();
+    EXPECT_EQ(said(), "Simulated 30 frames of “rest from 9” from frame 9 on");
+    EXPECT_EQ(get<QSlider>("takeFrame")->maximum(), 39);
+    EXPECT_EQ(frameOf("rest from 9", 9), frameOf("rest", 9));
+    const auto last = frameOf("rest from 9", 39), before = frameOf("rest", 9);
+    float moved = 0;
+    for (std::size_t p = 0; p < last.size(); ++p) moved = std::max(moved, (last[p] - before[p]).norm());
+    EXPECT_GT(moved, 0.005f) << "wind blows now";
+    // Another name that is taken makes nothing.
+    onceAsked<NewTakeDialog>([&](NewTakeDialog& dialog) {
+        dialog.findChild<QLineEdit*>("newTakeName")->setText("rest");
+        dialog.findChild<QPushButton*>("newTakeMake")->click();
+    });
+    click("takeResimulate");
+    EXPECT_NE(said().find("already"), std::string::npos) << said();
+    EXPECT_FALSE(parts().tasks.isBusy());
+}
+
+TEST_F(TakesTest, FollowHairsOfATakeAreAChoice) {
+    openFirstStrands(20);
+    Groom followed = groom();
+    followed.interpolation.followPerGuide = 4;
+    change("Follow hairs", followed);
+    save();
+    record("rest", 8);
+    exportAs("abc", 0, 3, inFolder("hairs.abc"), [](TakeExportDialog& dialog) {
+        auto* what = dialog.findChild<QComboBox*>("takeWhat");
+        EXPECT_TRUE(what->isVisible());
+        what->setCurrentIndex(1);
+        auto* formats = dialog.findChild<QComboBox*>("takeFormat");
+        formats->setCurrentIndex(formats->findData("runtime"));
+        EXPECT_FALSE(what->isVisible()) << "a game makes them itself";
+        formats->setCurrentIndex(formats->findData("abc"));
+    });
+    finishWork();
+    StrandImportOptions animated;
+    animated.frames = true;
+    const auto alembic = importStrands(inFolder("hairs.abc").toStdString(), animated);
+    ASSERT_TRUE(alembic) << alembic.error().message();
+    EXPECT_EQ(alembic->frames.size(), 4u);
+    EXPECT_EQ(alembic->groom.strandCount(), 80u);
 }
 
 TEST_F(TakesTest, ThoseOfAWindowThatWasKilledAreThereAgain) {
