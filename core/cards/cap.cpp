@@ -175,7 +175,7 @@ class Roots {
 };
 
 /// Fewer triangles where the skin is flatter than the squares of the grid are made for.
-void thin(CapChart& chart, float tolerance) {
+void thin(CapChart& chart, const Frame& frame, float square, float tolerance) {
     if (chart.indices.empty()) return;
     const float* const first = chart.vertices[0].position_ws.data();
     const float size = meshopt_simplifyScale(first, chart.vertices.size(), sizeof(CapChart::Vertex));
@@ -183,7 +183,15 @@ void thin(CapChart& chart, float tolerance) {
     fewer.resize(meshopt_simplify(fewer.data(), chart.indices.data(), chart.indices.size(), first,
                                   chart.vertices.size(), sizeof(CapChart::Vertex), 0, tolerance / size, 0,
                                   nullptr));
-    chart.indices = std::move(fewer);
+    // Along a straight border three corners get to lie on a line: such a triangle stands upright on the skin.
+    constexpr float kLeast = 1e-3f;  // of a square, as the chart looks at it
+    chart.indices.clear();
+    for (std::size_t i = 0; i + 2 < fewer.size(); i += 3) {
+        const auto at = [&](std::size_t k) { return chart.vertices[fewer[i + k]].position_ws; };
+        const float area = 0.5f * (at(1) - at(0)).cross(at(2) - at(0)).dot(frame.outwards);
+        if (area > kLeast * square * square)
+            chart.indices.insert(chart.indices.end(), {fewer[i], fewer[i + 1], fewer[i + 2]});
+    }
     std::vector<CapChart::Vertex> used(chart.vertices.size());
     used.resize(meshopt_optimizeVertexFetch(used.data(), chart.indices.data(), chart.indices.size(),
                                             chart.vertices.data(), chart.vertices.size(),
@@ -257,24 +265,21 @@ CapChart chartOf(const Hair& laid, std::size_t axis, float tolerance, Cancel can
         if (highest - lowest > kSheet * square) continue;  // from one sheet to another
         for (const std::uint32_t v : {a, c, b, b, c, d}) chart.indices.push_back(v);
     }
-    thin(chart, kThinned * tolerance);
+    thin(chart, frame, square, kThinned * tolerance);
     return chart;
 }
 
-/// Straight down, hair that stands up covers nothing, but eyes look at skin aslant: a laid hair reaches at
-/// least kAslant of its length aside, where it leans to or, standing straight, any way.
+/// Straight down, hair that stands straight up covers nothing, but eyes look at skin aslant: laid, it reaches
+/// kAslant of its length aside, any way. Hair that leans covers what it covers.
 constexpr float kAslant = 0.5f;
 void layAside(std::size_t strand, const Vec3f& normal, float length, std::span<Vec3f> laid) {
-    const Vec3f aside = laid.back() - laid.front();
-    const float missing = kAslant * length - aside.norm();
-    if (!(missing > 0)) return;
+    constexpr float kNoWay = 0.05f;  // of its length
+    if ((laid.back() - laid.front()).norm() > kNoWay * length) return;
     const Vec3f x = normal.unitOrthogonal();
     const float turn = 2 * kPi * hashUnit(static_cast<std::uint32_t>(strand), 17, 0);
-    const Vec3f any = std::cos(turn) * x + std::sin(turn) * normal.cross(x);
-    constexpr float kNoWay = 0.05f;  // of its length
-    const Vec3f way = aside.norm() > kNoWay * length ? Vec3f(aside.normalized()) : any;
+    const Vec3f way = kAslant * length * (std::cos(turn) * x + std::sin(turn) * normal.cross(x));
     for (std::size_t p = 1; p < laid.size(); ++p)
-        laid[p] += missing * static_cast<float>(p) / static_cast<float>(laid.size() - 1) * way;
+        laid[p] = laid[0] + static_cast<float>(p) / static_cast<float>(laid.size() - 1) * way;
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ struct CapChart {
     std::vector<std::uint32_t> indices;  ///< three a triangle, outwards
 };
 
-/// Hairs up to a length, laid on the planes that touch the skin at their roots. Those that stand up lie as
-/// far aside as they cover skin for an eye that looks at it aslant. Strands have the numbers that they have
-/// in `hair`.
+/// Hairs up to a length, laid on the planes that touch the skin at their roots. Those that stand straight up
+/// lie as far aside as they cover skin for an eye that looks at it aslant. Strands have the numbers that they
+/// have in `hair`.
 Hair laidRoots(const Hair& hair);
 
 /// Charts that hold all roots of `hair`, between them off the skin by `tolerance` (> 0, metres) and a little.

@@ -103,18 +103,24 @@ TEST(Cap, StopsWhenItIsCancelled) {
     EXPECT_FALSE(makeCap(ballHair(1500), kTolerance, &cancel));
 }
 
-TEST(Cap, HoldsHairThatStandsUpAsFarAsItHidesSkin) {
+/// Strands of 20 mm on the plane y = 0, `lean` radians off its normal, all one way.
+Hair uprightHair(std::uint32_t strands, float lean) {
     Hair hair;
-    constexpr std::uint32_t kStrands = 40;
-    for (std::uint32_t s = 0; s < kStrands; ++s) {  // of 20 mm, straight up from the plane y = 0
-        for (const float height : {0.0f, 0.01f, 0.02f}) {
-            hair.positions_ws.emplace_back(0.002f * static_cast<float>(s), height, 0);
+    const Vec3f way(0, std::cos(lean), std::sin(lean));
+    for (std::uint32_t s = 0; s < strands; ++s) {
+        for (const float along : {0.0f, 0.01f, 0.02f}) {
+            hair.positions_ws.emplace_back(Vec3f(0.002f * static_cast<float>(s), 0, 0) + along * way);
             hair.radii.push_back(0.0001f), hair.albedo.emplace_back(0.2f, 0.1f, 0.05f);
         }
         hair.offsets.push_back(static_cast<std::uint32_t>(hair.positions_ws.size()));
         hair.rootNormals_ws.emplace_back(0, 1, 0);
     }
-    const Hair laid = laidRoots(hair);
+    return hair;
+}
+
+TEST(Cap, HoldsHairThatStandsUpAsFarAsItHidesSkin) {
+    constexpr std::uint32_t kStrands = 40;
+    const Hair laid = laidRoots(uprightHair(kStrands, 0));
     Vec3f sum = Vec3f::Zero();
     for (std::uint32_t s = 0; s < kStrands; ++s) {
         const Vec3f way = laid.strand(s).back() - laid.strand(s).front();
@@ -123,6 +129,15 @@ TEST(Cap, HoldsHairThatStandsUpAsFarAsItHidesSkin) {
         sum += way;
     }
     EXPECT_LT(sum.norm(), 0.5f * kStrands * kShownLength / 2) << "not all one way";
+}
+
+TEST(Cap, HoldsHairThatLeansAsFarAsItLeans) {
+    constexpr float kLean = 0.25f;
+    const Hair laid = laidRoots(uprightHair(5, kLean));
+    for (std::uint32_t s = 0; s < 5; ++s) {
+        const Vec3f way = laid.strand(s).back() - laid.strand(s).front();
+        EXPECT_LT((way - Vec3f(0, 0, kShownLength * std::sin(kLean))).norm(), 1e-5f);
+    }
 }
 
 TEST(Cap, IsTransparentBeyondTheHairsAndThinsTowardsThem) {
