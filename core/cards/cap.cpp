@@ -15,7 +15,6 @@
 namespace hairloom::cards {
 namespace {
 
-constexpr float kLength = 0.012f;                           // metres of a hair that the cap shows
 constexpr float kClear = 0.0003f;                           // metres above the skin, beside the tolerance
 constexpr float kHeadRadius = 0.09f;                        // metres: how much a square of the grid bulges
 constexpr float kFinestSquare = 0.004f, kCoarsest = 0.03f;  // metres, squares of the grid
@@ -284,18 +283,20 @@ void layAside(std::size_t strand, const Vec3f& normal, float length, std::span<V
 
 }  // namespace
 
-Hair laidRoots(const Hair& hair) {
-    Hair laid;
+LaidRoots laidRoots(const Hair& hair) {
+    LaidRoots roots;
+    Hair& laid = roots.hair;
     for (std::size_t s = 0; s < hair.strandCount(); ++s) {
         const Vec3f root = hair.strand(s)[0], normal = hair.rootNormals_ws[s];
         const auto add = [&](const Vec3f& point, std::size_t p, float t) {
+            roots.grown_ws.push_back(point);
             laid.positions_ws.push_back(point - (point - root).dot(normal) * normal);
             laid.radii.push_back(t < 1 ? (1 - t) * hair.radii[p] + t * hair.radii[p + 1] : hair.radii[p + 1]);
             laid.albedo.push_back(t < 1 ? Vec3f((1 - t) * hair.albedo[p] + t * hair.albedo[p + 1])
                                         : hair.albedo[p + 1]);
         };
         add(root, hair.offsets[s], 0);
-        float left = kLength;
+        float left = kOnCap;
         for (std::size_t p = hair.offsets[s]; p + 1 < hair.offsets[s + 1] && left > 0; ++p) {
             const Vec3f &a = hair.positions_ws[p], &b = hair.positions_ws[p + 1];
             const float length = (b - a).norm();
@@ -303,39 +304,40 @@ Hair laidRoots(const Hair& hair) {
             add((1 - t) * a + t * b, p, t);
             left -= length;
         }
-        layAside(s, normal, kLength - std::max(left, 0.0f),
+        layAside(s, normal, kOnCap - std::max(left, 0.0f),
                  std::span(laid.positions_ws).subspan(laid.offsets.back()));
         laid.offsets.push_back(static_cast<std::uint32_t>(laid.positions_ws.size()));
         laid.rootNormals_ws.push_back(normal);
     }
-    return laid;
+    return roots;
 }
 
 Result<std::vector<CapChart>> makeCap(const Hair& hair, float tolerance, Cancel cancel) {
-    const Hair laid = laidRoots(hair);
+    const Hair laid = laidRoots(hair).hair;
     std::vector<CapChart> charts;
     constexpr std::size_t kAxes = 6;
     for (std::size_t axis = 0; axis < kAxes && !cancelled(cancel); ++axis) {
         CapChart chart = chartOf(laid, axis, tolerance, cancel);
         if (!chart.indices.empty()) charts.push_back(std::move(chart));
     }
+    parallelFor(charts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end && !cancelled(cancel); ++c) setHidden(hair, charts[c]);
+    });
     if (cancelled(cancel)) return stopped();
     return charts;
 }
 
-Picture bakeCap(const Hair& hair, const Hair& laid, const HairLight& light, const CapChart& chart,
+Picture bakeCap(const Hair& hair, const LaidRoots& laid, const HairLight& light, const CapChart& chart,
                 float thickness, std::uint32_t width, std::uint32_t height) {
-    Picture picture = bake(laid, light, chart.plane, chart.strands, thickness, width, height);
+    Picture picture = bake(laid.hair, light, chart.plane, chart.strands,
+                           {.thickness = thickness, .grown_ws = laid.grown_ws}, width, height);
     double shown = 0, whole = 0;
     for (const std::uint32_t s : chart.strands) {
         const double length = static_cast<double>(polylineLength(hair.strand(s)));
-        shown += std::min(length, static_cast<double>(kLength)), whole += length;
+        shown += std::min(length, static_cast<double>(kOnCap)), whole += length;
     }
     const auto share = static_cast<float>(whole > 0 ? shown / whole : 1);
-    for (Texel& texel : picture.texels) {
-        texel.along *= share;  // of a whole hair
-        texel.depth = 0;       // the grid follows the skin, which the plane of the picture does not
-    }
+    for (Texel& texel : picture.texels) texel.along *= share;  // of a whole hair
     return picture;
 }
 

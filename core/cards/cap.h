@@ -3,6 +3,8 @@
 // The cap under the cards: a thin surface just above the scalp that wears the first centimetre of all hairs,
 // so that what is seen between cards is hair, and skin where hair gets sparse.
 
+#include <array>
+
 #include "core/cards/texture.h"
 
 namespace hairloom::cards {
@@ -17,12 +19,18 @@ struct CapChart {
     };
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;  ///< three a triangle, outwards
+    /// Share of the skin that strands hide, seen straight on, by squares of the plane, row by row.
+    std::vector<float> hidden;
 };
 
 /// Hairs up to a length, laid on the planes that touch the skin at their roots. Those that stand straight up
 /// lie as far aside as they cover skin for an eye that looks at it aslant. Strands have the numbers that they
 /// have in `hair`.
-Hair laidRoots(const Hair& hair);
+struct LaidRoots {
+    Hair hair;
+    std::vector<Vec3f> grown_ws;  ///< where each point was before
+};
+LaidRoots laidRoots(const Hair& hair);
 
 /// Charts that hold all roots of `hair`, between them off the skin by `tolerance` (> 0, metres) and a little.
 /// Empty where there are no strands. The same for any number of threads. Errors: stopped.
@@ -30,7 +38,21 @@ Result<std::vector<CapChart>> makeCap(const Hair& hair, float tolerance, Cancel 
 
 /// What a chart wears: strands as laidRoots() has them, `thickness` times as thick. `hair` gives their whole
 /// lengths.
-Picture bakeCap(const Hair& hair, const Hair& laid, const HairLight& light, const CapChart& chart,
+Picture bakeCap(const Hair& hair, const LaidRoots& laid, const HairLight& light, const CapChart& chart,
                 float thickness, std::uint32_t width, std::uint32_t height);
+
+/// Sets CapChart::hidden.
+void setHidden(const Hair& hair, CapChart& chart);
+
+/// A triangle of a card, and the picture that it shows there.
+struct WornTriangle {
+    const Picture* picture;
+    std::array<Vec3f, 3> at_ws;
+    std::array<Vec2f, 3> place;  ///< in the picture, 0 … 1
+};
+
+/// Thins what bakeCap() made where cards cover the skin and strands leave some of it bare: cap and cards show
+/// the same hairs, and twice as many hide too much. The cap is not made denser.
+void leaveToCards(std::span<const WornTriangle> cards, const CapChart& chart, Picture& picture);
 
 }  // namespace hairloom::cards

@@ -198,6 +198,22 @@ Result<std::vector<Bundle>> bundlesOf(const Hair& hair, const CardOptions& optio
     return bundles;
 }
 
+/// Triangles of the cards, without the cap's.
+std::vector<WornTriangle> wornBy(const CardMesh& mesh, std::span<const Picture> pictures) {
+    std::vector<WornTriangle> worn;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const CardVertex& first = mesh.vertices[mesh.indices[i]];
+        if (first.card == kOfCap) continue;
+        WornTriangle triangle{&pictures[first.texture], {}, {}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const CardVertex& v = mesh.vertices[mesh.indices[i + k]];
+            triangle.at_ws[k] = v.position_ws, triangle.place[k] = v.place;
+        }
+        worn.push_back(triangle);
+    }
+    return worn;
+}
+
 }  // namespace
 
 void shapeByHand(std::span<const HeldCard> held, Cards& cards) {
@@ -212,7 +228,7 @@ void shapeByHand(std::span<const HeldCard> held, Cards& cards) {
 Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Cards& cards, Cancel cancel) {
     const std::size_t painters = cards.painters.size();
     std::vector<Picture> pictures(painters + cards.cap.size());
-    const Hair laid = laidRoots(hair);
+    const LaidRoots laid = laidRoots(hair);
     parallelFor(pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && !cancelled(cancel); ++i) {
             const Rect& rect = cards.atlas.rects[i];
@@ -222,8 +238,15 @@ Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Card
                 continue;
             }
             const Card& card = cards.cards[cards.painters[i]];
-            pictures[i] = bake(hair, light, card.strip, card.strands, thickness, rect.width, rect.height);
+            pictures[i] = bake(hair, light, card.strip, card.strands,
+                               {.thickness = thickness, .clear = kClearOfSkin}, rect.width, rect.height);
         }
+    });
+    if (cancelled(cancel)) return stopped();
+    const std::vector<WornTriangle> worn = wornBy(cards.mesh, pictures);
+    parallelFor(cards.cap.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end && !cancelled(cancel); ++i)
+            leaveToCards(worn, cards.cap[i], pictures[painters + i]);
     });
     if (cancelled(cancel)) return stopped();
     cards.atlas = makeAtlas(std::move(pictures), std::move(cards.atlas.rects), cards.atlas.side());
@@ -266,9 +289,9 @@ Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOpti
     cards.texel = layout->texel;
     cards.atlas.rects = std::move(layout->rects);
     cards.atlas.levels = {Picture{layout->side, layout->side, {}}};
+    buildMesh(cards);
     if (auto status = bakeAtlas(hair, light, 1, cards, cancel); !status)
         return tl::unexpected(status.error());
-    buildMesh(cards);
     return cards;
 }
 

@@ -37,6 +37,7 @@ struct CardOptions {
 
 constexpr std::uint32_t kSharedTextures = 32;  ///< what an atlas is sized by where no number is set
 constexpr float kLongestTexel = 3;             ///< along a card, times its width: hair changes slowly there
+constexpr float kClearOfSkin = 0.0025f;        ///< metres above it, from where on cards show hair
 constexpr std::uint32_t kOfCap = UINT32_MAX;   ///< CardVertex::card of the cap's vertices
 constexpr std::uint32_t kStations = 25;        ///< of a card's strip: 24 segments at most
 
@@ -96,7 +97,7 @@ struct Cards {
 /// atlas that cannot hold the textures at any size, stopped.
 Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOptions& options, Cancel cancel);
 
-/// Bakes the textures anew, with strands `thickness` times as thick.
+/// Bakes the textures anew, with strands `thickness` times as thick. The cap's are by where the mesh lies.
 Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Cards& cards, Cancel cancel);
 
 /// Gives held cards their shape and makes the mesh anew.

@@ -71,8 +71,8 @@ std::vector<Look> looksOf(const Hair& hair, const HairLight& light, const std::v
         for (std::size_t c = begin; c < end; ++c) {
             const Strip& strip = cards[c].strip;
             constexpr std::uint32_t kFiner = 4;
-            Picture picture =
-                bake(hair, light, strip, cards[c].strands, 1, Look::kAcross * kFiner, Look::kAlong * kFiner);
+            Picture picture = bake(hair, light, strip, cards[c].strands, {.clear = kClearOfSkin},
+                                   Look::kAcross * kFiner, Look::kAlong * kFiner);
             for (std::uint32_t size = kFiner; size > 1; size /= 2) picture = halved(picture);
             Look& look = looks[c];
             float mean = 0;

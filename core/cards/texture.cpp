@@ -19,10 +19,48 @@ struct FlatPoint {
     Vec2f radius = Vec2f::Zero();  // likewise
 };
 
-std::vector<FlatPoint> flattened(const Hair& hair, const HairLight& light, const Strip& strip,
-                                 std::uint32_t s, float thickness) {
+/// A strand on the card from where on it is shown.
+struct FlatStrand {
+    std::uint32_t first = 0;  // of the hair, the point before where it begins
+    float from = 0;           // share of the way to the next one
+    std::vector<FlatPoint> points;
+};
+
+FlatPoint between(const FlatPoint& a, const FlatPoint& b, float t) {
+    const auto mix = [t](const auto& x, const auto& y) { return x + t * (y - x); };
+    return {mix(a.across, b.across),       mix(a.along, b.along), mix(a.off, b.off),
+            mix(a.open, b.open),           mix(a.x, b.x),         mix(a.y, b.y),
+            Vec2f(mix(a.radius, b.radius))};
+}
+
+/// Cuts off what lies on the skin.
+void clearSkin(const Hair& hair, std::uint32_t s, float clear, FlatStrand& flat) {
+    // No two strands leave the cap at one height, or a line would be seen there.
+    const float own = hashUnit(s, 23, 0);
+    const float rise = clear * (0.6f + 0.8f * own), most = kOnCap * (0.6f + 0.4f * own);
+    const auto points = hair.strand(s);
+    float way = 0, height = 0;
+    for (std::uint32_t p = 0; p + 1 < points.size(); ++p) {
+        const float step = (points[p + 1] - points[p]).norm();
+        const float next = (points[p + 1] - points[0]).dot(hair.rootNormals_ws[s]);
+        if (next < rise && way + step < most) {
+            way += step, height = next;
+            continue;
+        }
+        float t = step > 0 ? std::clamp((most - way) / step, 0.0f, 1.0f) : 0.0f;
+        if (next >= rise && next > height) t = std::min(t, std::max(0.0f, (rise - height) / (next - height)));
+        flat.points[p] = between(flat.points[p], flat.points[p + 1], t);
+        flat.points.erase(flat.points.begin(), flat.points.begin() + p);
+        flat.first += p, flat.from = t;
+        return;
+    }
+    flat.points.clear();
+}
+
+FlatStrand flattened(const Hair& hair, const HairLight& light, const Strip& strip, std::uint32_t s,
+                     const BakeOptions& options) {
     const float length = strip.length();
-    std::vector<FlatPoint> flat;
+    FlatStrand flat{hair.offsets[s], 0, {}};
     const auto places = placesOn(strip, hair.strand(s));
     for (std::size_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
         const StripPlace& place = places[p - hair.offsets[s]];
@@ -32,10 +70,11 @@ std::vector<FlatPoint> flattened(const Hair& hair, const HairLight& light, const
         point.across = place.across, point.off = place.off, point.along = place.along * length;
         point.x = 0.5f + 0.5f * place.across / half;
         point.y = place.along;
-        point.open = light.open(hair.positions_ws[p]);
-        point.radius = thickness * hair.radii[p] * Vec2f(0.5f / half, 1 / length);
-        flat.push_back(point);
+        point.open = light.open(options.grown_ws.empty() ? hair.positions_ws[p] : options.grown_ws[p]);
+        point.radius = options.thickness * hair.radii[p] * Vec2f(0.5f / half, 1 / length);
+        flat.points.push_back(point);
     }
+    if (options.clear > 0) clearSkin(hair, s, options.clear, flat);
     return flat;
 }
 
@@ -57,10 +96,10 @@ class Canvas {
           height_(static_cast<int>(height) * finer),
           samples_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
-    void draw(std::uint32_t strand, std::uint32_t firstPoint, const std::vector<FlatPoint>& flat) {
+    void draw(std::uint32_t strand, const FlatStrand& flat) {
         const Vec2f size(static_cast<float>(width_), static_cast<float>(height_));
-        for (std::size_t p = 0; p + 1 < flat.size(); ++p) {
-            const FlatPoint &a = flat[p], &b = flat[p + 1];
+        for (std::size_t p = 0; p + 1 < flat.points.size(); ++p) {
+            const FlatPoint &a = flat.points[p], &b = flat.points[p + 1];
             Vec2f flow(b.across - a.across, b.along - a.along);
             if (!(flow.norm() > 0)) continue;
             flow.normalize();
@@ -75,9 +114,12 @@ class Canvas {
                 const float middle = from.at.x() + t * (to.at.x() - from.at.x());
                 const float half = from.radius.x() + t * (to.radius.x() - from.radius.x());
                 const float side = std::clamp((static_cast<float>(x) + 0.5f - middle) / half, -1.0f, 1.0f);
-                sample = {off,   firstPoint + static_cast<std::uint32_t>(p),
-                          t,     a.open + t * (b.open - a.open),
-                          side,  flow,
+                sample = {off,
+                          flat.first + static_cast<std::uint32_t>(p),
+                          p == 0 ? flat.from + t * (1 - flat.from) : t,
+                          a.open + t * (b.open - a.open),
+                          side,
+                          flow,
                           strand};
             });
         }
@@ -118,7 +160,7 @@ struct Sum {
     }
 };
 
-Texel shown(const Hair& hair, const Sample& sample) {
+Texel shown(const Hair& hair, const BakeOptions& options, const Sample& sample) {
     const std::uint32_t p = sample.point;
     const float t = sample.t;
     Texel texel;
@@ -127,6 +169,12 @@ Texel shown(const Hair& hair, const Sample& sample) {
     const float out = std::sqrt(std::max(0.0f, 1 - sample.side * sample.side));
     texel.normal = Vec3f(sample.side * sample.flow.y(), -sample.side * sample.flow.x(), out);
     texel.depth = sample.off;
+    if (!options.grown_ws.empty()) {
+        const auto height = [&](std::uint32_t at) {
+            return (options.grown_ws[at] - hair.positions_ws[at]).dot(hair.rootNormals_ws[sample.strand]);
+        };
+        texel.depth = (1 - t) * height(p) + t * height(p + 1);
+    }
     const std::uint32_t first = hair.offsets[sample.strand], count = hair.offsets[sample.strand + 1] - first;
     texel.along = (static_cast<float>(p - first) + t) / static_cast<float>(count - 1);
     texel.id = hashUnit(sample.strand, 11, 0);
@@ -137,12 +185,11 @@ Texel shown(const Hair& hair, const Sample& sample) {
 }  // namespace
 
 Picture bake(const Hair& hair, const HairLight& light, const Strip& strip,
-             std::span<const std::uint32_t> strands, float thickness, std::uint32_t width,
+             std::span<const std::uint32_t> strands, const BakeOptions& options, std::uint32_t width,
              std::uint32_t height) {
     constexpr int kFiner = 4;
     Canvas canvas(width, height, kFiner);
-    for (const std::uint32_t s : strands)
-        canvas.draw(s, hair.offsets[s], flattened(hair, light, strip, s, thickness));
+    for (const std::uint32_t s : strands) canvas.draw(s, flattened(hair, light, strip, s, options));
     Picture picture{width, height, std::vector<Texel>(std::size_t{width} * height)};
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
@@ -151,7 +198,7 @@ Picture bake(const Hair& hair, const HairLight& light, const Strip& strip,
                 for (int i = 0; i < kFiner; ++i) {
                     const Sample& sample =
                         canvas.at(static_cast<int>(x) * kFiner + i, static_cast<int>(y) * kFiner + j);
-                    if (std::isfinite(sample.off)) sum.add(shown(hair, sample), 1);
+                    if (std::isfinite(sample.off)) sum.add(shown(hair, options, sample), 1);
                 }
             }
             picture.at(x, y) = sum.mean(sum.weight / static_cast<float>(kFiner * kFiner));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/cards/hair_light.h"
@@ -18,7 +19,7 @@ struct Texel {
     Vec3f albedo = Vec3f::Zero();   ///< linear RGB
     Vec2f flow = Vec2f(0, 1);       ///< of strands, root to tip: across and along the card; length ≤ 1
     Vec3f normal = Vec3f(0, 0, 1);  ///< of round strands: across, along, outwards
-    float depth = 0;                ///< metres outwards from the flat strip
+    float depth = 0;                ///< metres outwards from the flat strip or, on the cap, from the skin
     float along = 0;                ///< 0 root … 1 tip of the strand
     float id = 0;                   ///< 0 … 1, random by strand
     float open = 1;                 ///< ambient occlusion: share of the light that is left
@@ -31,10 +32,23 @@ struct Picture {
     Texel& at(std::uint32_t x, std::uint32_t y) { return texels[std::size_t{y} * width + x]; }
 };
 
-/// Strands of the hair as they lie on a strip, `thickness` times as thick as they are, each texel from 4 x 4
-/// samples or more where strands are thinner than these; what is outermost covers the rest.
+/// Metres of a hair, from its root, that the cap shows at most.
+constexpr float kOnCap = 0.012f;
+
+struct BakeOptions {
+    float thickness = 1;  ///< factor on that of the strands
+    /// Metres above the plane that touches the skin at its root from where on a strand is shown, at the
+    /// latest behind kOnCap; some strands begin a little before, some behind. 0: from their roots on.
+    float clear = 0;
+    /// Where the points grew that were laid on the skin; light is what reaches them there. Empty: nothing
+    /// was.
+    std::span<const Vec3f> grown_ws = {};
+};
+
+/// Strands of the hair as they lie on a strip, each texel from 4 x 4 samples or more where strands are
+/// thinner than these; what is outermost covers the rest.
 Picture bake(const Hair& hair, const HairLight& light, const Strip& strip,
-             std::span<const std::uint32_t> strands, float thickness, std::uint32_t width,
+             std::span<const std::uint32_t> strands, const BakeOptions& options, std::uint32_t width,
              std::uint32_t height);
 
 /// Half as wide and high, rounded up; means weighted by coverage.

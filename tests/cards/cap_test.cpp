@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -120,7 +121,7 @@ Hair uprightHair(std::uint32_t strands, float lean) {
 
 TEST(Cap, HoldsHairThatStandsUpAsFarAsItHidesSkin) {
     constexpr std::uint32_t kStrands = 40;
-    const Hair laid = laidRoots(uprightHair(kStrands, 0));
+    const Hair laid = laidRoots(uprightHair(kStrands, 0)).hair;
     Vec3f sum = Vec3f::Zero();
     for (std::uint32_t s = 0; s < kStrands; ++s) {
         const Vec3f way = laid.strand(s).back() - laid.strand(s).front();
@@ -133,7 +134,7 @@ TEST(Cap, HoldsHairThatStandsUpAsFarAsItHidesSkin) {
 
 TEST(Cap, HoldsHairThatLeansAsFarAsItLeans) {
     constexpr float kLean = 0.25f;
-    const Hair laid = laidRoots(uprightHair(5, kLean));
+    const Hair laid = laidRoots(uprightHair(5, kLean)).hair;
     for (std::uint32_t s = 0; s < 5; ++s) {
         const Vec3f way = laid.strand(s).back() - laid.strand(s).front();
         EXPECT_LT((way - Vec3f(0, 0, kShownLength * std::sin(kLean))).norm(), 1e-5f);
@@ -144,7 +145,7 @@ TEST(Cap, IsTransparentBeyondTheHairsAndThinsTowardsThem) {
     const Hair hair = ballHair(6000);  // from 0.3 to 0.98 of the ball's height
     const auto light = HairLight::make(hair, nullptr);
     ASSERT_TRUE(light);
-    const Hair laid = laidRoots(hair);
+    const LaidRoots laid = laidRoots(hair);
     double within = 0, withinCount = 0, outermost = 0, outermostCount = 0;
     for (const CapChart& chart : capOf(hair, kTolerance)) {
         constexpr std::uint32_t kSide = 200;
@@ -180,6 +181,78 @@ TEST(Cap, IsTransparentBeyondTheHairsAndThinsTowardsThem) {
     ASSERT_GT(outermostCount, 0);
     EXPECT_GT(within / withinCount, 0.1);
     EXPECT_LT(outermost / outermostCount, 0.6 * within / withinCount);
+}
+
+/// Hair that lies on the plane y = 0, within 30 mm of its middle, and hides half of it.
+Hair lyingHair() {
+    constexpr float kSide = 0.06f, kLength = 0.012f, kRadius = 0.0002f;
+    const auto strands =
+        static_cast<std::uint32_t>(std::log(2.0f) * kSide * (kSide + kLength) / (2 * kRadius * kLength));
+    Hair hair;
+    for (std::uint32_t s = 0; s < strands; ++s) {
+        Random random(19, s);
+        const Vec3f root(random.uniform(-0.5f, 0.5f) * kSide, 0,
+                         random.uniform(-0.5f, 0.5f) * (kSide + kLength) - 0.5f * kLength);
+        for (const float t : {0.0f, 0.5f, 1.0f}) {
+            hair.positions_ws.emplace_back(root + t * Vec3f(0, 0.0004f, kLength));
+            hair.radii.push_back(kRadius), hair.albedo.emplace_back(0.2f, 0.1f, 0.05f);
+        }
+        hair.offsets.push_back(static_cast<std::uint32_t>(hair.positions_ws.size()));
+        hair.rootNormals_ws.emplace_back(0, 1, 0);
+    }
+    return hair;
+}
+
+/// A card over the half of the plane with x below 0.
+std::vector<WornTriangle> halfCovered(const Picture& picture, float height) {
+    const Vec3f a(-0.1f, height, -0.1f), b(0, height, -0.1f), c(-0.1f, height, 0.1f), d(0, height, 0.1f);
+    return {{&picture, {a, b, c}, {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}},
+            {&picture, {b, d, c}, {Vec2f(1, 0), Vec2f(1, 1), Vec2f(0, 1)}}};
+}
+
+/// Mean coverage where the card is, away from its border, and where it is not.
+std::array<double, 2> coverageOfHalves(const CapChart& chart, const Picture& picture) {
+    std::array<double, 2> sums{}, counts{};
+    const Strip& plane = chart.plane;
+    for (std::uint32_t y = 0; y < picture.height; ++y) {
+        for (std::uint32_t x = 0; x < picture.width; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(picture.width),
+                        v = (static_cast<float>(y) + 0.5f) / static_cast<float>(picture.height);
+            const Vec3f at = (1 - v) * plane.centre[0] + v * plane.centre[1] +
+                             (2 * u - 1) * plane.halfWidth[0] * plane.cross[0];
+            if (std::abs(at.x()) < 0.006f || std::abs(at.x()) > 0.024f || std::abs(at.z()) > 0.024f) continue;
+            const std::size_t half = at.x() < 0 ? 0 : 1;
+            sums[half] += static_cast<double>(picture.at(x, y).coverage), counts[half] += 1;
+        }
+    }
+    return {sums[0] / counts[0], sums[1] / counts[1]};
+}
+
+TEST(Cap, IsThinnerWhereCardsHideMoreSkinThanStrandsDo) {
+    const Hair hair = lyingHair();
+    const auto light = HairLight::make(hair, nullptr);
+    ASSERT_TRUE(light);
+    const auto cap = capOf(hair, kTolerance);
+    ASSERT_EQ(cap.size(), 1u);
+    const Picture whole = bakeCap(hair, laidRoots(hair), *light, cap[0], 1, 72, 84);
+    const auto alone = coverageOfHalves(cap[0], whole);
+    EXPECT_NEAR(alone[0], 0.5, 0.05);
+    EXPECT_NEAR(alone[1], 0.5, 0.05);
+    const auto halves = [&](float coverage, float height) {
+        Picture card{1, 1, std::vector<Texel>(1)}, picture = whole;
+        card.texels[0].coverage = coverage;
+        leaveToCards(halfCovered(card, height), cap[0], picture);
+        return coverageOfHalves(cap[0], picture);
+    };
+    // One layer hides 0.5 of the skin, three hide 0.875.
+    const auto under = halves(0.8f, 0.002f);
+    EXPECT_NEAR(1 - (1 - 0.8) * (1 - under[0]), 0.875, 0.02);
+    EXPECT_NEAR(under[1], alone[1], 1e-5) << "where there is no card";
+    EXPECT_LT(halves(0.9f, 0.002f)[0], 0.05) << "the card hides more by itself";
+    EXPECT_NEAR(halves(0.9f, 0.05f)[0], alone[0], 1e-5) << "a card that hangs far from the skin";
+    const double sparse = halves(0.3f, 0.002f)[0];
+    EXPECT_LT(sparse, alone[0] + 1e-6) << "no denser than it was";
+    EXPECT_GT(sparse, 0.9 * alone[0]);
 }
 
 TEST(Cap, MovesWithTheHeadAndWearsTexturesOfItsOwn) {

@@ -108,7 +108,7 @@ Baked bakedRibbon(std::uint32_t strands, float thickness = 1) {
     std::iota(all.begin(), all.end(), 0u);
     baked.strip =
         finishStrip(even, all, fitStrip(even, all, baked.hair.rootNormals_ws), 25, baked.hair.rootNormals_ws);
-    baked.picture = bake(baked.hair, *light, baked.strip, all, thickness, 64, 128);
+    baked.picture = bake(baked.hair, *light, baked.strip, all, {.thickness = thickness}, 64, 128);
     return baked;
 }
 
@@ -140,6 +140,41 @@ TEST(Bake, FlowGoesDownTheCardAndRootsComeFirst) {
     EXPECT_GT(along / weight, 0.99);
     EXPECT_NEAR(top / topWeight, 0.25, 0.05);
     EXPECT_NEAR(bottom / bottomWeight, 0.75, 0.05);
+}
+
+/// Mean coverage of the rows between two distances from the root.
+double coverageBetween(const Baked& baked, const Picture& picture, float from, float to) {
+    double sum = 0, count = 0;
+    for (std::uint32_t y = 0; y < picture.height; ++y) {
+        const float way =
+            (static_cast<float>(y) + 0.5f) / static_cast<float>(picture.height) * baked.strip.length() -
+            baked.strip.centre[0].y();
+        if (way < from || way > to) continue;
+        for (std::uint32_t x = 0; x < picture.width; ++x)
+            sum += static_cast<double>(picture.at(x, y).coverage), ++count;
+    }
+    return count > 0 ? sum / count : -1;
+}
+
+TEST(Bake, LeavesHairThatLiesOnTheSkinToTheCap) {
+    Baked baked = bakedRibbon(300);
+    const auto light = HairLight::make(baked.hair, nullptr);
+    std::vector<std::uint32_t> all(baked.hair.strandCount());
+    std::iota(all.begin(), all.end(), 0u);
+    const auto cleared = [&] {
+        return bake(baked.hair, *light, baked.strip, all, {.clear = 0.0025f}, 64, 256);
+    };
+    const Picture whole = bake(baked.hair, *light, baked.strip, all, {}, 64, 256);
+    // They run along the skin, all of them: the cap has the first 12 mm, of some a little less.
+    EXPECT_GT(coverageBetween(baked, whole, 0.001f, 0.006f), 0.1);
+    EXPECT_EQ(coverageBetween(baked, cleared(), 0, 0.006f), 0);
+    EXPECT_NEAR(coverageBetween(baked, cleared(), 0.013f, 0.1f), coverageBetween(baked, whole, 0.013f, 0.1f),
+                1e-3);
+    // Out of a skin that they stand upright on, they are soon clear of it.
+    for (Vec3f& normal : baked.hair.rootNormals_ws) normal = Vec3f(0, -1, 0);
+    EXPECT_EQ(coverageBetween(baked, cleared(), 0, 0.001f), 0);
+    EXPECT_NEAR(coverageBetween(baked, cleared(), 0.004f, 0.1f), coverageBetween(baked, whole, 0.004f, 0.1f),
+                1e-3);
 }
 
 TEST(Atlas, PacksWithoutOverlapOrNotAtAll) {
