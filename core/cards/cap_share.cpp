@@ -13,9 +13,9 @@ constexpr float kSample = 0.001f;                // metres: what of cards is loo
 constexpr int kFiner = 4;                        // samples of strands along one of cards
 constexpr int kSquare = 4;                       // samples along a square, over which shares are means
 constexpr float kBelow = 0.004f, kNear = 0.02f;  // metres below and above the skin: hair that grows there
-// Few eyes look straight on, and aslant cards part where strands do not. Skin is hidden as by so many layers
-// of the strands: where these leave none bare it stays hidden, whatever cards do.
-constexpr float kLayers = 3;
+// Few eyes look straight on. Aslant, hair hides more skin, as more layers of it do, and cards part where it
+// does not: where hair is dense it hides as so many layers more, where it is sparse as itself.
+constexpr float kLayers = 2;
 
 /// The plane of a chart by samples, and how high the skin is there.
 class Ground {
@@ -173,7 +173,8 @@ void leaveToCards(std::span<const WornTriangle> cards, const CapChart& chart, Pi
             continue;
         }
         // Layers of random hair let through the product of what each does.
-        const float wanted = std::pow(1 - chart.hidden[i], kLayers);
+        const float hidden = chart.hidden[i];
+        const float wanted = std::pow(1 - hidden, 1 + kLayers * hidden * hidden);
         const float missing = std::clamp(1 - wanted / std::max(keep[i], 1e-6f), 0.0f, 1.0f);
         keep[i] = std::min(1.0f, missing * counts[i] / own[i]);
     }
