@@ -168,7 +168,7 @@ void leaveToCards(std::span<const WornTriangle> cards, const CapChart& chart, Pi
         }
     }
     for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (!(own[i] > 0)) {
+        if (!(own[i] > 0) || keep[i] >= 1) {  // nothing to leave, or nobody to leave it to
             keep[i] = 1;
             continue;
         }
