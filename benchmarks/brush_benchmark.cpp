@@ -116,7 +116,7 @@ void measureHair(Timings& timings, const std::string& name, const Groom& groom,
     }
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runBrush(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     Timings timings(options);
@@ -133,7 +133,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark brushBenchmark() {
-    return {"brush", "dabs, strokes, undo and picking", {"--quick"}, run};
+    return {"brush", "dabs, strokes, undo and picking", {"--quick"}, runBrush};
 }
 
 }  // namespace hairloom::benchmarks

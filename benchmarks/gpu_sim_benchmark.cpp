@@ -205,7 +205,7 @@ Result<GpuBench> measureAll(const Options& options) {
     return bench;
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runGpuSim(const Options& options) {
     const auto bench = measureAll(options);
     if (!bench) return tl::unexpected(bench.error());
     return Outcome{reportOf(*bench),
@@ -221,7 +221,7 @@ Benchmark gpuSimBenchmark() {
     return {"gpu-sim",
             "the strand engine on a GPU beside this CPU",
             {"--strands", "--quick", "--device", "--output"},
-            run};
+            runGpuSim};
 }
 
 }  // namespace hairloom::benchmarks

@@ -40,7 +40,7 @@ Status measure(Timings& timings, const std::string& name, const Groom& groom,
     return {};
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runInterpolate(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     Timings timings(options);
@@ -59,7 +59,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark interpolateBenchmark() {
-    return {"interpolate", "guides into follow hairs", {"--quick"}, run};
+    return {"interpolate", "guides into follow hairs", {"--quick"}, runInterpolate};
 }
 
 }  // namespace hairloom::benchmarks

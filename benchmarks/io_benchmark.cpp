@@ -134,7 +134,7 @@ void measureMemory(Timings& timings, std::uint32_t strands) {
     }
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runIo(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     Timings timings(options);
@@ -152,7 +152,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark ioBenchmark() {
-    return {"io", "reading and writing strand files", {}, run};
+    return {"io", "reading and writing strand files", {}, runIo};
 }
 
 }  // namespace hairloom::benchmarks

@@ -63,7 +63,7 @@ std::string markdownOf(const std::vector<Row>& rows, const Options& options, con
     return text;
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runLive(const Options& options) {
     auto grooms = wantedHair(options);
     if (!grooms) return tl::unexpected(grooms.error());
     gpu::DeviceOptions wanted;
@@ -103,7 +103,7 @@ Benchmark liveBenchmark() {
     return {"live",
             "the editor's loop without a window: hair simulated and rendered on the GPU and on the CPU",
             {"--quick", "--device", "--size", "--grooms", "--frames", "--markdown"},
-            run};
+            runLive};
 }
 
 }  // namespace hairloom::benchmarks

@@ -74,7 +74,7 @@ class Drawing {
     render::RenderOptions options_;
 };
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runMaterial(const Options& options) {
     gpu::DeviceOptions wanted;
     wanted.index = options.device;
     const auto device = gpu::createDevice(wanted);
@@ -90,7 +90,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark materialBenchmark() {
-    return {"material", "changing a setting of the material", {"--device", "--quick"}, run};
+    return {"material", "changing a setting of the material", {"--device", "--quick"}, runMaterial};
 }
 
 }  // namespace hairloom::benchmarks

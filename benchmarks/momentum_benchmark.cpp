@@ -113,7 +113,7 @@ std::string figureOf(const std::vector<std::uint32_t>& substeps, const std::vect
     return svg(plot);
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runMomentum(const Options& options) {
     const std::vector<std::uint32_t> substeps =
         options.quick ? std::vector<std::uint32_t>{8, 16} : std::vector<std::uint32_t>{2, 4, 8, 16, 32, 64};
     std::vector<Row> rows;
@@ -144,7 +144,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark momentumBenchmark() {
-    return {"momentum", "loss of angular momentum of free strands", {"--quick", "--output"}, run};
+    return {"momentum", "loss of angular momentum of free strands", {"--quick", "--output"}, runMomentum};
 }
 
 }  // namespace hairloom::benchmarks

@@ -38,7 +38,7 @@ void measureCap(Timings& timings) {
     }
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runPlace(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     Timings timings(options);
@@ -59,7 +59,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark placeBenchmark() {
-    return {"place", "placing roots", {"--quick"}, run};
+    return {"place", "placing roots", {"--quick"}, runPlace};
 }
 
 }  // namespace hairloom::benchmarks

@@ -55,7 +55,7 @@ void measure(Timings& timings, const std::string& name, const Groom& groom) {
     });
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runProject(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     Timings timings(options);
@@ -67,7 +67,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark projectBenchmark() {
-    return {"project", "saving and loading projects", {"--quick"}, run};
+    return {"project", "saving and loading projects", {"--quick"}, runProject};
 }
 
 }  // namespace hairloom::benchmarks

@@ -597,7 +597,7 @@ std::string markdownOf(const RenderBench& bench, const std::string& command) {
     return text;
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runRender(const Options& options) {
     const auto bench = measureAll(options);
     if (!bench) return tl::unexpected(bench.error());
     return Outcome{reportOf(*bench), markdownOf(*bench, options.commandLine), {}};
@@ -606,8 +606,10 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark renderBenchmark() {
-    return {
-        "render", "drawing hair", {"--hairs", "--grooms", "--only", "--size", "--device", "--markdown"}, run};
+    return {"render",
+            "drawing hair",
+            {"--hairs", "--grooms", "--only", "--size", "--device", "--markdown"},
+            runRender};
 }
 
 }  // namespace hairloom::benchmarks

@@ -448,7 +448,7 @@ class Played {
     game::Error error_;
 };
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runRuntime(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     std::vector<std::pair<std::string, Groom>> grooms;
@@ -484,7 +484,8 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark runtimeBenchmark() {
-    return {"runtime", "assets in a game: load, memory, step, clips, read-out, crowds", {"--quick"}, run};
+    return {
+        "runtime", "assets in a game: load, memory, step, clips, read-out, crowds", {"--quick"}, runRuntime};
 }
 
 }  // namespace hairloom::benchmarks

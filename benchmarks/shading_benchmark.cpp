@@ -31,7 +31,7 @@ Status bake(Rounds& rounds, const MarschnerParameters& p) {
     return {};
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runShading(const Options& options) {
     Timings timings(options);
     timings.measure("tables of Marschner, rough", [](Rounds& r) { return bake(r, parameters(true, 1)); });
     timings.measure("tables of Marschner, smooth", [](Rounds& r) { return bake(r, parameters(false, 1)); });
@@ -51,7 +51,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark shadingBenchmark() {
-    return {"shading", "baking the tables of shading models", {"--quick"}, run};
+    return {"shading", "baking the tables of shading models", {"--quick"}, runShading};
 }
 
 }  // namespace hairloom::benchmarks

@@ -309,7 +309,7 @@ std::string figureOf(const ShadowBench& bench) {
     return svg(plot);
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runShadows(const Options& options) {
     const auto bench = measureAll(options);
     if (!bench) return tl::unexpected(bench.error());
     return Outcome{
@@ -321,8 +321,10 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark shadowsBenchmark() {
-    return {
-        "shadows", "errors of shadow maps against counted fibres", {"--quick", "--device", "--output"}, run};
+    return {"shadows",
+            "errors of shadow maps against counted fibres",
+            {"--quick", "--device", "--output"},
+            runShadows};
 }
 
 }  // namespace hairloom::benchmarks

@@ -296,7 +296,7 @@ Report reportOf(const SimulationBench& bench) {
                   {"rows", std::move(rows)}};
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runSim(const Options& options) {
     const auto bench = Bench(options).run();
     if (!bench) return tl::unexpected(bench.error());
     return Outcome{reportOf(*bench), markdownOf(*bench, options.commandLine), {}};
@@ -308,7 +308,7 @@ Benchmark simBenchmark() {
     return {"sim",
             "a step of the strand engine, compared with the thesis",
             {"--strands", "--quick", "--markdown"},
-            run};
+            runSim};
 }
 
 }  // namespace hairloom::benchmarks

@@ -176,14 +176,15 @@ class Bench {
     std::vector<Row> rows_;
 };
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runSpheres(const Options& options) {
     return Bench(options).run();
 }
 
 }  // namespace
 
 Benchmark spheresBenchmark() {
-    return {"spheres", "a hierarchy of spheres beside lists of near ones", {"--quick", "--output"}, run};
+    return {
+        "spheres", "a hierarchy of spheres beside lists of near ones", {"--quick", "--output"}, runSpheres};
 }
 
 }  // namespace hairloom::benchmarks

@@ -62,7 +62,7 @@ void measureHair(Timings& timings, const std::string& name, const Groom& groom) 
                     [&](Rounds& rounds) { return drag(rounds, document, 0); });
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runStack(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
     Timings timings(options);
@@ -74,7 +74,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark stackBenchmark() {
-    return {"stack", "sliders of operators that are dragged", {"--quick"}, run};
+    return {"stack", "sliders of operators that are dragged", {"--quick"}, runStack};
 }
 
 }  // namespace hairloom::benchmarks

@@ -113,7 +113,7 @@ Result<Outcome> figure27(const Options& options) {
     return found->run(measuring);
 }
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runThesis(const Options& options) {
     std::size_t done = 0;
     const auto stepForward = [&] {
         if (options.progress) options.progress("measuring", ++done, 4);
@@ -174,8 +174,10 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark thesisBenchmark() {
-    return {
-        "thesis", "the thesis' tables and figures on this machine", {"--quick", "--device", "--output"}, run};
+    return {"thesis",
+            "the thesis' tables and figures on this machine",
+            {"--quick", "--device", "--output"},
+            runThesis};
 }
 
 }  // namespace hairloom::benchmarks

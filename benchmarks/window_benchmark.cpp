@@ -9,7 +9,7 @@
 namespace hairloom::benchmarks {
 namespace {
 
-Result<Outcome> run(const Options& options) {
+Result<Outcome> runWindow(const Options& options) {
     ChildLimits limits;
     limits.time = std::chrono::hours(1);
     limits.residentBytes = std::uint64_t{16} << 30u;
@@ -29,7 +29,7 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark windowBenchmark() {
-    return {"window", "delays that a user notices in the editor", {"--quick"}, run};
+    return {"window", "delays that a user notices in the editor", {"--quick"}, runWindow};
 }
 
 }  // namespace hairloom::benchmarks

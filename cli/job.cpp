@@ -31,7 +31,7 @@ std::string worksOn(const CLI::App& app) {
 }  // namespace
 
 JobRun declareJob(const Job& job, CLI::App& app) {
-    const JobRun run = job.declare(app);
+    const JobRun run = job.addOptions(app);
     const auto unit = std::make_shared<std::string>();
     if (app.get_option_no_throw("groom") != nullptr && app.get_option_no_throw("--unit") == nullptr)
         addUnitOption(app, *unit, "--unit", "hair files");

@@ -22,9 +22,9 @@ using JobRun = std::function<Result<Report>(const std::string& commandLine)>;
 /// A subcommand of the program.
 struct Job {
     std::string name;
-    std::string does;                  ///< a line of the help
-    std::string example;               ///< its arguments in an example
-    JobRun (*declare)(CLI::App& job);  ///< adds its options to `job`
+    std::string does;                     ///< a line of the help
+    std::string example;                  ///< its arguments in an example
+    JobRun (*addOptions)(CLI::App& job);  ///< adds its options to `job`
 };
 
 /// All of them, in order of name.
