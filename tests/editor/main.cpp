@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QDir>
 #include <QSettings>
 #include <QStandardPaths>
 #include <QTemporaryDir>
@@ -15,6 +16,11 @@ int main(int argc, char** argv) {
     if (testing::GTEST_FLAG(list_tests)) return RUN_ALL_TESTS();
     const QTemporaryDir home;
     qunsetenv("OCIO");  // a studio's colours are not these tests'
+    // A software device compiles shaders for minutes. Mesa keeps them where other programs find them, too.
+    if (qEnvironmentVariableIsEmpty("MESA_SHADER_CACHE_DIR")) {
+        const QString cache = QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation);
+        if (QDir().mkpath(cache)) qputenv("MESA_SHADER_CACHE_DIR", cache.toUtf8());
+    }
     qputenv("XDG_CONFIG_HOME", home.path().toUtf8());
     qputenv("XDG_DATA_HOME", home.path().toUtf8());
     qputenv("XDG_CACHE_HOME", home.path().toUtf8());

@@ -73,6 +73,7 @@ class WindowTest : public testing::Test {
         PictureQuality quality = viewport().quality();
         quality.samples = 1;
         quality.frames = 2;
+        quality.subdivisions = 1;
         viewport().setQuality(quality);
         ShadowSettings shadows = groom().shadows;
         shadows.resolution = 256;
