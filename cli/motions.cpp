@@ -46,7 +46,7 @@ Result<MovingGroom> openMovingGroom(const MotionOptions& options) {
     if (auto status = setWind(*groom, options.wind); !status) return tl::unexpected(status.error());
     auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
-    if (options.motion == kTimeLineMotion && !timeLineOf(*groom).settings.empty())
+    if (options.motion == kTimeLineMotion && keysSimulation(timeLineOf(*groom)))
         log::warning("{}: keys of settings do not play here, and the groom's own settings hold",
                      options.input);
     return MovingGroom{std::move(*groom), std::move(*motion)};

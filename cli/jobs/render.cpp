@@ -56,8 +56,10 @@ Result<GroomScene> loadScene(const RenderJobOptions& options, const Groom& autho
     const auto looks = lookOfFrame(options, authored, number);
     if (!looks) return tl::unexpected(looks.error());
     const Groom& groom = *looks;
-    auto scene = GroomScene::make(groom, view, options.hiddenGroups);
+    // How hair is clumped is of its authored thickness, as where it plays.
+    auto scene = GroomScene::make(authored, view, options.hiddenGroups);
     if (!scene || options.record.empty()) return scene;
+    scene->setMaterials(groom, view);
     const auto frame = readFrame(options.record, groom, number);
     if (!frame) return tl::unexpected(frame.error());
     std::vector<Vec3f> velocities;

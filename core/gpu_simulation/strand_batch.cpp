@@ -162,7 +162,8 @@ Result<bool> haveFloats(gpu::Device& device, gpu::BufferPtr& buffer, const char*
 Status makeRestBuffers(gpu::Device& device, const runtime::RestShape& shape, StrandBatch& batch) {
     const runtime::RestSlots rest = runtime::restOfSlots(shape, batch.inSlots());
     Status status;
-    const auto make = [&]<class T>(gpu::BufferPtr& buffer, const char* name, const std::vector<T>& content) {
+    const auto make = [&]<class T>(gpu::BufferPtr& buffer, const char* name,
+                                   const runtime::Vector<T>& content) {
         if (!status) return;
         auto made = makeBuffer<T>(device, name, gpu::Usage::ShaderRead, content.size(), content);
         if (made) {

@@ -89,8 +89,8 @@ Result<gpu::BufferPtr> makeBuffer(gpu::Device& device, const char* name, gpu::Us
 Result<bool> haveFloats(gpu::Device& device, gpu::BufferPtr& buffer, const char* name, std::size_t count,
                         std::uint32_t elementBytes);
 
-template <class T>
-std::span<const std::byte> bytesOfVector(const std::vector<T>& values) {
+template <class T, class A>
+std::span<const std::byte> bytesOfVector(const std::vector<T, A>& values) {
     return std::as_bytes(std::span(values));
 }
 

@@ -93,7 +93,7 @@ void StrandEngine::Impl::moveOrigin(std::array<double, 3> next_ws) {
 }
 
 /// `moved` may be empty: none has.
-void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) const {
+void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const runtime::Vector<bool>& moved) const {
     for (const StrandBatch& batch : batches)
         list.updateBuffer(batch.rootsTo, 0,
                           bytesOfVector(runtime::rootsOfSlots(*shape, batch.inSlots(), placed.roots, moved)));
@@ -102,7 +102,7 @@ void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const std::vector<b
 /// Where kernels read them from buffers.
 void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
     const auto upload = [&]<class T>(gpu::BufferPtr& buffer, const char* name,
-                                     const std::vector<T>& content) {
+                                     const runtime::Vector<T>& content) {
         const std::size_t count = std::max<std::size_t>(content.size(), 1);
         if (buffer == nullptr || buffer->desc().size < count * sizeof(T)) {
             const std::vector<T> nothing(2 * count);
@@ -177,7 +177,7 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     list.setConstants(0, gpu::bytesOf(constants));
     model->setConstants(list, context, run.wind.wind, substep, batch);
     if (batch.key.spheres == SphereSource::constants) {
-        std::vector<shaders::SphereConstants> all = runtime::sphereConstants(movingSpheres);
+        runtime::Vector<shaders::SphereConstants> all = runtime::sphereConstants(movingSpheres);
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
         list.setConstants(1, bytesOfVector(all));
     }
@@ -194,7 +194,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     const Float3 lowBefore = placed.min_ws, highBefore = placed.max_ws;
     const bool found = deviceRoots != nullptr;
     const bool moves = found ? takeRoots(*deviceRoots) : takeRoots(input);
-    const std::vector<runtime::Capsule> capsulesBefore = frameSpheres.capsules;
+    const runtime::Vector<runtime::Capsule> capsulesBefore = frameSpheres.capsules;
     runtime::takeSpheres(wanted, shape->longestStrand, {spheresBefore, capsulesBefore}, input.spheres,
                          input.capsules, frameSpheres);
     const Float3 low{std::min(placed.min_ws.x, lowBefore.x), std::min(placed.min_ws.y, lowBefore.y),

@@ -37,8 +37,8 @@ struct StrandEngine::Impl {
     runtime::FrameRoots placed;
     std::uint32_t rejectedWinds = 0;
     runtime::FrameSpheres frameSpheres;
-    std::vector<runtime::Sphere> spheresBefore;
-    std::vector<runtime::MovingSphere> movingSpheres;
+    runtime::Vector<runtime::Sphere> spheresBefore;
+    runtime::Vector<runtime::MovingSphere> movingSpheres;
     float substep = 0.0f;                            ///< seconds of the last one; 0 before the first
     std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
     runtime::Float3 originShift;                     ///< by which that of the frame moves what was known
@@ -73,7 +73,7 @@ struct StrandEngine::Impl {
     bool takeRoots(const DeviceRoots& given);
     Status gatherRoots(gpu::CommandList& list, const DeviceRoots& given);
     void moveOrigin(std::array<double, 3> next_ws);
-    void uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) const;
+    void uploadRoots(gpu::CommandList& list, const runtime::Vector<bool>& moved) const;
     void uploadSpheres(gpu::CommandList& list);
     void uploadChanges(gpu::CommandList& list);
     shaders::SimulationConstants constants(const runtime::SubstepContext& context,

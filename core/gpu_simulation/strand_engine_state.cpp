@@ -125,11 +125,12 @@ Result<runtime::State> StrandEngine::Impl::readState() {
 
 Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch& batch,
                                       const runtime::State& state) const {
-    const auto send = [&](const gpu::BufferPtr& buffer, const std::vector<float>& values) {
-        list.updateBuffer(buffer, 0, std::as_bytes(std::span(values)));
+    const auto send = [&](const gpu::BufferPtr& buffer, std::span<const float> values) {
+        list.updateBuffer(buffer, 0, std::as_bytes(values));
     };
-    std::vector<float> moving =
+    const runtime::Floats planes =
         runtime::planesOfSlots(*shape, batch.inSlots(), state.planes, runtime::kStatePlanes);
+    std::vector<float> moving(planes.begin(), planes.end());
     std::vector<float> own;
     model->writeOwn(*shape, batch, state, moving, own);
     moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);

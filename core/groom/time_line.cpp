@@ -264,9 +264,22 @@ HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& au
     return material;
 }
 
+bool keysSimulation(const TimeLine& line) {
+    return std::ranges::any_of(line.settings,
+                               [](const SettingTrack& track) { return track.name.starts_with(kSimulation); });
+}
+
 bool keysMaterial(const TimeLine& line) {
     return std::ranges::any_of(line.settings,
                                [](const SettingTrack& track) { return track.name.starts_with(kMaterial); });
+}
+
+bool movesAlike(const TimeLine& one, const TimeLine& other) {
+    TimeLine a = one, b = other;
+    for (TimeLine* line : {&a, &b})
+        std::erase_if(line->settings,
+                      [](const SettingTrack& track) { return track.name.starts_with(kMaterial); });
+    return a == b;
 }
 
 Vec3d authoredValue(const Groom& groom, std::string_view name) {

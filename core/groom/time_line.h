@@ -122,8 +122,11 @@ runtime::SimulationSettings settingsAt(const TimeLine& line, float time,
                                        const runtime::SimulationSettings& authored);
 /// The hairstyle's material, likewise. Those of layers have no keys.
 HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& authored);
-/// Whether materialAt() may give something else than what is authored.
+/// Whether settingsAt() and materialAt() may give something else than what is authored.
+bool keysSimulation(const TimeLine& line);
 bool keysMaterial(const TimeLine& line);
+/// Whether they lead to the same motion: all is alike but keys of the material.
+bool movesAlike(const TimeLine& one, const TimeLine& other);
 /// Of a track at that time; it has keys.
 Vec3d valueAt(const SettingTrack& track, float time);
 

@@ -87,7 +87,7 @@ class TimeLineMotion : public HeadMotion {
     }
     std::optional<runtime::SimulationSettings> settingsAt(
         float seconds, const runtime::SimulationSettings& authored) const override {
-        if (line_.settings.empty()) return std::nullopt;
+        if (!keysSimulation(line_)) return std::nullopt;
         return hairloom::settingsAt(line_, line_.timeAt(seconds), authored);
     }
     const SkinWeights* skin() const override { return character_ ? &character_->actor().skin() : nullptr; }

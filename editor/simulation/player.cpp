@@ -109,7 +109,9 @@ FramePace Player::pace() const {
 void Player::setPace(WorkerRequests& requests) const {
     requests.pace = pace();
     requests.stopAt = std::numeric_limits<double>::infinity();
+    requests.line.reset();
     if (motion_ != kTimeLine) return;
+    requests.line = document_.groom().timeLine;
     const TimeLine& line = timeLineOf(document_.groom());
     if (!line.loop) requests.stopAt = static_cast<double>(line.end - line.start);
 }
@@ -333,8 +335,16 @@ void Player::documentChanged(editing::Part parts) {
         return;
     }
     if (contains(parts, editing::Part::TimeLine | editing::Part::Physics | editing::Part::Spheres)) {
-        clearCache();
-        if (contains(parts, editing::Part::TimeLine)) takeTimeLine();
+        const bool moves = contains(parts, editing::Part::Physics | editing::Part::Spheres) ||
+                           motion_ != kTimeLine || !takenLine_ || !groom.timeLine ||
+                           !movesAlike(*takenLine_, *groom.timeLine);
+        if (moves) {
+            clearCache();
+            if (contains(parts, editing::Part::TimeLine)) takeTimeLine();
+        } else {
+            request([&](WorkerRequests& requests) { setPace(requests); });
+        }
+        takenLine_ = groom.timeLine;
         if (scrubbed_) scrub(scrubbed_->time);
     }
     // Follow hairs matter where they move with the strands, which is on the device.

@@ -192,9 +192,10 @@ class Player : public QObject {
     QString motion_ = "none";
     QString beforeLine_ = "none";  ///< what played before the time line, which may be undone
     bool playing_ = false;
-    double from_ = 0;           ///< seconds of the motion, where the next start begins
-    bool hasTimeLine_ = false;  ///< the document's is not empty
-    bool captured_ = false;     ///< the thread has the groom as it is now
+    double from_ = 0;                            ///< seconds of the motion, where the next start begins
+    bool hasTimeLine_ = false;                   ///< the document's is not empty
+    std::shared_ptr<const TimeLine> takenLine_;  ///< that the last change of it has left
+    bool captured_ = false;                      ///< the thread has the groom as it is now
     std::shared_ptr<const PlayedFrame> frame_;
     struct Scrubbed {
         float time;

@@ -32,7 +32,8 @@ struct Player::WorkerRequests {
     bool changed = false;                ///< settings or spheres of `groom`, or what is left out of them
     std::shared_ptr<HeadMotion> motion;
     FramePace pace;
-    double from = 0;                                          ///< seconds of the motion, of the next start
+    std::shared_ptr<const TimeLine> line;  ///< of the motion, as the document has it; null: another motion
+    double from = 0;                       ///< seconds of the motion, of the next start
     double stopAt = std::numeric_limits<double>::infinity();  ///< seconds of the motion, where playing ends
     Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
     QStringList leftOut;

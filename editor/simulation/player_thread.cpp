@@ -206,7 +206,7 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
     if (!stepped) refused = stepped;
     if (!refused) refuse(refused.error());
     // Frames of the time line alone are kept.
-    if (taken.cache) pose->lineTime = timeLineOf(*playing.groom).timeAt(static_cast<float>(playing.time()));
+    if (taken.cache && taken.line) pose->lineTime = taken.line->timeAt(static_cast<float>(playing.time()));
     auto frame = std::make_shared<PlayedFrame>();
     // An engine that has just begun may have no positions yet, and the hair other points than before.
     if (const auto last = std::exchange(playing.before, pose);

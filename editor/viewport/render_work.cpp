@@ -173,7 +173,12 @@ void RenderWork::takeMoves(PictureRequest& request) {
 }
 
 void RenderWork::takeKeys(PictureRequest& request) {
-    if (!request.pose || !request.pose->lineTime || !keysMaterial(timeLineOf(*request.groom))) return;
+    if (!request.pose || !request.pose->lineTime || request.moves ||
+        !keysMaterial(timeLineOf(*request.groom))) {
+        unkeyed_.reset();
+        keyed_.reset();
+        return;
+    }
     const float time = *request.pose->lineTime;
     if (request.groom != unkeyed_ || time != keyedTime_) {
         auto keyed = std::make_shared<Groom>(*request.groom);  // shares its arrays
@@ -249,9 +254,12 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
-    auto made = GroomScene::make(shownOf(*request.groom, draft), viewOf(request), {});
+    // How hair is clumped is of its authored thickness, at any frame and from any frame before.
+    const bool isKeyed = keyed_ && request.groom == keyed_;
+    auto made = GroomScene::make(shownOf(isKeyed ? *unkeyed_ : *request.groom, draft), viewOf(request), {});
     if (!made) return tl::unexpected(made.error());
     scene_ = std::move(*made);
+    if (isKeyed) scene_->setMaterials(shownOf(*request.groom, draft), viewOf(request));
     draft_ = draft;
     hairShown_ = request.showHair;
     headShown_ = request.showHead;

@@ -237,6 +237,7 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
     takeTurns();
+    played_ = false;
     gpuGuides_->take(input);
     takeOrigin(frame);
     asleep_ = last_.known = false;

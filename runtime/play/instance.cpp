@@ -326,7 +326,7 @@ Outcome Instance::reset(const hl_frame& frame) {
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
     leaveGpu();
-    playedWaits_ = false;
+    played_ = playedWaits_ = false;
     engine_.reset(roots_);
     takeTurns();
     asleep_ = false;
@@ -365,6 +365,7 @@ Outcome Instance::step(const hl_frame& frame) {
     settlePlayed();
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
+    played_ = false;
     leaveGpu();
     takeTurns();
     if (levels_)
@@ -417,6 +418,7 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
             return refuse("is " + std::to_string(values[c]) + "; expected " + std::to_string(field->min) +
                           " to " + std::to_string(field->max));
     }
+    if (settings == engine_.settings()) return std::nullopt;
     // In a copy: where memory ends in the middle, this one is as it was.
     Instance changed(*this);
     changed.settlePlayed();
@@ -442,9 +444,9 @@ hl_instance_info Instance::describe() const {
     info.hairs = hairsRead();
     info.points_per_hair = hairs_ ? hairs_->pointsPerHair() : 0;
     const Engine* const engine = engineOfLevel();
-    const StepReport report = engine ? engine->lastStep() : StepReport{};
+    const StepReport report = engine && !played_ ? engine->lastStep() : StepReport{};
     // At a coarser level the guides that are not simulated sleep when the others do.
-    info.asleep = asleep_ ? info.guides : engine && !playedWaits_ ? engine->asleep() : 0;
+    info.asleep = asleep_ ? info.guides : engine && !played_ ? engine->asleep() : 0;
     info.restored = report.restoredStrands;
     info.left_roots = report.rejectedRoots;
     info.left_spheres = report.rejectedSpheres;
@@ -472,10 +474,10 @@ hl_effect Instance::describeEffect(std::uint32_t number) const {
     effect.name = strands ? "strands" : kEffects[number].name;
     const Engine* const engine = engineOfLevel();
     std::string why;
-    if (!engine || asleep_ || playedWaits_) {
-        why = std::string(effect.name) + (asleep_        ? ": off, all strands at rest"
-                                          : playedWaits_ ? ": off, a clip plays"
-                                                         : ": off, hair is rigid");
+    if (!engine || asleep_ || played_) {
+        why = std::string(effect.name) + (asleep_   ? ": off, all strands at rest"
+                                          : played_ ? ": off, a clip plays"
+                                                    : ": off, hair is rigid");
     } else {
         effect.on = strands || engine->plan().on(static_cast<Effect>(number));
         why = strands ? "strands: on, of every strand" : engine->plan().why(static_cast<Effect>(number));

@@ -168,7 +168,7 @@ class Instance {
     void placePlayed();
     /// Puts the finest level's engine where a clip has the points, before anything else needs it.
     void settlePlayed();
-    /// Of what can be seen nothing changes.
+    /// Positions may change in their last bits, which the engine keeps from roots.
     void settlePlayed() const { const_cast<Instance*>(this)->settlePlayed(); }
     void grow(const hl_reserve& wanted);
     static Outcome checkStep(const hl_frame& frame);
@@ -217,6 +217,7 @@ class Instance {
     /// positions_ and velocities_ are a clip's, and engine_ is not there yet: what only plays never pays for
     /// a simulation that could follow.
     bool playedWaits_ = false;
+    bool played_ = false;     // by a clip, and not stepped since
     bool rootsKnown_ = true;  // roots_ are those of the state
     Float3 pivot_{};          // that heads nod about where something is measured
     WispMotion gpuWisps_;

@@ -75,6 +75,7 @@ Outcome Instance::play(const Asset& asset, const hl_frame& frame, const hl_play&
     placePlayed();
     if (levels_) fadeLevel(frame.dt);
     asleep_ = last_.known = false;
+    played_ = true;
     ++changes_;
     return std::nullopt;
 }

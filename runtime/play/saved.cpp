@@ -226,7 +226,7 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
         placeRootsOfLevels();
     }
     leaveGpu();
-    playedWaits_ = false;
+    played_ = playedWaits_ = false;
     origin_ = origin;
     turns_.swap(turns);
     asleep_ = last_.known = rootsKnown_ = false;

@@ -103,14 +103,16 @@ class DeviceRods final : public DeviceStrands {
 
     void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch, const runtime::State& state,
                   std::vector<float>&, std::vector<float>& own) const override {
-        own = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
+        const runtime::Floats rods = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
+        own.assign(rods.begin(), rods.end());
     }
 
   private:
     Status makeBuffers(gpu::Device& device, const runtime::RestShape& shape, StrandBatch& batch) const {
         const runtime::RodSlots rods = runtime::rodsOfSlots(shape, batch.inSlots(), *rest_);
         Status status;
-        const auto make = [&]<class T>(const char* name, std::uint32_t slot, const std::vector<T>& content) {
+        const auto make = [&]<class T>(const char* name, std::uint32_t slot,
+                                       const runtime::Vector<T>& content) {
             if (!status) return;
             auto made = makeBuffer<T>(device, name, Usage::ShaderRead, content.size(), content);
             if (!made) {
