@@ -54,8 +54,8 @@ ROD_FUNCTION Real3 rodContactForce(RodContact c, Real3 x) {
     return c.gradient * ROD_NUMBER(-1.0) - rodContactTimes(c, x);
 }
 
-/// How many contacts act as one: as many as their normals agree, if they press equally. Friction by the force of all
-/// would count as many times. 1 for a single one.
+/// How many contacts act as one: as many as their normals agree, if they press equally. Friction by the force
+/// of all would count as many times. 1 for a single one.
 ROD_FUNCTION Real rodPressAlike(RodContact c) {
     const Real one = ROD_NUMBER(1.0), squared = dot(c.normal, c.normal);
     return choose(squared > ROD_NUMBER(1.01), root(squared), one);
