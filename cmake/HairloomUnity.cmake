@@ -136,8 +136,9 @@ function(hairloom_batches target)
         set_target_properties(${target} PROPERTIES UNITY_BUILD_UNIQUE_ID HAIRLOOM_FILE UNITY_BUILD_CODE_BEFORE_INCLUDE "${own}#endif")
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-    # GCC takes a source that another includes for a header, whose types may not rest on unnamed namespaces.
+    # GCC takes a source that another includes for a header, whose types may not rest on unnamed namespaces. A name within a function
+    # may be one that another source of the batch has: builds of single sources say what hides a name of the same source.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-        target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+        target_compile_options(${target} PRIVATE -Wno-subobject-linkage -Wno-error=shadow)
     endif()
 endfunction()

@@ -9,9 +9,10 @@
 namespace hairloom {
 namespace {
 
-constexpr float kFrame = 1.0f / 60;  // seconds
-constexpr std::uint32_t kWarmUp = 8;
-constexpr std::size_t kUnderWay = 2;  // frames
+constexpr float kFrame = 1.0f / 60;             // seconds
+constexpr std::uint32_t kWarmUp = 8;            ///< frames, until a GPU is at speed
+constexpr std::uint32_t kWarmUpOfSoftware = 1;  ///< which compiles its shaders
+constexpr std::size_t kUnderWay = 2;            // frames
 
 /// As the viewport draws while something moves.
 render::RenderOptions viewportOptions(std::uint32_t width, std::uint32_t height) {
@@ -49,7 +50,9 @@ Result<LiveCost> LiveLoop::run(const Groom& groom, const HeadMotion& motion, Eng
     if (!hair) return tl::unexpected(hair.error());
     Stage stage{std::move(*scene), motion, std::move(*hair)};
     if (auto status = setUp(stage.scene); !status) return tl::unexpected(status.error());
-    if (auto status = play(stage, kWarmUp); !status) return tl::unexpected(status.error());
+    const bool software = device_.info().type == gpu::DeviceType::Cpu;
+    if (auto status = play(stage, software ? kWarmUpOfSoftware : kWarmUp); !status)
+        return tl::unexpected(status.error());
     cost_ = {};
     const gpu::Traffic before = device_.traffic();
     const Stopwatch watch;

@@ -92,7 +92,7 @@ void TakeActions::makeLoop() {
             if (!reader) return tl::unexpected(reader.error());
             LoopToMake watched = wanted;
             watched.watch = watchOf(control);
-            return makeLoop(*reader, groom, watched, to);
+            return hairloom::makeLoop(*reader, groom, watched, to);
         },
         [self = QPointer(this), name](LoopReport loop) {
             if (!self) return;

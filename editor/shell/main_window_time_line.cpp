@@ -2,6 +2,7 @@
 // The project's time line, from and to files.
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QMenu>
 #include <memory>
 #include <string_view>
 
@@ -9,6 +10,7 @@
 #include "core/base/output_file.h"
 #include "core/documents/keyed_motion.h"
 #include "core/documents/motions.h"
+#include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/time_line_json.h"
 #include "core/groom/time_line.h"
