@@ -51,7 +51,7 @@ extern "C" {
     X(RADII, 4, HAIR_SAMPLES, ONCE, "of a wisp, from root to tip, metres")                         \
     X(BINDINGS, 80, HAIRS, ONCE, "how much of which guides each hair takes")                       \
     X(LOOKS, 32, HAIRS, ONCE, "linear colour, random number, radii at root and tip, metres, 0, 0") \
-    X(NUMBERS, 4, HAIRS, ONCE, "which of hl_asset_hairs() each hair is, for tables of your own")   \
+    X(NUMBERS, 4, HAIRS, ONCE, "which of hl_asset_hairs each hair is, for tables of your own")     \
     X(ROWS, 16, GUIDE_ROWS, DEVICE, "what WISPS hands to HAIRS")                                   \
     X(POINTS, 16, HAIR_POINTS, DEVICE, "of all hairs, metres less hl_frame.origin, and 1")         \
     X(VIEW, 144, ONE, HOST, "hl_gpu_view")                                                         \
