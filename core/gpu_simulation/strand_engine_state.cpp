@@ -128,8 +128,7 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     const auto send = [&](const gpu::BufferPtr& buffer, std::span<const float> values) {
         list.updateBuffer(buffer, 0, std::as_bytes(values));
     };
-    const runtime::Floats planes =
-        runtime::planesOfSlots(*shape, batch.inSlots(), state.planes, runtime::kStatePlanes);
+    const auto planes = runtime::planesOfSlots(*shape, batch.inSlots(), state.planes, runtime::kStatePlanes);
     std::vector<float> moving(planes.begin(), planes.end());
     std::vector<float> own;
     model->writeOwn(*shape, batch, state, moving, own);

@@ -103,7 +103,7 @@ class DeviceRods final : public DeviceStrands {
 
     void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch, const runtime::State& state,
                   std::vector<float>&, std::vector<float>& own) const override {
-        const runtime::Floats rods = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
+        const auto rods = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
         own.assign(rods.begin(), rods.end());
     }
 

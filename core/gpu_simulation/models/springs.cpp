@@ -170,7 +170,7 @@ class DeviceSprings final : public DeviceStrands {
     void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch, const runtime::State& state,
                   std::vector<float>& moving, std::vector<float>&) const override {
         if (state.model != runtime::StrandModel::springs || state.own[runtime::kOwnTensions].empty()) return;
-        const runtime::Floats tensions =
+        const auto tensions =
             runtime::planesOfSlots(shape, batch.inSlots(), state.own[runtime::kOwnTensions], 1);
         moving.insert(moving.end(), tensions.begin(), tensions.end());
     }
@@ -192,7 +192,7 @@ class DeviceSprings final : public DeviceStrands {
             const std::uint32_t kind = batch.key.own[kBend];
             const gpu::BufferPtr springs = batch.model.at(2), targets = batch.model.at(3);
             if (kind == 1) {
-                runtime::Floats all = runtime::planesOfSlots(shape, batch.inSlots(), bend.planes, planes);
+                auto all = runtime::planesOfSlots(shape, batch.inSlots(), bend.planes, planes);
                 all.resize(std::size_t{batch.shape.points} * batch.slots);
                 list.updateBuffer(springs, 0, bytesOfVector(all));
             } else if (kind == 2 && batch.key.shape.storage == StrandStorage::lanes) {
