@@ -17,7 +17,7 @@ namespace hairloom::benchmarks {
 namespace {
 
 constexpr std::uint32_t kStrands = 11400;
-constexpr std::uint32_t kPoints = 16;
+constexpr std::uint32_t kStrandPoints = 16;
 
 Groom head(std::uint32_t strands = kStrands) {
     std::vector<std::uint32_t> offsets{0};
@@ -25,8 +25,8 @@ Groom head(std::uint32_t strands = kStrands) {
     for (std::uint32_t s = 0; s < strands; ++s) {
         const float angle = 2.4f * static_cast<float>(s);
         const float out = 0.1f * std::sqrt(static_cast<float>(s) / static_cast<float>(strands));
-        for (std::uint32_t i = 0; i < kPoints; ++i) {
-            const float t = static_cast<float>(i) / (kPoints - 1);
+        for (std::uint32_t i = 0; i < kStrandPoints; ++i) {
+            const float t = static_cast<float>(i) / (kStrandPoints - 1);
             positions.emplace_back(out * (1 + t) * std::cos(angle), 1.7f - 0.3f * t,
                                    out * (1 + t) * std::sin(angle));
         }
@@ -43,7 +43,8 @@ std::string objLines(const Groom& groom) {
     }
     for (std::uint32_t s = 0; s < kStrands; ++s) {
         text += 'l';
-        for (std::uint32_t i = 1; i <= kPoints; ++i) text += ' ' + std::to_string(s * kPoints + i);
+        for (std::uint32_t i = 1; i <= kStrandPoints; ++i)
+            text += ' ' + std::to_string(s * kStrandPoints + i);
         text += '\n';
     }
     return text;
@@ -58,8 +59,8 @@ std::string objRibbons(const Groom& groom) {
         }
     }
     for (std::uint32_t s = 0; s < kStrands; ++s) {
-        for (std::uint32_t i = 0; i + 1 < kPoints; ++i) {
-            const std::uint32_t a = 2 * (s * kPoints + i) + 1;
+        for (std::uint32_t i = 0; i + 1 < kStrandPoints; ++i) {
+            const std::uint32_t a = 2 * (s * kStrandPoints + i) + 1;
             text += "f " + std::to_string(a) + ' ' + std::to_string(a + 1) + ' ' + std::to_string(a + 3) +
                     ' ' + std::to_string(a + 2) + '\n';
         }
@@ -119,7 +120,7 @@ void measureMemory(Timings& timings, std::uint32_t strands) {
             const auto size = std::filesystem::file_size(file.path, code);
             if (!bytes || code) return;
             timings.add({fmt::format("memory to {} .{}, {} strands of {} points", what, writer.name, strands,
-                                     kPoints),
+                                     kStrandPoints),
                          "times the file",
                          {static_cast<double>(*bytes) / static_cast<double>(size)}});
         };

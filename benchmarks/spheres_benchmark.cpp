@@ -17,7 +17,7 @@ namespace {
 using runtime::Float3;
 using runtime::Sphere;
 
-constexpr std::uint32_t kStrands = 300, kPoints = 16;
+constexpr std::uint32_t kStrands = 300, kPointsEach = 16;
 
 /// A body of that many spheres: a head, and the others over the shoulders, which they cover alike however
 /// many they are.
@@ -38,7 +38,7 @@ std::vector<Sphere> bodyOf(std::uint32_t count) {
 class HeadWithBody : public MovingStrands {
   public:
     explicit HeadWithBody(std::vector<Sphere> spheres)
-        : head_(kStrands, kPoints), spheres_(std::move(spheres)) {}
+        : head_(kStrands, kPointsEach), spheres_(std::move(spheres)) {}
     runtime::StrandsView view() const override { return head_.view(); }
     void move(double time, std::vector<runtime::RootFrame>& roots,
               std::vector<Sphere>& spheres) const override {
@@ -108,7 +108,7 @@ class Bench {
     Row measure(std::uint32_t count) const {
         Row row;
         row.spheres = count;
-        const scenes::HeadOfHair head(kStrands, kPoints);
+        const scenes::HeadOfHair head(kStrands, kPointsEach);
         const std::vector<Sphere> spheres = bodyOf(count);
         row.all = repeated(fmt::format("every sphere, {} spheres, pass", count), "µs", 1e3, [&] {
             row.touches = 0;
@@ -145,7 +145,8 @@ class Bench {
             "of "
             "rods. `{}`\n\n| spheres | every sphere | hierarchy | its build | springs, frame | rods, frame "
             "|\n|---|---|---|---|---|---|\n",
-            kStrands, kPoints, thisMachine().processor, settingsOf(runtime::StrandModel::springs).substeps,
+            kStrands, kPointsEach, thisMachine().processor,
+            settingsOf(runtime::StrandModel::springs).substeps,
             settingsOf(runtime::StrandModel::rods).substeps, options_.commandLine);
         for (const Row& row : rows_)
             text += fmt::format("| {} | {:.0f} | {:.0f} | {:.1f} | {:.2f} | {:.2f} |\n", row.spheres,
@@ -157,7 +158,7 @@ class Bench {
     std::string figure() const {
         Plot plot;
         plot.title = "Finding spheres";
-        plot.note = fmt::format("{} points, one pass, one thread", kStrands * kPoints);
+        plot.note = fmt::format("{} points, one pass, one thread", kStrands * kPointsEach);
         plot.x = {.title = "spheres", .scale = Scale::Logarithmic};
         plot.y = {.title = "time", .unit = "µs", .scale = Scale::Logarithmic};
         Series all{.name = "every sphere", .marker = Marker::Circle, .line = LineStyle::Solid};

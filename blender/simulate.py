@@ -85,9 +85,9 @@ def _spheres(obj: bpy.types.Object, graph: bpy.types.Depsgraph, metres: float) -
     for ball in convert.spheres_in(settings(obj).colliders):
         now = ball.evaluated_get(graph).matrix_world
         radius = ball.empty_display_size * max(map(abs, now.to_scale())) * metres
-        if radius > 0:
-            rows.append((*(TO_Y_UP @ np.array(now.translation) * metres), radius))
-            balls.append(ball)
+        # One that is scaled to nothing keeps its row: capsules name balls by their rows.
+        rows.append((*(TO_Y_UP @ np.array(now.translation) * metres), max(radius, 1e-6)))
+        balls.append(ball)
     return np.array(rows, np.float32).reshape(-1, 4), balls
 
 

@@ -116,6 +116,7 @@ Result<std::string> UsdFiles::keyOf(const std::string& from, const std::string& 
 }
 
 Result<UsdLayer> UsdFiles::open(std::string& key) {
+    if (++opened_ > kMaxFiles) return fail(fmt::format("more than {} files are not read", kMaxFiles));
     const auto [path, entry] = splitKey(key);
     if (const auto known = packages_.find(path); known != packages_.end()) {
         const std::vector<UsdPackageFile>& files = known->second.files;
@@ -125,7 +126,6 @@ Result<UsdLayer> UsdFiles::open(std::string& key) {
         key = fmt::format("{}[{}]", path, found->name);
         return parsed(key, std::span(known->second.bytes).subspan(found->begin, found->size));
     }
-    if (++opened_ > kMaxFiles) return fail(fmt::format("more than {} files are not read", kMaxFiles));
     auto bytes = readFile(path, kMaxBytes - std::min(bytes_, kMaxBytes));
     if (!bytes) return tl::unexpected(bytes.error());
     bytes_ += bytes->size();

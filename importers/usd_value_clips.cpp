@@ -238,9 +238,12 @@ bool UsdValueClips::readSet(const UsdDictionary& all, const std::string& name, S
         return leave("its template names no files that are there");
     }
     if (set.active.empty()) return leave("no clip is active");
-    if (set.assets.size() > kMaxClips || set.active.size() > kMaxClips * kMaxClips)
+    if (set.assets.size() > kMaxClips)
         return leave(
             fmt::format("there are {} clips, and at most {} are read", set.assets.size(), kMaxClips));
+    if (set.active.size() > kMaxPlays)
+        return leave(fmt::format("clips become active {} times, and at most {} are read", set.active.size(),
+                                 kMaxPlays));
     for (std::size_t i = 0; i < set.active.size(); ++i) {
         const double index = set.active[i].clip;
         if (!(index >= 0 && index < static_cast<double>(set.assets.size())) || index != std::floor(index))
@@ -277,9 +280,13 @@ bool UsdValueClips::expandTemplate(const UsdDictionary& all, const std::string& 
         hasFraction ? std::min(path.find_first_not_of('#', behind + 1), path.size()) : behind;
     const double parts = hasFraction ? std::pow(10, static_cast<double>(rest - behind - 1)) : 1;
     const auto addTime = [&](double code) { set.times.push_back({inTime(set.time, code), code}); };
-    for (std::size_t n = 0;; ++n) {
+    const std::size_t fractions = hasFraction ? rest - behind - 1 : 0;
+    if (behind - digits > 18 || fractions > 9) return false;
+    for (std::size_t n = 0; n <= kMaxClips; ++n) {
         const double code = *start + static_cast<double>(n) * *stride;
-        if (!(code <= *end)) break;
+        if (!(code <= *end) || !(std::abs(code * parts) < 9e18)) break;
+        // A stride that is too small for numbers as large as these leads nowhere.
+        if (n > 0 && code == *start + static_cast<double>(n - 1) * *stride) break;
         const auto whole = static_cast<std::int64_t>(std::llround(code * parts));
         const auto perCode = static_cast<std::int64_t>(parts);
         std::string asset = fmt::format("{}{:0{}}", path.substr(0, digits), whole / perCode, behind - digits);
@@ -296,6 +303,10 @@ bool UsdValueClips::expandTemplate(const UsdDictionary& all, const std::string& 
         addTime(*start - std::abs(*offset));
         addTime(*end + std::abs(*offset));
     }
+    const auto isFinite = [](const Knot& knot) {
+        return std::isfinite(knot.stage) && std::isfinite(knot.clip);
+    };
+    if (!std::ranges::all_of(set.times, isFinite)) return false;
     std::ranges::sort(set.times, {}, &Knot::stage);
     const auto last = std::unique(set.times.begin(), set.times.end(),
                                   [](const Knot& a, const Knot& b) { return a.stage == b.stage; });
@@ -370,6 +381,7 @@ std::map<double, UsdValue> UsdValueClips::samplesOf(const Set& set,
                                                     const UsdValue& otherwise) {
     std::map<double, UsdValue> samples;
     for (std::size_t a = 0; a < set.active.size() && !isFull(); ++a) {
+        ++numbers_;
         const bool isFirst = a == 0, isLast = a + 1 == set.active.size();
         const double begin = isFirst ? -HUGE_VAL : set.active[a].stage,
                      end = isLast ? HUGE_VAL : set.active[a + 1].stage;

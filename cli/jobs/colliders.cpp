@@ -102,8 +102,8 @@ Report rowsOf(const Groom& groom) {
     }
     if (!groom.body) return rows;
     if (groom.body->bones.empty()) rows.push_back(Report{{"kind", "field"}, {"bone", nullptr}});
-    for (const std::string& name : groom.body->bones)
-        rows.push_back(Report{{"kind", "field"}, {"bone", bone(name)}});
+    for (const auto& name : groom.body->bones)
+        rows.push_back(Report{{"kind", "field"}, {"bone", bone(std::string(name))}});
     return rows;
 }
 

@@ -220,7 +220,7 @@ Result<Report> resimulateTake(const TakesOptions& options) {
     auto take = openTake(options, options.resimulated);
     if (!take) return tl::unexpected(take.error());
     const std::string name = motionOfNotes(take->reader.info().notes);
-    const auto motion = makeMotion(name.empty() ? "none" : name, {}, take->groom);
+    const auto motion = makeMotion(name.empty() ? "none" : name, options.simulation.character, take->groom);
     if (!motion) return tl::unexpected(motion.error());
     return withNewTake(options, options.to, [&](const fs::path& path) -> Result<Report> {
         Progress progress("simulating", 100);
@@ -367,6 +367,7 @@ void checkTogether(const TakesOptions& options, const CLI::App& job) {
     needs("--at", "--resimulate or --shape", given("--resimulate") || given("--shape"));
     needs("--frames", "--record or --resimulate", given("--record") || given("--resimulate"));
     needs("--range", "--export or --close", given("--export") || given("--close"));
+    needs("--character", "--record or --resimulate", given("--record") || given("--resimulate"));
     needs("--loop", "--record or --export", given("--record") || given("--export"));
     needs("--loop-repeats", "--loop", options.loops && given("--record"));
     needs("--loop-blend", "--loop or --close", (options.loops && given("--record")) || given("--close"));
@@ -440,7 +441,8 @@ JobRun declare(CLI::App& job) {
     const std::vector<CLI::Option*> shared = addSimulationOptions(job, options->simulation);
     for (CLI::Option* option : shared) {
         const std::string name = option->get_name();
-        if (name != "--frames" && name != "--loop-blend" && name != "--loop-repeats") option->needs(record);
+        if (name != "--frames" && name != "--loop-blend" && name != "--loop-repeats" && name != "--character")
+            option->needs(record);
     }
     job.add_option("--to", options->to, "Name of the take to make");
     job.add_option("--at", options->at, "Frame of the take, counted from 0")

@@ -168,6 +168,8 @@ Result<ResumeReport> writeResumed(TakeReader& source, const Groom& given, const 
 Result<std::pair<std::uint64_t, std::uint64_t>> lastRepeat(const TakeInfo& info, const Groom& groom,
                                                            std::uint64_t blend) {
     const TimeLine& line = timeLineOf(groom);
+    if (loopOfNotes(info.notes))
+        return fail("the take repeats already", "expected one that does not, or the first and last frame");
     if (motionOfNotes(info.notes) != kTimeLineMotion)
         return fail(fmt::format("the take is of the motion '{}'", motionOfNotes(info.notes)),
                     "expected the first and last frame of a repeat, or a take of the time line");

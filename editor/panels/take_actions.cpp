@@ -134,10 +134,10 @@ void TakeActions::resimulate() {
         [self = QPointer(this), name](ResumeReport report) {
             if (!self) return;
             self->told(name,
-                       QString("Simulated %L1 frames of “%2” from frame %L3 on")
+                       QString("Simulated %L1 frames of “%3” from frame %L2 on")
                            .arg(report.simulated)
-                           .arg(name)
-                           .arg(report.kept - 1),
+                           .arg(report.kept - 1)
+                           .arg(name),
                        false);
         });
 }

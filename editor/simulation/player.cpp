@@ -320,11 +320,15 @@ void Player::documentChanged(editing::Part parts) {
             return endScrub();
         }
         endScrub();
+        takenLine_.reset();
         const bool sameStrands = std::ranges::equal(groom.offsets.view(), capturedOffsets_);
         if (playing_ && sameStrands && !contains(parts, editing::kScalpParts)) {
             request([&](WorkerRequests& requests) {
                 requests.groom = std::make_shared<const Groom>(groom);
-                requests.restyled = true;
+                // The method may turn where hair goes; any other change makes it anew.
+                const bool pointsAlone =
+                    !contains(editing::without(parts, editing::Part::Points), editing::kHairParts);
+                (pointsAlone ? requests.restyled : requests.regroomed) = true;
             });
             clearCache();
             return;

@@ -112,7 +112,7 @@ std::unique_ptr<PyLive> makeLive(PyGroom& groom, nb::handle scalp, nb::handle he
         live->groom = groom.groom;
     }
     if (live->groom.body) {
-        for (const std::string& name : live->groom.body->bones) {
+        for (const runtime::String& name : live->groom.body->bones) {
             std::size_t number = live->bones.size();  // of a body that has names of its own
             std::size_t parsed = 0;
             const char* const end = name.data() + name.size();

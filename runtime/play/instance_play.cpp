@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 #include "engine/checks.h"
 #include "engine/in_parallel.h"
@@ -151,8 +150,9 @@ void Instance::placePlayed() {
 }
 
 void Instance::settlePlayed() {
-    if (!std::exchange(playedWaits_, false)) return;
+    if (!playedWaits_) return;
     engine_.place(roots_, positions_, velocities_, origin_);
+    playedWaits_ = false;
 }
 
 }  // namespace hairloom::runtime

@@ -47,6 +47,7 @@ RWStructuredBuffer<float4> gPositions_ws : register(u4);  // in the caller's ord
 #define HAIR_GATHERED_REGISTER u8
 #elif HAIR_STORAGE == 2
 #define HAIR_VELOCITIES_REGISTER u8
+#define HAIR_GATHERED_REGISTER u6
 #else
 #define HAIR_VELOCITIES_REGISTER u7
 #define HAIR_GATHERED_REGISTER u6

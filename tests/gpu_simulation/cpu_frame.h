@@ -192,7 +192,7 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
     makeRods(scene);
     scene.spheres = {
         {{0.0f, -0.05f, 0.0f}, 0.06f}, {{0.05f, -0.1f, 0.02f}, 0.05f}, {{-0.1f, 0.0f, 0.0f}, 0.03f}};
-    state.spheres = scene.spheres;
+    state.spheres.assign(scene.spheres.begin(), scene.spheres.end());
     state.spheres[2].center_ws.x -= 0.01f;
     return scene;
 }
@@ -203,7 +203,7 @@ struct CpuFrame {
     runtime::FrameWind wind;
     runtime::EffectPlan plan;
     runtime::SubstepContext context;
-    std::vector<runtime::MovingSphere> moving;
+    runtime::Vector<runtime::MovingSphere> moving;
 
     explicit CpuFrame(const Scene& scene) {
         const runtime::RestShape& shape = *scene.shape;

@@ -68,7 +68,7 @@ BakedBody baked(const ScalpMesh& mesh, const SkinWeights& skin = {}) {
 
 /// The rig names no bones, so that the field calls them by their number.
 std::vector<BonePose> posesOf(const BakedBody& body, HeadPose pose) {
-    for (const std::string& bone : body.field->bones)
+    for (const runtime::String& bone : body.field->bones)
         pose.body_ws.push_back(pose.bones_ws[bone == "bone 0" ? 0 : 1]);
     Groom groom;
     groom.body = body.field;
@@ -369,7 +369,7 @@ TEST(BodyPush, WhatIsNotLookedAtAgainIsAsItWas) {
         const PosedBody body(*field, bones);
         const BentHair hair(neck(), body);
         std::vector<Float3> pushed = hair.posed, expected = hair.posed;
-        runtime::BodyPush(field, hair.offsets, hair.rest).apply(bones, pushed);
+        runtime::BodyPush(field, {hair.offsets.begin(), hair.offsets.end()}, hair.rest).apply(bones, pushed);
         for (std::size_t h = 0; h + 1 < hair.offsets.size(); ++h)
             pushByLookingEverywhere(*field, body,
                                     std::span(hair.rest).subspan(hair.offsets[h], BentHair::kPoints),

@@ -28,8 +28,10 @@ RodContact RodStrip<kBends, kTwists, kContacts>::contactOf(V3 root, const RodNod
             return held;
         });
     // Folds of skin hold by several planes in turn: what presses there twice calms it.
-    if (context_.body || HWY_LIKELY(hn::AllTrue(D(), rodPressAlike(found) <= all(1.0f)))) return found;
-    return pressedBySeveral(root, node, p, near, hn::Min(deepest, hn::Zero(D())), holds);
+    const RodMask several = rodPressAlike(found) > all(1.0f);
+    if (context_.body || HWY_LIKELY(hn::AllFalse(D(), several))) return found;
+    return rodChosen(several, pressedBySeveral(root, node, p, near, hn::Min(deepest, hn::Zero(D())), holds),
+                     found);
 }
 
 template <bool kBends, bool kTwists, bool kContacts>
