@@ -20,7 +20,6 @@ namespace hairloom::test {
 namespace {
 
 namespace format = runtime::asset;
-using runtime::Asset;
 using runtime::AssetError;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -59,7 +58,7 @@ TEST_F(RuntimeAsset, PointsAreWithinTheErrorThatIsStated) {
         for (Vec3f& p : groom.pointAttributes.edit<Vec3f>(attribute::kPosition)) p *= scale;
         ExportReport report;
         const auto bytes = written(groom, &report);
-        const auto opened = Asset::open(bytes);
+        const auto opened = runtime::Asset::open(bytes);
         ASSERT_TRUE(opened.asset) << opened.error.words;
         EXPECT_FALSE(opened.asset->check());
         const double stated = opened.asset->greatestError();
@@ -78,7 +77,7 @@ TEST_F(RuntimeAsset, PointsAreWithinTheErrorThatIsStated) {
 
 TEST_F(RuntimeAsset, StraightHairStaysStraightForTheEngine) {
     const auto bytes = written(dome(6, 1, 24, 0.35f));
-    const auto opened = Asset::open(bytes);
+    const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset);
     const auto strands = opened.asset->strandsAtRest();
     runtime::SimulationSettings settings;
@@ -101,7 +100,7 @@ TEST_F(RuntimeAsset, CarriesEverySettingAndSphere) {
                      {"right", Vec3f(-1, 2, 3), 0.5f, "no such bone"}};
     ExportReport report;
     const auto bytes = written(groom, &report);
-    const auto opened = Asset::open(bytes);
+    const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset);
     EXPECT_EQ(opened.asset->wispMotion().spread, groom.interpolation.wispSpread);
     EXPECT_EQ(opened.asset->wispMotion().limit, groom.interpolation.wispSpreadLimit);
@@ -129,7 +128,7 @@ TEST_F(RuntimeAsset, FollowHairsAreThoseOfPictures) {
     groom.interpolation.drawGuides = true;
     ExportReport report;
     const auto bytes = written(groom, &report);
-    const auto opened = Asset::open(bytes);
+    const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset);
     const auto strands = opened.asset->strandsAtRest();
     auto made = opened.asset->followHairs(strands);
@@ -171,7 +170,7 @@ TEST_F(RuntimeAsset, CarriesLayersTheirDensityAndMaterials) {
     groom.strandAttributes.set(attribute::kLayer, layers);
     ExportReport report;
     const auto bytes = written(groom, &report);
-    const auto opened = Asset::open(bytes);
+    const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset);
     ASSERT_FALSE(opened.asset->check());
     const auto shown = bakeFollowHairs(groom, bindFollowHairs(groom, groom.interpolation).value()).value();
@@ -271,12 +270,12 @@ TEST_F(RuntimeAsset, LayersThatAreNotThereAreRefused) {
     const auto bytes = written(groom);
     const auto damaged = [&](std::string_view kind, std::size_t byte, std::uint16_t value) {
         auto changed = bytes;
-        const auto opened = Asset::open(changed);
+        const auto opened = runtime::Asset::open(changed);
         for (const auto& section : opened.asset->sections()) {
             if (section.kind == kind)
                 std::memcpy(changed.data() + section.offset + byte, &value, sizeof value);
         }
-        const auto again = Asset::open(changed);
+        const auto again = runtime::Asset::open(changed);
         const auto problem = again.asset->checkContent();
         return problem ? problem->words : "";
     };
@@ -292,7 +291,7 @@ TEST_F(RuntimeAsset, SomeStrandsAloneMayBeGuides) {
     guides[1] = guides[4] = guides[7] = guides[9] = 1;
     groom.strandAttributes.set(attribute::kGuide, guides);
     const auto bytes = written(groom);
-    const auto opened = Asset::open(bytes);
+    const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset);
     EXPECT_EQ(opened.asset->hairCount(), 24u);
     EXPECT_TRUE(opened.asset->followHairs(opened.asset->strandsAtRest()).hairs);
@@ -316,7 +315,7 @@ TEST_F(RuntimeAsset, ShortAndLonelyStrandsGoThrough) {
         Groom groom = helices(counts);
         groom.interpolation.followPerGuide = counts.size() == 2 ? 5 : 0;
         const auto bytes = written(groom);
-        const auto opened = Asset::open(bytes);
+        const auto opened = runtime::Asset::open(bytes);
         ASSERT_TRUE(opened.asset);
         EXPECT_FALSE(opened.asset->check());
         EXPECT_GT(useAll(*opened.asset), 0u);
@@ -348,13 +347,13 @@ TEST_F(RuntimeAsset, NewerFilesAreRefusedAndNewSectionsSkipped) {
     AssetBytes copy(bytes);
     copy.header().minor = 9;
     copy.seal();
-    EXPECT_TRUE(Asset::open(copy.span()).asset);
+    EXPECT_TRUE(runtime::Asset::open(copy.span()).asset);
     for (format::Section& section : copy.table()) {
         if (std::string_view(section.kind.data(), 4) == format::kSettings)
             section.kind = {'N', 'E', 'W', '!'};
     }
     copy.seal();
-    const auto skipped = Asset::open(copy.span());
+    const auto skipped = runtime::Asset::open(copy.span());
     ASSERT_TRUE(skipped.asset);
     EXPECT_FALSE(skipped.asset->check());
     EXPECT_EQ(skipped.asset->simulation(), runtime::SimulationSettings());
@@ -362,10 +361,10 @@ TEST_F(RuntimeAsset, NewerFilesAreRefusedAndNewSectionsSkipped) {
         if (section.kind[0] == 'N') section.flags = format::kRequired;
     }
     copy.seal();
-    EXPECT_EQ(Asset::open(copy.span()).error.kind, AssetError::Kind::newer);
+    EXPECT_EQ(runtime::Asset::open(copy.span()).error.kind, AssetError::Kind::newer);
     copy.header().major = 2;
     copy.seal();
-    const auto newer = Asset::open(copy.span());
+    const auto newer = runtime::Asset::open(copy.span());
     EXPECT_EQ(newer.error.kind, AssetError::Kind::newer);
     EXPECT_EQ(newer.error.byte, 8u);
     EXPECT_THAT(newer.error.words, HasSubstr("version 2"));
@@ -375,7 +374,7 @@ TEST_F(RuntimeAsset, NewerFilesAreRefusedAndNewSectionsSkipped) {
 TEST_F(RuntimeAsset, FilesOfTheFirstVersionAreStillRead) {
     const auto path = sourceDir() / "tests/exporters/files/version_1.hairrt";
     const auto bytes = readFile(path).value();
-    const auto opened = Asset::open(bytes);
+    const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset) << opened.error.words;
     ASSERT_FALSE(opened.asset->check());
     const auto strands = opened.asset->strandsAtRest();
@@ -396,11 +395,11 @@ TEST_F(RuntimeAsset, FilesOfTheFirstVersionAreStillRead) {
 TEST_F(RuntimeAsset, HairsOfOlderFilesAreDrawnAsBefore) {
     Groom groom = wholeGroom();
     const auto weightsOf = [](std::span<const std::byte> bytes) {
-        const auto opened = Asset::open(bytes);
+        const auto opened = runtime::Asset::open(bytes);
         EXPECT_TRUE(opened.asset);
         return opened.asset->drawnHairs(opened.asset->strandsAtRest()).weights;
     };
-    const std::vector<runtime::Float3> ofOneLayer = weightsOf(written(groom));
+    const runtime::Vector<runtime::Float3> ofOneLayer = weightsOf(written(groom));
     groom.layers.resize(2);
     groom.layers[1].name = "Beard";
     std::vector<std::uint32_t> layers(groom.strandCount());
@@ -416,7 +415,7 @@ TEST_F(RuntimeAsset, HairsOfOlderFilesAreDrawnAsBefore) {
 /// The same of version 1.1, which brought the skin that hair collides with.
 TEST_F(RuntimeAsset, FilesOfTheFirstVersionWithSkinAreStillRead) {
     const auto bytes = readFile(sourceDir() / "tests/exporters/files/version_1_1.hairrt").value();
-    const auto opened = Asset::open(bytes);
+    const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset) << opened.error.words;
     ASSERT_FALSE(opened.asset->check());
     EXPECT_EQ(opened.asset->minor(), 1u);

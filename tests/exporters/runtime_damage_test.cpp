@@ -17,7 +17,6 @@ namespace hairloom::test {
 namespace {
 
 namespace format = runtime::asset;
-using runtime::Asset;
 using runtime::AssetError;
 
 class RuntimeDamage : public AssetTest {};
@@ -25,12 +24,12 @@ class RuntimeDamage : public AssetTest {};
 TEST_F(RuntimeDamage, AnyChangedByteIsRefusedOrChangesNothing) {
     const auto bytes = written(wholeGroom());
     AssetBytes copy(bytes);
-    const auto before = Asset::open(copy.span()).asset->strandsAtRest();
+    const auto before = runtime::Asset::open(copy.span()).asset->strandsAtRest();
     std::size_t harmless = 0;
     for (std::size_t at = 0; at < bytes.size(); ++at) {
         const std::byte was = copy.span()[at];
         copy.span()[at] ^= static_cast<std::byte>(1u << (at % 8));
-        const auto opened = Asset::open(copy.span());
+        const auto opened = runtime::Asset::open(copy.span());
         const bool refused = !opened.asset || opened.asset->check();
         if (!refused) {
             ++harmless;
@@ -57,7 +56,7 @@ TEST_F(RuntimeDamage, DamageThatNoChecksumFindsIsRefusedOrHarmless) {
                 lies =
                     lies && section.offset <= bytes.size() && section.bytes <= bytes.size() - section.offset;
             if (lies) copy.seal();
-            const auto opened = Asset::open(copy.span());
+            const auto opened = runtime::Asset::open(copy.span());
             if (!opened.asset || opened.asset->check()) {
                 ++refused;
             } else if (at % 7 == 0) {
@@ -73,12 +72,12 @@ TEST_F(RuntimeDamage, AnyEarlierEndIsRefusedWithItsPlace) {
     const auto bytes = written(helices({5, 6}));
     for (std::size_t size = 0; size < bytes.size(); ++size) {
         AssetBytes copy({bytes.data(), size});
-        const auto opened = Asset::open(copy.span());
+        const auto opened = runtime::Asset::open(copy.span());
         ASSERT_FALSE(opened.asset) << size;
         EXPECT_FALSE(opened.error.words.empty());
     }
     AssetBytes copy(bytes);
-    EXPECT_EQ(Asset::open(copy.span().subspan(8)).error.kind, AssetError::Kind::misaligned);
+    EXPECT_EQ(runtime::Asset::open(copy.span().subspan(8)).error.kind, AssetError::Kind::misaligned);
 }
 
 template <class T>

@@ -28,9 +28,9 @@ struct Scene {
     std::uint32_t substeps = 0;                                        ///< of the frame
     std::vector<std::uint32_t> offsets{0};
     std::vector<Float3> positions;
-    std::vector<runtime::RootFrame> roots;  ///< at the end of the frame
-    std::vector<runtime::Sphere> spheres;   ///< likewise
-    runtime::State state;                   ///< before it
+    runtime::Vector<runtime::RootFrame> roots;  ///< at the end of the frame
+    runtime::Vector<runtime::Sphere> spheres;   ///< likewise
+    runtime::State state;                       ///< before it
     std::shared_ptr<const runtime::RestShape> shape;
 
     runtime::StrandsView view() const { return {offsets, positions}; }
@@ -192,7 +192,7 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
     makeRods(scene);
     scene.spheres = {
         {{0.0f, -0.05f, 0.0f}, 0.06f}, {{0.05f, -0.1f, 0.02f}, 0.05f}, {{-0.1f, 0.0f, 0.0f}, 0.03f}};
-    state.spheres.assign(scene.spheres.begin(), scene.spheres.end());
+    state.spheres = scene.spheres;
     state.spheres[2].center_ws.x -= 0.01f;
     return scene;
 }
