@@ -42,7 +42,7 @@ std::vector<ContactRow> contactsOfRods(bool quick, const std::function<void()>& 
         const double error = fall.error(substeps);
         rows.push_back(
             {fmt::format("strand falls on a sphere, off a chain in closed equations, {} substeps", substeps),
-             1e3 * error, "mm", 1e3 * before / 3, "the first touch is found at the end of a substep"});
+             1e3 * error, "mm", 1e3 * before / 3, "not found yet"});
         before = error;
     }
     next();

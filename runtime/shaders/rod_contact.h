@@ -20,7 +20,8 @@ struct RodNode {
     Real load;           ///< force of its contacts in the last substep; negative where it slid
     Real step;           ///< h_e, seconds
     Real radius;         ///< metres that it keeps from shapes
-    Real fresh;          ///< 1: a new contact slides by what friction leaves of its way, 0: by its way
+    Real fresh;  ///< 1: a new contact slides by what friction leaves of its way; 0, beside skin and what
+                 ///< bounces: by its way
 };
 
 /// A shape, as a node meets it: the plane that takes its place, in this substep, for this node.

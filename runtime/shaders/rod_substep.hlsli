@@ -93,7 +93,7 @@ RodNode nodeOf(uint p, float3 moved, float3 tangent, float3 position, float weig
     node.load = load(p);
     node.step = gTimeStep;
     node.radius = collisionRadiusAt(p);
-    node.fresh = 1.0;
+    node.fresh = gFrame.substep.restitution > 0.0 ? 0.0 : 1.0;
     return node;
 }
 

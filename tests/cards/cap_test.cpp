@@ -236,8 +236,9 @@ TEST(Cap, IsThinnerWhereCardsHideMoreSkinThanStrandsDo) {
     ASSERT_EQ(cap.size(), 1u);
     const Picture whole = bakeCap(hair, laidRoots(hair), *light, cap[0], 1, 72, 84);
     const auto alone = coverageOfHalves(cap[0], whole);
-    EXPECT_NEAR(alone[0], 0.5, 0.05);
-    EXPECT_NEAR(alone[1], 0.5, 0.05);
+    // It wears the first 12 mm of strands that go on.
+    EXPECT_GT(alone[0], 0.2);
+    EXPECT_GT(alone[1], 0.2);
     const auto halves = [&](float coverage, float height) {
         Picture card{1, 1, std::vector<Texel>(1)}, picture = whole;
         card.texels[0].coverage = coverage;
@@ -250,7 +251,7 @@ TEST(Cap, IsThinnerWhereCardsHideMoreSkinThanStrandsDo) {
     EXPECT_GT(together, 0.57);
     EXPECT_LT(together, 0.69) << "all of the cap would make it 0.73";
     EXPECT_NEAR(under[1], alone[1], 1e-5) << "where there is no card";
-    EXPECT_LT(halves(0.9f, 0.002f)[0], 0.05) << "the card hides more by itself";
+    EXPECT_LT(halves(0.9f, 0.002f)[0], 0.25 * alone[0]) << "the card hides more by itself";
     EXPECT_NEAR(halves(0.9f, 0.05f)[0], alone[0], 1e-5) << "a card that hangs far from the skin";
     const double sparse = halves(0.05f, 0.002f)[0];
     EXPECT_LT(sparse, alone[0] + 1e-6) << "no denser than it was";

@@ -317,7 +317,7 @@ class RodStrip {
                 hn::Load(D(), rod_.load + node),
                 step_,
                 all(radiusOf(p)),
-                all(context_.body ? 0.0f : 1.0f)};
+                all(context_.body || context_.restitution > 0.0f ? 0.0f : 1.0f)};
     }
     /// Metres that node p keeps from shapes.
     float radiusOf(std::uint32_t p) const {
