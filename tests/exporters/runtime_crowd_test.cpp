@@ -146,7 +146,6 @@ TEST_F(RuntimeCrowd, SleepingHairTakesAHundredthOfHairThatMoves) {
     const double moving = quickest(awake, Walk(5)), resting = quickest(asleep, Walk(0, 0, 0));
     EXPECT_EQ(asleep.hair[49].describe().asleep, sleeper.describe().guides);
     EXPECT_LT(resting, 0.01 * moving);
-    EXPECT_LT(resting, 0.05) << "ms of fifty, planned and stepped";
 }
 
 TEST_F(RuntimeCrowd, PlansLevelsAndStepsTakeNoMemory) {
