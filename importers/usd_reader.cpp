@@ -77,7 +77,12 @@ class Reader {
                 return tl::unexpected(inFile(status.error(), file_));
         }
         takeUsdSettings(stage_.root, file_, strands_);
-        return append();
+        auto made = append();
+        // Values that lie in files which are not there leave curves without points.
+        if (made && made->offsets.size() < 2 && made->dropped.empty() && !reasons.empty())
+            return failIn(file_, {}, "has no curves that show: " + firstOf(reasons),
+                          "expected hair as BasisCurves, NurbsCurves or HermiteCurves");
+        return made;
     }
 
   private:
