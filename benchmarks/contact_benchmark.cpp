@@ -53,9 +53,8 @@ Result<Outcome> run(const Options& options) {
                           {"mark", row.mark},
                           {"met", row.met()}});
     }
-    return Outcome{Report{{"name", "contact"}, {"rows", std::move(report)}},
-                   marksTable(rows),
-                   {{"contact.md", marksTable(rows)}}};
+    const std::string table = marksTable(rows);
+    return Outcome{Report{{"name", "contact"}, {"rows", std::move(report)}}, table, {{"contact.md", table}}};
 }
 
 }  // namespace

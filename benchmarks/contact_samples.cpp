@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "benchmarks/contact_rows.h"
+#include "benchmarks/sample_hair.h"
 #include "core/documents/motions.h"
 #include "core/documents/sample.h"
 #include "core/groom/strand_subset.h"
@@ -15,7 +16,6 @@
 namespace hairloom::benchmarks {
 namespace {
 
-constexpr float kStillFrame = 1.0f / 60.0f;
 constexpr double kMmPerMetre = 1000;
 
 /// m/s of each strand's fastest point.
@@ -41,11 +41,11 @@ class OfSample {
         auto simulation = Simulation::make(groom_, {});
         if (!simulation) return tl::unexpected(simulation.error());
         const int second = quick_ ? 2 : 60;
-        for (int f = 0; f < 5 * second; ++f) simulation->step(kStillFrame, {});
+        for (int f = 0; f < 5 * second; ++f) simulation->step(runtime::kUsualFrame, {});
         rows.push_back({fmt::format("{} at rest, strands above 1 mm/s after 5 s", name_),
                         countAbove(speedsOf(groom_, *simulation), 0.001f), "", 0,
                         "strands that lie on folds of the skin"});
-        for (int f = 0; f < 5 * second; ++f) simulation->step(kStillFrame, {});
+        for (int f = 0; f < 5 * second; ++f) simulation->step(runtime::kUsualFrame, {});
         rows.push_back({fmt::format("{} at rest, strands awake after 10 s", name_),
                         static_cast<double>(groom_.strandCount() - simulation->stats().restingStrands), "", 0,
                         "strands that lie on folds of the skin"});
@@ -69,7 +69,7 @@ class OfSample {
             std::vector<CollisionSphere> spheres = groom_.spheres;
             spheres.push_back({"hand", top + Vec3f(0, kRadius + kAbove + 0.1f * left, 0), kRadius, {}, -1});
             simulation->setSpheres(std::move(spheres));
-            simulation->step(kStillFrame, {});
+            simulation->step(runtime::kUsualFrame, {});
             const auto now = simulation->positions_ws();
             for (std::size_t p = 0; f > 6 * second && p < now.size(); ++p)
                 jump = std::max(jump, (now[p] - last[p]).norm());
@@ -176,13 +176,11 @@ std::size_t contactStepsOfSamples(const Options& options) {
 }
 
 Result<std::vector<ContactRow>> contactsOfSamples(const Options& options, const std::function<void()>& next) {
-    const auto folder = findSamples(programFolder());
-    if (folder.empty())
-        return fail("the sample hairstyles are not beside this program",
-                    "expected the environment variable HAIRLOOM_SAMPLES to name their folder");
+    const auto folder = sampleFolder();
+    if (!folder) return tl::unexpected(folder.error());
     std::vector<ContactRow> rows;
     for (const std::string& name : wantedSamples(options)) {
-        const auto groom = makeSample(folder, name, SampleColliders::skin);
+        const auto groom = makeSample(*folder, name, SampleColliders::skin);
         if (!groom) return tl::unexpected(groom.error());
         const OfSample sample(name, *groom, options.quick);
         for (const auto part :

@@ -26,15 +26,12 @@ double meanLength(const Groom& groom) {
 }
 
 Result<std::vector<Sample>> makeSamples() {
-    const auto folder = findSamples(programFolder());
-    if (folder.empty()) {
-        return fail("the sample hairstyles are not beside this program",
-                    "expected the environment variable HAIRLOOM_SAMPLES to name their folder");
-    }
+    const auto folder = sampleFolder();
+    if (!folder) return tl::unexpected(folder.error());
     std::vector<Sample> made;
     // Those that have been measured since the beginning, so that rows can be compared.
     for (const std::string name : {"long", "short", "shoulder"}) {
-        auto groom = makeSample(folder, name);
+        auto groom = makeSample(*folder, name);
         if (!groom) return tl::unexpected(groom.error());
         made.push_back({name + " sample", std::move(*groom)});
     }
@@ -77,6 +74,14 @@ class NoddingHair : public MovingStrands {
 };
 
 }  // namespace
+
+Result<std::filesystem::path> sampleFolder() {
+    auto folder = findSamples(programFolder());
+    if (folder.empty())
+        return fail("the sample hairstyles are not beside this program",
+                    "expected the environment variable HAIRLOOM_SAMPLES to name their folder");
+    return folder;
+}
 
 const Result<std::vector<Sample>>& samples() {
     static const Result<std::vector<Sample>> made = makeSamples();

@@ -2,6 +2,7 @@
 #pragma once
 // The sample hairstyles, which every benchmark of hair measures first.
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ struct Sample {
     std::string name;  ///< "short sample"
     Groom groom;
 };
+/// Of samples. Errors: there is none beside the program or above it.
+Result<std::filesystem::path> sampleFolder();
 /// From short to long hair; made from the folder `samples` at the first call. Errors: there is no such folder
 /// beside the program or above it, a sample does not read.
 const Result<std::vector<Sample>>& samples();

@@ -147,10 +147,14 @@ def uvs_of(mesh: bpy.types.Mesh, name: str) -> np.ndarray | None:
     return uvs.reshape(-1, 2)
 
 
+def is_ball(obj: bpy.types.Object) -> bool:
+    return obj.type == "EMPTY" and obj.empty_display_type == "SPHERE"
+
+
 def spheres_in(collection: bpy.types.Collection | None) -> list[bpy.types.Object]:
     if collection is None:
         return []
-    return [one for one in collection.all_objects if one.type == "EMPTY" and one.empty_display_type == "SPHERE"]
+    return [one for one in collection.all_objects if is_ball(one)]
 
 
 def capsules_between(balls: list[bpy.types.Object]) -> np.ndarray:

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 
 from . import simulate
+from .convert import is_ball
 from .module import problem
 
 
@@ -31,10 +32,6 @@ class HairloomCurves(bpy.types.PropertyGroup):
     cell: FloatProperty(name="Detail", description="Finest millimetres between distances to colliders", default=4, min=0.5, max=50)
     wind: FloatVectorProperty(name="Wind", description="Metres a second in the world. All 0: as the project says", subtype="VELOCITY", size=3)
     pre_roll: IntProperty(name="Pre-roll", description="Frames that the hair settles before the first", min=0, max=1000)
-
-
-def is_ball(obj: bpy.types.Object) -> bool:
-    return obj.type == "EMPTY" and obj.empty_display_type == "SPHERE"
 
 
 # Of an empty of the type Sphere.

@@ -30,12 +30,14 @@ Status LiveShots::stepWithin(std::uint64_t frame) {
 
 Status LiveShots::giveMaterial(float seconds) {
     if (!line_) return {};
-    Groom now = authored_;  // shares its arrays
-    now.material = materialAt(*line_, line_->timeAt(seconds), authored_.material);
+    Groom now = scene_.rest();  // shares its arrays
+    now.material = materialAt(*line_, line_->timeAt(seconds), authored_);
+    // The skin below has some of the hair's colour.
+    const bool tints = scene_.rest().material.rootColour != now.material.rootColour;
     if (!scene_.setMaterials(now, view_))
         return fail("the keys of the material change which strands look otherwise",
                     "expected keys that leave tubes and the looks of layers as they are");
-    return showMaterials(renderer_, scene_, true, true);
+    return showMaterials(renderer_, scene_, true, tints);
 }
 
 Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::RenderScene& scene,

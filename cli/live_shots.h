@@ -37,7 +37,7 @@ class LiveShots {
           hair_(std::move(hair)),
           view_(view),
           line_(std::move(line)),
-          authored_(scene_.rest()),
+          authored_(scene_.rest().material),
           renderer_(device) {}
     /// All steps of the next frame but the last, which goes into the frame's own list.
     Status stepWithin(std::uint64_t frame);
@@ -52,7 +52,7 @@ class LiveShots {
     MovingHair hair_;
     const ViewFile& view_;
     std::shared_ptr<const TimeLine> line_;  ///< null: the material has no keys
-    Groom authored_;
+    HairMaterial authored_;
     render::Renderer renderer_;
     bool shown_ = false;
     std::uint64_t frame_ = 0;

@@ -142,10 +142,12 @@ class Parser {
 
     /// Whether they are alike but for characters that became underscores, and a number behind.
     static bool isNamedAfter(std::string_view group, std::string_view object) {
-        const auto isPlain = [](char c, bool) { return static_cast<unsigned char>(c) > 0x20 && c != 0x7f; };
+        static constexpr auto isPlain = [](char c, bool) {
+            return static_cast<unsigned char>(c) > 0x20 && c != 0x7f;
+        };
         // Hairloom's own groups have no backslash, which would join lines at an end; others' may.
-        return isGivenTo(group, object, isPlain) || isGivenTo(group, object, [](char c, bool) {
-                   return static_cast<unsigned char>(c) > 0x20 && c != 0x7f && c != '\\';
+        return isGivenTo(group, object, isPlain) || isGivenTo(group, object, [](char c, bool isFirst) {
+                   return isPlain(c, isFirst) && c != '\\';
                });
     }
 

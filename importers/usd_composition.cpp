@@ -23,8 +23,7 @@ void moveInTime(UsdPrim& prim, const UsdTimeOffset& time) {
     if (time.offset == 0 && time.scale == 1) return;
     for (UsdAttribute& attribute : prim.attributes) {
         std::map<double, UsdValue> moved;
-        for (auto& [at, value] : attribute.samples)
-            moved.insert_or_assign(at * time.scale + time.offset, std::move(value));
+        for (auto& [at, value] : attribute.samples) moved.insert_or_assign(time.at(at), std::move(value));
         attribute.samples = std::move(moved);
     }
     for (UsdArcs* const arcs : {&prim.inherits, &prim.references, &prim.payloads, &prim.specializes}) {

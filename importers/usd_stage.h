@@ -44,6 +44,8 @@ struct UsdAttribute {
 /// Time of a layer in that of whoever brings it in: t · scale + offset.
 struct UsdTimeOffset {
     double offset = 0, scale = 1;
+
+    double at(double code) const { return code * scale + offset; }
 };
 
 /// What brings a prim in: of the same layers, or of a file.

@@ -27,15 +27,11 @@ struct Knot {
     double stage = 0, clip = 0;
 };
 
-double inTime(const UsdTimeOffset& time, double code) {
-    return code * time.scale + time.offset;
-}
-
 /// Pairs whose first is a time of the layer, in the time of its stack.
 void moveInTime(UsdValue& pairs, const UsdTimeOffset& time) {
     if (time.offset == 0 && time.scale == 1) return;
     for (std::size_t i = 0; i + 1 < pairs.numbers.size(); i += 2)
-        pairs.numbers.set(i, inTime(time, pairs.numbers[i]));
+        pairs.numbers.set(i, time.at(pairs.numbers[i]));
 }
 
 std::vector<Knot> pairsOf(const UsdDictionary& all, const std::string& name) {
@@ -197,7 +193,7 @@ void UsdValueClips::visit(UsdPrim& prim, const std::string& path, const std::str
             visit(variant, fmt::format("{}{{{}={}}}", path, set.name, variant.name), key, time, stronger);
     }
     if (prim.clips.empty() || isFull()) return;
-    std::set<std::string> named, sets;
+    std::set<std::string> named;
     UsdDictionary& all = stronger[path];
     for (auto& [name, value] : prim.clips) {
         const std::size_t end = std::min(name.rfind(':'), name.size());
@@ -211,11 +207,12 @@ void UsdValueClips::visit(UsdPrim& prim, const std::string& path, const std::str
     UsdListEdits<std::string> order = prim.clipSets;
     order.over({true, {named.begin(), named.end()}, {}, {}});
     for (const std::string& name : order.all()) {
+        if (named.erase(name) == 0) continue;
         Set set;
         set.words = fmt::format("the value clips \"{}\" of {}", name, path);
         set.key = key;
         set.time = time;
-        if (named.contains(name) && sets.insert(name).second && readSet(all, name, set)) addSet(prim, set);
+        if (readSet(all, name, set)) addSet(prim, set);
     }
 }
 
@@ -278,9 +275,9 @@ bool UsdValueClips::expandTemplate(const UsdDictionary& all, const std::string& 
     const bool hasFraction = path.substr(behind).starts_with(".#");
     const std::size_t rest =
         hasFraction ? std::min(path.find_first_not_of('#', behind + 1), path.size()) : behind;
-    const double parts = hasFraction ? std::pow(10, static_cast<double>(rest - behind - 1)) : 1;
-    const auto addTime = [&](double code) { set.times.push_back({inTime(set.time, code), code}); };
     const std::size_t fractions = hasFraction ? rest - behind - 1 : 0;
+    const double parts = std::pow(10, static_cast<double>(fractions));
+    const auto addTime = [&](double code) { set.times.push_back({set.time.at(code), code}); };
     if (behind - digits > 18 || fractions > 9) return false;
     for (std::size_t n = 0; n <= kMaxClips; ++n) {
         const double code = *start + static_cast<double>(n) * *stride;
@@ -290,11 +287,11 @@ bool UsdValueClips::expandTemplate(const UsdDictionary& all, const std::string& 
         const auto whole = static_cast<std::int64_t>(std::llround(code * parts));
         const auto perCode = static_cast<std::int64_t>(parts);
         std::string asset = fmt::format("{}{:0{}}", path.substr(0, digits), whole / perCode, behind - digits);
-        if (hasFraction) asset += fmt::format(".{:0{}}", whole % perCode, rest - behind - 1);
+        if (hasFraction) asset += fmt::format(".{:0{}}", whole % perCode, fractions);
         asset += path.substr(rest);
         if (!files_.keyOf(set.key, asset)) continue;
         set.active.push_back(
-            {inTime(set.time, code + offset.value_or(0)), static_cast<double>(set.assets.size())});
+            {set.time.at(code + offset.value_or(0)), static_cast<double>(set.assets.size())});
         addTime(code);
         if (offset) addTime(code + *offset);
         set.assets.push_back(std::move(asset));
@@ -408,7 +405,7 @@ std::map<double, UsdValue> UsdValueClips::samplesOf(const Set& set,
         };
         add(set.active[a].stage, clipTimeAt(set.times, set.time, set.active[a].stage));
         if (set.times.empty()) {
-            for (const auto& [time, value] : attribute->samples) add(inTime(set.time, time), time);
+            for (const auto& [time, value] : attribute->samples) add(set.time.at(time), time);
         }
         const auto behind = std::ranges::upper_bound(set.times, begin, {}, &Knot::stage);
         for (auto to = behind; to != set.times.end() && !isFull(); ++to) {

@@ -173,17 +173,19 @@ std::pair<std::uint64_t, std::uint64_t> rangeOf(const TakesOptions& options, con
 
 struct OpenedTake {
     Groom groom;
+    fs::path path;
     TakeReader reader;
 };
 Result<OpenedTake> openTake(const TakesOptions& options, const std::string& name) {
     auto groom = openGroom(options.simulation.input);
     if (!groom) return tl::unexpected(groom.error());
-    const auto path = takeFor(options, name, *groom);
+    auto path = existingTake(options.simulation.input, name);
     if (!path) return tl::unexpected(path.error());
     auto reader = TakeReader::open(*path);
     if (!reader) return tl::unexpected(reader.error());
+    warnOfChange({name, *path, reader->info(), {}}, *groom);
     if (auto status = reader->use(*groom); !status) return tl::unexpected(status.error());
-    return OpenedTake{std::move(*groom), std::move(*reader)};
+    return OpenedTake{std::move(*groom), std::move(*path), std::move(*reader)};
 }
 
 WorkWatch watchOf(Progress& progress) {
@@ -313,9 +315,7 @@ Result<Report> exportNamed(const TakesOptions& options) {
     if (!take) return tl::unexpected(take.error());
     const auto range = rangeOf(options, take->reader.info());
     if (!isFilmFormat(options.format)) return exportFrames(take->reader, take->groom, range, options);
-    const auto path = existingTake(options.simulation.input, options.exported);
-    if (!path) return tl::unexpected(path.error());
-    return exportFilm(take->reader.info(), range, *path, options);
+    return exportFilm(take->reader.info(), range, take->path, options);
 }
 
 std::string_view kindOfExport(const std::string& format) {

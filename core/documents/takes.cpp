@@ -48,14 +48,20 @@ bool isDeviceOfWindows(const std::string& name) {
     return isPort && base[3] >= '1' && base[3] <= '9';
 }
 
-Result<TakeReader> openFor(const fs::path& path, const Groom& groom) {
+/// Notes as an object; empty where they are none.
+nlohmann::json objectOf(const std::string& notes) {
+    auto read = parseJson("notes", notes);
+    return read && read->is_object() ? std::move(*read) : nlohmann::json::object();
+}
+
+}  // namespace
+
+Result<TakeReader> openTakeFor(const fs::path& path, const Groom& groom) {
     auto reader = TakeReader::open(path);
     if (!reader) return reader;
     if (auto status = reader->use(groom); !status) return tl::unexpected(status.error());
     return reader;
 }
-
-}  // namespace
 
 fs::path takesFolder(const fs::path& project) {
     fs::path folder = project;
@@ -155,25 +161,21 @@ std::string takeNotes(const std::string& motion, const Groom& groom, const std::
 }
 
 std::string motionOfNotes(const std::string& notes) {
-    const auto read = parseJson("notes", notes);
-    if (!read || !read->is_object()) return {};
-    const auto found = read->find("motion");
-    return found != read->end() && found->is_string() ? found->get<std::string>() : std::string();
+    const auto read = objectOf(notes);
+    const auto found = read.find("motion");
+    return found != read.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
 std::string withLoop(const std::string& notes, const LoopNotes& loop) {
-    auto read = parseJson("notes", notes);
-    nlohmann::ordered_json all = nlohmann::ordered_json::object();
-    if (read && read->is_object()) all = std::move(*read);
+    nlohmann::ordered_json all = objectOf(notes);
     all["loop"] = {{"first", loop.first}, {"frames", loop.frames}, {"blend", loop.blend}};
     return all.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 std::optional<LoopNotes> loopOfNotes(const std::string& notes) {
-    const auto read = parseJson("notes", notes);
-    if (!read || !read->is_object()) return std::nullopt;
-    const auto loop = read->find("loop");
-    if (loop == read->end() || !loop->is_object()) return std::nullopt;
+    const auto read = objectOf(notes);
+    const auto loop = read.find("loop");
+    if (loop == read.end() || !loop->is_object()) return std::nullopt;
     const auto number = [&](const char* name) -> std::uint64_t {
         const auto found = loop->find(name);
         return found != loop->end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
@@ -198,9 +200,9 @@ std::uint64_t frameAtTimeLine(const TakeInfo& info, float seconds) {
 
 Result<TakeDifference> compareTakes(const fs::path& a, const fs::path& b, const Groom& groom,
                                     const std::function<void(std::uint64_t)>& progress) {
-    auto first = openFor(a, groom);
+    auto first = openTakeFor(a, groom);
     if (!first) return tl::unexpected(first.error());
-    auto second = openFor(b, groom);
+    auto second = openTakeFor(b, groom);
     if (!second) return tl::unexpected(second.error());
     const float rate = first->info().framesPerSecond, other = second->info().framesPerSecond;
     if (rate != other)

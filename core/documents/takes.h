@@ -42,6 +42,9 @@ Status renameTake(const std::filesystem::path& project, const std::string& from,
 /// A take that is there. Errors: as takePath(), no such take.
 Result<std::filesystem::path> existingTake(const std::filesystem::path& project, const std::string& name);
 
+/// A take, read for that groom. Errors: as TakeReader::open() and use().
+Result<TakeReader> openTakeFor(const std::filesystem::path& path, const Groom& groom);
+
 /// What whoever plays a groom notes in a take: a JSON object of "motion", "engine", "pre_roll" and
 /// "settings".
 std::string takeNotes(const std::string& motion, const Groom& groom, const std::string& engine,

@@ -128,9 +128,8 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     const auto send = [&](const gpu::BufferPtr& buffer, std::span<const float> values) {
         list.updateBuffer(buffer, 0, std::as_bytes(values));
     };
-    const auto planes = runtime::planesOfSlots(*shape, batch.inSlots(), state.planes, runtime::kStatePlanes);
-    std::vector<float> moving(planes.begin(), planes.end());
-    std::vector<float> own;
+    auto moving = runtime::planesOfSlots(*shape, batch.inSlots(), state.planes, runtime::kStatePlanes);
+    runtime::Vector<float> own;
     model->writeOwn(*shape, batch, state, moving, own);
     moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);
     send(batch.state, moving);

@@ -53,8 +53,8 @@ class DeviceStrands {
                          runtime::State& state) const = 0;
     /// `moving` has kStatePlanes planes and may get another, `own` is empty.
     virtual void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch,
-                          const runtime::State& state, std::vector<float>& moving,
-                          std::vector<float>& own) const = 0;
+                          const runtime::State& state, runtime::Vector<float>& moving,
+                          runtime::Vector<float>& own) const = 0;
 };
 
 struct GpuModel {

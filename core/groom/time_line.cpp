@@ -227,13 +227,19 @@ Vec3d valueAt(const SettingTrack& track, float time) {
 
 namespace {
 
+/// Whether a track is of that section.
+auto isOf(std::string_view section) {
+    return [section](const SettingTrack& track) { return track.name.starts_with(section); };
+}
+
 /// What the tracks of a section key of `settings`.
 template <class S>
 void takeKeys(const TimeLine& line, std::string_view section, float time, S& settings) {
     for (const SettingTrack& track : line.settings) {
-        if (!track.name.starts_with(section) || track.keys.empty() || findKeyable(track.name) == nullptr)
-            continue;
-        const auto* const field = runtime::findField<S>(std::string_view(track.name).substr(section.size()));
+        if (!track.name.starts_with(section) || track.keys.empty()) continue;
+        // The section says whose field it is.
+        const auto* const field = static_cast<const runtime::Field<S>*>(findKeyable(track.name));
+        if (field == nullptr) continue;
         const Vec3d value = valueAt(track, time);
         for (std::uint32_t c = 0; c < field->components(); ++c)
             runtime::setFieldValue(settings, *field, value[c], c);
@@ -265,20 +271,16 @@ HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& au
 }
 
 bool keysSimulation(const TimeLine& line) {
-    return std::ranges::any_of(line.settings,
-                               [](const SettingTrack& track) { return track.name.starts_with(kSimulation); });
+    return std::ranges::any_of(line.settings, isOf(kSimulation));
 }
 
 bool keysMaterial(const TimeLine& line) {
-    return std::ranges::any_of(line.settings,
-                               [](const SettingTrack& track) { return track.name.starts_with(kMaterial); });
+    return std::ranges::any_of(line.settings, isOf(kMaterial));
 }
 
 bool movesAlike(const TimeLine& one, const TimeLine& other) {
     TimeLine a = one, b = other;
-    for (TimeLine* line : {&a, &b})
-        std::erase_if(line->settings,
-                      [](const SettingTrack& track) { return track.name.starts_with(kMaterial); });
+    for (TimeLine* line : {&a, &b}) std::erase_if(line->settings, isOf(kMaterial));
     return a == b;
 }
 

@@ -396,6 +396,15 @@ std::uint32_t DeviceScene::strandsBefore(std::size_t group) const {
     return static_cast<std::uint32_t>(count);
 }
 
+HairCount DeviceScene::hair() const {
+    HairCount count;
+    for (const StrandGroup& group : groups) {
+        count.strands += group.strandCount;
+        count.segments += group.segments;
+    }
+    return count;
+}
+
 std::uint64_t DeviceScene::triangles() const {
     std::uint64_t count = 0;
     for (const MeshOnDevice& mesh : meshes) count += mesh.indices.size() / 3;

@@ -7,6 +7,7 @@
 
 #include "core/gpu/device.h"
 #include "core/render/fibre_bake.h"
+#include "core/render/opacity_layers.h"
 #include "core/render/scene.h"
 #include "shaders/shared/render_types.h"
 
@@ -159,6 +160,7 @@ class DeviceScene {
     Box3f meshBounds() const;
     Box3f hairBounds() const;
     std::uint64_t triangles() const;
+    HairCount hair() const;
     const MaterialOnDevice& materialOf(const DrawBatch& batch) const {
         return groups[batch.group].materials[batch.material];
     }

@@ -33,12 +33,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     facts.hair = !state.scene.batches.empty();
     facts.environment = !state.environment.dark();
     facts.lights = facts.shadowLights = static_cast<std::uint32_t>(state.lights.size());
-    HairCount hair;
-    for (const StrandGroup& group : state.scene.groups) {
-        hair.strands += group.strandCount;
-        hair.segments += group.segments;
-    }
-    facts.fragments = fragmentsThatFit(options, device.info(), hair);
+    facts.fragments = fragmentsThatFit(options, device.info(), state.scene.hair());
     state.plan = planRender(facts, options, 1);
     if (const auto fitted = state.targets.fit(device, state.plan); !fitted)
         return tl::unexpected(fitted.error());

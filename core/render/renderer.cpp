@@ -258,16 +258,13 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
     facts.presents = presents;
     facts.askedLayers = askedLayers;
-    HairCount hair;
     for (const StrandGroup& group : state.scene.groups) {
-        hair.strands += group.strandCount;
-        hair.segments += group.segments;
         for (const MaterialOnDevice& material : group.materials) {
             facts.look = facts.look || material.shading.look.has_value();
             facts.tableBytes += material.fibre.bytes();
         }
     }
-    facts.fragments = fragmentsThatFit(state.options, device.info(), hair);
+    facts.fragments = fragmentsThatFit(state.options, device.info(), state.scene.hair());
     return facts;
 }
 

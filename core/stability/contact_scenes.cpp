@@ -18,8 +18,7 @@ using runtime::RootFrame;
 using runtime::SimulationSettings;
 using runtime::Sphere;
 
-constexpr double kSceneGravity = 9.81;       // m/s²
-constexpr float kSceneFrame = 1.0f / 60.0f;  // seconds
+constexpr double kSceneGravity = 9.81;  // m/s²
 
 Engine engineOf(const StrandSet& strands, const SimulationSettings& settings) {
     Engine::Result made = Engine::make(strands.view(), settings);
@@ -123,7 +122,7 @@ double FallOnASphere::error(std::uint32_t substeps) const {
     const auto roots = strands.roots();
     double sum = 0.0;
     for (std::size_t f = 1; f < frames_.size(); ++f) {
-        engine.step({kSceneFrame, static_cast<double>(f) / 60.0, roots, ballBelow()});
+        engine.step({runtime::kUsualFrame, static_cast<double>(f) / 60.0, roots, ballBelow()});
         const std::vector<Float3> x = pointsOf(engine);
         for (int p = 1; p <= FallingChain::kFree; ++p) {
             const Float3& point = x[static_cast<std::size_t>(p) + 1];
@@ -152,7 +151,7 @@ Slide slideOnAPlane(double over, std::uint32_t substeps) {
     const std::vector<Sphere> plane{{{0.0f, -std::sqrt(1000.0f * 1000.0f - 1.0f), 0.0f}, 1000.0f}};
     double turn = 0.0, rate = 0.0;
     for (int f = 1; f <= 60; ++f) {
-        engine.step({kSceneFrame, f / 60.0, roots, plane});
+        engine.step({runtime::kUsualFrame, f / 60.0, roots, plane});
         for (int i = 0; i < 1000; ++i) {
             const double pull = kSceneGravity * (std::sin(angle) * std::cos(turn) - 0.3 * std::cos(angle));
             rate = std::max(0.0, rate + pull / 60000.0);
@@ -179,10 +178,10 @@ Capstan strandOverABar(float friction, std::uint32_t substeps) {
     // Nodes that come to the bar shake the catenary: means are of one over the tension, which is its sag.
     double found = 0.0, due = 0.0, wrap = 0.0;
     for (int f = 1; f <= kFalling + kPulling + kMeasured; ++f) {
-        const float way = kPullSpeed * kSceneFrame * static_cast<float>(std::max(0, f - kFalling));
+        const float way = kPullSpeed * runtime::kUsualFrame * static_cast<float>(std::max(0, f - kFalling));
         const std::vector<RootFrame> roots = strands.roots({-way, 0.0f, 0.0f});
         runtime::FrameInput input;
-        input.dt = kSceneFrame;
+        input.dt = runtime::kUsualFrame;
         input.time = f / 60.0;
         input.roots_ws = roots;
         input.spheres = ends;
@@ -209,8 +208,8 @@ Bounce bounceOnASphere(float restitution) {
     const double start = undamped.measure().potentialEnergy;
     Bounce bounce;
     for (int f = 1; f <= 900; ++f) {
-        damped.step({kSceneFrame, f / 60.0, roots, ballBelow()});
-        undamped.step({kSceneFrame, f / 60.0, roots, ballBelow()});
+        damped.step({runtime::kUsualFrame, f / 60.0, roots, ballBelow()});
+        undamped.step({runtime::kUsualFrame, f / 60.0, roots, ballBelow()});
         const runtime::Measurements m = undamped.measure();
         bounce.gained = std::max(bounce.gained, m.kineticEnergy + m.potentialEnergy - start);
     }
@@ -228,7 +227,7 @@ std::uint32_t guardedWhereGravityChanges() {
     for (int f = 1; f <= 240; ++f) {
         s.gravity.y = static_cast<float>(-kSceneGravity * (1.0 + 0.1 * std::sin(0.7 * f)));
         engine.setSettings(s);
-        engine.step({kSceneFrame, f / 60.0, roots, {}});
+        engine.step({runtime::kUsualFrame, f / 60.0, roots, {}});
         guarded += engine.lastStep().guardedStrands;
     }
     return guarded;

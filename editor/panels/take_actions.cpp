@@ -6,6 +6,7 @@
 
 #include "core/documents/take_edit.h"
 #include "core/documents/takes.h"
+#include "editor/document/task_watch.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/number_spin.h"
@@ -13,19 +14,6 @@
 
 namespace hairloom::editor {
 namespace {
-
-/// A reader of that take for the groom, on the thread of the work.
-Result<TakeReader> readerFor(const std::filesystem::path& take, const Groom& groom) {
-    auto reader = TakeReader::open(take);
-    if (!reader) return reader;
-    if (auto status = reader->use(groom); !status) return tl::unexpected(status.error());
-    return reader;
-}
-
-WorkWatch watchOf(TaskControl& control) {
-    return {[&control](double share) { control.setProgress(static_cast<float>(share)); },
-            control.cancelFlag()};
-}
 
 QString seamText(const LoopSeam& seam) {
     return QString("%1 mm and %2 mm/s")
@@ -88,7 +76,7 @@ void TakeActions::makeLoop() {
         QString("Making the loop %1").arg(name),
         [groom = document_.groom(), take = takes_.fileOf(source), wanted = dialog.wanted(),
          to](TaskControl& control) -> Result<LoopReport> {
-            auto reader = readerFor(take, groom);
+            auto reader = openTakeFor(take, groom);
             if (!reader) return tl::unexpected(reader.error());
             LoopToMake watched = wanted;
             watched.watch = watchOf(control);
@@ -125,7 +113,7 @@ void TakeActions::resimulate() {
         [groom = document_.groom(), head = std::shared_ptr<const HeadMotion>(std::move(*made)), motion,
          take = takes_.fileOf(source), wanted = dialog.wanted(),
          to](TaskControl& control) -> Result<ResumeReport> {
-            auto reader = readerFor(take, groom);
+            auto reader = openTakeFor(take, groom);
             if (!reader) return tl::unexpected(reader.error());
             TakeToResume watched = wanted;
             watched.watch = watchOf(control);

@@ -11,6 +11,7 @@
 #include "core/base/output_batch.h"
 #include "core/documents/takes.h"
 #include "core/simulation/take_file.h"
+#include "editor/document/task_watch.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/number_spin.h"
@@ -190,12 +191,10 @@ void TakeExportDialog::exportTo(const QString& path) {
     const bool started = tasks_.run<ExportReport>(
         QString("Exporting %1").arg(QFileInfo(path).fileName()),
         [groom = document_.groom(), take = take_, asked, path](TaskControl& control) -> Result<ExportReport> {
-            auto reader = TakeReader::open(take);
+            auto reader = openTakeFor(take, groom);
             if (!reader) return tl::unexpected(reader.error());
-            if (auto status = reader->use(groom); !status) return tl::unexpected(status.error());
             TakeToExport watched = asked;
-            watched.watch = {[&](double share) { control.setProgress(static_cast<float>(share)); },
-                             control.cancelFlag()};
+            watched.watch = watchOf(control);
             OutputBatch batch;
             auto report = exportTake(*reader, groom, watched, path.toStdString());
             if (!report) return report;

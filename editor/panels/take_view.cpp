@@ -15,13 +15,6 @@ namespace {
 constexpr float kRedDistance = 0.02f;  ///< metres of distance at which strands are red
 constexpr int kTakeTick_ms = 16;
 
-Result<TakeReader> openTakeFor(const std::filesystem::path& path, const Groom& groom) {
-    auto take = TakeReader::open(path);
-    if (!take) return take;
-    if (auto status = take->use(groom); !status) return tl::unexpected(status.error());
-    return take;
-}
-
 }  // namespace
 
 TakeView::TakeView(const PanelParts& parts, QObject* parent)

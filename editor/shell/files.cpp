@@ -18,6 +18,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/project_file.h"
 #include "core/operations/stack.h"
+#include "editor/document/task_watch.h"
 #include "editor/fields/length_text.h"
 #include "importers/mesh_format.h"
 
@@ -293,9 +294,7 @@ void DocumentFiles::transferTo(const QString& path) {
             opened.groom = groom;
             HeadImportOptions options;
             options.guessUnit = options.guessUp = options.guessTurn = true;
-            const WorkWatch watch{[&](double share) { control.setProgress(static_cast<float>(share)); },
-                                  control.cancelFlag()};
-            const auto done = transferToFile(opened.groom, file, options, watch);
+            const auto done = transferToFile(opened.groom, file, options, watchOf(control));
             if (!done) return tl::unexpected(done.error());
             opened.record = transferRecord(file, done->taken);
             opened.farthest = *std::ranges::max_element(done->transfer.distances);

@@ -232,8 +232,10 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         Groom looks = now;
         if (draft) widenMaterials(looks);
         if (software_) leaveTubes(looks);
+        // The skin below has some of the hair's colour.
+        const bool tints = scene_->rest().material.rootColour != looks.material.rootColour;
         if (!scene_->setMaterials(looks, viewOf(request))) return replaceScene(request, draft);
-        if (auto set = showMaterials(renderer_, *scene_, request.showHair, request.showHead); !set)
+        if (auto set = showMaterials(renderer_, *scene_, request.showHair, request.showHead && tints); !set)
             return set;
     }
     const bool sameDye = now.pointAttributes.version(attribute::kPointDye) ==

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "hairloom/memory.h"
 
-#include <algorithm>
 #include <atomic>
 #include <new>
 

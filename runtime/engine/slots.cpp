@@ -2,13 +2,15 @@
 #include "engine/slots.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace hairloom::runtime {
 
-void forEachRow(const RestShape& shape, const Slots& slots,
-                const std::function<void(std::size_t block, std::uint32_t point, std::size_t inBlock,
-                                         std::size_t inSlots)>& visit) {
+namespace {
+
+/// Calls visit(block, point, index of lane 0 in a plane of that block, index of its slot in a plane of the
+/// slots) for each row of kBlockLanes strands.
+template <class Visit>
+void forEachRow(const RestShape& shape, const Slots& slots, const Visit& visit) {
     for (std::size_t n = 0; n < slots.blocks.size(); ++n) {
         const std::size_t block = slots.blocks[n];
         for (std::uint32_t p = 0; p < shape.blocks[block].points; ++p) {
@@ -19,34 +21,34 @@ void forEachRow(const RestShape& shape, const Slots& slots,
     }
 }
 
+}  // namespace
+
 Vector<float> planesOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
                             std::size_t count) {
     const std::size_t plane = slots.planeSize(), stride = slots.laneStride();
     Vector<float> values(plane * count, 0.0f);
-    const auto copy = [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
+    forEachRow(shape, slots, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
         const float* const first = planes.data() + shape.blocks[block].firstPlane * count;
         for (std::size_t k = 0; k < count; ++k) {
             const float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
             float* const to = values.data() + k * plane + inSlots;
             for (std::size_t lane = 0; lane < kBlockLanes; ++lane) to[lane * stride] = row[lane];
         }
-    };
-    forEachRow(shape, slots, std::cref(copy));
+    });
     return values;
 }
 
 void planesOfBlocks(const RestShape& shape, const Slots& slots, std::span<const float> values, Floats& planes,
                     std::size_t count) {
     const std::size_t plane = slots.planeSize(), stride = slots.laneStride();
-    const auto copy = [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
+    forEachRow(shape, slots, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
         float* const first = planes.data() + shape.blocks[block].firstPlane * count;
         for (std::size_t k = 0; k < count; ++k) {
             float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
             const float* const from = values.data() + k * plane + inSlots;
             for (std::size_t lane = 0; lane < kBlockLanes; ++lane) row[lane] = from[lane * stride];
         }
-    };
-    forEachRow(shape, slots, std::cref(copy));
+    });
 }
 
 void rowsToBlocks(const Slots& slots, std::span<const float> values, std::size_t rows, float* blocks) {
@@ -70,7 +72,7 @@ Vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::size_t r
 Vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
                                      std::size_t count, std::span<const std::size_t> which) {
     Vector<shaders::float4> values(slots.planeSize());
-    const auto copy = [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
+    forEachRow(shape, slots, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inSlots) {
         const std::size_t size = planeSize(shape.blocks[block]);
         const float* const first = planes.data() + shape.blocks[block].firstPlane * count + inBlock;
         for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
@@ -78,9 +80,7 @@ Vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots,
             for (std::size_t k = 0; k < which.size(); ++k) parts[k] = first[which[k] * size + lane];
             values[inSlots + lane * slots.laneStride()] = {parts[0], parts[1], parts[2], parts[3]};
         }
-    };
-    // By reference: a std::function would have memory of its own for it.
-    forEachRow(shape, slots, std::cref(copy));
+    });
     return values;
 }
 

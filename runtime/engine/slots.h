@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 
 #include "engine/state.h"
@@ -24,12 +23,6 @@ struct Slots {
     /// By so much an index grows from lane to lane.
     std::size_t laneStride() const { return together ? points : 1; }
 };
-
-/// Calls visit(block, point, index of lane 0 in a plane of that block, index of its slot in a plane of the
-/// slots) for each row of kBlockLanes strands.
-void forEachRow(const RestShape& shape, const Slots& slots,
-                const std::function<void(std::size_t block, std::uint32_t point, std::size_t inBlock,
-                                         std::size_t inSlots)>& visit);
 
 /// Planes of blocks as those of slots, plane after plane. `planes` holds `count` of them per block.
 Vector<float> planesOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,

@@ -368,11 +368,11 @@ hl_code sayGpuPass(std::uint32_t pass, const GpuCounts& counts, hl_gpu_pass_info
 }
 
 /// Of a pass that there is, into a struct of a size that there was.
-Outcome checkGpuPass(std::uint32_t pass, const hl_gpu_pass_info& out) {
-    if (Outcome refused = checkSize<hl_gpu_pass_info>("hl_gpu_pass_info", out.size, sizeof(hl_gpu_pass_info)))
-        return refused;
-    if (pass < HL_GPU_PASS_COUNT) return std::nullopt;
-    return Refusal{HL_BAD_VALUE, "pass " + std::to_string(pass) + " of " + std::to_string(HL_GPU_PASS_COUNT)};
+hl_code checkGpuPass(std::uint32_t pass, const hl_gpu_pass_info& out, hl_error* error) {
+    if (const Outcome refused =
+            checkSize<hl_gpu_pass_info>("hl_gpu_pass_info", out.size, sizeof(hl_gpu_pass_info)))
+        return say(error, refused);
+    return pass < HL_GPU_PASS_COUNT ? HL_OK : pastTheLast(error, "pass", pass, HL_GPU_PASS_COUNT);
 }
 
 }  // namespace
@@ -380,7 +380,7 @@ Outcome checkGpuPass(std::uint32_t pass, const hl_gpu_pass_info& out) {
 
 hl_code hl_gpu_pass(const hl_asset* asset, uint32_t pass, hl_gpu_pass_info* out, hl_error* error) {
     if (!asset || !out) return nullRefused(error, "no asset or no place for the pass");
-    if (const Outcome refused = checkGpuPass(pass, *out)) return say(error, refused);
+    if (const hl_code code = checkGpuPass(pass, *out, error)) return code;
     return withHairs(asset, error, [&](const Asset&, const GpuCounts& counts) {
         return sayGpuPass(pass, counts, out, error);
     });
@@ -390,17 +390,15 @@ hl_code hl_gpu_frame_pass(const hl_instance* instance, uint32_t pass, hl_gpu_pas
                           hl_error* error) {
     if (!instance || !out) return nullRefused(error, "no instance or no place for the pass");
     return guarded(error, [&] {
-        if (const Outcome refused = checkGpuPass(pass, *out)) return say(error, refused);
+        if (const hl_code code = checkGpuPass(pass, *out, error)) return code;
         if (!instance->instance.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");
         const Instance& hair = instance->instance;
-        const GpuCounts counts{
-            hair.describe().guides,
-            0,
-            hair.gpuHairsShown(),
-            hair.gpuPointsOfHair(),
-            hair.gpuBytes(HL_GPU_BUFFER_BLOCKS) / kGpuBuffers[HL_GPU_BUFFER_BLOCKS].element,
-            0,
-            0};
+        // What takes time or memory to count is of one pass alone.
+        constexpr auto kBlocks = HL_GPU_BUFFER_BLOCKS;
+        const std::size_t blocks =
+            pass == HL_GPU_PASS_GUIDES ? hair.gpuBytes(kBlocks) / kGpuBuffers[kBlocks].element : 0;
+        const std::uint32_t guides = pass == HL_GPU_PASS_WISPS ? hair.describe().guides : 0;
+        const GpuCounts counts{guides, 0, hair.gpuHairsShown(), hair.gpuPointsOfHair(), blocks, 0, 0};
         return sayGpuPass(pass, counts, out, error);
     });
 }

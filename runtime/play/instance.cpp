@@ -419,15 +419,17 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
                           " to " + std::to_string(field->max));
     }
     if (settings == engine_.settings()) return std::nullopt;
-    // In a copy: where memory ends in the middle, this one is as it was.
-    Instance changed(*this);
-    changed.settlePlayed();
-    if (const std::string why = changed.engine_.setSettings(settings); !why.empty())
-        return Refusal{HL_BAD_VALUE, why};
-    if (changed.levels_) changed.setSettingsOfLevels(settings);
-    changed.leaveGpu();
-    changed.asleep_ = false;
-    *this = std::move(changed);
+    // In copies of what changes: where memory ends in the middle, all is as it was.
+    Engine finest(engine_);
+    Vector<Engine> coarser;
+    if (levels_) coarser = levels_->engines;
+    if (playedWaits_) finest.place(roots_, positions_, velocities_, origin_);
+    if (const std::string why = finest.setSettings(settings); !why.empty()) return Refusal{HL_BAD_VALUE, why};
+    if (levels_) setSettingsOfLevels(settings, coarser);
+    engine_ = std::move(finest);
+    if (levels_) levels_->engines = std::move(coarser);
+    leaveGpu();
+    playedWaits_ = asleep_ = false;
     return std::nullopt;
 }
 

@@ -131,7 +131,7 @@ class Instance {
     void makeLevels(const Asset& asset, const Asset::Strands& strands);
     void measureLevels(LevelSet& set);
     void resetLevel();
-    void setSettingsOfLevels(const SimulationSettings& settings);
+    void setSettingsOfLevels(const SimulationSettings& settings, std::span<Engine> engines) const;
     void stepLevel(FrameInput& input);
     void fadeLevel(float dt);
     void placeCoarser(Engine& engine, std::span<const Float3> positions_ws,

@@ -94,11 +94,11 @@ void Instance::resetLevel() {
         engine->reset(std::span(levels.simulatedRoots).first(engine->strandCount()));
 }
 
-void Instance::setSettingsOfLevels(const SimulationSettings& settings) {
-    for (std::size_t i = 0; i < levels_->engines.size(); ++i) {
+void Instance::setSettingsOfLevels(const SimulationSettings& settings, std::span<Engine> engines) const {
+    for (std::size_t i = 0; i < engines.size(); ++i) {
         SimulationSettings coarser = settings;
         coarser.substeps = levels_->set->coarser[i].substepsUnder(settings);
-        levels_->engines[i].setSettings(coarser);
+        engines[i].setSettings(coarser);
     }
 }
 

@@ -142,9 +142,8 @@ void Instance::placePlayed() {
         if (engine) placeCoarser(*engine, positions_, origin_);
         return;
     }
-    const bool hasPlaces = std::all_of(roots_.begin(), roots_.end(), [](const RootFrame& root) {
-        RootFrame usable = root;
-        return usableWithin(usable, kFarthest);
+    const bool hasPlaces = std::none_of(allStrands_.begin(), allStrands_.end(), [&](std::uint32_t strand) {
+        return std::isnan(positions_[offsets_[strand]].x);
     });
     if (!hasPlaces || (levels_ && levels_->fading)) settlePlayed();
 }

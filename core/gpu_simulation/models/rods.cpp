@@ -102,9 +102,8 @@ class DeviceRods final : public DeviceStrands {
     }
 
     void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch, const runtime::State& state,
-                  std::vector<float>&, std::vector<float>& own) const override {
-        const auto rods = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
-        own.assign(rods.begin(), rods.end());
+                  runtime::Vector<float>&, runtime::Vector<float>& own) const override {
+        own = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
     }
 
   private:

@@ -168,7 +168,7 @@ class DeviceSprings final : public DeviceStrands {
     }
 
     void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch, const runtime::State& state,
-                  std::vector<float>& moving, std::vector<float>&) const override {
+                  runtime::Vector<float>& moving, runtime::Vector<float>&) const override {
         if (state.model != runtime::StrandModel::springs || state.own[runtime::kOwnTensions].empty()) return;
         const auto tensions =
             runtime::planesOfSlots(shape, batch.inSlots(), state.own[runtime::kOwnTensions], 1);
