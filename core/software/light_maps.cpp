@@ -61,7 +61,7 @@ float listedShare(std::uint32_t all, std::uint32_t most) {
 }
 
 /// As adaptive.hlsli has them.
-constexpr std::uint32_t kListedOfTexel = 4096;
+constexpr std::uint32_t kListedOfTexel = 2048;
 float listedShareOfTexel(std::uint32_t found) {
     return found <= kListedOfTexel ? 1.0f
                                    : 0.94f * static_cast<float>(kListedOfTexel) / static_cast<float>(found);

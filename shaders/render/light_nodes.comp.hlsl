@@ -89,21 +89,24 @@ void main(uint3 id : SV_DispatchThreadID) {
         nodes += 2u;
         const uint most = place != 0u ? NODES_AT_WORK : gPack.layers;
         while (nodes > most) {
+            // Unrolled: turns of loops are counted (see LISTED_OF_TEXEL).
             uint least = 1u;
             float leastArea = 3e38;
-            for (uint i = 1u; i + 1u < nodes; ++i) {
+            [unroll] for (uint i = 1u; i <= NODES_AT_WORK; ++i) {
                 const float area = abs((depths[i + 1u] - depths[i - 1u]) * (lights[i] - lights[i - 1u]) -
                                        (depths[i] - depths[i - 1u]) * (lights[i + 1u] - lights[i - 1u]));
-                if (area < leastArea) {
+                if (i + 1u < nodes && area < leastArea) {
                     leastArea = area;
                     least = i;
                 }
             }
             nodes -= 1u;
-            for (uint k = least; k < nodes; ++k) {
-                depths[k] = depths[k + 1u];
-                counts[k] = counts[k + 1u];
-                lights[k] = lights[k + 1u];
+            [unroll] for (uint k = 1u; k <= NODES_AT_WORK; ++k) {
+                if (k >= least) {
+                    depths[k] = depths[k + 1u];
+                    counts[k] = counts[k + 1u];
+                    lights[k] = lights[k + 1u];
+                }
             }
         }
     }

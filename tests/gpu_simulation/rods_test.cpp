@@ -82,27 +82,55 @@ SimulationSettings settingsOf(const Case& what, std::uint32_t substeps) {
     return s;
 }
 
-/// What a rod remembers besides positions: greatest difference of a number of its rotations, and of a speed.
-struct Memory {
-    double rotation = 0.0, speed = 0.0;
+/// Greatest differences of a strand of two states: of positions or displacements, metres; of numbers of its
+/// rotations; of speeds, m/s.
+struct Apart {
+    double position = 0.0, rotation = 0.0, speed = 0.0;
+
+    double shareOf(double tolerance) const {
+        return std::max({position / tolerance, rotation / (100.0 * tolerance), speed / (200.0 * tolerance)});
+    }
 };
-Memory memoryOf(const Scene& scene, const runtime::State& a, const runtime::State& b) {
+std::vector<Apart> apart(const Scene& scene, const runtime::State& a, const runtime::State& b) {
     constexpr std::size_t kRotation = 4, kVelocity = 10;  // planes of runtime::RodView
-    Memory memory;
+    const std::vector<double> positions = distanceOf(scene, a, b).strands;
+    std::vector<Apart> strands(positions.size());
+    for (std::size_t s = 0; s < strands.size(); ++s) strands[s].position = positions[s];
     for (const runtime::Block& block : scene.shape->blocks) {
         for (std::size_t plane = 0; plane < runtime::kRodMotionPlanes; ++plane) {
             if (plane >= kRotation && plane < kVelocity) continue;
-            double& greatest = plane < kRotation ? memory.rotation : memory.speed;
             const std::size_t first = block.firstPlane * runtime::kRodMotionPlanes + plane * planeSize(block);
             for (std::size_t i = 0; i + 1 < std::size_t{block.points} * runtime::kBlockLanes; ++i) {
-                if (i % runtime::kBlockLanes >= block.strands) continue;
+                const std::size_t lane = i % runtime::kBlockLanes;
+                if (lane >= block.strands) continue;
+                Apart& strand = strands[block.strandOfLane[lane]];
+                double& greatest = plane < kRotation ? strand.rotation : strand.speed;
                 const double off = static_cast<double>(a.own[runtime::kOwnMotion][first + i]) -
                                    static_cast<double>(b.own[runtime::kOwnMotion][first + i]);
                 greatest = std::max(greatest, std::abs(off));
             }
         }
     }
-    return memory;
+    return strands;
+}
+
+/// How far each strand comes from where it is if its points begin some roundings off, in shares of a
+/// tolerance: a contact that is about to slide, or to be left, is not the same after that. 0 without
+/// contacts.
+std::vector<double> unsure(const Scene& scene, const runtime::State& cpu, double tolerance) {
+    std::vector<double> shares(scene.offsets.size() - 1);
+    if (scene.spheres.empty()) return shares;
+    for (std::uint32_t run = 0; run < 16; ++run) {
+        Scene nudged = scene;
+        test::Dice dice(run + 1);
+        for (float& number : nudged.state.planes) number += number * dice.between(-1e-6f, 1e-6f);
+        test::fillSpareLanes(*nudged.shape, nudged.state);
+        test::makeRods(nudged);
+        const auto strands = apart(scene, runOnCpu(nudged), cpu);
+        for (std::size_t s = 0; s < shares.size(); ++s)
+            shares[s] = std::max(shares[s], strands[s].shareOf(tolerance));
+    }
+    return shares;
 }
 
 /// Greatest error of a segment's length, metres.
@@ -141,15 +169,15 @@ TEST_P(RodParity, EightSubsteps) {
         SCOPED_TRACE(static_cast<int>(hair));
         const Scene scene = sceneOf(settingsOf(GetParam(), 8), hair);
         const runtime::State cpu = runOnCpu(scene);
+        const std::vector<double> turns = unsure(scene, cpu, GetParam().tolerance);
+        EXPECT_LE(std::ranges::count_if(turns, [](double share) { return share > 1.0; }), 3);
         for (const LayoutOptions& layout : kRodLayouts) {
             SCOPED_TRACE(*layout.members);
             const runtime::State gpu = runOnDevice(scene, layout);
-            const test::Distance distance = distanceOf(scene, gpu, cpu);
-            EXPECT_EQ(distance.lost, 0u);
-            EXPECT_LE(*std::ranges::max_element(distance.strands), GetParam().tolerance);
-            const Memory memory = memoryOf(scene, gpu, cpu);
-            EXPECT_LE(memory.rotation, 100.0 * GetParam().tolerance);
-            EXPECT_LE(memory.speed, 200.0 * GetParam().tolerance);
+            EXPECT_EQ(distanceOf(scene, gpu, cpu).lost, 0u);
+            const std::vector<Apart> strands = apart(scene, gpu, cpu);
+            for (std::size_t s = 0; s < strands.size(); ++s)
+                EXPECT_LE(strands[s].shareOf(GetParam().tolerance), std::max(1.0, 2.0 * turns[s])) << s;
             EXPECT_LE(stretchOf(scene, gpu), 1e-6);
         }
     }
