@@ -12,7 +12,6 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr float kRedDistance = 0.02f;  ///< metres of distance at which strands are red
 constexpr int kTakeTick_ms = 16;
 
 }  // namespace
@@ -143,11 +142,28 @@ void TakeView::advance() {
     if (due != number_) showFrame(due);
 }
 
+bool TakeView::isCompared() const {
+    return frame_ && otherFrame_ && frame_->positions_ws.size() == document_.groom().pointCount() &&
+           otherFrame_->positions_ws.size() == frame_->positions_ws.size();
+}
+
+std::optional<TakeView::Distance> TakeView::distance() const {
+    if (!isCompared()) return std::nullopt;
+    const auto &here = frame_->positions_ws, &there = otherFrame_->positions_ws;
+    Distance distance;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+        const auto away = static_cast<double>((here[i] - there[i]).norm());
+        distance.mean += away;
+        distance.largest = std::max(distance.largest, away);
+    }
+    if (!here.empty()) distance.mean /= static_cast<double>(here.size());
+    return distance;
+}
+
 void TakeView::draw(Marks& marks) const {
-    if (!frame_ || !otherFrame_) return;
+    if (!isCompared()) return;
     const Groom& groom = document_.groom();
     const auto &here = frame_->positions_ws, &there = otherFrame_->positions_ws;
-    if (here.size() != groom.pointCount() || there.size() != here.size()) return;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p)
             marks.line(here[p - 1], here[p], heat((here[p] - there[p]).norm() / kRedDistance), 1);

@@ -14,6 +14,8 @@
 
 namespace hairloom::editor {
 
+inline constexpr float kRedDistance = 0.02f;  ///< metres of distance at which strands are red
+
 class TakeView : public QObject {
     Q_OBJECT
 
@@ -33,6 +35,12 @@ class TakeView : public QObject {
     /// Null where none is shown.
     const RecordedFrame* frame() const { return frame_ ? &*frame_ : nullptr; }
     std::uint64_t number() const { return number_; }
+    /// Of the points of the frame that is shown from those of the other take, metres.
+    struct Distance {
+        double mean = 0, largest = 0;
+    };
+    /// Nothing where none is compared.
+    std::optional<Distance> distance() const;
     const TakeInfo& info() const { return take_->info(); }
 
     /// Over and over.
@@ -50,6 +58,8 @@ class TakeView : public QObject {
 
   private:
     void advance();
+    /// Two frames of the document's points.
+    bool isCompared() const;
     void draw(Marks& marks) const;
     void startClock();
     /// The frame at the time line's play head.

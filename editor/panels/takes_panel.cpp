@@ -16,6 +16,7 @@
 #include "core/simulation/rest_positions.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
+#include "editor/fields/length_text.h"
 #include "editor/fields/number_spin.h"
 #include "editor/panels/panel.h"
 #include "editor/panels/take_actions.h"
@@ -169,14 +170,20 @@ class TakesPanel : public QWidget {
         other_ = new QComboBox;
         other_->setObjectName("takeOther");
         other_->setToolTip(
-            "Colours strands by their distance from another take. Green is none, red is 20 mm or more");
+            QString("Colours strands by their distance from another take. Green is none, red is %1 or more")
+                .arg(lengthText(static_cast<double>(kRedDistance), preferences_)));
         connect(other_, &QComboBox::activated, this, [this] {
             if (auto status = view_->compareWith(fileOf(other_->currentData().toString())); !status) {
                 messages_.warn(errorText(status.error()));
                 other_->setCurrentIndex(0);
             }
+            showDistance();
         });
         layout.addWidget(other_);
+        distance_ = new QLabel;
+        distance_->setObjectName("takeDistance");
+        distance_->setWordWrap(true);
+        layout.addWidget(distance_);
         auto* row = new QHBoxLayout;
         shape_ =
             pushButton("takeShape", "Set as rest shape",
@@ -418,6 +425,16 @@ class TakesPanel : public QWidget {
         slider_->setValue(static_cast<int>(number));
         number_->setText(QString("%1 / %2").arg(number).arg(view_->info().frames));
         showing_ = false;
+        showDistance();
+    }
+    void showDistance() {
+        const auto distance = view_->distance();
+        distance_->setVisible(distance.has_value());
+        if (!distance) return;
+        const auto text = [&](double metres) { return lengthText(metres, preferences_); };
+        distance_->setText(QString("Apart: %1 on average, %2 at most. Strands are red from %3.")
+                               .arg(text(distance->mean), text(distance->largest),
+                                    text(static_cast<double>(kRedDistance))));
     }
 
     void showPlaying() { play_->setIcon(icon(view_->isPlaying() ? "pause" : "play")); }
@@ -452,6 +469,7 @@ class TakesPanel : public QWidget {
         for (QPushButton* button : {export_, rename_, remove_})
             button->setEnabled(!selected().isEmpty() && !records);
         if (!shown) number_->setText({});
+        showDistance();
         showPlaying();
     }
 
@@ -465,7 +483,7 @@ class TakesPanel : public QWidget {
     QLineEdit* name_ = nullptr;
     QPushButton *record_ = nullptr, *play_ = nullptr, *shape_ = nullptr, *export_ = nullptr,
                 *rename_ = nullptr, *remove_ = nullptr;
-    QLabel *recordState_ = nullptr, *number_ = nullptr;
+    QLabel *recordState_ = nullptr, *number_ = nullptr, *distance_ = nullptr;
     QTreeWidget* list_ = nullptr;
     QSlider* slider_ = nullptr;
     QComboBox *speed_ = nullptr, *other_ = nullptr;

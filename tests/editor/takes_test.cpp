@@ -15,6 +15,7 @@
 #include "core/base/file.h"
 #include "core/documents/takes.h"
 #include "core/simulation/frame_record.h"
+#include "editor/fields/length_text.h"
 #include "editor/panels/new_take_dialog.h"
 #include "editor/panels/take_export_dialog.h"
 #include "importers/strands.h"
@@ -307,6 +308,15 @@ TEST_F(TakesTest, DistancesToAnotherTakeAreDrawn) {
     Q_EMIT other->activated(calm);
     get<QSlider>("takeFrame")->setValue(9);
     EXPECT_EQ(shown(), frameOf("windy", 9));
+    const auto windyFrame = frameOf("windy", 9), calmFrame = frameOf("calm", 9);
+    float largest = 0;
+    for (std::size_t i = 0; i < windyFrame.size(); ++i)
+        largest = std::max(largest, (windyFrame[i] - calmFrame[i]).norm());
+    const auto* const words = get<QLabel>("takeDistance");
+    EXPECT_TRUE(words->text().contains(
+        lengthText(static_cast<double>(largest), parts().preferences) + " at most"))
+        << words->text().toStdString() << ", " << largest;
+    EXPECT_FALSE(words->isHidden());
     if (!isDrawn()) return;
     ASSERT_TRUE(viewport().waitForPicture(120'000));
     QCoreApplication::processEvents();
