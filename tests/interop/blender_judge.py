@@ -19,7 +19,7 @@ if path.endswith(".abc"):
 elif path.endswith(".obj"):
     bpy.ops.wm.obj_import(filepath=path)
 else:
-    bpy.ops.wm.usd_import(filepath=path)
+    bpy.ops.wm.usd_import(filepath=path, import_guide=True)
 if len(words) > 1:
     bpy.context.scene.frame_set(int(words[1]))
 if out:

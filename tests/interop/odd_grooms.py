@@ -7,6 +7,7 @@ import argparse
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 
@@ -336,7 +337,7 @@ def check_motion(cli, folder, project, name):
             raise ValueError(f"{form}: the tip does not move")
 
 
-def check_blender(cli, folder, project, name, expected, own, points, blender):
+def check_blender(cli, folder, project, name, expected, own, points, widest, blender):
     for form in BY_BLENDER:
         out = os.path.join(folder, f"{name}.out.{form.split('-')[0]}")
         run(cli, "export", project, "--format", form, "-o", out, "--output-unit", "m", "--force")
@@ -349,12 +350,14 @@ def check_blender(cli, folder, project, name, expected, own, points, blender):
             raise ValueError(f"{form}: Blender has {sum(one['points'] for one in hair)} points of {points}")
         if len(own) > 1 and len(hair) != len(own):
             raise ValueError(f"{form}: Blender has {len(hair)} objects of {len(own)} layers")
-        found = {legal(one["name"]) for one in hair}
+        # Blender numbers objects of one name: those of groups count, too.
+        found = {legal(re.sub(r"\.\d{3}$", "", one["name"])) for one in hair}
         missing = [layer for layer, _ in own if len(own) > 1 and layer.isascii() and legal(layer) not in found]
         if missing:
             raise ValueError(f"{form}: Blender has no object named as {missing}: {sorted(found)}")
-        if form != "obj-lines" and not all(0 < one["radius"][1] < 0.005 for one in hair):
-            raise ValueError(f"{form}: Blender has radii of {[one['radius'] for one in hair]}")
+        largest = max(one["radius"][1] for one in hair) if form != "obj-lines" else 0
+        if form != "obj-lines" and not math.isclose(largest, widest / 2, rel_tol=1e-3, abs_tol=1e-9):
+            raise ValueError(f"{form}: Blender has radii of up to {largest} m; widths are up to {widest} m")
 
 
 def check(cli, folder, name, all_blenders):
@@ -397,8 +400,9 @@ def check(cli, folder, name, all_blenders):
         found = read(out)
         if len(found) != expected or report["strands"] != expected or any(len(strand) != 16 for strand in found):
             raise ValueError(f"{form}: {len(found)} strands of {expected}")
+    widest = max((max(UsdGeom.Curves(prim).GetWidthsAttr().Get() or [0]) for prim in written), default=0)
     for blender in all_blenders:
-        check_blender(cli, folder, project, name, expected, own, imported["points"], blender)
+        check_blender(cli, folder, project, name, expected, own, imported["points"], widest, blender)
     if name.startswith("moving"):
         check_motion(cli, folder, project, name)
         check_shutter(cli, folder, project, name)
