@@ -25,6 +25,8 @@ class ColourBox : public QWidget {
                       "curve and sRGB");
         display_ = add(*rows, "colourDisplay", "Display", "Display of the config that you look at");
         view_ = add(*rows, "colourView", "View", "View of the config. Exposure is applied before it");
+        display_->setPlaceholderText("sRGB");
+        view_->setPlaceholderText("Tone curve");
         state_ = new QLabel;
         state_->setObjectName("colourState");
         state_->setWordWrap(true);

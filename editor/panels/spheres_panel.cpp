@@ -61,12 +61,14 @@ class SpheresPanel : public QWidget {
         layout->setSpacing(8);
         makeSkin(*layout);
         list_->setObjectName("spheres");
-        list_->setHeaderLabels({"Sphere", "Radius", "Bone", "Capsule with"});
+        list_->setHeaderLabels({"Sphere", "Radius", "Bone", "Capsule"});
+        list_->headerItem()->setToolTip(3, "The sphere that this one makes a capsule with");
         list_->setRootIsDecorated(false);
         list_->setMinimumHeight(200);
         list_->header()->setStretchLastSection(false);
         list_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
-        list_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
+        list_->header()->setMaximumSectionSize(70);  // of a long name its beginning
+        list_->header()->setSectionResizeMode(3, QHeaderView::Stretch);
         list_->setToolTip(
             "Spheres that hair collides with. Joined ones make a capsule. Double-click a name, or press F2, "
             "to "

@@ -141,7 +141,7 @@ TEST_F(ManualTest, GroomingSpheresAndLook) {
     ExportDialog exporting(document(), parts().preferences, parts().tasks, parts().messages, parts().player,
                            window.get());
     exporting.show();
-    exporting.exportTo(inFolder("shoulder.tfx"));
+    exporting.exportTo(inFolder("shoulder.usdc"));
     finishWork();
     shoot(exporting, "export");
 }
