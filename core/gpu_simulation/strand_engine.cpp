@@ -163,7 +163,8 @@ Result<bool> StrandEngine::Impl::kernelsFor(const Run& next, bool wait) {
     bool ready = true;
     for (const StrandBatch& batch : batches) {
         KernelKey key =
-            keyFor(next.plan, next.settings, batch.shape, frameSpheres.usable.size(), options.velocities);
+            keyFor(next.plan, next.settings, batch.shape,
+                   runtime::sphereConstantsOf(frameSpheres, next.settings.strandModel), options.velocities);
         if (batch.kernel != nullptr && key == batch.key) {
             found.emplace_back(std::move(key), batch.kernel);
             continue;

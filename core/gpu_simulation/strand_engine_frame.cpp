@@ -117,7 +117,7 @@ void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
         sleeps = sleeps || batch.key.sleep;
         many = many || batch.key.spheres == SphereSource::buffer;
     }
-    if (many) upload(spheres, "spheres", runtime::sphereConstants(movingSpheres));
+    if (many) upload(spheres, "spheres", runtime::sphereConstants(movingSpheres, movingCapsules));
     if (!sleeps) return;
     upload(waking, "waking spheres", runtime::wakingOf(frameSpheres));
 }
@@ -177,7 +177,7 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     list.setConstants(0, gpu::bytesOf(constants));
     model->setConstants(list, context, run.wind.wind, substep, batch);
     if (batch.key.spheres == SphereSource::constants) {
-        runtime::Vector<shaders::SphereConstants> all = runtime::sphereConstants(movingSpheres);
+        auto all = runtime::sphereConstants(movingSpheres, movingCapsules);
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
         list.setConstants(1, bytesOfVector(all));
     }
@@ -203,10 +203,17 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
                       std::max(placed.max_ws.z, highBefore.z)};
     if (auto chosen = choose(input, low, high); !chosen) return chosen;
     movingSpheres.clear();
-    if (run.plan.on(Effect::collision))
-        moveSpheres(frameSpheres, substepsIn(run.settings, input.dt), movingSpheres);
-    const runtime::SubstepContext context = runtime::substepContext(
-        run.settings, run.plan, input.dt, runtime::substepsIn(run.settings, input.dt), movingSpheres);
+    movingCapsules.clear();
+    const std::uint32_t substeps = runtime::substepsIn(run.settings, input.dt);
+    if (run.plan.on(Effect::collision)) {
+        if (runtime::modelOf(run.settings.strandModel).listsSpheres) {
+            moveCapsules(frameSpheres, substeps, movingSpheres, movingCapsules);
+        } else {
+            moveSpheres(frameSpheres, substeps, movingSpheres);
+        }
+    }
+    const runtime::SubstepContext context =
+        runtime::substepContext(run.settings, run.plan, input.dt, substeps, movingSpheres, movingCapsules);
 
     constexpr std::array<std::uint32_t, 4> kNothing{};
     list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));

@@ -39,10 +39,11 @@ struct StrandEngine::Impl {
     runtime::FrameSpheres frameSpheres;
     runtime::Vector<runtime::Sphere> spheresBefore;
     runtime::Vector<runtime::MovingSphere> movingSpheres;
-    float substep = 0.0f;                            ///< seconds of the last one; 0 before the first
-    std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
-    runtime::Float3 originShift;                     ///< by which that of the frame moves what was known
-    bool restsVoid = false;                          ///< other settings: nothing sleeps
+    runtime::Vector<runtime::MovingCapsule> movingCapsules;  // where the model meets them as they are
+    float substep = 0.0f;                                    ///< seconds of the last one; 0 before the first
+    std::optional<std::array<double, 3>> origin_ws;          ///< of the last frame; none before the first
+    runtime::Float3 originShift;  ///< by which that of the frame moves what was known
+    bool restsVoid = false;       ///< other settings: nothing sleeps
     bool wakeAll = false;
     bool rootsMoved = false;     ///< in the last frame, as the device knows
     bool rootsOfDevice = false;  ///< `placed` is of an earlier frame: the device found them itself since

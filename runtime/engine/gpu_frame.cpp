@@ -57,11 +57,23 @@ shaders::SimulationConstants frameConstants(const GpuFrame& frame, const Substep
     return c;
 }
 
-Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres) {
+std::size_t sphereConstantsOf(const FrameSpheres& spheres, StrandModel model) {
+    if (!modelOf(model).listsSpheres) return spheres.usable.size();
+    const auto ends = std::count(spheres.ends.begin(), spheres.ends.end(), std::uint8_t{1});
+    return spheres.given - static_cast<std::size_t>(ends) + 2 * spheres.capsules.size();
+}
+
+Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres,
+                                                 std::span<const MovingCapsule> capsules) {
     Vector<shaders::SphereConstants> constants;
-    constants.reserve(spheres.size());
-    for (const MovingSphere& sphere : spheres)
+    constants.reserve(spheres.size() + 2 * capsules.size());
+    const auto add = [&](const MovingSphere& sphere) {
         constants.push_back({gpuQuad(sphere.from_ws, sphere.radius), gpuQuad(sphere.step, 0.0f)});
+    };
+    for (const MovingSphere& sphere : spheres) add(sphere);
+    for (const MovingCapsule& capsule : capsules) {
+        for (const MovingSphere& end : capsule.ends) add(end);
+    }
     return constants;
 }
 

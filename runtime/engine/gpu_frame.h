@@ -27,7 +27,11 @@ shaders::SimulationConstants frameConstants(const GpuFrame& frame, const Substep
                                             const FrameInput& input, const Slots& slots,
                                             std::uint32_t groupStrands);
 
-Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres);
+/// How many of them a frame has at most.
+std::size_t sphereConstantsOf(const FrameSpheres& spheres, StrandModel model);
+/// Spheres, and behind them the ends of each capsule.
+Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres,
+                                                 std::span<const MovingCapsule> capsules);
 /// Centre and reach of each.
 Vector<shaders::float4> wakingOf(const FrameSpheres& spheres);
 

@@ -155,9 +155,7 @@ struct SubstepContext : shaders::SubstepNumbers {
     ModelNumbers numbers;
 };
 
-/// Share of a sphere's radius that a point may move in one substep without the test for continuous collision
-/// looking at it: it can then cut no deeper than 0.8 % of the radius into it unseen.
-inline constexpr float kUnsweptShare = 0.25f;
+inline constexpr auto kUnsweptShare = static_cast<float>(HAIRLOOM_UNSWEPT_SHARE);
 
 using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
 

@@ -15,6 +15,7 @@
 
 #include "engine/kernels.h"
 #include "engine/lanes-inl.h"
+#include "engine/real-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,74 +55,18 @@ HWY_INLINE V3 acrossStrand(V3 offset, V3 edge) {
     return select(squared > tiny, select(centred, other, across), offset);
 }
 
-/// A sphere of a capsule, for each lane.
-struct CapsuleSphere {
-    V3 centre_ws, step;
-    V radius;
-};
-
-/// Of a capsule, so many substeps after the start of the frame.
-class CapsuleAxis {
-  public:
-    HWY_INLINE CapsuleAxis(const MovingCapsule& capsule, float substeps)
-        : first_(capsule.ends[0]), second_(capsule.ends[1]) {
-        from_ws_ = first_.from_ws + first_.step * substeps;
-        axis_ = second_.from_ws + second_.step * substeps - from_ws_;
-        size_ = length(axis_);
-        narrows_ = first_.radius - second_.radius;
-    }
-
-    /// The sphere whose surface is nearest to a point, by signed distance.
-    HWY_INLINE CapsuleSphere nearest(V3 position_ws) const {
-        if (isOneSphere()) return at(narrows_ > 0.0f ? hn::Zero(D()) : all(1.0f));
-        const V3 to = position_ws - all3(from_ws_);
-        const V place = dot(to, along());
-        // The surface's normal leans by the cone's angle, of sine `lean`, off the perpendicular.
-        const float lean = narrows_ / size_;
-        const V off = hn::Sqrt(hn::Max(dot(to, to) - place * place, hn::Zero(D())));
-        return at(hn::NegMulAdd(off, all(lean / std::sqrt(1.0f - lean * lean)), place) * all(1.0f / size_));
-    }
-
-    /// `nearest`, but for a point that has come through the capsule in this substep and is out again: the
-    /// sphere where its way, less that of the capsule, is nearest to the axis. `reach`: radius of the point.
-    HWY_INLINE CapsuleSphere met(V3 position_ws, V3 displacement, V reach,
-                                 const CapsuleSphere& nearest) const {
-        if (isOneSphere()) return nearest;
-        const V3 way = displacement - nearest.step, end = position_ws - nearest.centre_ws;
-        const float slow = kUnsweptShare * std::min(first_.radius, second_.radius);
-        const V outside = nearest.radius + reach;
-        const auto passes = hn::And(dot(way, way) > all(slow * slow), dot(end, end) > outside * outside);
-        if (HWY_LIKELY(hn::AllFalse(D(), passes))) return nearest;
-        const V3 to = position_ws - all3(from_ws_);
-        const V3 across = negMulAdd(along(), dot(way, along()), way);
-        const V3 off = negMulAdd(along(), dot(to, along()), to);
-        const V back = dot(off, across) / hn::Max(dot(across, across), all(1e-20f));
-        const V3 closest = negMulAdd(way, back, to);
-        const CapsuleSphere between = at(dot(closest, along()) * all(1.0f / size_));
-        const V3 apart = closest + all3(from_ws_) - between.centre_ws;
-        const V inside = between.radius + reach;
-        const auto within =
-            hn::And(hn::And(back > hn::Zero(D()), back < all(1.0f)), dot(apart, apart) < inside * inside);
-        const auto which = hn::And(passes, within);
-        return {select(which, between.centre_ws, nearest.centre_ws),
-                select(which, between.step, nearest.step),
-                hn::IfThenElse(which, between.radius, nearest.radius)};
-    }
-
-  private:
-    HWY_INLINE bool isOneSphere() const { return !(size_ > std::abs(narrows_)); }
-    HWY_INLINE V3 along() const { return all3(axis_ * (1.0f / size_)); }
-    HWY_INLINE CapsuleSphere at(V share) const {
-        share = hn::Min(hn::Max(share, hn::Zero(D())), all(1.0f));
-        return {mulAdd(all3(axis_), share, all3(from_ws_)),
-                mulAdd(all3(second_.step - first_.step), share, all3(first_.step)),
-                hn::NegMulAdd(all(narrows_), share, all(first_.radius))};
-    }
-
-    const MovingSphere &first_, &second_;
-    Float3 from_ws_, axis_;
-    float size_, narrows_;
-};
+/// A capsule for each lane, world, so many substeps after the start of the frame.
+HWY_INLINE RodCapsule capsuleOf(const MovingCapsule& capsule, float substeps) {
+    const auto& [first, second] = capsule.ends;
+    const Float3 from = first.from_ws + first.step * substeps;
+    return {all3(from),
+            all3(second.from_ws + second.step * substeps - from),
+            all3(first.step),
+            all3(second.step - first.step),
+            all(first.radius),
+            all(first.radius - second.radius),
+            all(std::min(first.radius, second.radius))};
+}
 
 /// Collision radius at each point ("pearls" in the thesis), growing linearly to the tip.
 HWY_INLINE void fillCollisionRadii(const BlockView& block, const SubstepContext& context,

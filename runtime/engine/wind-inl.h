@@ -88,8 +88,8 @@ HWY_INLINE V3 shelteredWindAt(const Wind& wind, const float* phases, V3 position
         air = airPastSphere(air, position_ws - centre, all(sphere.radius), along);
     }
     for (const MovingCapsule& capsule : context.capsules) {
-        const CapsuleSphere sphere = CapsuleAxis(capsule, steps).nearest(position_ws);
-        air = airPastSphere(air, position_ws - sphere.centre_ws, hn::Max(sphere.radius, all(1e-6f)), along);
+        const RodCapsuleSphere sphere = rodCapsuleNearest(capsuleOf(capsule, steps), position_ws);
+        air = airPastSphere(air, position_ws - sphere.centre, hn::Max(sphere.radius, all(1e-6f)), along);
     }
     return open + (air - open) * all(context.windShelter);
 }

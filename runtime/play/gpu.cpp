@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "follow/follow_gpu.h"
-#include "hairloom/capsules.h"
 #include "play/c_words.h"
 #include "play/gpu_guides.h"
 #include "shaders/ribbon_types.h"
@@ -219,20 +218,18 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
     if (!gpuGuides_) return Refusal{HL_BAD_VALUE, "hl_gpu_begin() comes before the first hl_gpu_step()"};
     if (frame.dt == 0) return std::nullopt;
     if (Outcome refused = checkStep(frame)) return refused;
-    std::size_t spheres = frame.sphere_count;
-    const auto sphereAt = [&](std::uint32_t at) {
-        const float* const sphere = frame.spheres + 4 * std::size_t{at};
-        return Sphere{{sphere[0], sphere[1], sphere[2]}, sphere[3]};
-    };
-    for (std::size_t c = 0;
-         frame.spheres && frame.capsules && c < std::min(frame.capsule_count, kMaxCapsules); ++c) {
-        const std::uint32_t* const ends = frame.capsules + 2 * c;
-        if (std::max(ends[0], ends[1]) < frame.sphere_count)
-            spheres += countAlongCapsule(sphereAt(ends[0]), sphereAt(ends[1]));
+    // A capsule has both of its ends to itself.
+    const std::size_t capsules =
+        frame.spheres && frame.capsules ? std::min(frame.capsule_count, kMaxCapsules) : 0;
+    std::size_t spheres = frame.sphere_count + 2 * capsules;
+    Vector<std::uint8_t> isEnd(capsules > 0 ? std::min<std::size_t>(frame.sphere_count, 4096) : 0);
+    for (std::size_t c = 0; c < 2 * capsules; ++c) {
+        if (frame.capsules[c] < isEnd.size()) isEnd[frame.capsules[c]] = 1;
     }
+    spheres -= static_cast<std::size_t>(std::count(isEnd.begin(), isEnd.end(), std::uint8_t{1}));
     if (frame.spheres && spheres > gpuGuides_->mostSpheres())
         return Refusal{HL_WRONG_SIZE, std::to_string(spheres) + " spheres" +
-                                          (frame.capsules ? " with those along capsules" : "") +
+                                          (capsules > 0 ? " with the ends of each capsule" : "") +
                                           "; expected at most " + std::to_string(gpuGuides_->mostSpheres())};
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numeric>
 
-#include "hairloom/capsules.h"
 #include "hairloom/gpu.h"
 #include "models/rods/rod_slots.h"
 
@@ -44,7 +43,7 @@ std::size_t gpuBlocksOf(const Map<std::uint32_t, std::size_t>& strandsOf) {
 }
 
 std::size_t gpuSpheresOf(std::size_t spheresOfAsset, std::size_t capsulesOfAsset) {
-    return std::max<std::size_t>(spheresOfAsset + kMaxAlongCapsule * capsulesOfAsset, HL_GPU_SPHERES);
+    return std::max<std::size_t>(spheresOfAsset + 2 * capsulesOfAsset, HL_GPU_SPHERES);
 }
 
 std::string gpuGuidesRefused(const SimulationSettings& settings) {
@@ -126,10 +125,11 @@ void GpuGuides::take(const FrameInput& input) {
     planInput.fastest = std::numeric_limits<float>::infinity();
     const EffectPlan plan =
         planFrame(settings_, planInput, wind_, spheres_.planned, spheres_.plannedMotion, input.dt);
+    const std::uint32_t substeps = substepsIn(settings_, input.dt);
     Vector<MovingSphere> moving;
-    if (plan.on(Effect::collision)) moveSpheres(spheres_, substepsIn(settings_, input.dt), moving);
-    const SubstepContext context =
-        substepContext(settings_, plan, input.dt, substepsIn(settings_, input.dt), moving);
+    Vector<MovingCapsule> capsules;
+    if (plan.on(Effect::collision)) moveCapsules(spheres_, substeps, moving, capsules);
+    const SubstepContext context = substepContext(settings_, plan, input.dt, substeps, moving, capsules);
     const bool wakes = !(shift == Float3{});
     Frame frame;
     frame.constants = frameConstants(
@@ -137,7 +137,7 @@ void GpuGuides::take(const FrameInput& input) {
         input, slots(), kBlockLanes);
     frame.rods = rodConstants(context, wind_.wind, substep_, slots(), 0);
     frame.roots = rootsOfSlots(*shape_, slots(), roots_.roots, roots_.moved);
-    frame.spheres = sphereConstants(moving);
+    frame.spheres = sphereConstants(moving, capsules);
     frame.waking = wakingOf(spheres_);
     frame_ = std::move(frame);
     state_.reset();

@@ -16,7 +16,7 @@ namespace hairloom::runtime {
 
 /// Blocks of 32 that strands fill at most, by their numbers of points.
 std::size_t gpuBlocksOf(const Map<std::uint32_t, std::size_t>& strandsOf);
-/// Spheres that the kernel has room for, of so many in the asset.
+/// Spheres that the kernel has room for, of so many in the asset; a capsule has both ends to itself.
 std::size_t gpuSpheresOf(std::size_t spheresOfAsset, std::size_t capsulesOfAsset);
 
 /// Empty, or why the kernel does not know such hair.
@@ -29,7 +29,7 @@ class GpuGuides {
               std::shared_ptr<const State> state, std::size_t mostSpheres);
 
     std::size_t mostSpheres() const { return mostSpheres_; }
-    /// A frame of dt above 0 and at most mostSpheres().
+    /// A frame of dt above 0 and, with both ends of each capsule, at most mostSpheres().
     void take(const FrameInput& input);
     /// False once a frame was taken: what HL_GPU_BEGIN fills with is of the time before.
     bool atBegin() const { return state_ != nullptr; }

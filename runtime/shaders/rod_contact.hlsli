@@ -32,45 +32,85 @@ RodContact noContact() {
 bool isNear(uint j) { return gScratch[slotOf(CONTACT_PLANE + 14, j)] != 0.0; }
 void setNear(uint j, bool near) { gScratch[slotOf(CONTACT_PLANE + 14, j)] = near ? 1.0 : 0.0; }
 
-// Spheres that the strand can touch in this frame, by their number modulo 32.
+// Shapes are spheres, and behind them capsules, each of two spheres of the buffer.
+uint shapeCount() { return gFrame.sphereCount + gRod.capsules; }
+/// Of capsule c, its first or second end.
+uint endOf(uint c, uint end) { return gFrame.sphereCount + 2u * c + end; }
+
+// Shapes that the strand can touch in this frame, by their number modulo 32.
 static uint gReachable;
 
-void findReachableSpheres() {
+void findReachableShapes() {
     const float count = float(gFrame.substeps);
     float hair = max(gFrame.substep.collisionRadiusAtRoot, gFrame.substep.collisionRadiusAtTip);
     [loop] for (uint j = 0; j + 1 < POINTS; ++j) hair += segmentLength(j);
     const float3 middle = gRoot + gRootDisplacement * (0.5 * count);
     const float rootStep = sqrt(dot(gRootDisplacement, gRootDisplacement));
     gReachable = 0u;
-    [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {
-        const float3 step = gSpheres[k].step.xyz;
-        const float3 gap = middle - sphereCentre(k, 0.5 * count);
-        const float reach = hair + gSpheres[k].from.w + 0.5 * count * (sqrt(dot(step, step)) + rootStep);
+    [loop] for (uint k = 0; k < shapeCount(); ++k) {
+        uint first = k, second = k;
+        if (k >= gFrame.sphereCount) {
+            first = endOf(k - gFrame.sphereCount, 0u);
+            second = first + 1u;
+        }
+        // Ends go evenly, so that they are farthest apart at the start or the end of the frame.
+        const float3 before = gSpheres[second].from.xyz - gSpheres[first].from.xyz;
+        const float3 after = sphereCentre(second, count) - sphereCentre(first, count);
+        const float apart = sqrt(max(dot(before, before), dot(after, after)));
+        const float widest = max(gSpheres[first].from.w, gSpheres[second].from.w);
+        const float3 step = gSpheres[first].step.xyz, other = gSpheres[second].step.xyz;
+        const float fastest = sqrt(max(dot(step, step), dot(other, other)));
+        const float3 gap = middle - 0.5 * (sphereCentre(first, 0.5 * count) + sphereCentre(second, 0.5 * count));
+        const float reach = hair + 0.5 * apart + widest + 0.5 * count * (fastest + rootStep);
         // A thousandth for what rounding takes.
         if (dot(gap, gap) <= 1.001 * reach * reach) gReachable |= 1u << (k & 31u);
     }
 }
 
-/// Whether sphere k is near a node, and how they touch; `origin` is where the root is at the end of the substep. By far
-/// more than rounding most nodes are neither inside a sphere nor come out of one or past it.
-bool touchSphere(uint k, float3 origin, RodNode node, out RodTouch touch) {
-    const float3 step = gSpheres[k].step.xyz;
-    const float3 centre = sphereCentre(k, float(gSubstep + 1)) - origin;
-    touch = rodTouchSphere(node, centre, step, gSpheres[k].from.w, gRod.sweeps != 0u);
-    const float3 to = node.position - centre;
+/// The sphere of shape k that a node meets, which is all of a sphere; centres are from `origin`.
+RodCapsuleSphere sphereMet(uint k, float3 origin, RodNode node) {
+    const float steps = float(gSubstep + 1);
+    RodCapsuleSphere sphere;
+    if (k < gFrame.sphereCount) {
+        sphere.centre = sphereCentre(k, steps) - origin;
+        sphere.step = gSpheres[k].step.xyz;
+        sphere.radius = gSpheres[k].from.w;
+        return sphere;
+    }
+    const uint first = endOf(k - gFrame.sphereCount, 0u), second = first + 1u;
+    RodCapsule capsule;
+    capsule.from = sphereCentre(first, steps) - origin;
+    capsule.axis = sphereCentre(second, steps) - sphereCentre(first, steps);
+    capsule.step = gSpheres[first].step.xyz;
+    capsule.turn = gSpheres[second].step.xyz - capsule.step;
+    capsule.radius = gSpheres[first].from.w;
+    capsule.narrows = capsule.radius - gSpheres[second].from.w;
+    capsule.thinnest = min(capsule.radius, gSpheres[second].from.w);
+    sphere = rodCapsuleNearest(capsule, node.position);
+    if (gRod.sweeps != 0u)
+        sphere = rodCapsuleMet(capsule, node.position, node.displacement, node.radius, sphere);
+    return sphere;
+}
+
+/// Whether shape k is near a node, and how they touch; `origin` is where the root is at the end of the substep. By far
+/// more than rounding most nodes are neither inside a shape nor come out of one or past it.
+bool touchShape(uint k, float3 origin, RodNode node, out RodTouch touch) {
+    const RodCapsuleSphere sphere = sphereMet(k, origin, node);
+    touch = rodTouchSphere(node, sphere.centre, sphere.step, sphere.radius, gRod.sweeps != 0u);
+    const float3 to = node.position - sphere.centre;
     const float farthest = sqrt(dot(node.displacement, node.displacement)) + node.radius +
-                           1.001 * (gSpheres[k].from.w + sqrt(dot(step, step))) + HAIRLOOM_ROD_CONTACT_NEAR;
+                           1.001 * (sphere.radius + sqrt(dot(sphere.step, sphere.step))) + HAIRLOOM_ROD_CONTACT_NEAR;
     return dot(to, to) <= farthest * farthest;
 }
 
-/// All strands of a group look at the same sphere at a time: one read of a constant serves them.
-#define EACH_SPHERE(k) \
-    [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) \
+/// All strands of a group look at the same shape at a time: one read of a constant serves them.
+#define EACH_SHAPE(k) \
+    [loop] for (uint k = 0; k < shapeCount(); ++k) \
         if ((gReachable & (1u << (k & 31u))) != 0u)
 
-/// What the spheres do to a node that hold it, which may be outside by `slack` metres; whether any is near it. Of those
-/// that press alike, as spheres along a capsule do, one that another keeps the node off does not hold it back, and
-/// friction is by the force of all of them together (RodStrip::pressedBySeveral()).
+/// What the shapes do to a node that hold it, which may be outside by `slack` metres; whether any is near it. Of those
+/// that press alike, as two capsules do at the end that they share, one that another keeps the node off does not hold it
+/// back, and friction is by the force of all of them together (RodStrip::pressedBySeveral()).
 RodContact contactOf(float3 origin, RodNode node, float slack, out bool near) {
     RodContact found = noContact();
     float friction = gFrame.substep.friction, least = -1e9;
@@ -78,9 +118,9 @@ RodContact contactOf(float3 origin, RodNode node, float slack, out bool near) {
     [loop] for (uint turn = 0; turn < 3u; ++turn) {
         float deepest = -1e9;
         found = noContact();
-        EACH_SPHERE(k) {
+        EACH_SHAPE(k) {
             RodTouch touch;
-            if (touchSphere(k, origin, node, touch)) {
+            if (touchShape(k, origin, node, touch)) {
                 near = true;
                 if (rodHolds(touch, slack) && touch.depth >= least) {
                     deepest = max(deepest, touch.depth);

@@ -30,6 +30,7 @@ float3 choose(bool which, float3 yes, float3 no) { return which ? yes : no; }
 #define ROD_UNROLL [unroll]
 #define ROD_NUMBER(value) value
 #include "rod.h"
+#include "rod_capsule.h"
 #include "rod_contact.h"
 
 RodForm noForm() {

@@ -338,9 +338,9 @@ bool lookAgain(bool isFirst, bool runs) {
             const bool held = met.touching > 0.0;
             const float slack = rodSlackOf(met, newDisplacement(j) - predictedDisplacement(j));
             bool inside = false, lifted = held && slack == 0.0;
-            EACH_SPHERE(k) {
+            EACH_SHAPE(k) {
                 RodTouch touch;
-                if (touchSphere(k, rootAtEnd(), node, touch)) {
+                if (touchShape(k, rootAtEnd(), node, touch)) {
                     inside = inside || touch.depth > (held ? deepest : HAIRLOOM_ROD_CONTACT_LOOK);
                     lifted = lifted && !rodHolds(touch, HAIRLOOM_ROD_CONTACT_LOOK);
                 }

@@ -40,7 +40,8 @@ struct RodConstants {
     uint sweeps;        ///< not 0: spheres are met where fast points come in
     uint conservative;  ///< not 0: nothing but motion of roots and spheres adds energy; 2: nor do spheres
     uint fresh;         ///< HAIRLOOM_RODS_FRESH, HAIRLOOM_RODS_OF_OTHER_ENERGY or 0
-    uint unused0, unused1, unused2;
+    uint capsules;      ///< two of gSpheres for each, behind the spheres
+    uint unused0, unused1;
     float4 windTurns[HAIRLOOM_WIND_MODES];  ///< x: turns of a wave in a substep
 };
 

@@ -35,7 +35,7 @@ void runSubsteps() {
     gCurved = gCurvedBlocks[block] != 0u;
     gGuarded = false;
 #if HAIR_SPHERES
-    findReachableSpheres();
+    findReachableShapes();
 #endif
     openMembers();
     [loop] for (gSubstep = 0; gSubstep < gFrame.substeps; ++gSubstep) {

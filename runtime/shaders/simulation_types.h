@@ -21,6 +21,10 @@ namespace hairloom::shaders {
 /// Distance from a sphere's centre, as a share of the reach, below which a point leaves it across its strand.
 #define HAIRLOOM_DEEP_IN_SPHERE 0.6
 
+/// Share of a sphere's radius that a point may move in one substep without the test for continuous collision
+/// looking at it: it can then cut no deeper than 0.8 % of the radius into it unseen.
+#define HAIRLOOM_UNSWEPT_SHARE 0.25
+
 /// As many work groups as a dispatch has along one axis.
 #define HAIRLOOM_GROUP_ROW 65535
 
@@ -42,9 +46,9 @@ struct SubstepNumbers {
 };
 
 struct SimulationConstants {
-    uint slots;     ///< strands of the batch, with those that fill the last block
-    uint substeps;  ///< per frame
-    uint sphereCount;
+    uint slots;        ///< strands of the batch, with those that fill the last block
+    uint substeps;     ///< per frame
+    uint sphereCount;  ///< rods: of spheres that are the end of no capsule
     uint lengthIterations;
     uint wakingCount;          ///< spheres that have changed since the last frame
     uint windKind;             ///< runtime::WindKind

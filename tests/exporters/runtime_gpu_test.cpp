@@ -255,6 +255,14 @@ TEST_F(RuntimeGpu, GuidesOfTheGpuAreAskedForInOrder) {
     EXPECT_THAT(error.words, HasSubstr("33 spheres; expected at most 32"));
     frame.sphere_count = 32;
     EXPECT_EQ(hl_gpu_step(hair.get(), &frame, &error), HL_OK) << error.what();
+    // Two that share an end.
+    const std::uint32_t ends[] = {0, 1, 1, 2};
+    frame.capsules = ends;
+    frame.capsule_count = 2;
+    EXPECT_EQ(hl_gpu_step(hair.get(), &frame, &error), HL_WRONG_SIZE);
+    EXPECT_THAT(error.words, HasSubstr("33 spheres with the ends of each capsule; expected at most 32"));
+    frame.capsule_count = 1;
+    EXPECT_EQ(hl_gpu_step(hair.get(), &frame, &error), HL_OK) << error.what();
     Instance copied;
     ASSERT_TRUE(copied.copy(hair));
     refused(hl_gpu_step(copied.get(), &frame, &error), "hl_gpu_begin() comes before");

@@ -64,7 +64,14 @@ class DeviceRods final : public DeviceStrands {
         const std::uint32_t fresh = fresh_         ? HAIRLOOM_RODS_FRESH
                                     : energyKnown_ ? 0
                                                    : HAIRLOOM_RODS_OF_OTHER_ENERGY;
-        const auto constants = runtime::rodConstants(context, wind, before, batch.inSlots(), fresh);
+        auto constants = runtime::rodConstants(context, wind, before, batch.inSlots(), fresh);
+        // While the kernel for more of them is being made.
+        if (batch.key.spheres == SphereSource::constants) {
+            const std::size_t spheres =
+                std::min<std::size_t>(context.spheres.size(), HAIRLOOM_CONSTANT_SPHERES);
+            constants.capsules = std::min(
+                constants.capsules, static_cast<std::uint32_t>((HAIRLOOM_CONSTANT_SPHERES - spheres) / 2));
+        }
         list.setConstants(2, gpu::bytesOf(constants));
     }
 

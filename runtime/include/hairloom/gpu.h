@@ -162,9 +162,8 @@ HL_API hl_code hl_gpu_fill_frame(hl_instance* instance, uint32_t buffer, void* d
  * hl_gpu_step() does. */
 HL_API hl_code hl_gpu_begin(hl_instance* instance, hl_error* error);
 /* Takes a frame as hl_instance_step() does; HL_WRONG_SIZE where it has more spheres than HL_GPU_SPHERES and
- * than the asset: a capsule is up to 16 spheres more, half a
- * millimetre from its surface, by which the GPU meets it. With dt 0 nothing moves:
- * run no pass GUIDES. HL_BAD_VALUE without hl_gpu_begin(). */
+ * than the asset, where each capsule has both of its ends to itself. With dt 0 nothing
+ * moves: run no pass GUIDES. HL_BAD_VALUE without hl_gpu_begin(). */
 HL_API hl_code hl_gpu_step(hl_instance* instance, const hl_frame* frame, hl_error* error);
 
 enum { HL_GPU_COMPUTE = 0, HL_GPU_DRAW = 1 };

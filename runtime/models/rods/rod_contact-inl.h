@@ -62,15 +62,15 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
         const V margin = all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR)), more = all(1.001f);
         const V farthest = away + (more * all(around.radius + around.stepLength) + margin);
         if (HWY_LIKELY(hn::AllFalse(D(), dot(to, to) <= farthest * farthest))) continue;
-        const CapsuleAxis axis(capsule, substeps);
-        CapsuleSphere sphere = axis.nearest(position_ws);
-        if (context.sweeps) sphere = axis.met(position_ws, node.displacement, node.radius, sphere);
-        const V3 off = position_ws - sphere.centre_ws;
+        const RodCapsule shape = capsuleOf(capsule, substeps);
+        RodCapsuleSphere sphere = rodCapsuleNearest(shape, position_ws);
+        if (context.sweeps)
+            sphere = rodCapsuleMet(shape, position_ws, node.displacement, node.radius, sphere);
+        const V3 off = position_ws - sphere.centre;
         const V reach = away + (more * (sphere.radius + hn::Sqrt(dot(sphere.step, sphere.step))) + margin);
         const auto near = dot(off, off) <= reach * reach;
         if (hn::AllFalse(D(), near)) continue;
-        visit(rodTouchSphere(node, sphere.centre_ws - root, sphere.step, sphere.radius, context.sweeps),
-              near);
+        visit(rodTouchSphere(node, sphere.centre - root, sphere.step, sphere.radius, context.sweeps), near);
     }
 }
 

@@ -81,6 +81,7 @@ shaders::RodConstants rodConstants(const SubstepContext& context, const Wind& wi
     c.stepRatio = before > 0.0f ? context.h / before : kFirstStepRatio;
     c.points = slots.points;
     c.sweeps = context.sweeps ? 1 : 0;
+    c.capsules = static_cast<std::uint32_t>(context.capsules.size());
     c.conservative = context.air == Air::moving ? 0 : context.spheresRest ? 2 : 1;
     c.fresh = fresh;
     for (std::size_t m = 0; m < kWindModes; ++m) {
