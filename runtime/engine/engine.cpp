@@ -65,6 +65,7 @@ std::size_t Engine::bodyBytes() const {
                                   ? 0
                                   : impl_->strands_->effectBytes(Effect::collision, impl_->state_);
     return impl_->body_->bytes() + impl_->bodyTable_.bytes() + loads +
+           impl_->strands_->bodyBytes(impl_->state_) +
            (impl_->clearances_.size() + impl_->bodySeen_.size()) * sizeof(float);
 }
 

@@ -189,7 +189,7 @@ void Engine::Impl::plan(std::span<const Sphere> spheres, std::span<const Float3>
 }
 
 void Engine::Impl::allocateForPlan() {
-    strands_->allocate(*shape_, settings_, plan_, plan_.on(Effect::collision) || meetsBody(), state_);
+    strands_->allocate(*shape_, settings_, plan_, meetsBody(), state_);
     for (Floats& own : state_.own) {
         if (own.empty() && !keepsMemory_) own = Floats();
     }
@@ -270,6 +270,7 @@ void Engine::Impl::setBody(std::shared_ptr<const BodyField> body) {
     if (!body && !body_) return;
     body_ = std::move(body);
     state_.body.clear();
+    strands_->forgetBody(state_);
     state_.rests.assign(shape_->blocks.size(), {});
     allocateForBody();
     allocateForPlan();

@@ -115,5 +115,9 @@ Vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body);
 /// Planes of what is known of each point and the body: where it was looked at, in its carrier's space, metres
 /// that it may go from there to skin of the carrier and to other skin, which has strayed, and the carrier.
 inline constexpr std::size_t kBodyPlanes = 6;
+/// Planes of what a state keeps of each point and the body, for skin that folds: normal of the plane that the
+/// point met in the last substep, world, 0 for none, and metres that it ended outside of that; the same of
+/// another one that pressed it there.
+inline constexpr std::size_t kFoldPlanes = 8;
 
 }  // namespace hairloom::runtime

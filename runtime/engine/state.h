@@ -92,7 +92,7 @@ struct Rest {
 };
 
 /// Of a model's own arrays in a State, at most.
-inline constexpr std::size_t kOwnArrays = 4;
+inline constexpr std::size_t kOwnArrays = 5;
 
 /// What changes from step to step. A copy is a snapshot: running on from it gives the same bits.
 struct State {

@@ -71,10 +71,12 @@ class ModelStrands : public InMemory {
                               const Host&) {
         takeState(shape, settings, state);
     }
-    /// Has memory for what the plan runs, and none for what it does not. `touches`: there are spheres in
-    /// reach or a body.
+    /// Has memory for what the plan runs, and none for what it does not. `body`: there is one that the model
+    /// meets.
     virtual void allocate(const RestShape& shape, const SimulationSettings& settings, const EffectPlan& plan,
-                          bool touches, State& state) = 0;
+                          bool body, State& state) = 0;
+    /// There is another body, or none: what the state knows of it is void.
+    virtual void forgetBody(State&) const {}
 
     /// Puts lanes of block `index` at rest on their rows of state.roots, but for their points, which are
     /// there.
@@ -104,6 +106,8 @@ class ModelStrands : public InMemory {
     virtual std::size_t effectBytes(Effect effect, const State& state) const = 0;
     /// Its other memory.
     virtual std::size_t baseBytes(const State& state) const = 0;
+    /// What of that is there because of a body.
+    virtual std::size_t bodyBytes(const State&) const { return 0; }
 };
 
 /// What an array of State::own takes while something needs it.

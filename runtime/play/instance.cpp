@@ -82,7 +82,8 @@ std::size_t engineBytes(const Map<std::uint32_t, std::size_t>& strandsOf, bool h
         for (const OwnArray& array : model->own) rows += array.laneRows;
         laneRows = std::max(laneRows, rows);
     }
-    const std::size_t planes = kRestPlanes + kStatePlanes + most + (hasBody ? kBodyPlanes + 1 : 0);
+    const std::size_t planes =
+        kRestPlanes + kStatePlanes + most + (hasBody ? kBodyPlanes + 1 + kFoldPlanes : 0);
     const std::size_t lanes =
         (2 * kRootRows + laneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
     return planeFloats * planes * sizeof(float) + blocks * lanes +

@@ -12,7 +12,7 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x53494c48;  // "HLIS"
-constexpr std::uint32_t kSavedVersion = 3;
+constexpr std::uint32_t kSavedVersion = 4;
 constexpr std::size_t kMostSpheres = 4096, kMostBodyBones = 255;
 
 struct Head {

@@ -154,7 +154,7 @@ inline void makeRods(Scene& scene) {
     if (scene.settings.strandModel != runtime::StrandModel::rods) return;
     const runtime::RestShape& shape = *scene.shape;
     const runtime::RodRest rest = runtime::makeRodRest(shape, scene.settings);
-    runtime::allocateRods(shape, rest.parts, true, scene.state);
+    runtime::allocateRods(shape, rest.parts, {.loads = true}, scene.state);
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane)
             runtime::placeRodOnPoints(shape, rest, scene.state, b, lane);
@@ -266,8 +266,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
     const runtime::OwnedStrands strands(model.make());
     strands->takeSettings(shape, scene.settings, nullptr, state, {});
     strands->takeState(shape, scene.settings, state);
-    const bool touches = frame.plan.on(runtime::Effect::collision);
-    strands->allocate(shape, scene.settings, frame.plan, touches, state);
+    strands->allocate(shape, scene.settings, frame.plan, false, state);
     runtime::ModelFrame modelFrame;
     modelFrame.context = frame.context;
     modelFrame.context.wind = &frame.wind.wind;

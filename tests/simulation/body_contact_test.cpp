@@ -160,6 +160,70 @@ TEST(BodyContact, HairComesToRestOnIt) {
     EXPECT_EQ(ran.stats.restingStrands, groom.strandCount());
 }
 
+/// A trough of 20 cm along z: both of its slopes rise by `slope` from x = 0.
+ScalpMesh trough(float slope) {
+    PolygonSoup soup;
+    for (const float z : {-0.1f, 0.1f}) {
+        for (const Vec2f corner : {Vec2f(0, 0), Vec2f(0.1f, 0.1f * slope), Vec2f(0.1f, -0.1f),
+                                   Vec2f(-0.1f, -0.1f), Vec2f(-0.1f, 0.1f * slope)})
+            soup.positions.emplace_back(corner.x(), corner.y(), z);
+    }
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        const std::uint32_t next = (i + 1) % 5;
+        test::addFace(soup, {i, i + 5, next + 5, next});
+    }
+    // Ends, whose corner at the bottom of the trough is the one that points inwards.
+    test::addFace(soup, {0, 1, 2});
+    test::addFace(soup, {0, 2, 3});
+    test::addFace(soup, {0, 3, 4});
+    test::addFace(soup, {5, 7, 6});
+    test::addFace(soup, {5, 8, 7});
+    test::addFace(soup, {5, 9, 8});
+    return test::meshOf(soup);
+}
+
+/// Strands that fall across a trough and are pushed along it come to lie in its fold, where the nearest skin
+/// is that of one slope and of the other by turns.
+TEST(BodyContact, HairComesToRestInAFold) {
+    int inFold = 0;
+    for (const float slope : {0.4f, 1.0f, 1.6f}) {
+        SCOPED_TRACE(slope);
+        std::vector<std::uint32_t> offsets{0};
+        std::vector<Vec3f> positions;
+        for (int s = 0; s < 24; ++s) {
+            const float z = -0.05f + 0.004f * static_cast<float>(s),
+                        turn = 0.08f * static_cast<float>(s - 12);
+            const Vec3f root(-0.04f, 0.04f * slope, z);
+            const Vec3f way = Vec3f(std::cos(turn), 0.3f, std::sin(turn)).normalized();
+            for (std::uint32_t p = 0; p < kPoints; ++p)
+                positions.push_back(root + 0.008f * static_cast<float>(p) * way);
+            offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+        }
+        Groom groom = makeGroom(std::move(offsets), std::move(positions));
+        groom.scalp = std::make_shared<const ScalpMesh>(trough(slope));
+        groom.simulation.angularStiffness = 0.02f;
+        groom.simulation.restGravity = 0;
+        groom.simulation.collisionRadiusRoot = groom.simulation.collisionRadiusTip = 0.001f;
+        groom = withBody(std::move(groom));
+        auto made = Simulation::make(groom, {});
+        ASSERT_TRUE(made) << made.error().message();
+        for (int f = 0; f < 900; ++f) made->step(kFrame, {});
+        EXPECT_LT(made->stats().fastestMmPerSecond, 1);
+        EXPECT_EQ(made->stats().restingStrands, groom.strandCount());
+        EXPECT_EQ(made->stats().restoredStrands, 0u);
+        // The planes of both slopes, from equations.
+        for (std::size_t p = 0; p < made->positions_ws().size(); ++p) {
+            const Vec3f& at = made->positions_ws()[p];
+            if (p % kPoints < 2 || std::abs(at.z()) > 0.095f || std::abs(at.x()) > 0.09f) continue;
+            const float scale = 1 / std::sqrt(1 + slope * slope);
+            const float left = (at.y() + slope * at.x()) * scale, right = (at.y() - slope * at.x()) * scale;
+            EXPECT_GT(std::min(left, right), 0.5e-3f) << "point " << p;
+            inFold += std::max(left, right) < 2e-3f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(inFold, 20) << "points touch both slopes";
+}
+
 TEST(BodyContact, GivesTheSameBitsOnAnyNumberOfThreads) {
     const Groom& groom = hairyBody();
     setThreadCount(1);

@@ -82,7 +82,7 @@ class DeviceRods final : public DeviceStrands {
 
     void allocateState(const runtime::RestShape& shape, const runtime::EffectPlan&,
                        runtime::State& state) const override {
-        runtime::allocateRods(shape, rest_->parts, true, state);
+        runtime::allocateRods(shape, rest_->parts, {.loads = true}, state);
     }
 
     void placeAtRest(const runtime::RestShape& shape, runtime::State& state, std::size_t index,
@@ -99,7 +99,7 @@ class DeviceRods final : public DeviceStrands {
             given.model == runtime::StrandModel::rods && !(bends && given.own[runtime::kOwnStrains].empty());
         if (complete) return {};
         std::optional<runtime::State> made = given;
-        runtime::completeRods(shape, *rest_, true, *made);
+        runtime::completeRods(shape, *rest_, {.loads = true}, *made);
         return made;
     }
 

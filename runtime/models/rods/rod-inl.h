@@ -352,7 +352,7 @@ class RodStrip {
     }
 
     // models/rods/rod_look-inl.h
-    BodySearch bodySearch() const { return {*context_.body, block_, context_.index, lane_, planes_}; }
+    BodySearch bodySearch() const { return {context_, block_, lane_, planes_}; }
     void searchPrediction();
     void searchStep();
     RodMask mayTouch(std::uint32_t j) const;
@@ -431,6 +431,7 @@ class RodStrip {
     }
 
     void finish();  // models/rods/rod_finish-inl.h
+    void keepFolds(std::uint32_t j, V3 moved, RodMask pressed, RodMask was);
     void slow(V share);
 
     const RodBlock& block_;

@@ -25,6 +25,8 @@ struct RodView {
     Planes velocity, velocityBefore;  ///< m/s, at the end of the last substep and of the one before
     Planes strain, strainBefore;      ///< likewise
     float* load = nullptr;  ///< force of each point's contacts in the last substep, m²/s²; negative: it slid
+    /// Planes of the body that each point met last, where there is one, and before: kFoldPlanes.
+    float* fold = nullptr;
     float* turn =
         nullptr;  ///< of each lane: most that a segment turned in the last substep, radians, or kRodNoStep
     float* energy = nullptr;  ///< of each lane, of motion, shape and weight, m³/s², or kRodNoEnergy

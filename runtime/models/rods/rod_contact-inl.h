@@ -105,8 +105,11 @@ HWY_INLINE RodMask goesBack(V3 moved, V3 last, float h) {
     return both(most < slow * slow, dot(moved, last) < all(-0.5f) * most);
 }
 
-/// The same for a body, by the plane that BodySearch has found. A node keeps its radius from it, but no more
-/// than its clearance.
+/// Metres that a node may be off the skin and still be held by a plane that a look before found.
+constexpr float kFoldReach = 5e-4f;
+
+/// The same for a body, by the plane that BodySearch has found, and by the other one where skin folds. A node
+/// keeps its radius from them, but no more than its clearance.
 template <class Visit>
 HWY_INLINE void touchBody(const RodNode& node, const BlockView& block, std::size_t i, const BodyPlane& plane,
                           Visit&& visit) {
@@ -117,6 +120,14 @@ HWY_INLINE void touchBody(const RodNode& node, const BlockView& block, std::size
     visit(RodTouch{plane.normal, choose(meets, hn::Min(reach - distance, all(kBodyPush)), farOutside),
                    choose(meets, reach - plane.before, farOutside), plane.way},
           meets);
+    const V3 n = plane.otherNormal;
+    const auto folds = both(both(meets, dot(n, n) > hn::Zero(D())), distance < reach + all(kFoldReach));
+    if (HWY_LIKELY(hn::AllFalse(D(), folds))) return;
+    const V other = plane.otherLevel + dot(n, node.displacement);
+    const V otherBefore = plane.otherLevel + dot(n, plane.way);
+    visit(RodTouch{onlyWhere(folds, n), choose(folds, hn::Min(reach - other, all(kBodyPush)), farOutside),
+                   choose(folds, reach - otherBefore, farOutside), plane.way},
+          folds);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

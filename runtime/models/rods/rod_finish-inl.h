@@ -80,6 +80,10 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
             V load = hn::Sqrt(dot(force, force)) * normalShare;
             load = hn::IfThenElse(point.contact.touching > all(1.0f), hn::Neg(load), load);
             load = hn::IfThenElseZero(dot(force, point.contact.normal) > hn::Zero(D()), load);
+            if (context_.body) {
+                const V last = hn::Load(D(), rod_.load + node);
+                keepFolds(j, moved, load != hn::Zero(D()), last != hn::Zero(D()));
+            }
             hn::Store(load, D(), rod_.load + node);
         } else if (rod_.load) {
             hn::Store(hn::Zero(D()), D(), rod_.load + node);
@@ -117,6 +121,28 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
     }
     hn::Store(after, D(), rod_.energy + lane_);
     hn::Store(turn, D(), rod_.turn + lane_);
+}
+
+/// Keeps the planes that `pressed` the outer node of segment j, for the next substep, in place of those of
+/// what `was` pressed.
+template <bool kBends, bool kTwists, bool kContacts>
+void RodStrip<kBends, kTwists, kContacts>::keepFolds(std::uint32_t j, V3 moved, RodMask pressed,
+                                                     RodMask was) {
+    if (HWY_LIKELY(hn::AllFalse(D(), either(pressed, was)))) return;
+    const BodyPlane& plane = planes_[j];
+    const std::size_t i = at(j + 1), pitch = block_.pitch;
+    float* const fold = rod_.fold + i;
+    const auto known = both(pressed, plane.known > hn::Zero(D()));
+    const V other = plane.otherLevel + dot(plane.otherNormal, moved);
+    const auto folds = both(known, other < bodyReach(all(radiusOf(j + 1)), block_, i) + all(kFoldReach));
+    const auto store = [&](RodMask which, V3 normal, V away, float* to) {
+        hn::Store(hn::IfThenElseZero(which, normal.x), D(), to);
+        hn::Store(hn::IfThenElseZero(which, normal.y), D(), to + pitch);
+        hn::Store(hn::IfThenElseZero(which, normal.z), D(), to + 2 * pitch);
+        hn::Store(hn::IfThenElseZero(which, away), D(), to + 3 * pitch);
+    };
+    store(known, plane.normal, plane.level + dot(plane.normal, moved), fold);
+    store(folds, plane.otherNormal, other, fold + 4 * pitch);
 }
 
 template <bool kBends, bool kTwists, bool kContacts>

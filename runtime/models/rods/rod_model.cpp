@@ -3,6 +3,7 @@
 // effect is a part of it: its arrays are there or not, and the kernel is compiled with and without.
 #include <algorithm>
 
+#include "engine/moving_body.h"
 #include "models/rods/rods.h"
 
 namespace hairloom::runtime {
@@ -82,18 +83,21 @@ class RodStrands final : public ModelStrands {
     }
 
     void takeState(const RestShape& shape, const SimulationSettings&, State& state) override {
-        completeRods(shape, rest_, !state.own[kOwnLoads].empty(), state);
+        completeRods(shape, rest_, rodTouchesOf(state), state);
     }
 
     void takeNewState(const RestShape& shape, const SimulationSettings&, State& state,
                       const Host& host) override {
         state.model = StrandModel::rods;
-        allocateRods(shape, rest_.parts, false, state, host);
+        allocateRods(shape, rest_.parts, {}, state, host);
     }
 
-    void allocate(const RestShape& shape, const SimulationSettings&, const EffectPlan&, bool touches,
+    void allocate(const RestShape& shape, const SimulationSettings&, const EffectPlan& plan, bool body,
                   State& state) override {
-        allocateRods(shape, rest_.parts, touches, state);
+        allocateRods(shape, rest_.parts, {plan.on(Effect::collision) || body, body}, state);
+    }
+    void forgetBody(State& state) const override {
+        std::fill(state.own[kOwnFolds].begin(), state.own[kOwnFolds].end(), 0.0f);
     }
 
     void placeAtRest(const RestShape& shape, State& state, std::size_t index,
@@ -128,6 +132,8 @@ class RodStrands final : public ModelStrands {
         }
         float* const x = rod.rotation + i;
         const std::size_t pitch = view.pitch;
+        for (std::size_t plane = 0; rod.fold && plane < kFoldPlanes; ++plane)
+            rod.fold[plane * pitch + i] = 0.0f;
         Quat q = turn * Quat{x[0], x[pitch], x[2 * pitch], x[3 * pitch]};
         normalize(q);
         x[0] = q.x;
@@ -160,8 +166,9 @@ class RodStrands final : public ModelStrands {
     }
     std::size_t baseBytes(const State& state) const override {
         return bytesOf(rest_.planes) / rest_.planeCount() * kRodRestPlanes[0] +
-               bytesOf(state.own[kOwnMotion]) + bytesOf(state.own[kOwnLanes]);
+               bytesOf(state.own[kOwnMotion]) + bytesOf(state.own[kOwnLanes]) + bodyBytes(state);
     }
+    std::size_t bodyBytes(const State& state) const override { return bytesOf(state.own[kOwnFolds]); }
 
   private:
     static std::size_t bytesOf(const Floats& values) { return values.size() * sizeof(float); }
@@ -203,7 +210,8 @@ const Model& rodModel() {
         .own = {{{.planes = kRodMotionPlanes},
                  {.planes = kRodStrainPlanes, .isOptional = true},
                  {.planes = 1, .isOptional = true},
-                 {.laneRows = kRodLaneRows}}},
+                 {.laneRows = kRodLaneRows},
+                 {.planes = kFoldPlanes, .isOptional = true}}},
         .laneFloats = 0,
         .listsSpheres = true,
         .meetsBody = true,

@@ -14,6 +14,7 @@
 #include "engine/lanes-inl.h"
 #include "engine/moving_body.h"
 #include "hwy/highway.h"
+#include "models/rods/rod_block.h"
 #include "models/rods/rod_body-inl.h"
 #include "models/rods/rod_math-inl.h"
 
@@ -31,12 +32,18 @@ struct BodyPlane {
     V known;  ///< 1 where it is of this substep
     V room;   ///< metres that the node may go and touch nothing, beyond the displacement
     V meets;  ///< 1 where it holds for the guess that was searched last
+    V level;  ///< metres from it of a node that would not move in the substep; any where it is not known
     // What it was told.
     V3 at;     ///< the node, relative to its root
     V3 moved;  ///< displacement that it had when it was last seen in this substep
+    // What a look before found, in this substep or the last one, where skin folds: both press there. Any
+    // where the plane is not known.
+    V3 otherNormal;  ///< 0 where there is none
+    V otherLevel;    ///< as `level`
 };
-/// Numbers of each lane that a search finds.
-constexpr std::size_t kBodyFound = 11;
+/// Numbers of each lane that a search finds, of the plane before, and of its normal.
+constexpr std::size_t kBodyFound = 12, kBodyOther = 18;
+static_assert(sizeof(BodyPlane) == (kBodyOther + 4) * sizeof(V));
 
 /// Nothing is known of it yet.
 HWY_INLINE void forgetPlane(BodyPlane& plane) {
@@ -172,6 +179,7 @@ HWY_NOINLINE void searchBody(const MovingBody& body, std::uint32_t substep, RodM
     // They are known from where they are now.
     node.seen = {place, carried, other + carrier.strayed, carrier.number};
     plane.known = plane.meets = hn::IfThenElseZero(met, all(1.0f));
+    plane.level = plane.distance - dot(plane.normal, node.displacement);
     plane.room = (hn::Min(carried, other) - reach) * carrier.least;
 }
 
@@ -180,9 +188,13 @@ HWY_NOINLINE void searchBody(const MovingBody& body, std::uint32_t substep, RodM
 class BodySearch {
   public:
     /// `planes`: of the outer node of each segment; `lane`: the strip's first.
-    BodySearch(const MovingBody& body, const BlockView& block, std::uint32_t substep, std::uint32_t lane,
-               BodyPlane* planes)
-        : body_(body), block_(block), substep_(substep), lane_(lane), planes_(planes) {
+    BodySearch(const SubstepContext& context, const RodBlock& block, std::uint32_t lane, BodyPlane* planes)
+        : body_(*context.body),
+          block_(block),
+          substep_(context.index),
+          slow_(static_cast<float>(HAIRLOOM_ROD_CONTACT_SLOW) * context.h),
+          lane_(lane),
+          planes_(planes) {
         std::memset(asked_, 0, sizeof(asked_));
     }
 
@@ -253,17 +265,66 @@ class BodySearch {
         std::memcpy(found, &plane, sizeof(found));
         std::memcpy(seen, &node.seen, sizeof(seen));
         for (std::size_t n = 0; n < count_; ++n) {
+            const std::size_t i = std::size_t{points_[n]} * kBlockLanes + lane_ + lanes_[n];
             float* const to = reinterpret_cast<float*>(planes_ + points_[n] - 1) + lanes_[n];
-            for (std::size_t k = 0; k < kBodyFound; ++k) to[k * kWidth] = found[k][n];
-            float* const known = block_.bodySeen + std::size_t{points_[n]} * kBlockLanes + lane_ + lanes_[n];
+            float numbers[kBodyFound];
+            for (std::size_t k = 0; k < kBodyFound; ++k) numbers[k] = found[k][n];
+            if (numbers[kMeets] > 0.0f) {
+                const Float3 moved{asked_[3][n], asked_[4][n], asked_[5][n]};
+                keepOther(numbers, moved, asked_[6][n], i, to);
+            }
+            for (std::size_t k = 0; k < kBodyFound; ++k) to[k * kWidth] = numbers[k];
+            float* const known = block_.bodySeen + i;
             for (std::size_t k = 0; k < kSeen; ++k) known[k * block_.pitch] = seen[k][n];
         }
         count_ = 0;
     }
 
+    /// Keeps beside a plane that a look has found, for a node that has `moved`, another one that pressed it
+    /// in the look before or in the last substep, where the node is slow: then the skin folds there. `i`: of
+    /// the node; `plane`: of the look before. Planes that did not press may not have been looked for.
+    void keepOther(const float* found, Float3 moved, float reach, std::size_t i, float* plane) const {
+        const Float3 normal{found[0], found[1], found[2]}, way{found[kWay], found[kWay + 1], found[kWay + 2]};
+        const std::size_t pitch = block_.pitch;
+        float* const other = plane + kBodyOther * kWidth;
+        const auto isOther = [&](const float* at, std::size_t step) {
+            const Float3 n{at[0], at[step], at[2 * step]};
+            const float along = dot(normal, n);
+            return along > kFoldsBack && along < kFoldsAhead && dot(n, n) > 0.0f;
+        };
+        const auto put = [&](const float* at, std::size_t step, float level) {
+            for (std::size_t k = 0; k < 3; ++k) other[k * kWidth] = at[k * step];
+            other[3 * kWidth] = level;
+        };
+        const auto isSlow = [&](Float3 v) { return dot(v, v) < slow_ * slow_; };
+        if (isSlow(moved) && isSlow(moved - way)) {
+            if (plane[kKnown * kWidth] > 0.0f) {
+                const bool pressed = plane[kDistance * kWidth] < reach;
+                if (pressed && isOther(plane, kWidth)) return put(plane, kWidth, plane[kLevel * kWidth]);
+                if (isOther(other, kWidth)) return;
+            }
+            const float* const fold = block_.rod.fold + i;
+            for (const float* at : {fold, fold + 4 * pitch}) {
+                // Only what pressed has some.
+                if (block_.rod.load[i] == 0.0f) break;
+                // It goes with the skin that was found.
+                const Float3 n{at[0], at[pitch], at[2 * pitch]};
+                if (isOther(at, pitch)) return put(at, pitch, at[3 * pitch] - dot(n, way));
+            }
+        }
+        for (std::size_t k = 0; k < 4; ++k) other[k * kWidth] = 0.0f;
+    }
+
+    static constexpr std::size_t kDistance = 3, kWay = 5, kKnown = 8, kMeets = 10, kLevel = 11;
+    /// Cosines of the angle between two planes of folded skin: what is nearer to 1 is one plane, and of two
+    /// that look away from each other one would hold the node on the wrong side.
+    static constexpr float kFoldsBack = -0.2f, kFoldsAhead = 0.99f;
+
     const MovingBody& body_;
-    const BlockView& block_;
-    std::uint32_t substep_, lane_;
+    const RodBlock& block_;
+    std::uint32_t substep_;
+    float slow_;  ///< metres in a substep
+    std::uint32_t lane_;
     BodyPlane* planes_;
     alignas(64) float asked_[kAsked][kWidth];
     std::uint32_t points_[kWidth], lanes_[kWidth];

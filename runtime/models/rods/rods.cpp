@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/moving_body.h"
+
 namespace hairloom::runtime {
 namespace {
 
@@ -24,11 +26,17 @@ std::size_t RodRest::planeCount() const {
     return kRodRestPlanes[static_cast<std::size_t>(parts)];
 }
 
-void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state, const Host& host) {
+RodTouches rodTouchesOf(const State& state) {
+    return {!state.own[kOwnLoads].empty(), !state.own[kOwnFolds].empty()};
+}
+
+void allocateRods(const RestShape& shape, RodParts parts, RodTouches touches, State& state,
+                  const Host& host) {
     keepFloats(state.own[kOwnMotion], shape.planeFloats * kRodMotionPlanes, host);
     keepFloats(state.own[kOwnStrains], parts == RodParts::chain ? 0 : shape.planeFloats * kRodStrainPlanes,
                host);
-    keepFloats(state.own[kOwnLoads], loads ? shape.planeFloats : 0, host);
+    keepFloats(state.own[kOwnLoads], touches.loads ? shape.planeFloats : 0, host);
+    keepFloats(state.own[kOwnFolds], touches.folds ? shape.planeFloats * kFoldPlanes : 0, host);
     keepFloats(state.own[kOwnLanes], shape.blocks.size() * kRodLaneRows * kBlockLanes);
 }
 
@@ -53,6 +61,7 @@ void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, s
         };
         for (std::size_t plane = 4; plane < kRodMotionPlanes; ++plane) clear(rod.rotation + plane * size);
         if (rod.load) clear(rod.load);
+        for (std::size_t plane = 0; rod.fold && plane < kFoldPlanes; ++plane) clear(rod.fold + plane * size);
         for (std::uint32_t lane = lanes.begin; lane < lanes.end; ++lane) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             Quat q = root[lane];
@@ -143,12 +152,12 @@ void strainRod(const RestShape& shape, const RodRest& rest, State& state, std::s
 
 }  // namespace
 
-void completeRods(const RestShape& shape, const RodRest& rest, bool loads, State& state) {
+void completeRods(const RestShape& shape, const RodRest& rest, RodTouches touches, State& state) {
     if (state.model != StrandModel::rods) state.own = {};
     state.model = StrandModel::rods;
     const bool wereRods = state.own[kOwnMotion].size() == shape.planeFloats * kRodMotionPlanes;
     const bool hadStrains = !state.own[kOwnStrains].empty();
-    allocateRods(shape, rest.parts, loads, state);
+    allocateRods(shape, rest.parts, touches, state);
     if (wereRods && (hadStrains || rest.parts == RodParts::chain)) return;
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
@@ -190,6 +199,8 @@ RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std
     view.velocity = three(10);
     view.velocityBefore = three(13);
     if (!state.own[kOwnLoads].empty()) view.load = state.own[kOwnLoads].data() + block.firstPlane;
+    if (!state.own[kOwnFolds].empty())
+        view.fold = state.own[kOwnFolds].data() + block.firstPlane * kFoldPlanes;
     view.turn = state.own[kOwnLanes].data() + index * kRodLaneRows * kBlockLanes;
     view.energy = view.turn + kBlockLanes;
     return view;

@@ -42,7 +42,8 @@ inline constexpr std::size_t kRodMassPlane = 3, kRodBendPlane = 4, kRodRotationP
 
 /// State::own of rods. Motion: rotation, increment, displacement, velocity, velocityBefore. Strains, where a
 /// rod resists bending: strain, strainBefore. Loads, where there are collisions: load. Lanes: turn, energy.
-inline constexpr std::size_t kOwnMotion = 0, kOwnStrains = 1, kOwnLoads = 2, kOwnLanes = 3;
+/// Folds, where there is a body: fold.
+inline constexpr std::size_t kOwnMotion = 0, kOwnStrains = 1, kOwnLoads = 2, kOwnLanes = 3, kOwnFolds = 4;
 inline constexpr std::size_t kRodMotionPlanes = 16, kRodStrainPlanes = 6, kRodLaneRows = 2;
 /// With a plane of loads.
 inline constexpr std::size_t kRodStatePlanes = kRodMotionPlanes + kRodStrainPlanes + 1;
@@ -62,13 +63,19 @@ bool haveEqualRodEnergy(const SimulationSettings& a, const SimulationSettings& b
 /// The same on any number of the host's threads.
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings, const Host& host = {});
 
-/// Gives a state the arrays of rods with these parts and, where asked for, loads; those that it has keep
-/// their values.
-void allocateRods(const RestShape& shape, RodParts parts, bool loads, State& state, const Host& host = {});
+/// What rods remember of what they touched.
+struct RodTouches {
+    bool loads = false, folds = false;
+};
+RodTouches rodTouchesOf(const State& state);
+
+/// Gives a state the arrays of rods with these parts and touches; those that it has keep their values.
+void allocateRods(const RestShape& shape, RodParts parts, RodTouches touches, State& state,
+                  const Host& host = {});
 
 /// Makes any state one of these rods: strands that were none go on as rods through their points, and chains
 /// that now bend back keep all that they have.
-void completeRods(const RestShape& shape, const RodRest& rest, bool loads, State& state);
+void completeRods(const RestShape& shape, const RodRest& rest, RodTouches touches, State& state);
 
 /// Puts lanes of block `index` at rest on their rows of state.roots, without a step before; their points
 /// are there.
