@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "benchmarks/benchmark.h"
+#include "core/groom/groom.h"
 
 namespace hairloom::benchmarks {
 
@@ -29,5 +30,9 @@ std::size_t contactStepsOfRods(bool quick);
 /// those of makeSample().
 Result<std::vector<ContactRow>> contactsOfSamples(const Options& options, const std::function<void()>& next);
 std::size_t contactStepsOfSamples(const Options& options);
+
+/// Adds what colliders do to a groom with skin that nothing moves. Errors: those of Simulation, and of
+/// drawing it in the software renderer.
+Status contactsAtRest(const std::string& name, const Groom& groom, bool quick, std::vector<ContactRow>& rows);
 
 }  // namespace hairloom::benchmarks

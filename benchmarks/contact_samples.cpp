@@ -172,7 +172,7 @@ std::vector<std::string> wantedSamples(const Options& options) {
 }  // namespace
 
 std::size_t contactStepsOfSamples(const Options& options) {
-    return 4 * wantedSamples(options).size();
+    return 5 * wantedSamples(options).size();
 }
 
 Result<std::vector<ContactRow>> contactsOfSamples(const Options& options, const std::function<void()>& next) {
@@ -182,6 +182,9 @@ Result<std::vector<ContactRow>> contactsOfSamples(const Options& options, const 
     for (const std::string& name : wantedSamples(options)) {
         const auto groom = makeSample(*folder, name, SampleColliders::skin);
         if (!groom) return tl::unexpected(groom.error());
+        next();
+        if (auto status = contactsAtRest(name, *groom, options.quick, rows); !status)
+            return tl::unexpected(status.error());
         const OfSample sample(name, *groom, options.quick);
         for (const auto part :
              {&OfSample::still, &OfSample::sphereOnTop, &OfSample::storms, &OfSample::steps}) {
