@@ -6,7 +6,8 @@ file(READ "${INPUT}" text)
 
 # Inside the kernel's own types, not beside those that C++ shares.
 string(REPLACE "__cplusplus" "HAIRLOOM_SHARED_WITH_CPP" text "${text}")
-string(REGEX REPLACE "#include \"runtime/[^\n]*" "" text "${text}")
+string(REGEX REPLACE "#include \"(runtime/shaders/)?types\\.h\"" "" text "${text}")
+string(REPLACE "#include \"runtime/shaders/" "#include \"software_kernels/runtime/" text "${text}")
 string(REGEX REPLACE "#include \"shaders/" "#include \"software_kernels/" text "${text}")
 
 # Registers.
@@ -24,7 +25,7 @@ string(REGEX REPLACE "\nvoid visitPixel\\([^)]*\\);" "" text "${text}")
 string(REPLACE "[unroll] " "" text "${text}")
 
 # What is large goes by reference.
-set(large "ShadeConstants|LightConstants|MeshConstants|FibreConstants|ViewConstants|StrandHeader|RibbonPiece|Corners|SkyMoments|SkyInHair|SkySeen")
+set(large "ShadeConstants|LightConstants|MeshConstants|FibreConstants|ViewConstants|LookConstants|StrandHeader|RibbonPiece|Corners|SkyMoments|SkyInHair|SkySeen")
 string(REGEX REPLACE "([(,][ \n]*)(${large}) ([a-z][A-Za-z]*)" "\\1const \\2& \\3" text "${text}")
 string(REGEX REPLACE "const (LightConstants|StrandHeader) ([a-z]+) = ([A-Za-z.]+)\\[" "const \\1& \\2 = \\3[" text "${text}")
 string(REGEX REPLACE "inout ([A-Za-z0-9]+) " "\\1& " text "${text}")

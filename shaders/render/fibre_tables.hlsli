@@ -2,6 +2,7 @@
 // Look-up tables of the fibre models (core/shading/tables.h).
 #ifndef HAIRLOOM_FIBRE_TABLES_HLSLI
 #define HAIRLOOM_FIBRE_TABLES_HLSLI
+#include "runtime/shaders/fibre.hlsli"
 #include "shaders/shared/render_types.h"
 
 SamplerState gLinear : register(s0);
@@ -22,19 +23,4 @@ float4 lookUp(Texture2D<float4> table, float2 at) {
 
 // M of R, TT and TRT with cos theta_i / cos^2 theta_d, and 2 |theta_d| / pi.
 float4 longitudinal(float sinIn, float sinOut) { return lookUp(gLongitudinal, 0.5 * float2(sinIn, sinOut) + 0.5); }
-
-struct FibreFrame {
-    float sinIn, sinOut, cosPhi;
-};
-
-// Rünz 2012, Eq. 57.
-FibreFrame fibreFrame(float3 tangent, float3 toLight, float3 toView) {
-    FibreFrame f;
-    f.sinIn = dot(toLight, tangent);
-    f.sinOut = dot(toView, tangent);
-    const float3 acrossIn = toLight - f.sinIn * tangent;
-    const float3 acrossOut = toView - f.sinOut * tangent;
-    f.cosPhi = dot(acrossIn, acrossOut) * rsqrt(max(dot(acrossIn, acrossIn) * dot(acrossOut, acrossOut), 1e-12));
-    return f;
-}
 #endif

@@ -14,7 +14,7 @@ float3 fibreScattering(FibreConstants fibre, FibreFrame f, float strandRandom, f
     float3 sum = 0;
     [unroll] for (uint c = 0; c < 3u; ++c) {
         const float4 n = lookUpLayers(gLayers, at, absorption[c]);
-        sum[c] = m.x * n.z + m.y * n.x * tint[c] + m.z * n.y * tint[c] * tint[c];
+        sum[c] = marschner(m.xyz, n.xyz, tint[c]);
     }
     return sum;
 }

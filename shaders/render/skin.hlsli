@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Skin: diffuse light that wraps a little around the terminator, a soft highlight, shadows of head and hair.
-#include "shaders/render/layer_light.hlsli"
+#include "runtime/shaders/layer_light.hlsli"
 #include "shaders/render/shadows.hlsli"
 #include "shaders/render/sky_maps.hlsli"
 

@@ -2,7 +2,7 @@
 // How light from around is inside hair.
 #ifndef HAIRLOOM_SKY_IN_HAIR_HLSLI
 #define HAIRLOOM_SKY_IN_HAIR_HLSLI
-#include "shaders/render/layer_light.hlsli"
+#include "runtime/shaders/layer_light.hlsli"
 #include "shaders/render/lights.hlsli"
 #include "shaders/render/sky_maps.hlsli"
 

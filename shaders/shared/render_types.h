@@ -2,7 +2,7 @@
 // What core/render and its shaders exchange. Lengths in metres, world space (_ws), Y up.
 #ifndef HAIRLOOM_SHARED_RENDER_TYPES_H
 #define HAIRLOOM_SHARED_RENDER_TYPES_H
-#include "runtime/shaders/types.h"
+#include "runtime/shaders/look_types.h"
 #include "shaders/shared/group_sizes.h"
 #ifdef __cplusplus
 namespace hairloom::shaders {
@@ -194,29 +194,6 @@ struct FibreConstants {
     float minSpread;  // width of the table of wide lobes, radians
     float maxSpread;
     float unused1, unused2;
-};
-
-// Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look
-// the same everywhere: shading::StrandLook.
-struct LookConstants {
-    float4 root;
-    float4 tip;
-    float4 streakRoot;
-    float4 streakTip;
-    float4 dye;
-    float4 emissionRoot;  // linear RGB radiance
-    float4 emissionTip;
-    float gradientStart;  // along a strand, where it begins
-    float gradientScale;  // one by its length
-    float dyeStart;
-    float dyeScale;
-    uint absorbs;    // 1 for absorption, 0 for colours
-    float ownScale;  // what the logarithm of a strand's own colour is multiplied with
-    float spread;    // random, of absorption
-    float streakPigment;
-    float regrowthStart;  // metres from the root
-    float regrowthScale;
-    float unused0, unused1;
 };
 
 // Where compute kernels that rasterise put what they find.

@@ -1,11 +1,19 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Light inside a layer of hair; core/shading/dual_scattering.h says how and is the reference.
+// SPDX-License-Identifier: MIT
+// Light inside a layer of hair: the equation of transfer across the fibres as far as the mean light and its direction (P1), over
+// hair of finite depth. docs/rendering.md says how, and core/shading/dual_scattering.h is the reference.
 #ifndef HAIRLOOM_LAYER_LIGHT_HLSLI
 #define HAIRLOOM_LAYER_LIGHT_HLSLI
 
 // What fibres do to light across them: the albedo, and the first two moments of the angle by which they turn it.
 struct FibreMoments {
     float3 albedo, first, second;
+};
+
+// A fibre's shares of light sent on and back with their variances, and its tilts.
+struct FibreAverages {
+    float4 forward, backward;
+    float4 rest;  // tilt of light sent on, sent back and of all; variance of all
+    FibreMoments moments;
 };
 
 // What a fibre sends nearly straight on, as much as the second moment says, counts as not stopped.
