@@ -185,6 +185,11 @@ hl_code hl_instance_set(hl_instance* instance, const char* name, const double* v
     return guarded(error, [&] { return say(error, instance->instance.set(name, {values, count})); });
 }
 
+hl_code hl_instance_choose(hl_instance* instance, const char* name, const char* choice, hl_error* error) {
+    if (!instance || !name || !choice) return nullRefused(error, "no instance, name or choice");
+    return guarded(error, [&] { return say(error, instance->instance.choose(name, choice)); });
+}
+
 void hl_reserve_init(hl_reserve* reserve) {
     if (!reserve) return;
     *reserve = {};

@@ -434,6 +434,22 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
     return std::nullopt;
 }
 
+Outcome Instance::choose(std::string_view name, std::string_view choice) {
+    const auto refuse = [&](const std::string& why) {
+        return Refusal{HL_BAD_VALUE, "setting '" + std::string(name) + "' " + why};
+    };
+    const auto* const field = findField<SimulationSettings>(name);
+    if (!field) return refuse("does not exist");
+    if (field->kind != FieldKind::Choice) return refuse("is no choice");
+    std::string known;
+    for (std::size_t c = 0; c < field->choices.size(); ++c) {
+        const double number = static_cast<double>(c);
+        if (field->choices[c] == choice) return set(name, {&number, 1});
+        known += (known.empty() ? "" : ", ") + std::string(field->choices[c]);
+    }
+    return refuse("is '" + std::string(choice) + "'; expected one of " + known);
+}
+
 Outcome Instance::readOffsets(std::span<std::uint32_t> offsets) const {
     if (offsets.size() != offsets_.size()) return wrongSize("offsets", offsets.size(), offsets_.size());
     std::copy(offsets_.begin(), offsets_.end(), offsets.begin());

@@ -58,6 +58,7 @@ class Instance {
     /// Bytes that play() adds.
     static std::size_t clipMemory(const Asset& asset);
     Outcome set(std::string_view name, std::span<const double> values);
+    Outcome choose(std::string_view name, std::string_view choice);
     Outcome read(hl_read& read, bool wantsBounds = true);
     /// What the kernels of hairs are given each frame (gpu.cpp): number HL_GPU_BUFFER_… into `bytes`.
     bool hasGpuHairs() const { return gpuHairs_ > 0; }

@@ -208,6 +208,7 @@ TEST_F(RuntimeCalls, EveryNullAndEveryNumberIsRefusedWithWords) {
     walk("hl_instance_play", &hl_instance_play, 0, HL_BAD_VALUE, hair, asset, &frame_, &play, error);
     const double wind = 2;
     walk("hl_instance_set", &hl_instance_set, 0, HL_OK, hair, "windSpeed", &wind, std::size_t{1}, error);
+    walk("hl_instance_choose", &hl_instance_choose, 0, HL_OK, hair, "windKind", "uniform", error);
     hl_reserve reserve;
     hl_reserve_init(&reserve);
     walk("hl_instance_reserve", &hl_instance_reserve, 0, HL_OK, hair, &reserve, error);

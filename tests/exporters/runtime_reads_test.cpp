@@ -298,5 +298,29 @@ TEST_F(RuntimeReads, WhatCannotBeReadIsRefusedAndNothingWritten) {
     EXPECT_EQ(hl_instance_read(nullptr, nullptr, &error_), HL_BAD_VALUE);
 }
 
+TEST_F(RuntimeReads, ChoicesAreReplacedByName) {
+    open(decorated());
+    make(HL_GUIDES);
+    game::Instance other;
+    ASSERT_TRUE(other.make(asset_, HL_GUIDES));
+    EXPECT_FALSE(hair_.choose("strandModel", "ropes", &error_));
+    EXPECT_STREQ(error_.words, "setting 'strandModel' is 'ropes'; expected one of rods, springs");
+    EXPECT_FALSE(hair_.choose("windSpeed", "springs", &error_));
+    EXPECT_STREQ(error_.words, "setting 'windSpeed' is no choice");
+    EXPECT_FALSE(hair_.choose("nothing", "springs", &error_));
+    EXPECT_STREQ(error_.words, "setting 'nothing' does not exist");
+    ASSERT_TRUE(hair_.choose("strandModel", "springs", &error_)) << error_.what();
+    ASSERT_TRUE(other.set("strandModel", 1));
+    for (int frame = 1; frame <= 5; ++frame) {
+        step(hair_, frame);
+        step(other, frame);
+    }
+    EXPECT_EQ(hair_.hash(), other.hash());
+    game::Instance rods;
+    ASSERT_TRUE(rods.make(asset_, HL_GUIDES));
+    for (int frame = 1; frame <= 5; ++frame) step(rods, frame);
+    EXPECT_NE(hair_.hash(), rods.hash());
+}
+
 }  // namespace
 }  // namespace hairloom::test

@@ -311,10 +311,14 @@ HL_API void hl_play_init(hl_play* play);
 HL_API hl_code hl_instance_play(hl_instance* instance, const hl_asset* asset, const hl_frame* frame,
                                 const hl_play* play, hl_error* error);
 
-/* Replaces a setting of the engine from the next step on: name without group, "windSpeed"; may ask for
- * memory. */
+/* Replaces a setting of the engine from the next step on: name without group, "windSpeed", one value or those
+ * of a vector. Curves stay as authored. May ask for memory. */
 HL_API hl_code hl_instance_set(hl_instance* instance, const char* name, const double* values, size_t count,
                                hl_error* error);
+/* The same of a choice, by its name: "strandModel", "springs". HL_BAD_VALUE of a name that there is not:
+ * words list those that there are. */
+HL_API hl_code hl_instance_choose(hl_instance* instance, const char* name, const char* choice,
+                                  hl_error* error);
 
 /* Memory ahead of time. hl_instance_make asks for what an instance holds, its first frames of new effects and
  * of more spheres for more. After this call no step, reset, change of level or read asks for any, whatever

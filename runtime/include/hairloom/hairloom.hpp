@@ -105,6 +105,9 @@ class Instance {
     bool set(const char* name, double value, hl_error* error = nullptr) {
         return hl_instance_set(instance_.get(), name, &value, 1, error) == HL_OK;
     }
+    bool choose(const char* name, const char* choice, hl_error* error = nullptr) {
+        return hl_instance_choose(instance_.get(), name, choice, error) == HL_OK;
+    }
     /// All memory that frames of up to so many spheres may come to ask for.
     bool reserve(std::uint32_t spheres, hl_error* error = nullptr) {
         hl_reserve wanted;
