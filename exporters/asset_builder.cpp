@@ -154,10 +154,14 @@ std::vector<std::byte> AssetBuilder::finish(const Box3f& bounds, std::uint32_t p
     asset::Header header{};
     header.magic = asset::kMagic;
     header.major = asset::kMajor;
-    const bool hasClip = std::ranges::any_of(parts_, [](const Part& part) {
-        return std::string_view(part.section.kind.data(), part.section.kind.size()) == asset::kClip;
-    });
-    header.minor = hasClip ? asset::kMinorOfClips : asset::kMinor;
+    const auto has = [&](std::string_view kind) {
+        return std::ranges::any_of(parts_, [&](const Part& part) {
+            return std::string_view(part.section.kind.data(), part.section.kind.size()) == kind;
+        });
+    };
+    header.minor = has(asset::kMaterials) ? asset::kMinorOfMaterials
+                   : has(asset::kClip)    ? asset::kMinorOfClips
+                                          : asset::kMinor;
     header.headerBytes = sizeof header;
     header.sections = static_cast<std::uint32_t>(parts_.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {

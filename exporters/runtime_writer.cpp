@@ -279,6 +279,7 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
                                           const FollowSections& follow,
                                           const std::optional<SafeLimits>& safeLimits,
                                           const MeasuredLevels& levels, const WrittenClip& clip,
+                                          const HairLooks* looks,
                                           std::vector<std::uint32_t>* scalpVertices = nullptr) {
     const auto encoded = encodeStrands(strands.offsets, strands.positions);
     if (!encoded) return tl::unexpected(encoded.error());
@@ -314,6 +315,11 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
         builder.add<std::uint32_t>(asset::kClipPlaces, clip.encoded->places);
         builder.add<std::byte>(asset::kClipFrames, clip.encoded->frames);
     }
+    if (looks) {
+        builder.add<asset::Material>(asset::kMaterials, looks->materials);
+        builder.add<std::uint16_t>(asset::kFibreTables, looks->tables);
+        if (follow.bindings) builder.add<asset::HairLook>(asset::kHairLooks, looks->hairs);
+    }
     builder.addSettings("simulation", groom.simulation);
     builder.addSettings("material", groom.material);
     builder.addSettings("interpolation", groom.interpolation);
@@ -335,7 +341,8 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
     // Levels are measured on the asset without them; findings are told once.
     PreparedStrands unmeasured = *strands;
     std::vector<std::uint32_t> scalpVertices;
-    const auto plain = buildAsset(groom, unmeasured, *follow, options.safeLimits, {}, {}, &scalpVertices);
+    const auto plain =
+        buildAsset(groom, unmeasured, *follow, options.safeLimits, {}, {}, nullptr, &scalpVertices);
     if (!plain) return here(plain.error());
     std::optional<AssetClip> encoded;
     WrittenClip clip;
@@ -346,7 +353,8 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
         encoded = std::move(*made);
         clip = {options.clip->name, &*encoded};
     }
-    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits, measureLevels(*plain), clip);
+    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits, measureLevels(*plain), clip,
+                                  options.looks.get());
     if (!bytes) return here(bytes.error());
     Finding ofClip;
     double clipError = 0;
@@ -368,6 +376,9 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
     if (!opened.asset) return failIn(path.string(), Byte{opened.error.byte}, opened.error.words);
     if (auto status = addFindings(groom, *follow, *opened.asset, *report); !status)
         return here(status.error());
+    if (options.looks)
+        report->findings.insert(report->findings.end(), options.looks->findings.begin(),
+                                options.looks->findings.end());
     if (encoded) {
         report->frames = static_cast<std::size_t>(options.clip->frames);
         report->attributes.push_back({"clip", clipError});
@@ -382,8 +393,8 @@ HairWriter runtimeWriter() {
     return {
         "runtime",
         "Hairloom runtime asset .hairrt",
-        "root bindings, the head's bones, spheres, the skin collider, settings, layers, materials, "
-        "attributes of strands "
+        "root bindings, the head's bones, spheres, the skin collider, settings, layers, materials, tables of "
+        "Marschner's shading, attributes of strands "
         "and how "
         "follow hairs come from guides",
         "512 points per strand",
@@ -393,6 +404,8 @@ HairWriter runtimeWriter() {
         true,
         false,
         false,
+        false,
+        true,
         false,
         true};
 }

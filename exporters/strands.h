@@ -18,6 +18,7 @@
 #include "core/base/result.h"
 #include "core/base/work_watch.h"
 #include "core/groom/groom.h"
+#include "exporters/hair_looks.h"
 #include "exporters/report.h"
 #include "exporters/safe_limits.h"
 #include "importers/strands.h"
@@ -80,6 +81,7 @@ struct StrandExportOptions {
     std::shared_ptr<const StrandFrames> frames = nullptr;
     std::shared_ptr<const ClipToWrite> clip = nullptr;  ///< of writers that hold clips; null: none
     std::optional<SafeLimits> safeLimits{};             ///< for formats that carry them
+    std::shared_ptr<const HairLooks> looks = nullptr;   ///< of writers that hold them; null: none
     bool physics = false;                               ///< of writers that hold them; of strands at rest
     WorkWatch watch{};                                  ///< of preparing, writing, reading back and comparing
 };
@@ -132,6 +134,7 @@ struct HairWriter {
     bool animates = false;              ///< the file can hold StrandExportOptions::frames
     bool holdsClips = false;            ///< the file can hold StrandExportOptions::clip
     bool holdsPhysics = false;          ///< what simulates curves may stand beside them
+    bool holdsLooks = false;            ///< the file can hold StrandExportOptions::looks
 
     std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }
     bool holdsCards() const { return std::holds_alternative<WriteCards>(writer); }

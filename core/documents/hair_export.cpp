@@ -12,6 +12,7 @@
 #include "core/base/output_batch.h"
 #include "core/cost/scene_run.h"
 #include "core/documents/guides_beside_hairs.h"
+#include "core/documents/hair_looks.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/levels/spring_fit.h"
@@ -335,6 +336,11 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
                                        progressOf(wanted, framesEnd, stormsEnd));
         if (!limits) return tl::unexpected(limits.error());
         exporting.safeLimits = *limits;
+    }
+    if (writer.holdsLooks) {
+        auto looks = hairLooks(shown);
+        if (!looks) return tl::unexpected(looks.error());
+        exporting.looks = std::make_shared<const HairLooks>(std::move(*looks));
     }
     if (cards::cancelled(wanted.cancel)) return cards::stopped();
     // With what lies beside it, or not at all; also where it reads back as something else.

@@ -160,7 +160,10 @@ std::optional<AssetError> Asset::takeSection(const Section& section) {
         isSound<MeasuredLevel>(section, kSeenErrors, problem) ||
         isSound<std::byte>(section, kBody, problem) || isSound<Clip>(section, kClip, problem) ||
         isSound<std::uint32_t>(section, kClipPlaces, problem) ||
-        isSound<std::byte>(section, kClipFrames, problem);
+        isSound<std::byte>(section, kClipFrames, problem) ||
+        isSound<Material>(section, kMaterials, problem) ||
+        isSound<std::uint16_t>(section, kFibreTables, problem) ||
+        isSound<HairLook>(section, kHairLooks, problem);
     if (!problem.empty()) return wrong(problem);
     if (!known && (section.flags & kRequired) != 0) {
         AssetError error = wrong("is needed and not known to this library");

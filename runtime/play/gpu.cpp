@@ -10,6 +10,8 @@
 #include "follow/follow_gpu.h"
 #include "play/c_words.h"
 #include "play/gpu_guides.h"
+#include "play/gpu_shading.h"
+#include "shaders/hair_types.h"
 #include "shaders/ribbon_types.h"
 
 namespace hairloom::runtime {
@@ -17,16 +19,19 @@ namespace {
 
 static_assert(sizeof(hl_gpu_view) == sizeof(shaders::RibbonView));
 static_assert(offsetof(hl_gpu_view, points) == offsetof(shaders::RibbonView, points));
-static_assert(HL_GPU_PASS_COUNT == 4 && HL_GPU_BUFFER_COUNT == 31);
+static_assert(HL_GPU_PASS_COUNT == 9 && HL_GPU_BUFFER_COUNT == 38);
 
 constexpr std::uint64_t kRowsOfPoint = 4;  // FOLLOW_ROWS of follow.hlsli
 constexpr std::uint64_t kMostGroups = 65535;
+constexpr std::uint64_t kLampColumns = std::uint64_t{HAIR_COLUMNS} * HAIR_COLUMNS;
 
 /// Counts that buffers are measured by.
 struct GpuCounts {
     std::uint64_t guides, guidePoints, hairs, points;
     // Of the pass GUIDES.
     std::uint64_t blocks, longest, spheres;
+    // Of those that shade.
+    std::uint64_t materials = 0, tables = 0;
 
     std::uint64_t slots() const { return blocks * kBlockLanes; }
     std::uint64_t slotPoints() const { return slots() * longest; }
@@ -44,9 +49,11 @@ GpuCounts gpuCountsOf(const Asset& asset) {
     for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
     std::size_t capsules = 0;
     for (const asset::Sphere& sphere : asset.spheres) capsules += sphere.joined > 0 ? 1 : 0;
-    return withGuides(
-        {asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair, 0, 0, 0},
-        strandsOf, asset.spheres.size(), capsules);
+    GpuCounts counts{
+        asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair, 0, 0, 0};
+    counts.materials = gpuMaterialsOf(asset);
+    counts.tables = asset.fibreTables().size();
+    return withGuides(counts, strandsOf, asset.spheres.size(), capsules);
 }
 
 struct GpuBuffer {
@@ -80,6 +87,9 @@ HAIRLOOM_GPU_COUNT(SLOT_POINTS, c.slotPoints())
 HAIRLOOM_GPU_COUNT(SLOT_RESTS, 4 * c.slotPoints())
 HAIRLOOM_GPU_COUNT(SLOT_STATE, (kStatePlanes + 1) * c.slotPoints())
 HAIRLOOM_GPU_COUNT(SLOT_RODS, kRodStatePlanes* c.slotPoints() + kRodLaneRows * c.slots())
+HAIRLOOM_GPU_COUNT(MATERIALS, c.materials)
+HAIRLOOM_GPU_COUNT(TABLE_FLOATS, std::max<std::uint64_t>(c.tables, 1))
+HAIRLOOM_GPU_COUNT(LAMP_CELLS, kLampColumns*(HAIR_SLICES + 1))
 HAIRLOOM_GPU_COUNT(SLOT_SCRATCH, (HAIRLOOM_ROD_WORK_PLANES + HAIRLOOM_ROD_CONTACT_PLANES) * c.slotPoints())
 #undef HAIRLOOM_GPU_COUNT
 
@@ -145,6 +155,12 @@ hl_code fillOnce(const hl_asset* opened, const Asset& asset, std::uint32_t buffe
     if (buffer == HL_GPU_BUFFER_LOOKS) return fillLooks(opened, gpuOrder(asset), out, error);
     if (buffer == HL_GPU_BUFFER_NUMBERS) {
         for (const std::uint32_t hair : gpuOrder(asset)) writeGpu(out, hair);
+        return HL_OK;
+    }
+    if (fillsShading(buffer)) {
+        const Vector<std::uint32_t> order =
+            buffer == HL_GPU_BUFFER_SHADES ? gpuOrder(asset) : Vector<std::uint32_t>();
+        fillShading(asset, buffer, order, out);
         return HL_OK;
     }
     const Asset::Strands rest = asset.strandsAtRest();
@@ -352,9 +368,10 @@ hl_code sayGpuPass(std::uint32_t pass, const GpuCounts& counts, hl_gpu_pass_info
         info.vertices = static_cast<std::uint32_t>(2 * counts.points);
         info.instances = static_cast<std::uint32_t>(counts.hairs);
     } else {
-        const std::uint64_t threads = pass == HL_GPU_PASS_GUIDES  ? counts.slots()
-                                      : pass == HL_GPU_PASS_WISPS ? counts.guides
-                                                                  : counts.hairs * counts.points;
+        const std::uint64_t threads = pass == HL_GPU_PASS_GUIDES     ? counts.slots()
+                                      : pass == HL_GPU_PASS_WISPS    ? counts.guides
+                                      : pass == HL_GPU_PASS_LAMP_SUM ? kLampColumns
+                                                                     : counts.hairs * counts.points;
         const std::uint64_t groups = (threads + kGpuPasses[pass].threads - 1) / kGpuPasses[pass].threads;
         info.groups[0] = static_cast<std::uint32_t>(std::min(groups, kMostGroups));
         info.groups[1] = static_cast<std::uint32_t>((groups + kMostGroups - 1) / kMostGroups);

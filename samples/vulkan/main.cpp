@@ -2,7 +2,8 @@
 // Plays a runtime asset with Vulkan 1.3: the CPU steps guides, or with --gpu a kernel does. The kernels of
 // share/hairloom-runtime/shaders make all hairs of them and draw them as ribbons, and nothing is read back
 // but the last image, which is written as PPM.
-//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--share S] [--compare]
+//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--shade] [--share S] [--compare]
+// --frames 0 draws the hair at rest. --shade draws it as its material says, with shadows of hair on hair.
 // --share makes and draws that share of the hairs, above 0 to 1, as a character far off has them.
 // --compare reads the hairs of each frame back and says how far they are from hl_instance_read_hairs().
 
@@ -139,9 +140,9 @@ void makePipeline(const Gpu& gpu, const std::string& shaders, Pass& pass) {
     check(vkCreateGraphicsPipelines(gpu.device, {}, 1, &info, nullptr, &pass.pipeline), file.c_str());
 }
 
-/// One frame: the passes from `first` on in their order, then the image into `pixels`.
-void draw(const Gpu& gpu, const std::vector<Pass>& passes, std::uint32_t first, const Image& colour,
-          const Image& depth, const Buffer& pixels) {
+/// One frame: the passes in their order, then the image into `pixels`. `grey`: linear, behind the hair.
+void draw(const Gpu& gpu, const std::vector<Pass>& passes, const Image& colour, const Image& depth,
+          const Buffer& pixels, float grey) {
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     check(vkBeginCommandBuffer(gpu.commands, &begin), "vkBeginCommandBuffer");
     turnInto(gpu.commands, colour.handle, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
@@ -153,7 +154,7 @@ void draw(const Gpu& gpu, const std::vector<Pass>& passes, std::uint32_t first, 
     colours.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     colours.loadOp = depths.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     colours.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    colours.clearValue.color = {{0.5f, 0.5f, 0.5f, 1}};
+    colours.clearValue.color = {{grey, grey, grey, 1}};
     depths.imageView = depth.view;
     depths.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
     depths.clearValue.depthStencil = {1, 0};
@@ -163,8 +164,7 @@ void draw(const Gpu& gpu, const std::vector<Pass>& passes, std::uint32_t first, 
     targets.colorAttachmentCount = 1;
     targets.pColorAttachments = &colours;
     targets.pDepthAttachment = &depths;
-    for (std::size_t p = first; p < passes.size(); ++p) {
-        const Pass& pass = passes[p];
+    for (const Pass& pass : passes) {
         const bool compute = pass.info.kind == HL_GPU_COMPUTE;
         const auto point = compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
         vkCmdBindPipeline(gpu.commands, point, pass.pipeline);
@@ -194,13 +194,16 @@ void draw(const Gpu& gpu, const std::vector<Pass>& passes, std::uint32_t first, 
     check(vkQueueWaitIdle(gpu.queue), "vkQueueWaitIdle");
 }
 
-/// Looks at the hair from the front; Vulkan's clip space has y downwards and depth from 0.
-void look(const hl_asset_info& asset, hl_gpu_view& view) {
+/// Looks at the hair from the front; Vulkan's clip space has y downwards and depth from 0. A lamp shines from
+/// where that of `view` does.
+void look(const hl_asset_info& asset, hl_gpu_view& view, hl_gpu_lamp& lamp) {
     std::array<float, 3> centre{};
-    float size = 0;
+    float size = 0, squares = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         centre[c] = 0.5f * (asset.bounds_min[c] + asset.bounds_max[c]);
-        size = std::max(size, asset.bounds_max[c] - asset.bounds_min[c]);
+        const float side = asset.bounds_max[c] - asset.bounds_min[c];
+        size = std::max(size, side);
+        squares += side * side;
     }
     const float away = 2 * size, f = 2.2f, nearest = 0.05f, farthest = 2 * away + 1;
     const float z = farthest / (nearest - farthest);
@@ -210,6 +213,11 @@ void look(const hl_asset_info& asset, hl_gpu_view& view) {
     std::copy_n(matrix, 16, view.clip_from_world);
     std::copy_n(eye.begin(), 3, view.eye);
     view.pixel_size = 2 / (f * kHeight);
+    hl_error error{};
+    check(hl_gpu_lamp_init(view.to_light, centre.data(), 0.55f * std::sqrt(squares), &lamp, &error), error);
+    std::fill_n(lamp.light, 3, 2.0f);
+    std::printf("seen from %.6f %.6f %.6f towards %.6f %.6f %.6f\n", eye[0], eye[1], eye[2], centre[0],
+                centre[1], centre[2]);
 }
 
 /// Metres: how far hairs in the device's buffer lie from those of the CPU at most, and in the mean of
@@ -258,27 +266,31 @@ void writeImage(const char* name, const Buffer& pixels) {
 }  // namespace
 
 int main(int count, char** words) {
-    if (count < 3) fail("vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--share S] [--compare]");
+    if (count < 3)
+        fail("vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--shade] [--share S] [--compare]");
     const char* image = nullptr;
     int frames = 60;
     float share = 1;
-    bool comparing = false, onGpu = false;
+    bool comparing = false, onGpu = false, shading = false;
     for (int i = 3; i < count; ++i) {
         const std::string word = words[i];
         if (word == "--compare")
             comparing = true;
         else if (word == "--gpu")
             onGpu = true;
+        else if (word == "--shade")
+            shading = true;
         else if (word == "-o" && i + 1 < count)
             image = words[++i];
         else if (word == "--share" && i + 1 < count)
             share = std::strtof(words[++i], nullptr);
         else if (word == "--frames" && i + 1 < count)
-            frames = std::max(1, std::atoi(words[++i]));
+            frames = std::max(0, std::atoi(words[++i]));
         else
             fail(word + ": not known");
     }
 
+    if (onGpu && frames == 0) fail("--frames 0 is for guides on the CPU");
     hl_error error{};
     std::size_t size = 0;
     const std::vector<Piece> bytes = readFile(words[1], size);
@@ -303,18 +315,23 @@ int main(int count, char** words) {
         if (infos[b].fill == HL_GPU_ONCE)
             check(hl_gpu_fill(asset.get(), b, buffers[b].mapped, buffers[b].bytes, &error), error);
     }
-    std::vector<Pass> passes(HL_GPU_PASS_COUNT);
+    std::vector<Pass> passes;
     for (std::uint32_t p = 0; p < HL_GPU_PASS_COUNT; ++p) {
-        passes[p].info.size = sizeof passes[p].info;
-        check(hl_gpu_frame_pass(hair.get(), p, &passes[p].info, &error), error);
-        bindBuffers(gpu, buffers, p, passes[p]);
-        makePipeline(gpu, words[2], passes[p]);
+        if (p == HL_GPU_PASS_GUIDES && !onGpu) continue;
+        if (p >= HL_GPU_PASS_RIBBONS && (p != HL_GPU_PASS_RIBBONS) != shading) continue;
+        Pass& pass = passes.emplace_back();
+        pass.info.size = sizeof pass.info;
+        check(hl_gpu_frame_pass(hair.get(), p, &pass.info, &error), error);
+        bindBuffers(gpu, buffers, p, pass);
+        makePipeline(gpu, words[2], pass);
     }
     hl_gpu_view view;
+    hl_gpu_lamp lamp;
     check(hl_gpu_view_init(asset.get(), &view, &error), error);
     check(hl_gpu_frame_view(hair.get(), &view, &error), error);
-    look(asset.describe(), view);
+    look(asset.describe(), view, lamp);
     std::memcpy(buffers[HL_GPU_BUFFER_VIEW].mapped, &view, sizeof view);
+    std::memcpy(buffers[HL_GPU_BUFFER_LAMP].mapped, &lamp, sizeof lamp);
 
     const auto fill = [&](std::uint32_t kind) {
         for (std::uint32_t b = 0; b < HL_GPU_BUFFER_COUNT; ++b) {
@@ -340,7 +357,7 @@ int main(int count, char** words) {
                   : std::vector<std::uint32_t>();
     double farthest = 0, squares = 0;
     const float wind[3] = {2, 0, 1};
-    for (int f = 1; f <= frames; ++f) {
+    for (int f = std::min(1, frames); f <= frames; ++f) {
         hairloom::game::Frame frame;
         const float turn = 0.3f * std::sin(0.1f * static_cast<float>(f)), c = std::cos(turn),
                     s = std::sin(turn);
@@ -348,11 +365,12 @@ int main(int count, char** words) {
         frame.time = f / 60.0;
         frame.head = head;
         frame.wind = wind;
+        if (f == 0) frame.dt = 0;
         check(onGpu ? hl_gpu_step(hair.get(), &frame, &error) : hl_instance_step(hair.get(), &frame, &error),
               error);
         fill(HL_GPU_FRAME);
         fill(onGpu ? HL_GPU_STEP : HL_GPU_GUIDES);
-        draw(gpu, passes, onGpu ? HL_GPU_PASS_GUIDES : HL_GPU_PASS_WISPS, colour, depth, pixels);
+        draw(gpu, passes, colour, depth, pixels, shading ? 0 : 0.5f);
         if (!comparing) continue;
         if (!onCpu.step(frame, &error) || !onCpu.readHairs(expected, &error)) fail(error.words);
         compare(buffers[HL_GPU_BUFFER_POINTS], slots, expected, farthest, squares);

@@ -28,7 +28,7 @@ TEST_F(RuntimeAssetJobs, AnAssetIsWrittenDescribedValidatedAndSimulated) {
     const auto info = runJson("info g.hairrt");
     EXPECT_EQ(info["strands"], 300);
     EXPECT_EQ(info["asset"]["follow_hairs"], 30'000);
-    EXPECT_EQ(info["asset"]["version"], "1.2");
+    EXPECT_EQ(info["asset"]["version"], "1.4");
     EXPECT_GT(info["asset"]["sections"].size(), 8u);
     EXPECT_EQ(runJson("validate g.hairrt")["valid"], true);
     const auto played = runJson("simulate g.hairrt --frames 3 --motion nod");

@@ -83,7 +83,7 @@ TEST_F(CliTakes, ExportsAClipForGames) {
         runJson("takes hair.hairloom --export nod --format runtime --range 4,33 --loop -o nod.hairrt");
     EXPECT_EQ(report["frames"], 30);
     const auto info = runJson("info nod.hairrt")["asset"];
-    EXPECT_EQ(info["version"], "1.3");
+    EXPECT_EQ(info["version"], "1.4");
     EXPECT_EQ(info["clip"]["name"], "nod");
     EXPECT_EQ(info["clip"]["frames"], 30);
     EXPECT_EQ(info["clip"]["fps"], 60);
@@ -91,10 +91,10 @@ TEST_F(CliTakes, ExportsAClipForGames) {
     EXPECT_LE(info["clip"]["max_error_mm"].get<double>(), 0.1);
     EXPECT_LE(info["clip"]["bytes"].get<double>() / (30 * report["points"].get<double>()), 4);
     EXPECT_THAT(run("validate nod.hairrt").output, HasSubstr("'nod' of 30 frames"));
-    // Without a clip nothing of the file has changed.
+    // Without a take there is no clip.
     runJson("export hair.hairloom --format runtime -o plain.hairrt");
     const auto plain = runJson("info plain.hairrt")["asset"];
-    EXPECT_EQ(plain["version"], "1.2");
+    EXPECT_EQ(plain["version"], "1.4");
     EXPECT_TRUE(plain["clip"].is_null());
     runJson(
         "takes hair.hairloom --export nod --format runtime --range 4,33 --loop --threads 1 -o one.hairrt");

@@ -29,9 +29,10 @@ class ExportTest : public testing::Test {
 class AssetTest : public ExportTest {
   protected:
     /// The file of that groom; the test fails where it cannot be written.
-    std::vector<std::byte> written(const Groom& groom, ExportReport* report = nullptr) const {
+    std::vector<std::byte> written(const Groom& groom, ExportReport* report = nullptr,
+                                   const StrandExportOptions& options = {}) const {
         const auto path = folder / "a.hairrt";
-        const auto made = strandWriter("runtime").write(groom, path, {});
+        const auto made = strandWriter("runtime").write(groom, path, options);
         EXPECT_TRUE(made) << made.error().message();
         if (!made) return {};
         if (report) *report = *made;
@@ -95,6 +96,29 @@ inline Groom dome(std::uint32_t side, std::uint32_t step, std::uint32_t points, 
         }
     }
     return growStraight(mesh, all, roots, length, points).value();
+}
+
+/// Made-up looks of so many follow hairs: a material of fibres with tables.
+inline StrandExportOptions withLooks(std::size_t hairs) {
+    auto looks = std::make_shared<HairLooks>();
+    runtime::asset::Material material{};
+    material.rootLook = {0.5f, 0.25f, 0.125f, 0};
+    material.absorbs = 1;
+    material.ownScale = -0.2f;
+    material.tilts = {-0.03f, 0.02f, 0.05f, 3};
+    material.widths = {0.1f, 0.05f, 0.2f, 0.15f};
+    material.scales = {1, 1, 1, 0.75f};
+    material.model = runtime::asset::kMarschner;
+    material.bounded = 1;
+    material.axisRatio = 1;
+    looks->materials = {material};
+    for (std::uint32_t i = 0; i < runtime::asset::kTableHalves; ++i)
+        looks->tables.push_back(static_cast<std::uint16_t>(0x3000u + i % 1024u));
+    for (std::size_t h = 0; h < hairs; ++h)
+        looks->hairs.push_back({static_cast<std::uint16_t>(h), static_cast<std::uint16_t>(2 * h), 4096, 100});
+    StrandExportOptions options;
+    options.looks = std::move(looks);
+    return options;
 }
 
 /// With wind, follow hairs and a sphere.

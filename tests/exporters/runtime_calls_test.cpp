@@ -264,6 +264,8 @@ TEST_F(RuntimeCalls, EveryNullAndEveryNumberIsRefusedWithWords) {
     walk("hl_gpu_pass", &hl_gpu_pass, 0, HL_OK, asset, 0u, sized<hl_gpu_pass_info>(1), error);
     walk("hl_gpu_frame_pass", &hl_gpu_frame_pass, 0, HL_OK, hair, 0u, sized<hl_gpu_pass_info>(1), error);
     walk("hl_gpu_view_init", &hl_gpu_view_init, 0, HL_OK, asset, place<hl_gpu_view>(1), error);
+    const float up[3] = {0, 1, 0};
+    walk("hl_gpu_lamp_init", &hl_gpu_lamp_init, 0, HL_OK, &up[0], &up[0], 0.5f, place<hl_gpu_lamp>(1), error);
     walk("hl_gpu_frame_view", &hl_gpu_frame_view, 0, HL_OK, hair, place<hl_gpu_view>(1), error);
 
     // Those that make something, or say nothing.

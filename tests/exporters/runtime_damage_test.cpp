@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "hairloom/gpu.h"
 #include "hairloom/hairloom.hpp"
 #include "tests/exporters/asset_bytes.h"
 #include "tests/exporters/asset_samples.h"
@@ -66,6 +67,71 @@ TEST_F(RuntimeDamage, DamageThatNoChecksumFindsIsRefusedOrHarmless) {
     }
     EXPECT_GT(refused, 100u);
     EXPECT_GT(used, 100u);
+}
+
+TEST_F(RuntimeDamage, LooksThatNoChecksumFindsAreRefusedOrHarmless) {
+    const auto plain = written(wholeGroom());
+    const std::size_t hairs = runtime::Asset::open(plain).asset->hairCount();
+    const auto bytes = written(wholeGroom(), nullptr, withLooks(hairs));
+    AssetBytes copy(bytes);
+    ASSERT_FALSE(runtime::Asset::open(copy.span()).asset->check());
+    std::mt19937 random(11);
+    std::vector<float> room(1u << 20);
+    std::size_t refused = 0, used = 0;
+    for (const format::Section& section : copy.table()) {
+        const std::string_view kind(section.kind.data(), 4);
+        if (kind != "MATL" && kind != "FIBT" && kind != "HLOK") continue;
+        const std::size_t step = kind == "FIBT" ? 997 : 1;
+        for (std::size_t at = section.offset; at < section.offset + section.bytes; at += step) {
+            const std::byte was = copy.span()[at];
+            copy.span()[at] ^= static_cast<std::byte>(random() % 255 + 1);
+            copy.seal();
+            hl_asset opened;
+            ASSERT_EQ(hl_asset_open(&opened, copy.span().data(), copy.span().size(), nullptr), HL_OK);
+            hl_error error{};
+            if (hl_asset_check(&opened, &error) != HL_OK) {
+                ++refused;
+                EXPECT_STRNE(error.words, "");
+            } else {
+                for (const std::uint32_t buffer :
+                     {HL_GPU_BUFFER_MATERIALS, HL_GPU_BUFFER_TABLES, HL_GPU_BUFFER_SHADES}) {
+                    hl_gpu_buffer_info info{};
+                    info.size = sizeof info;
+                    ASSERT_EQ(hl_gpu_buffer(&opened, buffer, &info, &error), HL_OK);
+                    ASSERT_EQ(hl_gpu_fill(&opened, buffer, room.data(), info.bytes, &error), HL_OK);
+                    ++used;
+                }
+            }
+            copy.span()[at] = was;
+        }
+    }
+    EXPECT_GT(refused, 10u);
+    EXPECT_GT(used, 100u);
+}
+
+TEST_F(RuntimeDamage, MaterialsThatDoNotFitAreRefusedWithWords) {
+    const auto plain = written(wholeGroom());
+    const std::size_t hairs = runtime::Asset::open(plain).asset->hairCount();
+    const auto refused = [&](const auto& change, const char* words) {
+        StrandExportOptions options = withLooks(hairs);
+        auto looks = std::make_shared<HairLooks>(*options.looks);
+        change(*looks);
+        options.looks = looks;
+        const auto path = folder / "wrong.hairrt";
+        const auto made = strandWriter("runtime").write(wholeGroom(), path, options);
+        // The writer reads its file back: what it cannot play it does not write.
+        ASSERT_FALSE(made) << words;
+        EXPECT_THAT(made.error().message(), testing::HasSubstr(words));
+    };
+    refused([](HairLooks& l) { l.materials.push_back(l.materials[0]); }, "2 materials; the layers have 1");
+    refused([](HairLooks& l) { l.materials[0].table = 1; }, "whose tables are not in the file");
+    refused([](HairLooks& l) { l.materials[0].model = 2; }, "of a kind that there is not");
+    refused([](HairLooks& l) { l.materials[0].widths[1] = 0; }, "without widths");
+    refused([](HairLooks& l) { l.materials[0].dye[2] = std::numeric_limits<float>::infinity(); },
+            "with a number beyond 1e6");
+    refused([](HairLooks& l) { l.tables.pop_back(); }, "numbers of tables; expected");
+    refused([](HairLooks& l) { l.tables[77] = 0x7e00; }, "a table of what is no number");
+    refused([](HairLooks& l) { l.hairs.pop_back(); }, "looks of");
 }
 
 TEST_F(RuntimeDamage, AnyEarlierEndIsRefusedWithItsPlace) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "core/groom/groom.h"
 #include "hairloom/gpu.h"
@@ -78,6 +79,87 @@ TEST_F(RuntimeGpu, LooksAreThoseOfTheHairs) {
         EXPECT_EQ(looks[8 * h + 4], hair.root_radius);
         EXPECT_EQ(looks[8 * h + 5], hair.tip_radius);
     }
+}
+
+TEST_F(RuntimeGpu, ALampHasAGridAroundTheHair) {
+    const float centre[3] = {1, 2, 3};
+    for (const Vec3f& to : {Vec3f(0, 1, 0), Vec3f(0.5f, 0.7f, -0.5f), Vec3f(0, -1e-3f, 2e-3f)}) {
+        hl_gpu_lamp lamp;
+        Error error;
+        ASSERT_EQ(hl_gpu_lamp_init(to.data(), centre, 0.25f, &lamp, &error), HL_OK) << error.what();
+        const Vec3f towards = to.normalized();
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(lamp.to_light[c], towards[c], 1e-6f);
+        const auto place = [&](const Vec3f& at) {
+            Vec3f in;
+            int row = 0;
+            for (const float* one : {lamp.across, lamp.up, lamp.away})
+                in[row++] = one[0] * at.x() + one[1] * at.y() + one[2] * at.z() + one[3];
+            return in;
+        };
+        const Vec3f middle(1, 2, 3), across = towards.unitOrthogonal();
+        EXPECT_LT((place(middle) - Vec3f::Constant(0.5f)).norm(), 1e-5f);
+        EXPECT_NEAR(place(middle + 0.25f * towards).z(), 0, 1e-5f) << "where the light comes in";
+        EXPECT_NEAR(place(middle - 0.25f * towards).z(), 1, 1e-5f);
+        const Vec3f beside = place(middle + 0.25f * across);
+        EXPECT_NEAR(std::hypot(beside.x() - 0.5f, beside.y() - 0.5f), 0.5f, 1e-5f);
+        EXPECT_NEAR(beside.z(), 0.5f, 1e-5f);
+        EXPECT_NEAR(lamp.ground[3], 0.5 / 128 * (0.5 / 128), 1e-9) << "square metres of a column";
+        EXPECT_EQ(lamp.light[3], 0) << "the first of a frame";
+    }
+}
+
+TEST_F(RuntimeGpu, ALampThatIsNoneIsRefused) {
+    const float to[3] = {0, 1, 0}, at[3] = {0, 1.6f, 0}, zero[3] = {0, 0, 0},
+                none[3] = {0, std::numeric_limits<float>::quiet_NaN(), 0};
+    hl_gpu_lamp lamp, before;
+    std::memset(&lamp, 0x5a, sizeof lamp);
+    before = lamp;
+    Error error;
+    const auto refused = [&](const float* direction, const float* place, float radius, const char* words) {
+        EXPECT_EQ(hl_gpu_lamp_init(direction, place, radius, &lamp, &error), HL_BAD_VALUE) << words;
+        EXPECT_THAT(error.words, HasSubstr(words));
+        EXPECT_EQ(std::memcmp(&lamp, &before, sizeof lamp), 0);
+    };
+    refused(nullptr, at, 1, "no direction, place or lamp");
+    refused(zero, at, 1, "to_light is no direction");
+    refused(none, at, 1, "to_light is no direction");
+    refused(to, none, 1, "centre or radius");
+    refused(to, at, 0, "centre or radius");
+    refused(to, at, std::numeric_limits<float>::infinity(), "centre or radius");
+    EXPECT_EQ(hl_gpu_lamp_init(to, at, 1, nullptr, &error), HL_BAD_VALUE);
+}
+
+TEST_F(RuntimeGpu, AnAssetWithoutMaterialsIsDrawnByTheColoursOfItsSettings) {
+    Groom groom = decorated();
+    groom.material.rootColour = Vec3f(0.5f, 0.25f, 0.125f);
+    HairMaterial own;
+    own.tipColour = Vec3f(0.1f, 0.2f, 0.3f);
+    groom.layers[1].material = own;
+    const std::vector<std::byte> bytes = written(groom);
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(bytes.data(), bytes.size()));
+    std::vector<float> materials(2 * 72);
+    ASSERT_EQ(hl_gpu_fill(asset.get(), HL_GPU_BUFFER_MATERIALS, materials.data(), 576, nullptr), HL_OK);
+    EXPECT_EQ(materials[0], 0.5f);
+    EXPECT_EQ(materials[2], 0.125f);
+    EXPECT_EQ(materials[72 + 5], 0.2f) << "at the tip of the second layer";
+    std::vector<float> shades(8 * asset.describe().hairs);
+    ASSERT_EQ(hl_gpu_fill(asset.get(), HL_GPU_BUFFER_SHADES, shades.data(), 4 * shades.size(), nullptr),
+              HL_OK);
+    std::vector<hl_hair> hairs(asset.describe().hairs);
+    ASSERT_EQ(hl_asset_hairs(asset.get(), hairs.data(), sizeof(hl_hair), hairs.size(), nullptr), HL_OK);
+    for (std::size_t h = 0; h < hairs.size(); ++h) {
+        std::uint32_t material = 0, number = 0;
+        std::memcpy(&material, &shades[8 * h], 4);
+        std::memcpy(&number, &shades[8 * h + 1], 4);
+        EXPECT_EQ(material, hairs[number].layer);
+        EXPECT_EQ(shades[8 * h + 4], 1) << "pigment";
+        EXPECT_EQ(shades[8 * h + 6], 1) << "strands have colours";
+    }
+    hl_gpu_pass_info pass{};
+    pass.size = sizeof pass;
+    ASSERT_EQ(hl_gpu_pass(asset.get(), HL_GPU_PASS_LAMP_SUM, &pass, nullptr), HL_OK);
+    EXPECT_EQ(pass.groups[0], 128u * 128 / 64);
 }
 
 TEST_F(RuntimeGpu, AShareOfTheHairsIsTheFirstOfThem) {
@@ -309,14 +391,14 @@ TEST_F(RuntimeGpu, WrongWordsAreRefusedAndNothingIsWritten) {
     hl_gpu_pass_info pass{};
     refused(hl_gpu_pass(asset, 0, &pass, &error), HL_WRONG_SIZE, "hl_gpu_pass_info");
     pass.size = sizeof pass;
-    refused(hl_gpu_pass(asset, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 4 of 4");
+    refused(hl_gpu_pass(asset, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 9 of 9");
     hl_gpu_buffer_info info{};
     info.size = 7;
     refused(hl_gpu_buffer(asset, 0, &info, &error), HL_WRONG_SIZE, "hl_gpu_buffer_info");
     refused(hl_gpu_view_init(asset, nullptr, &error), HL_BAD_VALUE, "no view");
     refused(hl_gpu_frame_view(instance, nullptr, &error), HL_BAD_VALUE, "no view");
     refused(hl_gpu_frame_pass(nullptr, 0, &pass, &error), HL_BAD_VALUE, "no instance");
-    refused(hl_gpu_frame_pass(instance, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 4 of 4");
+    refused(hl_gpu_frame_pass(instance, HL_GPU_PASS_COUNT, &pass, &error), HL_BAD_VALUE, "pass 9 of 9");
     pass.size = 5;
     refused(hl_gpu_frame_pass(instance, 0, &pass, &error), HL_WRONG_SIZE, "hl_gpu_pass_info");
     // Hair of guides alone.

@@ -163,7 +163,8 @@ TEST_F(RuntimePage, IsEnoughToReadAFileBy) {
         Vec3f(0.03f, 0, 0);                                                         // residuals of six bytes
     groom.pointAttributes.edit<Vec3f>(attribute::kPosition)[15] += Vec3f(3, 0, 0);  // and of twelve
     groom.pointAttributes.set(attribute::kRadius, std::vector<float>(groom.pointCount(), 0x1p-14f));
-    const auto bytes = written(groom);
+    const std::size_t hairs = 6 * groom.strandCount();
+    const auto bytes = written(groom, nullptr, withLooks(hairs));
     const auto opened = runtime::Asset::open(bytes);
     ASSERT_TRUE(opened.asset);
     const Page page = readPage();
@@ -179,8 +180,8 @@ TEST_F(RuntimePage, IsEnoughToReadAFileBy) {
         if (page.contains(kind))
             EXPECT_EQ(reader.recordBytes(kind), reader.table(kind, "recordBytes")) << kind;
         else
-            EXPECT_THAT(
-                kind, testing::AnyOf("PNTS", "GHRS", "BODY", "SHFT", "RADI", "SLYR", "ATTV", "VALS", "TEXT"));
+            EXPECT_THAT(kind, testing::AnyOf("PNTS", "GHRS", "BODY", "SHFT", "RADI", "SLYR", "ATTV", "VALS",
+                                             "TEXT", "FIBT"));
     }
     const auto positions = positionsBy(reader);
     const auto strands = opened.asset->strandsAtRest();
@@ -215,6 +216,20 @@ TEST_F(RuntimePage, IsEnoughToReadAFileBy) {
     EXPECT_EQ(reader.record("SPHR", 0, "bone"), -1);
     EXPECT_EQ(reader.record("FLLW", 0, "hairsPerGuide"), 6);
     EXPECT_EQ(reader.record("FLLW", 0, "pointsPerHair"), 12);
+    EXPECT_EQ(reader.header("minor"), 4);
+    ASSERT_EQ(reader.count("MATL"), 1u);
+    EXPECT_EQ(reader.record("MATL", 0, "root", 2), 0.125);
+    EXPECT_EQ(reader.record("MATL", 0, "absorbs"), 1);
+    EXPECT_EQ(static_cast<float>(reader.record("MATL", 0, "widths", 2)), 0.2f);
+    EXPECT_EQ(reader.record("MATL", 0, "clumping"), 0.75);
+    EXPECT_EQ(reader.record("MATL", 0, "model"), 1);
+    EXPECT_EQ(reader.record("MATL", 0, "axisRatio"), 1);
+    ASSERT_EQ(reader.count("HLOK"), hairs);
+    EXPECT_EQ(reader.record("HLOK", 5, "streak"), 5);
+    EXPECT_EQ(reader.record("HLOK", 5, "dye"), 10);
+    EXPECT_EQ(reader.record("HLOK", 5, "pigment"), 4096);
+    EXPECT_EQ(reader.record("HLOK", 5, "length"), 100);
+    EXPECT_EQ(valueAt(reader.at("FIBT") + 2 * 1027, "u16"), 0x3003);
     std::map<std::string, double> settings;
     for (std::size_t s = 0; s < reader.count("SETT"); ++s) {
         const auto first = static_cast<std::size_t>(reader.record("SETT", s, "firstValue"));

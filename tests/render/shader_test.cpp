@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shaders' functions and layouts against C++.
 #include "core/render/fibre_tables.h"
+#include "core/render/game_fibre.h"
 #include "core/render/passes.h"
 #include "core/shading/kajiya_kay.h"
 #include "core/shading/melanin.h"
 #include "core/shading/tables.h"
+#include "runtime/shaders/hair_types.h"
 #include "shaders/shaders.h"
 #include "shaders/shared/render_types.h"
 #include "tests/render/render_fixture.h"
@@ -256,6 +258,61 @@ TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
         EXPECT_LT(single.value(), 0.02) << isMarschner;
         EXPECT_LT(multiple.value(), 0.03) << isMarschner;
     }
+}
+
+TEST_F(ShaderTest, FibresOfGamesAgreeWithTheReference) {
+    constexpr std::uint32_t kCases = 1024;
+    const FibreCases given(kCases);
+    const shading::MarschnerParameters fibre = blondFibre(ShadingModel::marschner).marschner;
+    const shading::StrandLook look = variedLook();
+    const shading::Marschner clear(fibre);
+    shaders::HairMaterial material{};
+    material.look = lookConstants(look);
+    for (const shading::Lobe lobe : shading::kLobes) {
+        const shading::LongitudinalLobe& l = clear.longitudinalLobe(lobe);
+        const auto put = [&](shaders::float4& to, double value) {
+            (&to.x)[shading::index(lobe)] = static_cast<float>(value);
+        };
+        put(material.tilts, l.tilt());
+        put(material.widths, l.width());
+        put(material.scales, clear.scale(lobe));
+    }
+    std::vector<float> tables;
+    for (const std::uint16_t half : gameFibreTables(fibre)) {
+        Eigen::half value;
+        value.x = half;
+        tables.push_back(static_cast<float>(value));
+    }
+    ASSERT_EQ(tables.size(), std::size_t{HAIR_TABLE_FLOATS});
+    const auto result =
+        run("hair_fibre_echo.comp", 2 * kCases, kCases / 64,
+            {gpu::Binding::read(0, buffer(given.cases)), gpu::Binding::read(1, buffer(tables)),
+             gpu::Binding::read(2, buffer(std::vector<shaders::HairMaterial>{material}))},
+            {});
+    RelativeError single, multiple;
+    for (std::uint32_t i = 0; i < kCases; ++i) {
+        const auto& [in, out, phi] = given.angles[i];
+        const shaders::FibreCase& c = given.cases[i];
+        const Vec3d absorption = absorptionOf(look, c);
+        ASSERT_NEAR(static_cast<double>(result[2 * i].w), absorption.x(), 1e-3 * (1 + absorption.x()));
+        shading::MarschnerParameters there = fibre;
+        there.azimuthal.absorption = absorption;
+        const shading::Marschner marschner(there);
+        const shading::DualScattering dual(marschner);
+        const auto before = static_cast<double>(c.toLight.w);
+        single.add(result[2 * i], std::cos(in) * marschner(in, out, phi));
+        shaders::float4 others = result[2 * i + 1];
+        const auto passed = static_cast<float>(std::exp(-before));
+        others.x -= passed * result[2 * i].x;
+        others.y -= passed * result[2 * i].y;
+        others.z -= passed * result[2 * i].z;
+        multiple.add(others, shading::multipleScattering(dual.at(0.5 * std::abs(out - in)), in, out, phi,
+                                                         before, static_cast<double>(c.toView.w), kGround));
+    }
+    RecordProperty("single", std::to_string(single.value()));
+    RecordProperty("multiple", std::to_string(multiple.value()));
+    EXPECT_LT(single.value(), 0.02);
+    EXPECT_LT(multiple.value(), 0.03);
 }
 
 TEST_F(ShaderTest, SharedLayoutsAgree) {

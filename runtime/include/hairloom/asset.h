@@ -154,6 +154,19 @@ class Asset {
         return recordsOf<asset::MeasuredLevel>(asset::kSeenErrors);
     }
 
+    /// What hair looks like to the shaders of games, or none: files of before version 1.4 do not say.
+    std::span<const asset::Material> materials() const {
+        return recordsOf<asset::Material>(asset::kMaterials);
+    }
+    /// asset::kTableHalves 16-bit floats for each material that has tables.
+    std::span<const std::uint16_t> fibreTables() const {
+        return recordsOf<std::uint16_t>(asset::kFibreTables);
+    }
+    /// One of each follow hair, or none: no streaks, no dye, the material's pigment.
+    std::span<const asset::HairLook> hairLooks() const {
+        return recordsOf<asset::HairLook>(asset::kHairLooks);
+    }
+
     /// Recorded motion that games play, or none: null.
     const asset::Clip* clip() const {
         const auto clips = recordsOf<asset::Clip>(asset::kClip);
@@ -194,6 +207,7 @@ class Asset {
     std::optional<AssetError> checkLevels() const;
     std::optional<AssetError> checkBody() const;
     std::optional<AssetError> checkClip() const;
+    std::optional<AssetError> checkMaterials() const;  ///< after checkFollowHairs() and checkLayers()
 
     std::span<const std::byte> bytes_;
 };

@@ -22,6 +22,8 @@ inline constexpr std::uint16_t kMajor = 1, kMinor = 2;
 inline constexpr std::uint16_t kMinorOfPartedRoots = 2;
 /// Written where there is a clip; other files stay at kMinor.
 inline constexpr std::uint16_t kMinorOfClips = 3;
+/// Written where there are materials for the shaders of games.
+inline constexpr std::uint16_t kMinorOfMaterials = 4;
 /// Sections begin at multiples of it, and so does the memory that the file lies in.
 inline constexpr std::size_t kAlignment = 16;
 inline constexpr std::uint32_t kMaxSections = 4096;
@@ -59,7 +61,8 @@ inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots
                                   kRadii = "RADI", kLayers = "LAYR", kStrandLayers = "SLYR",
                                   kSettings = "SETT", kValues = "VALS", kText = "TEXT", kAttributes = "ATTR",
                                   kAttributeValues = "ATTV", kLevelErrors = "LVLE", kSeenErrors = "LVLS",
-                                  kBody = "BODY", kClip = "CLIP", kClipPlaces = "CLPI", kClipFrames = "CLPD";
+                                  kBody = "BODY", kClip = "CLIP", kClipPlaces = "CLPI", kClipFrames = "CLPD",
+                                  kMaterials = "MATL", kFibreTables = "FIBT", kHairLooks = "HLOK";
 
 /// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
 inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;
@@ -216,6 +219,38 @@ inline constexpr std::uint32_t kMostClipOnes = 20;
 inline constexpr std::uint32_t kMostClipLowBits = 14, kNoClipResiduals = 15;
 /// Orders of prediction, in time and along a strand.
 inline constexpr std::uint32_t kClipOrders = 3;
+
+/// What hair looks like to the shaders of games, as `HairMaterial` of shaders/hair_types.h has it: that of
+/// the hairstyle, then those of layers that have one of their own. Colours are linear RGB, or absorption per
+/// fibre radius.
+struct Material {
+    std::array<float, 4> rootLook, tipLook, streakRoot, streakTip, dye, emissionRoot, emissionTip;
+    float gradientStart, gradientScale, dyeStart, dyeScale;
+    std::uint32_t absorbs;  ///< 1: what is above is absorption
+    float ownScale, spread, streakPigment, regrowthStart, regrowthScale, unused0, unused1;
+    std::array<float, 4> primary, secondary;  ///< of Kajiya and Kay, and the exponents
+    float primaryTilt, secondaryTilt, primaryNormalisation, secondaryNormalisation;
+    float diffuse, diffuseNormalisation, scattering, fibreOpacity;
+    std::array<float, 4> tilts, widths, scales;  ///< of Marschner; in w limit, variation, clumping
+    std::uint32_t model;                         ///< 0: Kajiya and Kay's, 1: Marschner's, with tables
+    std::uint32_t table;                         ///< which of the section of tables
+    std::uint32_t bounded;
+    float axisRatio;
+};
+static_assert(sizeof(Material) == 288);
+inline constexpr std::uint32_t kMarschner = 1;
+/// 16-bit floats of a material of kMarschner: HAIR_TABLE_FLOATS of shaders/hair_types.h.
+inline constexpr std::uint32_t kTableHalves = 6 * 64 + 9 * 16 * 64 * 2 + 16 * 64 + 9 * 2 * 16 * 4 + 24 * 32;
+
+/// What a follow hair has of its material's streaks, dye and pigment.
+struct HairLook {
+    std::uint16_t streak, dye;  ///< shares of 65,535
+    std::uint16_t pigment;      ///< that of the material is kPlainPigment
+    std::uint16_t length;       ///< steps of kLengthStep
+};
+static_assert(sizeof(HairLook) == 8);
+inline constexpr std::uint16_t kPlainPigment = 8191;
+inline constexpr float kLengthStep = 0x1p-14f;
 
 /// Metres that 1 in the section of radii stands for.
 inline constexpr float kRadiusStep = 0x1p-24f;

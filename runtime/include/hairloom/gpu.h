@@ -16,8 +16,17 @@
  *                       Before the first: hl_gpu_begin(), and hl_gpu_fill_frame() of HL_GPU_BEGIN and
  *                       HL_GPU_GUIDES
  *
- * Run what hl_gpu_pass() says in the order of HL_GPU_PASSES, with a barrier after each. Buffers of
- * HL_GPU_BEGIN, HL_GPU_STEP and SCRATCH are for the pass GUIDES alone.
+ * Run what hl_gpu_pass() says in the order of HL_GPU_PASSES, with a barrier after each, and draw by one of
+ * two:
+ *
+ *   RIBBONS     Kajiya and Kay's hair of one colour each, without shadows
+ *   SHADED      hair as its material says: Kajiya and Kay's, or Marschner's with dual scattering, with
+ *               streaks, dye and shadows of hair on hair. The four passes from LAMP_FIRST on come before it.
+ *               For another lamp run these four again with another hl_gpu_lamp: it adds to what there is
+ *
+ * Buffers of HL_GPU_BEGIN, HL_GPU_STEP and SCRATCH are for the pass GUIDES alone, and those from LAMP on for
+ * SHADED and the passes before it: HL_GPU_BINDINGS says which pass takes which. What none of yours takes need
+ * not be made.
  *
  * Hairs are in the order in which a level leaves them out: those that a smaller hair_share reads come first.
  * NUMBERS says which of hl_asset_hairs() each is.
@@ -32,47 +41,59 @@ extern "C" {
 #endif
 
 /* Name, file without its ending, stage, threads of a group (0: none) and what it does. Entry point: main. */
-#define HL_GPU_PASSES(X)                                                \
-    X(GUIDES, "guides", COMPUTE, 32, "a frame of each guide as a rod")  \
-    X(WISPS, "follow_wisps", COMPUTE, 32, "the wisp around each guide") \
-    X(HAIRS, "follow_hairs", COMPUTE, 64, "each point of each hair")    \
-    X(RIBBONS, "ribbons", DRAW, 0, "ribbons.vert and ribbons.frag, an instance for each hair")
+#define HL_GPU_PASSES(X)                                                                       \
+    X(GUIDES, "guides", COMPUTE, 32, "a frame of each guide as a rod")                         \
+    X(WISPS, "follow_wisps", COMPUTE, 32, "the wisp around each guide")                        \
+    X(HAIRS, "follow_hairs", COMPUTE, 64, "each point of each hair")                           \
+    X(RIBBONS, "ribbons", DRAW, 0, "ribbons.vert and ribbons.frag, an instance for each hair") \
+    X(LAMP_FIRST, "lamp_first", COMPUTE, 64, "where hair begins as a lamp sees it")            \
+    X(LAMP_COUNT, "lamp_count", COMPUTE, 64, "the hair in each cell of the lamp's grid")       \
+    X(LAMP_SUM, "lamp_sum", COMPUTE, 64, "fibres between the lamp and each cell")              \
+    X(SHADE, "shade_hairs", COMPUTE, 64, "the lamp's light at each point of each hair")        \
+    X(SHADED, "shaded_ribbons", DRAW, 0, "shaded_ribbons.vert and .frag, an instance for each hair")
 
 /* Name, bytes of an element, elements, who fills it, and with what. GUIDE_SAMPLES is guides times points of a
  * hair, GUIDE_ROWS four times as many, GUIDE_TURNS two a guide. GUIDES has them in slots, 32 a block:
  * SLOT_POINTS is slots times points of the longest guide. */
-#define HL_GPU_BUFFERS(X)                                                                          \
-    X(CONSTANTS, 32, ONE, FRAME, "numbers of both kernels of hairs")                               \
-    X(POSITIONS, 16, GUIDE_POINTS, GUIDES, "of guides, metres less hl_frame.origin, and 1")        \
-    X(VELOCITIES, 16, GUIDE_POINTS, GUIDES, "of guides, m/s, and 0, since wisps widen with speed") \
-    X(TURNS, 16, GUIDE_TURNS, FRAME, "of each guide its root, and 1, and its turn since rest")     \
-    X(PLANES, 48, GUIDES, ONCE, "the scalp at each root at rest")                                  \
-    X(SAMPLES, 8, GUIDE_SAMPLES, ONCE, "where points of hairs lie along their guides")             \
-    X(RADII, 4, HAIR_SAMPLES, ONCE, "of a wisp, from root to tip, metres")                         \
-    X(BINDINGS, 80, HAIRS, ONCE, "how much of which guides each hair takes")                       \
-    X(LOOKS, 32, HAIRS, ONCE, "linear colour, random number, radii at root and tip, metres, 0, 0") \
-    X(NUMBERS, 4, HAIRS, ONCE, "which of hl_asset_hairs each hair is, for tables of your own")     \
-    X(ROWS, 16, GUIDE_ROWS, DEVICE, "what WISPS hands to HAIRS")                                   \
-    X(POINTS, 16, HAIR_POINTS, DEVICE, "of all hairs, metres less hl_frame.origin, and 1")         \
-    X(VIEW, 144, ONE, HOST, "hl_gpu_view")                                                         \
-    X(STEP, 352, ONE, STEP, "numbers of the frame")                                                \
-    X(RODS, 160, ONE, STEP, "numbers of rods in it")                                               \
-    X(ROOTS_TO, 16, SLOT_TURNS, STEP, "where roots go: place, and 1 if it moves, and turn")        \
-    X(SPHERES, 32, SPHERES, STEP, "centre and radius, and way in a substep")                       \
-    X(WAKING, 16, SPHERE_ENDS, STEP, "reach of spheres that have moved")                           \
-    X(REPORT, 4, WORDS, STEP, "of the kernel: bits of a speed, restored, asleep, guarded")         \
-    X(REST, 16, SLOT_POINTS, BEGIN, "segments at rest")                                            \
-    X(SEGMENTS, 8, SLOT_POINTS, BEGIN, "their lengths, and inverse masses of points")              \
-    X(ROD_REST, 16, SLOT_RESTS, BEGIN, "rods at rest: tangents, stiffness, turns, sections")       \
-    X(MASSES, 4, SLOT_POINTS, BEGIN, "of points")                                                  \
-    X(BLOCKS, 8, BLOCKS, BEGIN, "points of a guide, and guides")                                   \
-    X(FIRST_POINTS, 4, SLOTS, BEGIN, "of the slot's guide in POSITIONS")                           \
-    X(CURVED, 4, BLOCKS, BEGIN, "1 where rods twist")                                              \
-    X(STATE, 4, SLOT_STATE, BEGIN, "where points are, and were")                                   \
-    X(ROOTS, 4, SLOT_ROOTS, BEGIN, "where roots were")                                             \
-    X(RESTS, 4, BLOCK_RESTS, BEGIN, "seconds at rest, and 1 asleep")                               \
-    X(ROD_STATE, 4, SLOT_RODS, BEGIN, "speeds, turns and strains of rods")                         \
-    X(SCRATCH, 4, SLOT_SCRATCH, DEVICE, "what GUIDES works in")
+#define HL_GPU_BUFFERS(X)                                                                               \
+    X(CONSTANTS, 32, ONE, FRAME, "numbers of both kernels of hairs")                                    \
+    X(POSITIONS, 16, GUIDE_POINTS, GUIDES, "of guides, metres less hl_frame.origin, and 1")             \
+    X(VELOCITIES, 16, GUIDE_POINTS, GUIDES, "of guides, m/s, and 0, since wisps widen with speed")      \
+    X(TURNS, 16, GUIDE_TURNS, FRAME, "of each guide its root, and 1, and its turn since rest")          \
+    X(PLANES, 48, GUIDES, ONCE, "the scalp at each root at rest")                                       \
+    X(SAMPLES, 8, GUIDE_SAMPLES, ONCE, "where points of hairs lie along their guides")                  \
+    X(RADII, 4, HAIR_SAMPLES, ONCE, "of a wisp, from root to tip, metres")                              \
+    X(BINDINGS, 80, HAIRS, ONCE, "how much of which guides each hair takes")                            \
+    X(LOOKS, 32, HAIRS, ONCE, "linear colour, random number, radii at root and tip, metres, 0, 0")      \
+    X(NUMBERS, 4, HAIRS, ONCE, "which of hl_asset_hairs each hair is, for tables of your own")          \
+    X(ROWS, 16, GUIDE_ROWS, DEVICE, "what WISPS hands to HAIRS")                                        \
+    X(POINTS, 16, HAIR_POINTS, DEVICE, "of all hairs, metres less hl_frame.origin, and 1")              \
+    X(VIEW, 144, ONE, HOST, "hl_gpu_view")                                                              \
+    X(STEP, 352, ONE, STEP, "numbers of the frame")                                                     \
+    X(RODS, 160, ONE, STEP, "numbers of rods in it")                                                    \
+    X(ROOTS_TO, 16, SLOT_TURNS, STEP, "where roots go: place, and 1 if it moves, and turn")             \
+    X(SPHERES, 32, SPHERES, STEP, "centre and radius, and way in a substep")                            \
+    X(WAKING, 16, SPHERE_ENDS, STEP, "reach of spheres that have moved")                                \
+    X(REPORT, 4, WORDS, STEP, "of the kernel: bits of a speed, restored, asleep, guarded")              \
+    X(REST, 16, SLOT_POINTS, BEGIN, "segments at rest")                                                 \
+    X(SEGMENTS, 8, SLOT_POINTS, BEGIN, "their lengths, and inverse masses of points")                   \
+    X(ROD_REST, 16, SLOT_RESTS, BEGIN, "rods at rest: tangents, stiffness, turns, sections")            \
+    X(MASSES, 4, SLOT_POINTS, BEGIN, "of points")                                                       \
+    X(BLOCKS, 8, BLOCKS, BEGIN, "points of a guide, and guides")                                        \
+    X(FIRST_POINTS, 4, SLOTS, BEGIN, "of the slot's guide in POSITIONS")                                \
+    X(CURVED, 4, BLOCKS, BEGIN, "1 where rods twist")                                                   \
+    X(STATE, 4, SLOT_STATE, BEGIN, "where points are, and were")                                        \
+    X(ROOTS, 4, SLOT_ROOTS, BEGIN, "where roots were")                                                  \
+    X(RESTS, 4, BLOCK_RESTS, BEGIN, "seconds at rest, and 1 asleep")                                    \
+    X(ROD_STATE, 4, SLOT_RODS, BEGIN, "speeds, turns and strains of rods")                              \
+    X(SCRATCH, 4, SLOT_SCRATCH, DEVICE, "what GUIDES works in")                                         \
+    X(LAMP, 96, ONE, HOST, "hl_gpu_lamp")                                                               \
+    X(MATERIALS, 288, MATERIALS, ONCE, "of the hairstyle and its layers: HairMaterial of hair_types.h") \
+    X(TABLES, 4, TABLE_FLOATS, ONCE, "of Marschner's fibres and dual scattering: hair_types.h")         \
+    X(SHADES, 32, HAIRS, ONCE, "material, number, streak, dye, pigment, length, own colour, 0")         \
+    X(CROSSED, 4, LAMP_CELLS, ONCE, "zeros, and what LAMP_FIRST and LAMP_COUNT find")                   \
+    X(FIBRES, 4, LAMP_CELLS, DEVICE, "from the lamp to the end of each cell, and where they begin")     \
+    X(COLOURS, 16, HAIR_POINTS, DEVICE, "linear light that leaves points towards the eye, and 1")
 
 /* Pass, class of the register, its number, and the buffer. */
 #define HL_GPU_BINDINGS(X)        \
@@ -112,7 +133,32 @@ extern "C" {
     X(HAIRS, U, 0, POINTS)        \
     X(RIBBONS, B, 0, VIEW)        \
     X(RIBBONS, T, 0, POINTS)      \
-    X(RIBBONS, T, 1, LOOKS)
+    X(RIBBONS, T, 1, LOOKS)       \
+    X(LAMP_FIRST, B, 0, VIEW)     \
+    X(LAMP_FIRST, B, 1, LAMP)     \
+    X(LAMP_FIRST, T, 0, POINTS)   \
+    X(LAMP_FIRST, T, 1, LOOKS)    \
+    X(LAMP_FIRST, U, 0, CROSSED)  \
+    X(LAMP_COUNT, B, 0, VIEW)     \
+    X(LAMP_COUNT, B, 1, LAMP)     \
+    X(LAMP_COUNT, T, 0, POINTS)   \
+    X(LAMP_COUNT, T, 1, LOOKS)    \
+    X(LAMP_COUNT, U, 0, CROSSED)  \
+    X(LAMP_SUM, U, 0, CROSSED)    \
+    X(LAMP_SUM, U, 1, FIBRES)     \
+    X(SHADE, B, 0, VIEW)          \
+    X(SHADE, B, 1, LAMP)          \
+    X(SHADE, T, 0, POINTS)        \
+    X(SHADE, T, 1, LOOKS)         \
+    X(SHADE, T, 2, SHADES)        \
+    X(SHADE, T, 3, MATERIALS)     \
+    X(SHADE, T, 4, TABLES)        \
+    X(SHADE, T, 5, FIBRES)        \
+    X(SHADE, U, 0, COLOURS)       \
+    X(SHADED, B, 0, VIEW)         \
+    X(SHADED, T, 0, POINTS)       \
+    X(SHADED, T, 1, LOOKS)        \
+    X(SHADED, T, 2, COLOURS)
 
 #define HL_GPU_VULKAN_B 0
 #define HL_GPU_VULKAN_T 16
@@ -181,8 +227,8 @@ HL_API hl_code hl_gpu_pass(const hl_asset* asset, uint32_t pass, hl_gpu_pass_inf
 HL_API hl_code hl_gpu_frame_pass(const hl_instance* instance, uint32_t pass, hl_gpu_pass_info* out,
                                  hl_error* error);
 
-/* The constant block of RIBBONS: Kajiya and Kay's hair in the light of a lamp. Space of what is read: metres,
- * less hl_frame.origin. */
+/* The constant block of passes that draw and shade. RIBBONS takes its light, the others that of hl_gpu_lamp.
+ * Space of what is read: metres, less hl_frame.origin. */
 typedef struct hl_gpu_view {
     float clip_from_world[16]; /* column after column; takes (x, y, z, 1) */
     float eye[4];
@@ -195,6 +241,20 @@ typedef struct hl_gpu_view {
 } hl_gpu_view;
 /* All but clip_from_world, eye and pixel_size, which become 0. */
 HL_API hl_code hl_gpu_view_init(const hl_asset* asset, hl_gpu_view* view, hl_error* error);
+/* The constant block of a lamp far away: where its grid of fibres lies, and its light. Space as of
+ * hl_gpu_view. */
+typedef struct hl_gpu_lamp {
+    float across[4], up[4], away[4]; /* rows: of a point (x, y, z, 1) its place in the grid, 0 to 1 */
+    float to_light[4];               /* of unit length, and 0 */
+    float light[4];  /* linear, across the light; 0 in the first lamp of a frame, 1 in others */
+    float ground[4]; /* linear albedo of the skin behind the hair, 0 where there is none; square metres of a
+                        column of the grid */
+} hl_gpu_lamp;
+/* A lamp of white light 1 in the direction `to_light` (three numbers, not 0), and a grid around the ball of
+ * `radius` metres at `centre`. Hair outside casts no shadow: give the head's place and about the hair's
+ * length and a half. HL_BAD_VALUE of what is no direction, place or radius. */
+HL_API hl_code hl_gpu_lamp_init(const float to_light[3], const float centre[3], float radius,
+                                hl_gpu_lamp* lamp, hl_error* error);
 /* After another hair_share: sets `hairs` and specular[3], so that fewer hairs cover as much, and nothing
  * else. */
 HL_API hl_code hl_gpu_frame_view(const hl_instance* instance, hl_gpu_view* view, hl_error* error);
