@@ -164,8 +164,8 @@ TEST(BodyContact, HairComesToRestOnIt) {
 ScalpMesh trough(float slope) {
     PolygonSoup soup;
     for (const float z : {-0.1f, 0.1f}) {
-        for (const Vec2f corner : {Vec2f(0, 0), Vec2f(0.1f, 0.1f * slope), Vec2f(0.1f, -0.1f),
-                                   Vec2f(-0.1f, -0.1f), Vec2f(-0.1f, 0.1f * slope)})
+        for (const Vec2f& corner : {Vec2f(0, 0), Vec2f(0.1f, 0.1f * slope), Vec2f(0.1f, -0.1f),
+                                    Vec2f(-0.1f, -0.1f), Vec2f(-0.1f, 0.1f * slope)})
             soup.positions.emplace_back(corner.x(), corner.y(), z);
     }
     for (std::uint32_t i = 0; i < 5; ++i) {
