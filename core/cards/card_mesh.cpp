@@ -60,21 +60,8 @@ class Builder {
 
     void add(std::uint32_t c) {
         const Card& card = cards_.cards[c];
-        const Strip strip = shapedStrip(card);
-        const std::vector<std::size_t> kept =
-            keptStations(strip, card.widen, cards_.tolerance, cards_.segments + 1);
-        const bool bent = isBent(strip, cards_.tolerance);
-        const std::vector<float> columns = bent ? std::vector<float>{-1, 0, 1} : std::vector<float>{-1, 1};
-        const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
-        for (const std::size_t k : kept)
-            for (const float x : columns) cards_.mesh.vertices.push_back(vertex(c, strip, k, x, bent));
-        const auto count = static_cast<std::uint32_t>(columns.size());
-        for (std::uint32_t i = 0; i + 1 < kept.size(); ++i) {
-            for (std::uint32_t j = 0; j + 1 < count; ++j) {
-                const std::uint32_t a = first + i * count + j, b = a + count;
-                for (const std::uint32_t v : {a, a + 1, b, b, a + 1, b + 1}) cards_.mesh.indices.push_back(v);
-            }
-        }
+        addStrip(c, shapedStrip(card), Blade::first);
+        if (card.crossing) addStrip(c, *card.crossing, Blade::crossing);
     }
 
     /// What is seen between cards where they rise from the skin.
@@ -97,6 +84,31 @@ class Builder {
     }
 
   private:
+    enum class Blade { first, crossing };
+    static constexpr float kCoarser = 4;  // tolerance of crossing strips: half as many stations
+
+    void addStrip(std::uint32_t c, const Strip& strip, Blade blade) {
+        const float tolerance = (blade == Blade::crossing ? kCoarser : 1.0f) * cards_.tolerance;
+        const std::vector<std::size_t> kept =
+            keptStations(strip, cards_.cards[c].widen, tolerance, cards_.segments + 1);
+        const bool bent = isBent(strip, cards_.tolerance);
+        const std::vector<float> columns = bent ? std::vector<float>{-1, 0, 1} : std::vector<float>{-1, 1};
+        const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
+        for (const std::size_t k : kept) {
+            for (const float x : columns) {
+                cards_.mesh.vertices.push_back(vertex(c, strip, k, x, bent));
+                cards_.mesh.vertices.back().crosses = blade == Blade::crossing;
+            }
+        }
+        const auto count = static_cast<std::uint32_t>(columns.size());
+        for (std::uint32_t i = 0; i + 1 < kept.size(); ++i) {
+            for (std::uint32_t j = 0; j + 1 < count; ++j) {
+                const std::uint32_t a = first + i * count + j, b = a + count;
+                for (const std::uint32_t v : {a, a + 1, b, b, a + 1, b + 1}) cards_.mesh.indices.push_back(v);
+            }
+        }
+    }
+
     /// A place of the texture that it has.
     void setPlace(const Vec2f& place, CardVertex& v) const {
         const Rect& rect = cards_.atlas.rects[v.texture];

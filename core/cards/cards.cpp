@@ -92,6 +92,20 @@ float meanWidth(const Strip& strip) {
     return sum / static_cast<float>(strip.stations());
 }
 
+/// The strips of a card. Thick hair gets a second one: seen from its edge a strip shows nothing, and strands
+/// show as much from each side. Two flat strips have as many triangles as a bent one.
+void setStrips(const EvenHair& hair, std::span<const Vec3f> rootNormals_ws, float tolerance, Card& card) {
+    constexpr float kThick = 0.2f;  // of the width, from where on it pays
+    const Strip fitted = fitStrip(hair, card.strands, rootNormals_ws);
+    const Strip own = finishStrip(hair, card.strands, fitted, kStations, rootNormals_ws);
+    if (!card.pinned) card.strip = own;
+    const Strip crossing = crossingStrip(hair, card.strands, own, card.strip);
+    const float thick = meanWidth(crossing);
+    if (thick < kThick * meanWidth(own) || thick < tolerance) return;
+    card.crossing = crossing;
+    if (!card.pinned) std::ranges::fill(card.strip.bend, 0.0f);
+}
+
 std::uint32_t texelsOf(float metres, float texel, float least) {
     return static_cast<std::uint32_t>(std::clamp(metres / texel, least, 16384.0f));
 }
@@ -270,12 +284,8 @@ Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOpti
             card.held = (*bundles)[c].held;
             card.pinned =
                 card.held >= 0 && options.held[static_cast<std::size_t>(card.held)].strip.has_value();
-            if (card.pinned) {
-                card.strip = *options.held[static_cast<std::size_t>(card.held)].strip;
-            } else {
-                const Strip fitted = fitStrip(fine, card.strands, hair.rootNormals_ws);
-                card.strip = finishStrip(fine, card.strands, fitted, kStations, hair.rootNormals_ws);
-            }
+            if (card.pinned) card.strip = *options.held[static_cast<std::size_t>(card.held)].strip;
+            setStrips(fine, hair.rootNormals_ws, options.tolerance, card);
             measure(hair, light, card);
         }
     });

@@ -49,6 +49,8 @@ struct Card {
     /// World space, unit: the way that its strands take there on average, which is not the strip's where it
     /// lies on the scalp and they rise from that.
     std::array<Vec3f, kStations> flow_ws;
+    /// Where its hair is thick by its width: a strip at right angles to the first, which is flat then.
+    std::optional<Strip> crossing;
     std::uint32_t texture = 0;
     float widen = 1;  ///< factor on the width, by which a shared texture covers as much as its own strands do
 
@@ -70,6 +72,7 @@ struct CardVertex {
     float open = 1;             ///< factor on the ambient occlusion, likewise
     float hangs = 0;            ///< share of the way to the tip, of what moves it
     std::uint32_t card = 0;     ///< or kOfCap
+    bool crosses = false;       ///< it is of the card's crossing strip
     std::uint32_t texture = 0;  ///< of the atlas
 };
 

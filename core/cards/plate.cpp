@@ -199,7 +199,7 @@ std::vector<std::uint32_t> nearestFirst(const CardMesh& mesh, const Vec3f& toEye
 
 /// A triangle of cards on the plate.
 struct Face {
-    std::uint32_t triangle, card;
+    std::uint32_t triangle, dither;
     std::array<const CardVertex*, 3> v;
     Vec3f a, b, c;                   ///< samples, and metres towards the eye
     CoverageSampler finer, coarser;  ///< of the levels of the atlas on both sides of its own
@@ -270,7 +270,9 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const Rows touched = rowsOfTriangle(a.head<2>(), b.head<2>(), c.head<2>(), {0, height_});
         for (int band = touched.first / rows; band * rows < touched.end; ++band)
             bands[static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(faces.size()));
-        faces.push_back({t, v[0]->card, v, a, b, c, finer, coarser, share, most});
+        // Both strips of a card that has two are dithered by themselves.
+        const std::uint32_t own = 2 * v[0]->card + (v[0]->crosses ? 1 : 0);
+        faces.push_back({t, own, v, a, b, c, finer, coarser, share, most});
     }
     // A band at a time: every sample meets the triangles in the same order.
     const auto draw = [&](const Face& face, Rows inBand) {
@@ -282,7 +284,7 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
                 const float depth = mixed(w, a.z(), b.z(), c.z());
                 if (depth <= depth_[i]) return;
                 const float dither =
-                    hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), face.card);
+                    hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), face.dither);
                 if (face.most <= dither) return;
                 const Vec2f place = mixed<Vec2f>(w, face.v[0]->place, face.v[1]->place, face.v[2]->place);
                 const float alpha = (1 - face.share) * face.finer.at(place.x(), place.y()) +
@@ -311,8 +313,10 @@ void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& car
         const Vec3f along = (texel.flow.y() * strip + texel.flow.x() * normal.cross(strip)).normalized();
         const Vec3f tint = mixed<Vec3f>(w, v[0]->tint, v[1]->tint, v[2]->tint);
         const float open = std::min(1.0f, texel.open * mixed(w, v[0]->open, v[1]->open, v[2]->open));
+        // Depths are off the first strip.
+        const float depth = v[0]->crosses ? 0 : texel.depth;
         const Vec3f at =
-            mixed<Vec3f>(w, v[0]->position_ws, v[1]->position_ws, v[2]->position_ws) + texel.depth * normal;
+            mixed<Vec3f>(w, v[0]->position_ws, v[1]->position_ws, v[2]->position_ws) + depth * normal;
         colour_[i] =
             reflected(fibre, texel.albedo.cwiseProduct(tint), along, view_.toEye_ws, open, light.lit(at));
     }

@@ -292,8 +292,8 @@ std::vector<Vec3f> evenly(const std::vector<Vec3f>& points, std::size_t count) {
 /// their roots lie on it: there it goes on along the scalp.
 std::vector<Vec3f> extended(const EvenHair& hair, std::span<const std::uint32_t> strands, const Strip& fitted,
                             const Vec3f& rootNormal) {
-    constexpr float kHolds = 0.95f;
-    constexpr float kLongest = 0.025f;  // metres
+    constexpr float kHolds = 0.98f;
+    constexpr float kLongest = 0.05f;  // metres
     std::vector<float> before, behind;
     const std::size_t last = fitted.stations() - 1;
     const Vec3f back = -perpendicular(fitted.along[0], rootNormal);
@@ -351,7 +351,7 @@ void setFrames(Strip& strip, const Strip& like) {
 
 /// Width and middle from where nearly all points lie.
 void setWidths(Strip& strip, const NearPoints& near) {
-    constexpr float kHolds = 0.98f;
+    constexpr float kHolds = 0.995f;
     const std::size_t stations = strip.stations();
     std::vector<float> middle(stations), half(stations);
     for (std::size_t k = 0; k < stations; ++k) {
@@ -382,7 +382,7 @@ void setWidths(Strip& strip, const NearPoints& near) {
 
 /// Moves the strip outwards to where what is seen of the strands lies, and at the root clear of the scalp.
 void lift(Strip& strip, const NearPoints& near, const Vec3f& rootNormal) {
-    constexpr float kSeen = 0.7f;      // of the strands lie below
+    constexpr float kSeen = 0.8f;      // of the strands lie below
     constexpr float kClear = 0.0025f;  // metres, fading over the first third
     const std::size_t stations = strip.stations();
     std::vector<float> heights(stations);
@@ -432,6 +432,25 @@ Strip finishStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, 
     setWidths(strip, near);
     lift(strip, near, rootNormal);
     return strip;
+}
+
+Strip crossingStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, const Strip& by,
+                    const Strip& on) {
+    const auto upright = [](Strip strip) {
+        for (std::size_t k = 0; k < strip.stations(); ++k) {
+            const Vec3f outwards = strip.normal[k];
+            strip.normal[k] = -strip.cross[k], strip.cross[k] = outwards;
+            strip.bend[k] = strip.spread[k] = 0;
+        }
+        return strip;
+    };
+    Strip thick = upright(by), crossing = upright(on);
+    setWidths(thick, nearPoints(hair, strands, by));
+    for (std::size_t k = 0; k < on.stations(); ++k) {
+        crossing.centre[k] += (thick.centre[k] - by.centre[k]).dot(by.normal[k]) * on.normal[k];
+        crossing.halfWidth[k] = thick.halfWidth[k];
+    }
+    return framed(std::move(crossing));
 }
 
 }  // namespace hairloom::cards

@@ -46,6 +46,11 @@ void residual(const Strip& strip, std::span<const Vec3f> points_ws, std::span<fl
 Strip finishStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, const Strip& fitted,
                   std::uint32_t stations, std::span<const Vec3f> rootNormals_ws);
 
+/// The strip that stands on `on` at right angles, flat: at each station it goes outwards and inwards as far
+/// as nearly all strands are off `by`, the strip that is by them. Both have as many stations.
+Strip crossingStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, const Strip& by,
+                    const Strip& on);
+
 /// The same with `along` and `normal` by its centre and `cross`.
 Strip framed(Strip strip);
 
