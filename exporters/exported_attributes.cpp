@@ -238,7 +238,8 @@ bool isLegalInPly(char c, bool) {
 }  // namespace
 
 ExportNames usdNames(bool operators) {
-    // Of curves: a primvar of such a name would go before the attribute. Blender takes the last two for its own.
+    // Of curves: a primvar of such a name would go before the attribute. Blender takes the last two for its
+    // own.
     ExportNames names{isLegalInUsd, {"widths", "normals", "radius", "position"}};
     names.hasOperators = operators;
     return names;

@@ -432,9 +432,9 @@ class TakesPanel : public QWidget {
         distance_->setVisible(distance.has_value());
         if (!distance) return;
         const auto text = [&](double metres) { return lengthText(metres, preferences_); };
-        distance_->setText(QString("Apart: %1 on average, %2 at most. Strands are red from %3.")
-                               .arg(text(distance->mean), text(distance->largest),
-                                    text(static_cast<double>(kRedDistance))));
+        distance_->setText(
+            QString("Apart: %1 on average, %2 at most. Strands are red from %3.")
+                .arg(text(distance->mean), text(distance->largest), text(static_cast<double>(kRedDistance))));
     }
 
     void showPlaying() { play_->setIcon(icon(view_->isPlaying() ? "pause" : "play")); }

@@ -313,8 +313,8 @@ TEST_F(TakesTest, DistancesToAnotherTakeAreDrawn) {
     for (std::size_t i = 0; i < windyFrame.size(); ++i)
         largest = std::max(largest, (windyFrame[i] - calmFrame[i]).norm());
     const auto* const words = get<QLabel>("takeDistance");
-    EXPECT_TRUE(words->text().contains(
-        lengthText(static_cast<double>(largest), parts().preferences) + " at most"))
+    EXPECT_TRUE(
+        words->text().contains(lengthText(static_cast<double>(largest), parts().preferences) + " at most"))
         << words->text().toStdString() << ", " << largest;
     EXPECT_FALSE(words->isHidden());
     if (!isDrawn()) return;
