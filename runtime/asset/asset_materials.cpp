@@ -49,6 +49,8 @@ std::optional<AssetError> Asset::checkMaterials() const {
         };
         if (!hasNumbers(material)) return wrong("with a number beyond 1e6");
         if (material.absorbs > 1 || material.model > kMarschner) return wrong("of a kind that there is not");
+        if (!(material.axisRatio > 0) || !(material.spread >= 0 && material.spread <= 1))
+            return wrong("whose spread or ratio of axes is out of range");
         if (material.model != kMarschner) continue;
         if (material.table >= tables.size() / kTableHalves) return wrong("whose tables are not in the file");
         const bool wide =

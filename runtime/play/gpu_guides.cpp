@@ -130,10 +130,12 @@ void GpuGuides::take(const FrameInput& input) {
     Vector<MovingCapsule> capsules;
     if (plan.on(Effect::collision)) moveCapsules(spheres_, substeps, moving, capsules);
     const SubstepContext context = substepContext(settings_, plan, input.dt, substeps, moving, capsules);
-    const bool wakes = !(shift == Float3{});
+    // The CPU may have had more spheres before it handed over.
+    const std::size_t room = 3 * mostSpheres_, waking = spheres_.waking.size();
+    const bool wakes = !(shift == Float3{}) || waking > room;
     Frame frame;
     frame.constants = frameConstants(
-        {settings_, wind_.wind, moving, spheres_.waking.size(), substep_, wakes, *origin_, shift}, context,
+        {settings_, wind_.wind, moving, std::min(waking, room), substep_, wakes, *origin_, shift}, context,
         input, slots(), kBlockLanes);
     frame.rods = rodConstants(context, wind_.wind, substep_, slots(), 0);
     frame.roots = rootsOfSlots(*shape_, slots(), roots_.roots, roots_.moved);

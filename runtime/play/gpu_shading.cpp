@@ -2,6 +2,7 @@
 // hairloom/gpu.h: what the passes that light and shade hairs are given.
 #include "play/gpu_shading.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -160,14 +161,16 @@ hl_code hl_gpu_lamp_init(const float to_light[3], const float centre[3], float r
                          hl_error* error) {
     if (!to_light || !centre || !lamp) return nullRefused(error, "no direction, place or lamp");
     const Float3 given{to_light[0], to_light[1], to_light[2]}, middle{centre[0], centre[1], centre[2]};
-    const float size = length(given);
-    if (!(size > 0) || !std::isfinite(size))
+    const float largest = std::max({std::abs(given.x), std::abs(given.y), std::abs(given.z)});
+    if (!(largest > 0) || !std::isfinite(largest) || !std::isfinite(given.x + given.y + given.z))
         return say(error, HL_BAD_VALUE, HL_NO_PLACE,
                    "to_light is no direction; expected three numbers, not all 0");
-    if (!std::isfinite(dot(middle, middle)) || !(radius > 0) || !std::isfinite(radius))
+    if (!std::isfinite(dot(middle, middle)) || !(radius > 0) || !std::isfinite(radius) ||
+        !std::isfinite(0.5f / radius * (1 + length(middle))))
         return say(error, HL_BAD_VALUE, HL_NO_PLACE,
                    "centre or radius is no place or size; expected numbers, and a radius above 0");
-    const Float3 to = given * (1 / size);
+    Float3 to = {given.x / largest, given.y / largest, given.z / largest};
+    to = to * (1 / length(to));
     const Float3 least = std::abs(to.y) < 0.9f ? Float3{0, 1, 0} : Float3{1, 0, 0};
     Float3 across = cross(least, to);
     across = across * (1 / length(across));

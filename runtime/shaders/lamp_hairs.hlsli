@@ -19,7 +19,7 @@ void visitPieces(uint at) {
     const float pieces = clamp(ceil(2.0 * sqrt(dot(way, way) / gLamp.ground.w)), 1.0, 64.0);
     for (float i = 0.5; i < pieces; i += 1.0) {
         const float3 place = gridPlace(gLamp, from + way * (i / pieces));
-        if (any(place < 0.0) || any(place >= 1.0)) continue;
+        if (!(all(place >= 0.0) && all(place < 1.0))) continue;  // or no number
         visitPiece(columnsAround(place.xy), place.z, 2.0 * radius * across / (gLamp.ground.w * pieces));
     }
 }

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/base/file.h"
+#include "core/base/parallel.h"
 #include "core/documents/hair_export.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/live/hair_look.h"
@@ -150,10 +151,18 @@ TEST_F(HairLooksTest, TablesAreOnlyWhereAMaterialHasUseForThem) {
 
 TEST_F(HairLooksTest, TheSameOnAnyNumberOfCores) {
     const Groom groom = streaked();
-    const HairLooks first = hairLooks(groom).value(), second = hairLooks(groom).value();
+    setThreadCount(1);
+    const HairLooks first = hairLooks(groom).value();
+    setThreadCount(3);
+    const HairLooks second = hairLooks(groom).value();
+    setThreadCount(0);
     EXPECT_EQ(first.tables, second.tables);
     ASSERT_EQ(first.hairs.size(), second.hairs.size());
     EXPECT_EQ(std::memcmp(first.hairs.data(), second.hairs.data(), 8 * first.hairs.size()), 0);
+    ASSERT_EQ(first.materials.size(), second.materials.size());
+    EXPECT_EQ(std::memcmp(first.materials.data(), second.materials.data(),
+                          sizeof first.materials[0] * first.materials.size()),
+              0);
 }
 
 }  // namespace

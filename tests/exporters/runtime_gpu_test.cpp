@@ -10,6 +10,7 @@
 
 #include "core/groom/groom.h"
 #include "hairloom/gpu.h"
+#include "runtime/shaders/simulation_types.h"
 #include "tests/exporters/decorated_sample.h"
 #include "tests/exporters/levels_sample.h"
 #include "tests/runtime/allocations.h"
@@ -364,6 +365,38 @@ TEST_F(RuntimeGpu, GuidesOfTheGpuAreAskedForInOrder) {
     ASSERT_TRUE(other.open(bytes.data(), bytes.size()));
     ASSERT_TRUE(hair.make(other, HL_GUIDES));
     refused(hl_gpu_begin(hair.get(), &error), "strandModel is springs");
+}
+
+/// Each of the most spheres has been and is somewhere, and so has each capsule of two.
+TEST_F(RuntimeGpu, AllThatWakesHairFitsItsBuffer) {
+    Instance hair;
+    Error error;
+    ASSERT_TRUE(hair.make(asset_, HL_GUIDES));
+    ASSERT_EQ(hl_gpu_begin(hair.get(), &error), HL_OK);
+    std::vector<float> spheres;
+    std::vector<std::uint32_t> ends;
+    for (std::uint32_t i = 0; i < HL_GPU_SPHERES; ++i) {
+        const float x = 0.05f * static_cast<float>(i);
+        spheres.insert(spheres.end(), {x, 0.1f, 0, 0.05f});
+        ends.push_back(i);
+    }
+    const auto step = [&](int number) {
+        Walk walk(number);
+        walk.frame.spheres = spheres.data();
+        walk.frame.sphere_count = HL_GPU_SPHERES;
+        walk.frame.capsules = ends.data();
+        walk.frame.capsule_count = HL_GPU_SPHERES / 2;
+        ASSERT_EQ(hl_gpu_step(hair.get(), &walk.frame, &error), HL_OK) << error.what();
+    };
+    step(1);
+    for (std::size_t i = 1; i < spheres.size(); i += 4) spheres[i] += 0.02f;
+    step(2);
+    const std::vector<float> constants = filled(hair, HL_GPU_BUFFER_STEP);
+    std::uint32_t waking = 0;
+    std::memcpy(&waking, &constants[offsetof(shaders::SimulationConstants, wakingCount) / sizeof(float)],
+                sizeof waking);
+    EXPECT_GT(waking, 2u * HL_GPU_SPHERES);
+    EXPECT_LE(waking * 16u, about(HL_GPU_BUFFER_WAKING).bytes);
 }
 
 TEST_F(RuntimeGpu, WrongWordsAreRefusedAndNothingIsWritten) {

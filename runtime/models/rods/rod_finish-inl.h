@@ -132,16 +132,19 @@ void RodStrip<kBends, kTwists, kContacts>::keepFolds(std::uint32_t j, V3 moved, 
     const BodyPlane& plane = planes_[j];
     const std::size_t i = at(j + 1), pitch = block_.pitch;
     float* const fold = rod_.fold + i;
-    const auto known = both(pressed, plane.known > hn::Zero(D()));
-    const V other = plane.otherLevel + dot(plane.otherNormal, moved);
-    const auto folds = both(known, other < bodyReach(all(radiusOf(j + 1)), block_, i) + all(kFoldReach));
+    // A sphere may have pressed it, beside skin that did not.
+    const V reach = bodyReach(all(radiusOf(j + 1)), block_, i) + all(kFoldReach);
+    const V own = plane.level + dot(plane.normal, moved),
+            other = plane.otherLevel + dot(plane.otherNormal, moved);
+    const auto found = both(pressed, plane.known > hn::Zero(D()));
+    const auto known = both(found, own < reach), folds = both(found, other < reach);
     const auto store = [&](RodMask which, V3 normal, V away, float* to) {
         hn::Store(hn::IfThenElseZero(which, normal.x), D(), to);
         hn::Store(hn::IfThenElseZero(which, normal.y), D(), to + pitch);
         hn::Store(hn::IfThenElseZero(which, normal.z), D(), to + 2 * pitch);
         hn::Store(hn::IfThenElseZero(which, away), D(), to + 3 * pitch);
     };
-    store(known, plane.normal, plane.level + dot(plane.normal, moved), fold);
+    store(known, plane.normal, own, fold);
     store(folds, plane.otherNormal, other, fold + 4 * pitch);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // picture_difference OURS.exr GAMES.ppm BLOCK: how far a game's picture (sRGB) is from ours (linear light),
-// both made smaller by so many pixels: FLIP, and the light of the hair by ours. Pixels without hair are grey,
-// 0.5, in both.
+// both made smaller by so many pixels: FLIP, and the light of the hair by ours. Pixels without hair are black
+// in both.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
