@@ -137,7 +137,6 @@ extern "C" {
     X(LAMP_FIRST, B, 0, VIEW)     \
     X(LAMP_FIRST, B, 1, LAMP)     \
     X(LAMP_FIRST, T, 0, POINTS)   \
-    X(LAMP_FIRST, T, 1, LOOKS)    \
     X(LAMP_FIRST, U, 0, CROSSED)  \
     X(LAMP_COUNT, B, 0, VIEW)     \
     X(LAMP_COUNT, B, 1, LAMP)     \
