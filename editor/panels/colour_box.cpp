@@ -117,14 +117,15 @@ class ColourBox : public QWidget {
         if (!config) return wrong(config.error());
         for (const colour::Display& display : config->displays())
             display_->addItem(QString::fromStdString(display.name));
+        display_->setCurrentIndex(0);  // a box with a placeholder begins with none
         const std::string display = shown_.display.empty() ? textOf(display_) : shown_.display;
         display_->setCurrentIndex(display_->findText(QString::fromStdString(display)));
         for (const colour::Display& known : config->displays()) {
             if (known.name != display) continue;
             for (const std::string& view : known.views) view_->addItem(QString::fromStdString(view));
         }
-        if (!shown_.view.empty())
-            view_->setCurrentIndex(view_->findText(QString::fromStdString(shown_.view)));
+        view_->setCurrentIndex(shown_.view.empty() ? 0
+                                                   : view_->findText(QString::fromStdString(shown_.view)));
         const auto colours = colour::chooseView(*config, shown_.display, shown_.view);
         if (!colours) return wrong(colours.error());
         note_ = QString::fromStdString(config->working().note);
