@@ -76,9 +76,9 @@ Status sayWhatListsLeft(gpu::Device& device, const Renderer& renderer, Picture& 
     }
     if (found <= most && left > 0) {
         picture.plan.passes[static_cast<std::size_t>(Pass::opacity)].why += fmt::format(
-            "; some texels have more hair than the 2048 pieces that a list holds, so a random part of it "
+            "; some texels have more hair than the {} pieces that a list holds, so a random part of it "
             "counts as all ({} of {} pieces are left out)",
-            left, found);
+            HAIRLOOM_LISTED_OF_TEXEL, left, found);
     }
     if (found > most) {
         picture.plan.passes[static_cast<std::size_t>(Pass::opacity)].why += fmt::format(

@@ -60,11 +60,11 @@ float listedShare(std::uint32_t all, std::uint32_t most) {
     return all <= most ? 1.0f : 0.98f * static_cast<float>(most) / static_cast<float>(all);
 }
 
-/// As adaptive.hlsli has them.
-constexpr std::uint32_t kListedOfTexel = 2048;
+/// As adaptive.hlsli has it.
 float listedShareOfTexel(std::uint32_t found) {
-    return found <= kListedOfTexel ? 1.0f
-                                   : 0.94f * static_cast<float>(kListedOfTexel) / static_cast<float>(found);
+    return found <= HAIRLOOM_LISTED_OF_TEXEL
+               ? 1.0f
+               : 0.94f * static_cast<float>(HAIRLOOM_LISTED_OF_TEXEL) / static_cast<float>(found);
 }
 
 }  // namespace

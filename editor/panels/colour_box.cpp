@@ -117,8 +117,8 @@ class ColourBox : public QWidget {
         if (!config) return wrong(config.error());
         for (const colour::Display& display : config->displays())
             display_->addItem(QString::fromStdString(display.name));
-        display_->setCurrentIndex(0);  // a box with a placeholder begins with none
-        const std::string display = shown_.display.empty() ? textOf(display_) : shown_.display;
+        const std::string display =
+            shown_.display.empty() ? display_->itemText(0).toStdString() : shown_.display;
         display_->setCurrentIndex(display_->findText(QString::fromStdString(display)));
         for (const colour::Display& known : config->displays()) {
             if (known.name != display) continue;

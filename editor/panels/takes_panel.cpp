@@ -177,7 +177,6 @@ class TakesPanel : public QWidget {
                 messages_.warn(errorText(status.error()));
                 other_->setCurrentIndex(0);
             }
-            showDistance();
         });
         layout.addWidget(other_);
         distance_ = new QLabel;

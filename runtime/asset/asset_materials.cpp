@@ -30,6 +30,12 @@ bool hasNumbers(const Material& material) {
 
 }  // namespace
 
+std::size_t Asset::materialCount() const {
+    std::size_t count = 1;
+    for (const Layer& layer : layers) count += layer.ownMaterial != 0 ? 1 : 0;
+    return count;
+}
+
 std::optional<AssetError> Asset::checkMaterials() const {
     const auto all = materials();
     const auto tables = fibreTables();
@@ -38,11 +44,9 @@ std::optional<AssetError> Asset::checkMaterials() const {
                                                    number(kTableHalves) + " of each");
     const auto bad = std::find_if(tables.begin(), tables.end(), isNoNumber);
     if (bad != tables.end()) return damaged(placeOf(&*bad), "a table of what is no number");
-    std::size_t owned = 1;
-    for (const Layer& layer : layers) owned += layer.ownMaterial != 0 ? 1 : 0;
-    if (!all.empty() && all.size() != owned)
+    if (!all.empty() && all.size() != materialCount())
         return damaged(placeOf(all.data()),
-                       number(all.size()) + " materials; the layers have " + number(owned));
+                       number(all.size()) + " materials; the layers have " + number(materialCount()));
     for (const Material& material : all) {
         const auto wrong = [&](const char* words) {
             return damaged(placeOf(&material), std::string("a material ") + words);

@@ -11,7 +11,6 @@
 #include "play/c_words.h"
 #include "play/gpu_guides.h"
 #include "play/gpu_shading.h"
-#include "shaders/hair_types.h"
 #include "shaders/ribbon_types.h"
 
 namespace hairloom::runtime {
@@ -23,7 +22,6 @@ static_assert(HL_GPU_PASS_COUNT == 9 && HL_GPU_BUFFER_COUNT == 38);
 
 constexpr std::uint64_t kRowsOfPoint = 4;  // FOLLOW_ROWS of follow.hlsli
 constexpr std::uint64_t kMostGroups = 65535;
-constexpr std::uint64_t kLampColumns = std::uint64_t{HAIR_COLUMNS} * HAIR_COLUMNS;
 
 /// Counts that buffers are measured by.
 struct GpuCounts {
@@ -51,7 +49,7 @@ GpuCounts gpuCountsOf(const Asset& asset) {
     for (const asset::Sphere& sphere : asset.spheres) capsules += sphere.joined > 0 ? 1 : 0;
     GpuCounts counts{
         asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair, 0, 0, 0};
-    counts.materials = gpuMaterialsOf(asset);
+    counts.materials = asset.materialCount();
     counts.tables = asset.fibreTables().size();
     return withGuides(counts, strandsOf, asset.spheres.size(), capsules);
 }
@@ -77,8 +75,7 @@ HAIRLOOM_GPU_COUNT(HAIRS, c.hairs)
 HAIRLOOM_GPU_COUNT(HAIR_POINTS, c.hairs* c.points)
 HAIRLOOM_GPU_COUNT(WORDS, 4)
 HAIRLOOM_GPU_COUNT(SPHERES, c.spheres)
-/// Where spheres were and are, and capsules, each of which has two of the spheres to itself.
-HAIRLOOM_GPU_COUNT(SPHERE_ENDS, 3 * c.spheres)
+HAIRLOOM_GPU_COUNT(SPHERE_ENDS, kWakingOfSphere* c.spheres)
 HAIRLOOM_GPU_COUNT(BLOCKS, c.blocks)
 HAIRLOOM_GPU_COUNT(BLOCK_RESTS, 2 * c.blocks)
 HAIRLOOM_GPU_COUNT(SLOTS, c.slots())
@@ -90,7 +87,7 @@ HAIRLOOM_GPU_COUNT(SLOT_STATE, (kStatePlanes + 1) * c.slotPoints())
 HAIRLOOM_GPU_COUNT(SLOT_RODS, kRodStatePlanes* c.slotPoints() + kRodLaneRows * c.slots())
 HAIRLOOM_GPU_COUNT(MATERIALS, c.materials)
 HAIRLOOM_GPU_COUNT(TABLE_FLOATS, std::max<std::uint64_t>(c.tables, 1))
-HAIRLOOM_GPU_COUNT(LAMP_CELLS, kLampColumns*(HAIR_SLICES + 1))
+HAIRLOOM_GPU_COUNT(LAMP_CELLS, kLampCells)
 HAIRLOOM_GPU_COUNT(SLOT_SCRATCH, (HAIRLOOM_ROD_WORK_PLANES + HAIRLOOM_ROD_CONTACT_PLANES) * c.slotPoints())
 #undef HAIRLOOM_GPU_COUNT
 

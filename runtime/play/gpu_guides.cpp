@@ -131,7 +131,7 @@ void GpuGuides::take(const FrameInput& input) {
     if (plan.on(Effect::collision)) moveCapsules(spheres_, substeps, moving, capsules);
     const SubstepContext context = substepContext(settings_, plan, input.dt, substeps, moving, capsules);
     // The CPU may have had more spheres before it handed over.
-    const std::size_t room = 3 * mostSpheres_, waking = spheres_.waking.size();
+    const std::size_t room = kWakingOfSphere * mostSpheres_, waking = spheres_.waking.size();
     const bool wakes = !(shift == Float3{}) || waking > room;
     Frame frame;
     frame.constants = frameConstants(

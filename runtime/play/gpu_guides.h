@@ -16,6 +16,9 @@ namespace hairloom::runtime {
 
 /// Blocks of 32 that strands fill at most, by their numbers of points.
 std::size_t gpuBlocksOf(const Map<std::uint32_t, std::size_t>& strandsOf);
+/// What wakes hair, by the spheres that there is room for: where each was and is, and capsules, each of which
+/// has two of the spheres to itself.
+inline constexpr std::size_t kWakingOfSphere = 3;
 /// Spheres that the kernel has room for, of so many in the asset; a capsule has both ends to itself.
 std::size_t gpuSpheresOf(std::size_t spheresOfAsset, std::size_t capsulesOfAsset);
 

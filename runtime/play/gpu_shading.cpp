@@ -8,7 +8,6 @@
 
 #include "hairloom/gpu.h"
 #include "play/c_words.h"
-#include "shaders/hair_types.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -123,12 +122,6 @@ void fillShades(const Asset& asset, std::span<const std::uint32_t> order, char* 
 
 }  // namespace
 
-std::size_t gpuMaterialsOf(const Asset& asset) {
-    std::size_t count = 1;
-    for (const asset::Layer& layer : asset.layers) count += layer.ownMaterial != 0 ? 1 : 0;
-    return count;
-}
-
 bool fillsShading(std::uint32_t buffer) {
     return buffer == HL_GPU_BUFFER_MATERIALS || buffer == HL_GPU_BUFFER_TABLES ||
            buffer == HL_GPU_BUFFER_SHADES || buffer == HL_GPU_BUFFER_CROSSED;
@@ -141,8 +134,7 @@ void fillShading(const Asset& asset, std::uint32_t buffer, std::span<const std::
     } else if (buffer == HL_GPU_BUFFER_SHADES) {
         fillShades(asset, order, at);
     } else if (buffer == HL_GPU_BUFFER_CROSSED) {
-        std::memset(out, 0,
-                    std::size_t{HAIR_COLUMNS} * HAIR_COLUMNS * (HAIR_SLICES + 1) * sizeof(std::uint32_t));
+        std::memset(out, 0, kLampCells * sizeof(std::uint32_t));
     } else {
         const auto tables = asset.fibreTables();
         if (tables.empty()) std::memset(out, 0, sizeof(float));

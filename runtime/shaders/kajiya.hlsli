@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Kajiya and Kay 1989 as Rünz 2012 condenses it, Eq. 25.
+#include "hash.hlsli"
 
 // Keeps what the fibre sends out below what it gets, and its hue: by the channel that sends out the most.
 float kajiyaBound(float3 weights) { return 1.0 / max(1.0, max(weights.x, max(weights.y, weights.z))); }
@@ -45,6 +46,18 @@ float kajiyaSide(float axisRatio, float turn) {
     if (axisRatio == 1.0) return 1.0;
     const float c = cos(3.14159265 * turn);
     return sqrt(axisRatio * c * c + (1.0 - c * c) / axisRatio);
+}
+
+// Strand `number`, whose highlights lie, glitter and turn a little by chance. `tilts`: of both, tangents of angles.
+KajiyaFibre kajiyaFibre(uint number, float3 tangent, float3 toView, float3 albedo, float2 tilts, float axisRatio) {
+    const float jitter = (hashUnit(number * 2u + 1u) - 0.5) * 0.06;
+    KajiyaFibre fibre;
+    fibre.tangent = tangent;
+    fibre.tangent1 = kajiyaTilt(tangent, toView, tilts.x + jitter);
+    fibre.tangent2 = kajiyaTilt(tangent, toView, tilts.y + jitter);
+    fibre.albedo = albedo;
+    fibre.sparkle = (0.6 + 0.8 * hashUnit(number * 2u)) * kajiyaSide(axisRatio, hashUnit(number * 2u + 7u));
+    return fibre;
 }
 
 // What a fibre lets pass: the less, the darker it is.

@@ -17,16 +17,6 @@ StructuredBuffer<float> gFibres : register(t5);
 RWStructuredBuffer<float4> gColours : register(u0);
 #include "hair_fibre.hlsli"
 
-uint hashOf(uint x) {
-    x ^= x >> 16u;
-    x *= 0x7feb352du;
-    x ^= x >> 15u;
-    x *= 0x846ca68bu;
-    x ^= x >> 16u;
-    return x;
-}
-float chanceOf(uint x) { return float(hashOf(x) >> 8u) * (1.0 / 16777216.0); }
-
 // Fibres up to the lamp, and from one side of the hair to the other.
 // A column beside the point is asked at the depth that the fibre comes to on its way there, as hair beside it does.
 float2 fibresAt(float3 position, float3 tangent) {
@@ -62,13 +52,8 @@ float3 kajiyaLight(HairMaterial hair, float3 albedo, uint number, float3 tangent
     terms.diffuse = hair.diffuse;
     terms.scattering = hair.scattering;
     terms.bounded = hair.bounded != 0u;
-    const float jitter = (chanceOf(number * 2u + 1u) - 0.5) * 0.06;
-    KajiyaFibre fibre;
-    fibre.tangent = tangent;
-    fibre.tangent1 = kajiyaTilt(tangent, toView, hair.primaryTilt + jitter);
-    fibre.tangent2 = kajiyaTilt(tangent, toView, hair.secondaryTilt + jitter);
-    fibre.albedo = albedo;
-    fibre.sparkle = (0.6 + 0.8 * chanceOf(number * 2u)) * kajiyaSide(hair.axisRatio, chanceOf(number * 2u + 7u));
+    const KajiyaFibre fibre =
+        kajiyaFibre(number, tangent, toView, albedo, float2(hair.primaryTilt, hair.secondaryTilt), hair.axisRatio);
     const float3 passed = kajiyaPassed(hair.fibreOpacity, albedo);
     const float3 toLight = gLamp.toLight.xyz;
     return kajiyaBoundOf(terms, fibre) * (kajiyaSingle(terms, fibre, toLight, toView) * pow(passed, fibres) +
@@ -90,7 +75,7 @@ void main(uint3 thread : SV_DispatchThreadID) {
 
     StrandPlace place;
     place.along = float(p) / float(last);
-    place.random = chanceOf(shade.number * 2u + 9u);
+    place.random = hashUnit(shade.number * 2u + 9u);
     place.streak = shade.streak;
     place.dye = shade.dye;
     place.pigment = shade.pigment;

@@ -27,12 +27,8 @@ uint chanceOf(uint a, uint b) {
     return (h >> 22u) ^ h;
 }
 
-// Pieces of hair in a list at most: one thread sorts them. A device ends what takes seconds, and Mesa's llvmpipe leaves all loops of
-// a thread after 65,535 turns together, of which these take 45,000.
-#define LISTED_OF_TEXEL 2048u
-
 // The share of a texel's pieces that its list takes, likewise by chance.
-float listedShareOfTexel(uint found) { return found <= LISTED_OF_TEXEL ? 1.0 : 0.94 * float(LISTED_OF_TEXEL) / float(found); }
+float listedShareOfTexel(uint found) { return found <= HAIRLOOM_LISTED_OF_TEXEL ? 1.0 : 0.94 * float(HAIRLOOM_LISTED_OF_TEXEL) / float(found); }
 
 // The share of all pieces of hair that lists for `most` take: 1 where all fit, else somewhat fewer than fit, for each is taken by chance.
 float listedShare(uint all, uint most) { return all <= most ? 1.0 : 0.98 * float(most) / float(all); }

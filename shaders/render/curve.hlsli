@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #ifndef HAIRLOOM_CURVE_HLSLI
 #define HAIRLOOM_CURVE_HLSLI
+#include "hash.hlsli"
 #include "shaders/shared/render_types.h"
 
 // Octahedral unit vectors (Cigolle et al. 2014) in two snorm16.
@@ -21,15 +22,4 @@ float3 unpackUnit(uint packed) {
     n.y += n.y >= 0 ? -t : t;
     return normalize(n);
 }
-
-uint hashUint(uint x) {
-    x ^= x >> 16u;
-    x *= 0x7feb352du;
-    x ^= x >> 15u;
-    x *= 0x846ca68bu;
-    x ^= x >> 16u;
-    return x;
-}
-
-float hashUnit(uint x) { return float(hashUint(x) >> 8u) * (1.0 / 16777216.0); }
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lists what lies in each texel of a light's square: first how much that is in all, then each piece of hair, linked to what was
-// there before it. Lists are as long as a buffer together, and as LISTED_OF_TEXEL each: where hair has more, a random part of it,
+// there before it. Lists are as long as a buffer together, and as HAIRLOOM_LISTED_OF_TEXEL each: where hair has more, a random part of it,
 // which does not depend on the order of threads, counts as all.
 #include "shaders/render/ribbon_raster.hlsli"
 #include "shaders/render/adaptive.hlsli"

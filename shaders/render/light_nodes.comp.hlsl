@@ -89,7 +89,7 @@ void main(uint3 id : SV_DispatchThreadID) {
         nodes += 2u;
         const uint most = place != 0u ? NODES_AT_WORK : gPack.layers;
         while (nodes > most) {
-            // Unrolled: turns of loops are counted (see LISTED_OF_TEXEL).
+            // Unrolled: turns of loops are counted (see HAIRLOOM_LISTED_OF_TEXEL).
             uint least = 1u;
             float leastArea = 3e38;
             [unroll] for (uint i = 1u; i <= NODES_AT_WORK; ++i) {

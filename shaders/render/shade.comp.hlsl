@@ -46,14 +46,9 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb : gShade.albedo.rgb;
     const float3 albedo = saturate(own * lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary);
 #endif
-    const float jitter = (hashUnit(p.strand * 2u + 1u) - 0.5) * 0.06;
     const KajiyaTerms terms = termsOf(gShade);
-    KajiyaFibre fibre;
-    fibre.tangent = tangent;
-    fibre.tangent1 = kajiyaTilt(tangent, toView, gShade.primaryTilt + jitter);
-    fibre.tangent2 = kajiyaTilt(tangent, toView, gShade.secondaryTilt + jitter);
-    fibre.albedo = albedo;
-    fibre.sparkle = (0.6 + 0.8 * hashUnit(p.strand * 2u)) * kajiyaSide(gShade.axisRatio, hashUnit(p.strand * 2u + 7u));
+    const KajiyaFibre fibre =
+        kajiyaFibre(p.strand, tangent, toView, albedo, float2(gShade.primaryTilt, gShade.secondaryTilt), gShade.axisRatio);
     const float3 passed = kajiyaPassed(gShade.fibreOpacity, albedo);
     const float bound = kajiyaBoundOf(terms, fibre);
 

@@ -234,6 +234,9 @@ struct RasterConstants {
 // Of a piece of hair in a texel: its depth as bits, how much of a fibre it is, and the number of what was
 // linked before it, from 1; 0: nothing.
 #define HAIRLOOM_LISTED_WORDS 3
+// Pieces of hair in a texel's list at most: one thread sorts them. A device ends what takes seconds, and Mesa's
+// llvmpipe leaves all loops of a thread after 65,535 turns together, of which these take 45,000.
+#define HAIRLOOM_LISTED_OF_TEXEL 2048
 #define HAIRLOOM_MAX_SHADOW_NODES 16
 
 #define HAIRLOOM_NO_STRAND 0xffffffff

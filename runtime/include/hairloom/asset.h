@@ -62,6 +62,8 @@ class Asset {
     std::uint32_t layerCount() const {
         return layers.empty() ? 1 : static_cast<std::uint32_t>(layers.size());
     }
+    /// That of the hairstyle, and each layer's that has one of its own.
+    std::size_t materialCount() const;
 
     // All that follows is to be called only where checkContent() finds nothing wrong.
 

@@ -42,7 +42,7 @@ template <class Visit>
 HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& node,
                              const SubstepContext& context, Visit&& visit) {
     const V3 position_ws = node.position + root;
-    const V away = hn::Sqrt(dot(node.displacement, node.displacement)) + node.radius;
+    const V moved = hn::Sqrt(dot(node.displacement, node.displacement)), away = moved + node.radius;
     for (const MovingSphere& sphere : lanes.touchable) {
         const Float3 centre_ws = sphere.from_ws + sphere.step * static_cast<float>(context.index + 1);
         const V3 to = position_ws - all3(centre_ws);
@@ -64,7 +64,9 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
         if (HWY_LIKELY(hn::AllFalse(D(), dot(to, to) <= farthest * farthest))) continue;
         const RodCapsule shape = capsuleOf(capsule, substeps);
         RodCapsuleSphere sphere = rodCapsuleNearest(shape, position_ws);
-        if (context.sweeps)
+        // A way, less that of the capsule, is no longer than both together.
+        const V way = moved + all(around.stepLength);
+        if (context.sweeps && !hn::AllFalse(D(), more * way > all(kUnsweptShare) * shape.thinnest))
             sphere = rodCapsuleMet(shape, position_ws, node.displacement, node.radius, sphere);
         const V3 off = position_ws - sphere.centre;
         const V reach = away + (more * (sphere.radius + hn::Sqrt(dot(sphere.step, sphere.step))) + margin);

@@ -35,36 +35,32 @@ if(NOT "${bound}" STREQUAL "${listed}")
     message(FATAL_ERROR "gpu.json lists ${listed}\nthe kernels bind ${bound}")
 endif()
 
+# play(NAME ARGUMENT...): the sample on an asset of that name, under Vulkan's validation layer; sets `output`.
+function(play name)
+    run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${name}.hairrt"
+        "${shaders}" ${ARGN})
+    message("${name} ${ARGN}: ${output}")
+    if(output MATCHES "VUID|Validation")
+        message(FATAL_ERROR "${name}: Vulkan's validation layer speaks")
+    endif()
+    set(output "${output}" PARENT_SCOPE)
+endfunction()
+
 foreach(style IN ITEMS short shoulder)
     write_sample_asset(${style} --spheres-only)  # guides on the GPU meet spheres, not the skin
     set(image "${PICTURES}/vulkan-${style}.ppm")
-    run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${style}.hairrt"
-        "${shaders}" -o "${image}" --frames 20 --compare)
-    message("${style}: ${output}")
-    if(output MATCHES "VUID|Validation")
-        message(FATAL_ERROR "${style}: Vulkan's validation layer speaks")
-    endif()
+    play(${style} -o "${image}" --frames 20 --compare)
     # docs/gpu-simulation.md: 1e-6 m in hairs of 0.2 m.
     if(NOT output MATCHES "36000 hairs, .*apart from the CPU's: ([0-9]\\.?[0-9]*e-0[6-9]|0) m at most")
         message(FATAL_ERROR "${style}: expected 36000 hairs within 0.00001 m of the CPU's")
     endif()
     # The same with guides on the GPU (docs/gpu-simulation.md), in few frames: lavapipe takes its time for rods.
-    run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${style}.hairrt"
-        "${shaders}" --frames 6 --gpu --compare)
-    message("${style}, guides on the GPU: ${output}")
-    if(output MATCHES "VUID|Validation")
-        message(FATAL_ERROR "${style}: Vulkan's validation layer speaks")
-    endif()
+    play(${style} --frames 6 --gpu --compare)
     if(NOT output MATCHES "at most, ([0-9]\\.?[0-9]*e-(0[5-9]|1[0-9])|0|0\\.0001[0-9]*) m root mean square")
         message(FATAL_ERROR "${style}: expected 0.0002 m root mean square of the CPU's at most")
     endif()
     # A share of them: other dispatches, the same hairs as the CPU reads then.
-    run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${style}.hairrt"
-        "${shaders}" --frames 5 --share 0.3 --compare)
-    message("${style}, a share of the hairs: ${output}")
-    if(output MATCHES "VUID|Validation")
-        message(FATAL_ERROR "${style}: Vulkan's validation layer speaks")
-    endif()
+    play(${style} --frames 5 --share 0.3 --compare)
     if(NOT output MATCHES "1[0-9][0-9][0-9][0-9] hairs, .*apart from the CPU's: ([0-9]\\.?[0-9]*e-0[6-9]|0) m at most")
         message(FATAL_ERROR "${style}: expected about a third of 36000 hairs within 0.00001 m of the CPU's")
     endif()
@@ -94,12 +90,7 @@ foreach(look IN ITEMS "short kajiya" "long marschner" "shoulder marschner streak
     run("${CLI}" set "${WORK}/${style}.hairloom" material.shadingModel=${model} ${more} -o "${WORK}/${name}.hairloom")
     run("${CLI}" export "${WORK}/${name}.hairloom" --format runtime -o "${WORK}/${name}.hairrt")
     set(image "${PICTURES}/vulkan-${name}.ppm")
-    run(${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "${WORK}/build/vulkan_hair" "${WORK}/${name}.hairrt"
-        "${shaders}" -o "${image}" --frames 0 --shade)
-    message("${name}: ${output}")
-    if(output MATCHES "VUID|Validation")
-        message(FATAL_ERROR "${name}: Vulkan's validation layer speaks")
-    endif()
+    play(${name} -o "${image}" --frames 0 --shade)
     if(NOT output MATCHES "seen from ([^ ]+) ([^ ]+) ([^ ]+) towards ([^ ]+) ([^ ]+) ([^ \n]+)")
         message(FATAL_ERROR "${name}: expected where it is seen from")
     endif()
