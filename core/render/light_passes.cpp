@@ -55,6 +55,7 @@ void takeLights(RendererState& state, std::span<const Light> lights, const Envir
 void setUpLights(RendererState& state) {
     shaders::ShadeConstants& shade = state.shade;
     shade.eye_ws = eyeOf(state.camera);
+    shade.ownWidth = 1 / state.detail.widening();
     for (std::size_t i = 0; i < state.environment.coefficients.size(); ++i) {
         shade.environment[i] = toShader(state.environment.coefficients[i], 0);
     }

@@ -288,14 +288,19 @@ HairDetail detailOf(const RendererState& state) {
     HairDetail detail;
     detail.subdivisions = state.options.subdivisions;
     const Box3f hair = state.scene.hairBounds();
-    if (state.options.detail <= 0 || hair.isEmpty()) return detail;
+    // Of hair much thinner than a pixel, the fragments that sorting keeps are its lit outside alone.
+    constexpr float kLeastSorted = 0.25f;
+    const float pixels = std::max(state.options.detail,
+                                  state.options.transparency == Transparency::sorted ? kLeastSorted : 0.0f);
+    if (pixels <= 0 || hair.isEmpty()) return detail;
     constexpr float kPixelsPerSegment = 2;
     constexpr float kMinShare = 1.0f / 64;
     const HairMeasure measure = state.scene.measure();
     const float distance = std::max(distances(state.camera, hair)[0], 1e-3f);
     const float pixel =
         pixelSpread(state.camera, state.options) * (state.camera.isOrthographic() ? 1.0f : distance);
-    detail.share = std::clamp(measure.diameter / pixel / state.options.detail, kMinShare, 2.0f);
+    detail.share = std::clamp(measure.diameter / pixel / pixels, kMinShare, 2.0f);
+    if (state.options.detail <= 0) return detail;
     const float pieces = std::ceil(measure.segment / pixel / kPixelsPerSegment);
     detail.subdivisions =
         static_cast<std::uint32_t>(std::clamp(pieces, 1.0f, static_cast<float>(state.options.subdivisions)));

@@ -49,6 +49,7 @@ struct RendererState {
     RenderOptions options;
     std::uint32_t samples = 1;
     HairDetail detail;
+    HairDetail mapDetail;  ///< of the hair that shadow maps hold
     /// Ends of three deep opacity layers in place of those of the options, as parts of the depth that hair
     /// takes up; for measurements.
     std::optional<std::array<float, 3>> deepLayers;

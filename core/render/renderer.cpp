@@ -348,7 +348,10 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     const bool holds = holdsMaps && mapped == castingLights();
     const bool shadows = changes.shadows && !holds;
     const bool sky = changes.sky && !holds;
-    if (shadows) fitViews(state, sky);
+    if (shadows) {
+        state.mapDetail = state.detail;
+        fitViews(state, sky);
+    }
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
     if (shadows) recordMaps(list, state, lightAtlas(state));

@@ -238,6 +238,7 @@ ShadowAtlas lightAtlas(const RendererState& state) {
     atlas.shadows = state.options.shadows;
     atlas.layerCount = layerCount(state.options);
     atlas.growth = growthOf(state.options);
+    atlas.filterTexels = filterTexels(state.options.shadowFilter);
     for (std::size_t i = 0; i < state.lightViews.size(); ++i) {
         if (castsShadow(state, i)) atlas.views.push_back(&state.lightViews[i]);
     }
@@ -263,6 +264,27 @@ ShadowAtlas skyAtlas(const RendererState& state) {
     return atlas;
 }
 
+namespace {
+
+/// How much of the light that meets fibres a texel's count stops. Where hairs are wider than they are, so
+/// that each stands for several, counts come in larger portions: as many at random let through more light, by
+/// the convexity of exp(-n), unless they stop more.
+void setFilter(shaders::LightConstants& c, float texels, float hairTexels, float widening) {
+    c.filterTexels = texels;
+    if (!(widening > 1)) return;
+    c.tapDistance = std::max(hairTexels * widening, 1.0f);
+    // Mean sum of the squares of a B-spline's weights across a hair; along it all texels see the same hair.
+    const float kept = texels < 2 ? 1.0f : texels < 4 ? 0.55f : 0.43f;
+    const auto stopped = [](float stopping, float portion) {
+        return (1 - std::exp(-stopping * portion)) / portion;
+    };
+    const float own = std::clamp(hairTexels, 1e-4f, 1.0f);
+    const float portion = std::max(std::min(hairTexels * widening, 1.0f) * kept, own);
+    c.stopping = -std::log(std::max(1 - portion * stopped(c.stopping, own), 0.02f)) / portion;
+}
+
+}  // namespace
+
 shaders::LightConstants mapConstants(const RendererState& state, const ShadowAtlas& atlas,
                                      std::size_t square) {
     const LightView& view = *atlas.views[square];
@@ -283,12 +305,13 @@ shaders::LightConstants mapConstants(const RendererState& state, const ShadowAtl
     const float distance =
         view.eye_ws.w() > 0 ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
     const float texel = view.spread * distance / side;
-    if (atlas.shadows == Shadows::deepOpacity)
-        c.layers.w = std::min(state.scene.measure().diameter / texel, 1.0f);
+    const float widening = state.mapDetail.widening();
+    const float hairTexels = state.scene.measure().diameter / texel;
+    if (atlas.shadows == Shadows::deepOpacity) c.layers.w = std::min(hairTexels * widening, 1.0f);
     c.stopping = state.scene.clumping.of(texel);
     c.texelSize = texel;
     c.headAbsorption = state.options.headAbsorption;
-    c.filterTexels = 3;
+    setFilter(c, atlas.filterTexels, hairTexels, widening);
     return c;
 }
 
@@ -298,7 +321,6 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t l
         std::size_t square = 0;
         for (std::size_t i = 0; i < light; ++i) square += castsShadow(state, i) ? 1 : 0;
         c = mapConstants(state, lightAtlas(state), square);
-        c.filterTexels = filterTexels(state.options.shadowFilter);
     }
     const Light& source = state.lights[light];
     const bool point = source.kind == LightKind::point;

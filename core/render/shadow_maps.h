@@ -14,6 +14,7 @@ struct ShadowAtlas {
     float share = 1;                      ///< of the strands, each counted as so many more
     std::uint32_t layerCount = 3;         ///< of opacity
     float growth = 0;                     ///< of layers: growthOf()
+    float filterTexels = 3;               ///< a side of what is averaged
     TargetId head = TargetId::headDepth;
     BufferId first = BufferId::firstHair, counts = BufferId::layerCounts, layers = BufferId::opacity;
     Pass headPass = Pass::headDepth, firstPass = Pass::firstHair, layersPass = Pass::opacity;

@@ -57,7 +57,7 @@ void main(uint3 id : SV_DispatchThreadID) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion shadow =
-            shadowOf(light, occlusion(light, p.position_ws.xyz, tangent, p.position_ws.w, 0.004, light.headAbsorption));
+            shadowOf(light, occlusion(light, p.position_ws.xyz, tangent, p.position_ws.w * gShade.ownWidth, 0.004, light.headAbsorption));
         const float3 direct = pow(passed, shadow.fibres) * shadow.visibility;
         const float3 scattered = pow(passed, 0.5 * shadow.fibres) * lerp(0.15, 1.0, shadow.visibility);
         const float3 single = kajiyaSingle(terms, fibre, toLight, toView);

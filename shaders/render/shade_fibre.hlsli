@@ -49,7 +49,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, tangent, p.position_ws.w, 0.004, light.headAbsorption);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, tangent, p.position_ws.w * gShade.ownWidth, 0.004, light.headAbsorption);
         const Occlusion shadow = shadowOf(light, o);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
         float3 scattered = shadow.passed *

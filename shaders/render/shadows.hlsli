@@ -136,7 +136,11 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
     // further than the middle of base + f, and so are the middles of texels.
     const int texels = int(light.filterTexels);
     const int reach = texels / 2;
-    const float2 place = uv * light.tileSize - float(reach);
+    // Hairs that stand for several are wider than texels. Texels as far from each other as such hairs are wide are averaged, and
+    // then let light through by the mean of their fibres: what all hairs would do, which hardly differ from texel to texel.
+    const bool spread = light.tapDistance > 0.0;
+    const float step = max(light.tapDistance, 1.0);
+    const float2 place = uv * (light.tileSize / step) - float(reach);
     const int2 base = int2(floor(place));
     const float2 f = place - float2(base);
     const float depth = metresBehindNear(light.depthRange, light.nearPlane, clip.z / clip.w);
@@ -153,13 +157,14 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
     for (int y = 0; y < texels; ++y) {
         const float wy = splineWeight(texels, y, f.y);
         for (int x = 0; x < texels; ++x) {
-            const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
+            const int2 tap = spread ? int2(floor((float2(base + int2(x, y)) + 0.5) * step)) : base + int2(x, y);
+            const int2 at = clamp(tap, int2(0, 0), int2(size - 1, size - 1));
             const int3 where = int3(at.x + int(light.tileLeft), at.y, 0);
             const uint texel = uint(at.y) * uint(light.atlasWidth) + uint(where.x);
             const float w = splineWeight(texels, x, f.x) * wy;
             const float headDepth = metresBehindNear(light.depthRange, light.nearPlane, head ? gHeadDepth.Load(where) : 1.0);
             if (hair) {
-                const float2 beside = float2(base + int2(x, y)) + 0.5 - uv * light.tileSize;
+                const float2 beside = float2(tap) + 0.5 - uv * light.tileSize;
                 const float crossed = fibresAt(light, texel, depth + dot(beside, slope), ownBias);
                 fibres += w * crossed;
                 passed += w * exp(-light.stopping * crossed);
@@ -174,11 +179,11 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
         }
     }
     result.fibres = fibres;
-    result.passed = hair ? passed : 1.0;
+    result.passed = !hair ? 1.0 : spread ? exp(-light.stopping * fibres) : passed;
     result.allFibres = max(all, fibres);
     result.visibility = head ? visible : 1.0;
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
-    const float texelSize = light.texelSize;
+    const float texelSize = light.texelSize * step;
     const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));
     result.ends = ends;
     result.ground = ends * facing * kSkinPatch * kSkinPatch / (kSkinPatch * kSkinPatch + behind * behind);

@@ -16,6 +16,6 @@ void main(uint3 id : SV_DispatchThreadID) {
     for (uint i = id.y; i < strand.pointCount; i += HAIRLOOM_SKY_THREADS_OF_STRAND) {
         const CurvePoint p = gCurve[curve + i * gShade.subdivisions];
         gSeen[strand.segmentsBefore + id.x + i] =
-            skySeen(p.position_ws.xyz, unpackUnit(p.tangentXy), p.position_ws.w);
+            skySeen(p.position_ws.xyz, unpackUnit(p.tangentXy), p.position_ws.w * gShade.ownWidth);
     }
 }

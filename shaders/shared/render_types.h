@@ -128,7 +128,7 @@ struct LightConstants {
     float filterTexels;    // a side of what is averaged: 1, 3 or 5
     float layerCount;      // of opacity, or nodes of transmittance
     float layerGrowth;     // of their widths from one to the next; 0: early ends (opacity.hlsli)
-    float unused0;
+    float tapDistance;     // texels between those that are averaged; 0: neighbours, each for itself (occlusion())
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.
@@ -179,6 +179,8 @@ struct ShadeConstants {
     uint lightCount;
     uint rowThreads;    // of the dispatch
     uint subdivisions;  // curve segments per given segment
+    float ownWidth;     // of a hair by that of its ribbon, which may stand for several
+    float unused0, unused1, unused2;
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
@@ -418,8 +420,8 @@ HAIRLOOM_OFFSET(ShadeConstants, primaryExponent, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
 HAIRLOOM_OFFSET(ShadeConstants, clumping, 320);
 HAIRLOOM_OFFSET(ShadeConstants, count, 352);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 368);
-static_assert(sizeof(ShadeConstants) == 368 + 192 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 384);
+static_assert(sizeof(ShadeConstants) == 384 + 192 * HAIRLOOM_MAX_LIGHTS);
 HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
 static_assert(sizeof(LookConstants) == 160);
 static_assert(sizeof(MeshConstants) == 80);
