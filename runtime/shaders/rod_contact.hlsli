@@ -67,7 +67,8 @@ void findReachableShapes() {
     }
 }
 
-/// The sphere of shape k that a node meets, which is all of a sphere; centres are from `origin`.
+/// The sphere of shape k that a node meets, which is all of a sphere; centres are from `origin`. Microsoft's compiler takes
+/// what an earlier return leaves unset for unset everywhere.
 RodCapsuleSphere sphereMet(uint k, float3 origin, RodNode node) {
     const float steps = float(gSubstep + 1);
     RodCapsuleSphere sphere;
@@ -75,20 +76,20 @@ RodCapsuleSphere sphereMet(uint k, float3 origin, RodNode node) {
         sphere.centre = sphereCentre(k, steps) - origin;
         sphere.step = gSpheres[k].step.xyz;
         sphere.radius = gSpheres[k].from.w;
-        return sphere;
+    } else {
+        const uint first = endOf(k - gFrame.sphereCount, 0u), second = first + 1u;
+        RodCapsule capsule;
+        capsule.from = sphereCentre(first, steps) - origin;
+        capsule.axis = sphereCentre(second, steps) - sphereCentre(first, steps);
+        capsule.step = gSpheres[first].step.xyz;
+        capsule.turn = gSpheres[second].step.xyz - capsule.step;
+        capsule.radius = gSpheres[first].from.w;
+        capsule.narrows = capsule.radius - gSpheres[second].from.w;
+        capsule.thinnest = min(capsule.radius, gSpheres[second].from.w);
+        sphere = rodCapsuleNearest(capsule, node.position);
+        if (gRod.sweeps != 0u)
+            sphere = rodCapsuleMet(capsule, node.position, node.displacement, node.radius, sphere);
     }
-    const uint first = endOf(k - gFrame.sphereCount, 0u), second = first + 1u;
-    RodCapsule capsule;
-    capsule.from = sphereCentre(first, steps) - origin;
-    capsule.axis = sphereCentre(second, steps) - sphereCentre(first, steps);
-    capsule.step = gSpheres[first].step.xyz;
-    capsule.turn = gSpheres[second].step.xyz - capsule.step;
-    capsule.radius = gSpheres[first].from.w;
-    capsule.narrows = capsule.radius - gSpheres[second].from.w;
-    capsule.thinnest = min(capsule.radius, gSpheres[second].from.w);
-    sphere = rodCapsuleNearest(capsule, node.position);
-    if (gRod.sweeps != 0u)
-        sphere = rodCapsuleMet(capsule, node.position, node.displacement, node.radius, sphere);
     return sphere;
 }
 
