@@ -94,9 +94,12 @@ void StrandEngine::Impl::moveOrigin(std::array<double, 3> next_ws) {
 
 /// `moved` may be empty: none has.
 void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const runtime::Vector<bool>& moved) const {
-    for (const StrandBatch& batch : batches)
-        list.updateBuffer(batch.rootsTo, 0,
-                          bytesOfVector(runtime::rootsOfSlots(*shape, batch.inSlots(), placed.roots, moved)));
+    for (const StrandBatch& batch : batches) {
+        const runtime::Slots slots = batch.inSlots();
+        runtime::Vector<shaders::float4> rows(std::size_t{slots.count} * 2);
+        runtime::putRootsOfSlots(*shape, slots, placed.roots, moved, rows);
+        list.updateBuffer(batch.rootsTo, 0, bytesOfVector(rows));
+    }
 }
 
 /// Where kernels read them from buffers.
@@ -117,9 +120,15 @@ void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
         sleeps = sleeps || batch.key.sleep;
         many = many || batch.key.spheres == SphereSource::buffer;
     }
-    if (many) upload(spheres, "spheres", runtime::sphereConstants(movingSpheres, movingCapsules));
+    if (many) {
+        runtime::Vector<shaders::SphereConstants> all;
+        runtime::putSphereConstants(movingSpheres, movingCapsules, all);
+        upload(spheres, "spheres", all);
+    }
     if (!sleeps) return;
-    upload(waking, "waking spheres", runtime::wakingOf(frameSpheres));
+    runtime::Vector<shaders::float4> reaches;
+    runtime::putWaking(frameSpheres, reaches);
+    upload(waking, "waking spheres", reaches);
 }
 
 /// What other settings and plans do to the state: nothing sleeps.
@@ -177,7 +186,8 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     list.setConstants(0, gpu::bytesOf(constants));
     model->setConstants(list, context, run.wind.wind, substep, batch);
     if (batch.key.spheres == SphereSource::constants) {
-        auto all = runtime::sphereConstants(movingSpheres, movingCapsules);
+        runtime::Vector<shaders::SphereConstants> all;
+        runtime::putSphereConstants(movingSpheres, movingCapsules, all);
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
         list.setConstants(1, bytesOfVector(all));
     }

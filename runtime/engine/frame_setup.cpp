@@ -99,10 +99,7 @@ void takeCapsules(std::span<const Capsule> capsules, FrameSpheres& spheres) {
     spheres.ends.assign(spheres.given, 0);
     capsules = capsules.first(std::min(capsules.size(), kMaxCapsules));
     // However long they get: the next frame asks for no memory.
-    spheres.usable.reserve(spheres.given + kMaxAlongCapsule * capsules.size());
-    spheres.motion.reserve(spheres.given + kMaxAlongCapsule * capsules.size());
-    spheres.planned.reserve(spheres.given + (kMaxAlongCapsule + 1) * capsules.size());
-    spheres.plannedMotion.reserve(spheres.given + (kMaxAlongCapsule + 1) * capsules.size());
+    reserveSpheres(spheres.given, capsules.size(), spheres);
     for (const Capsule& capsule : capsules) {
         const std::span<const Sphere> usable = std::span<const Sphere>(spheres.usable).first(spheres.given);
         if (!isCapsule(capsule, usable) || contains(spheres.capsules, capsule) ||
@@ -141,6 +138,17 @@ float slowestSwept(const SubstepContext& context) {
 }
 
 }  // namespace
+
+void reserveSpheres(std::size_t given, std::size_t capsules, FrameSpheres& spheres) {
+    const std::size_t along = given + kMaxAlongCapsule * capsules;
+    spheres.usable.reserve(along);
+    spheres.motion.reserve(along);
+    spheres.planned.reserve(along + capsules);
+    spheres.plannedMotion.reserve(along + capsules);
+    spheres.capsules.reserve(capsules);
+    spheres.ends.reserve(given);
+    spheres.waking.reserve(2 * (given + capsules));
+}
 
 void takeSpheres(const SimulationSettings& settings, float longestStrand, const FormerSpheres& before,
                  std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres) {

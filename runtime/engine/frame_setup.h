@@ -34,6 +34,8 @@ struct FormerSpheres {
     std::span<const Sphere> spheres;
     std::span<const Capsule> capsules;
 };
+/// Room for so many of a frame: takeSpheres() of no more asks for no memory.
+void reserveSpheres(std::size_t given, std::size_t capsules, FrameSpheres& spheres);
 /// Keeps the memory of `spheres`.
 void takeSpheres(const SimulationSettings& settings, float longestStrand, const FormerSpheres& before,
                  std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres);

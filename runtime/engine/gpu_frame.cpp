@@ -63,9 +63,9 @@ std::size_t sphereConstantsOf(const FrameSpheres& spheres, StrandModel model) {
     return spheres.given - static_cast<std::size_t>(ends) + 2 * spheres.capsules.size();
 }
 
-Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres,
-                                                 std::span<const MovingCapsule> capsules) {
-    Vector<shaders::SphereConstants> constants;
+void putSphereConstants(std::span<const MovingSphere> spheres, std::span<const MovingCapsule> capsules,
+                        Vector<shaders::SphereConstants>& constants) {
+    constants.clear();
     constants.reserve(spheres.size() + 2 * capsules.size());
     const auto add = [&](const MovingSphere& sphere) {
         constants.push_back({gpuQuad(sphere.from_ws, sphere.radius), gpuQuad(sphere.step, 0.0f)});
@@ -74,13 +74,11 @@ Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> s
     for (const MovingCapsule& capsule : capsules) {
         for (const MovingSphere& end : capsule.ends) add(end);
     }
-    return constants;
 }
 
-Vector<shaders::float4> wakingOf(const FrameSpheres& spheres) {
-    Vector<shaders::float4> reaches;
+void putWaking(const FrameSpheres& spheres, Vector<shaders::float4>& reaches) {
+    reaches.clear();
     for (const Sphere& sphere : spheres.waking) reaches.push_back(gpuQuad(sphere.center_ws, sphere.radius));
-    return reaches;
 }
 
 void takeFrameRoots(std::span<const RootFrame> given, float teleportDistance, bool known, FrameRoots& frame) {

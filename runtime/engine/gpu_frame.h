@@ -29,11 +29,11 @@ shaders::SimulationConstants frameConstants(const GpuFrame& frame, const Substep
 
 /// How many of them a frame has at most.
 std::size_t sphereConstantsOf(const FrameSpheres& spheres, StrandModel model);
-/// Spheres, and behind them the ends of each capsule.
-Vector<shaders::SphereConstants> sphereConstants(std::span<const MovingSphere> spheres,
-                                                 std::span<const MovingCapsule> capsules);
-/// Centre and reach of each.
-Vector<shaders::float4> wakingOf(const FrameSpheres& spheres);
+/// Spheres, and behind them the ends of each capsule. Keeps the memory of `constants`.
+void putSphereConstants(std::span<const MovingSphere> spheres, std::span<const MovingCapsule> capsules,
+                        Vector<shaders::SphereConstants>& constants);
+/// Centre and reach of each. Keeps the memory of `reaches`.
+void putWaking(const FrameSpheres& spheres, Vector<shaders::float4>& reaches);
 
 /// What is known of roots from frame to frame.
 struct FrameRoots {

@@ -101,9 +101,8 @@ RestSlots restOfSlots(const RestShape& shape, const Slots& slots) {
     return made;
 }
 
-Vector<shaders::float4> rootsOfSlots(const RestShape& shape, const Slots& slots,
-                                     std::span<const RootFrame> roots, const Vector<bool>& moved) {
-    Vector<shaders::float4> rows(std::size_t{slots.count} * 2);
+void putRootsOfSlots(const RestShape& shape, const Slots& slots, std::span<const RootFrame> roots,
+                     const Vector<bool>& moved, std::span<shaders::float4> rows) {
     for (std::size_t n = 0; n < slots.blocks.size(); ++n) {
         for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::uint32_t strand = shape.blocks[slots.blocks[n]].strandOfLane[lane];
@@ -114,7 +113,6 @@ Vector<shaders::float4> rootsOfSlots(const RestShape& shape, const Slots& slots,
             rows[2 * slot + 1] = {root.rotation.x, root.rotation.y, root.rotation.z, root.rotation.w};
         }
     }
-    return rows;
 }
 
 }  // namespace hairloom::runtime

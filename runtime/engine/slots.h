@@ -47,8 +47,8 @@ struct RestSlots {
 };
 RestSlots restOfSlots(const RestShape& shape, const Slots& slots);
 
-/// Where the frame's roots are; `moved` may be empty: none has.
-Vector<shaders::float4> rootsOfSlots(const RestShape& shape, const Slots& slots,
-                                     std::span<const RootFrame> roots, const Vector<bool>& moved);
+/// Where the frame's roots are, into 2 · slots.count rows; `moved` may be empty: none has.
+void putRootsOfSlots(const RestShape& shape, const Slots& slots, std::span<const RootFrame> roots,
+                     const Vector<bool>& moved, std::span<shaders::float4> rows);
 
 }  // namespace hairloom::runtime

@@ -3,6 +3,7 @@
 #include "hairloom/gpu.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -34,24 +35,19 @@ struct GpuCounts {
     std::uint64_t slots() const { return blocks * kBlockLanes; }
     std::uint64_t slotPoints() const { return slots() * longest; }
 };
-/// Adds what the pass GUIDES is measured by.
-GpuCounts withGuides(GpuCounts counts, const Map<std::uint32_t, std::size_t>& strandsOf, std::size_t spheres,
-                     std::size_t capsules) {
-    counts.blocks = gpuBlocksOf(strandsOf);
-    counts.longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
-    counts.spheres = gpuSpheresOf(spheres, capsules);
-    return counts;
-}
 GpuCounts gpuCountsOf(const Asset& asset) {
-    Map<std::uint32_t, std::size_t> strandsOf;
-    for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
+    const Map<std::uint32_t, std::size_t> strandsOf = strandsByPoints(asset);
     std::size_t capsules = 0;
     for (const asset::Sphere& sphere : asset.spheres) capsules += sphere.joined > 0 ? 1 : 0;
-    GpuCounts counts{
-        asset.strandCount(), asset.pointCount(), asset.hairCount(), asset.recipe[0].pointsPerHair, 0, 0, 0};
-    counts.materials = asset.materialCount();
-    counts.tables = asset.fibreTables().size();
-    return withGuides(counts, strandsOf, asset.spheres.size(), capsules);
+    return {asset.strandCount(),
+            asset.pointCount(),
+            asset.hairCount(),
+            asset.recipe[0].pointsPerHair,
+            gpuBlocksOf(strandsOf),
+            strandsOf.empty() ? 0 : strandsOf.rbegin()->first,
+            gpuSpheresOf(asset.spheres.size(), capsules),
+            asset.materialCount(),
+            asset.fibreTables().size()};
 }
 
 struct GpuBuffer {
@@ -207,13 +203,13 @@ Outcome checkGpuFill(std::uint32_t buffer, bool (*fills)(std::uint32_t), const c
 
 std::size_t Instance::gpuBytes(std::uint32_t buffer) const {
     // What a frame has is measured by guides alone.
-    GpuCounts counts{roots_.size(), positions_.size(), 0, 0, 0, 0, 0};
-    const std::uint32_t fill = kGpuBuffers[buffer].fill;
-    if (fill == HL_GPU_BEGIN || fill == HL_GPU_STEP) {
-        Map<std::uint32_t, std::size_t> strandsOf;
-        for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) ++strandsOf[offsets_[s + 1] - offsets_[s]];
-        counts = withGuides(counts, strandsOf, restSpheres_.size(), restCapsules_.size());
-    }
+    const GpuCounts counts{roots_.size(),
+                           positions_.size(),
+                           0,
+                           0,
+                           gpuBlocks_,
+                           gpuLongest_,
+                           gpuSpheresOf(restSpheres_.size(), restCapsules_.size())};
     return static_cast<std::size_t>(kGpuBuffers[buffer].count(counts)) * kGpuBuffers[buffer].element;
 }
 
@@ -223,8 +219,10 @@ Outcome Instance::beginGpu() {
     if (std::string why = gpuGuidesRefused(engine_.settings()); !why.empty())
         return Refusal{HL_BAD_VALUE, std::move(why)};
     settlePlayed();
-    gpuGuides_.emplace(engine_.restShape(), engine_.settings(), engine_.state(),
-                       gpuSpheresOf(restSpheres_.size(), restCapsules_.size()));
+    // What there was stays where memory is missing.
+    GpuGuides guides(engine_.restShape(), engine_.settings(), engine_.state(),
+                     gpuSpheresOf(restSpheres_.size(), restCapsules_.size()));
+    gpuGuides_ = std::move(guides);
     return std::nullopt;
 }
 
@@ -236,11 +234,11 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
     const std::size_t capsules =
         frame.spheres && frame.capsules ? std::min(frame.capsule_count, kMaxCapsules) : 0;
     std::size_t spheres = frame.sphere_count + 2 * capsules;
-    Vector<std::uint8_t> isEnd(capsules > 0 ? std::min<std::size_t>(frame.sphere_count, 4096) : 0);
+    std::bitset<kMaxGivenSpheres> isEnd;
     for (std::size_t c = 0; c < 2 * capsules; ++c) {
-        if (frame.capsules[c] < isEnd.size()) isEnd[frame.capsules[c]] = 1;
+        if (frame.capsules[c] < std::min(frame.sphere_count, isEnd.size())) isEnd.set(frame.capsules[c]);
     }
-    spheres -= static_cast<std::size_t>(std::count(isEnd.begin(), isEnd.end(), std::uint8_t{1}));
+    spheres -= isEnd.count();
     if (frame.spheres && spheres > gpuGuides_->mostSpheres())
         return Refusal{HL_WRONG_SIZE, std::to_string(spheres) + " spheres" +
                                           (capsules > 0 ? " with the ends of each capsule" : "") +
@@ -258,15 +256,14 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
 /// What the pass GUIDES asks for in vain.
 Outcome Instance::checkGpuGuides(std::uint32_t buffer) const {
     const std::uint32_t fill = kGpuBuffers[buffer].fill;
-    const std::string name = kGpuBuffers[buffer].name;
+    const char* why = nullptr;
     if (fill == HL_GPU_BEGIN && !(gpuGuides_ && gpuGuides_->atBegin()))
-        return Refusal{HL_BAD_VALUE,
-                       "buffer " + name + " is filled between hl_gpu_begin() and hl_gpu_step()"};
+        why = " is filled between hl_gpu_begin() and hl_gpu_step()";
     if (fill == HL_GPU_STEP && !(gpuGuides_ && gpuGuides_->hasFrame()))
-        return Refusal{HL_BAD_VALUE, "buffer " + name + " is filled after hl_gpu_step()"};
-    if (fill == HL_GPU_GUIDES && gpuGuides_ && !gpuGuides_->atBegin())
-        return Refusal{HL_BAD_VALUE, "buffer " + name + " is what the pass GUIDES makes"};
-    return std::nullopt;
+        why = " is filled after hl_gpu_step()";
+    if (fill == HL_GPU_GUIDES && gpuGuides_ && !gpuGuides_->atBegin()) why = " is what the pass GUIDES makes";
+    if (!why) return std::nullopt;
+    return Refusal{HL_BAD_VALUE, std::string("buffer ") + kGpuBuffers[buffer].name + why};
 }
 
 void Instance::fillGpu(std::uint32_t buffer, void* out) {
@@ -405,7 +402,7 @@ hl_code hl_gpu_frame_pass(const hl_instance* instance, uint32_t pass, hl_gpu_pas
         if (const hl_code code = checkGpuPass(pass, *out, error)) return code;
         if (!instance->instance.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");
         const Instance& hair = instance->instance;
-        // What takes time or memory to count is of one pass alone.
+        // What takes time to count is of one pass alone.
         constexpr auto kBlocks = HL_GPU_BUFFER_BLOCKS;
         const std::size_t blocks =
             pass == HL_GPU_PASS_GUIDES ? hair.gpuBytes(kBlocks) / kGpuBuffers[kBlocks].element : 0;
@@ -415,24 +412,30 @@ hl_code hl_gpu_frame_pass(const hl_instance* instance, uint32_t pass, hl_gpu_pas
     });
 }
 
-hl_code hl_gpu_view_init(const hl_asset* asset, hl_gpu_view* view, hl_error* error) {
+hl_code hl_gpu_view_init_sized(const hl_asset* asset, hl_gpu_view* view, size_t size, hl_error* error) {
     if (!asset || !view) return nullRefused(error, "no asset or no view");
+    if (const Outcome refused = checkSize<hl_gpu_view>("hl_gpu_view", size, kFirstView))
+        return say(error, refused);
     return withHairs(asset, error, [&](const Asset&, const GpuCounts& counts) {
-        *view = {{},
-                 {},
-                 {0.5f, 0.70710678f, 0.5f, 40},
-                 {1, 1, 1, 0.15f},
-                 {0.25f, 0.25f, 0.25f, 0},
-                 0,
-                 1,
-                 static_cast<std::uint32_t>(counts.points),
-                 static_cast<std::uint32_t>(counts.hairs)};
+        const hl_gpu_view made{{},
+                               {},
+                               {0.5f, 0.70710678f, 0.5f, 40},
+                               {1, 1, 1, 0.15f},
+                               {0.25f, 0.25f, 0.25f, 0},
+                               0,
+                               1,
+                               static_cast<std::uint32_t>(counts.points),
+                               static_cast<std::uint32_t>(counts.hairs)};
+        giveBack(made, view, size);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }
 
-hl_code hl_gpu_frame_view(const hl_instance* instance, hl_gpu_view* view, hl_error* error) {
+hl_code hl_gpu_frame_view_sized(const hl_instance* instance, hl_gpu_view* view, size_t size,
+                                hl_error* error) {
     if (!instance || !view) return nullRefused(error, "no instance or no view");
+    if (const Outcome refused = checkSize<hl_gpu_view>("hl_gpu_view", size, kFirstView))
+        return say(error, refused);
     return guarded(error, [&] {
         const Instance& hair = instance->instance;
         if (!hair.hasGpuHairs()) return nullRefused(error, "an asset without follow hairs");

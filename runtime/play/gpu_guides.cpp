@@ -84,6 +84,22 @@ GpuGuides::GpuGuides(std::shared_ptr<const RestShape> shape, const SimulationSet
     }
     roots_.min_ws = state_->rootsMin_ws;
     roots_.max_ws = state_->rootsMax_ws;
+    reserve();
+}
+
+/// Frames have no more, and ask for no memory then.
+void GpuGuides::reserve() {
+    const std::size_t capsules = std::min(mostSpheres_ / 2, kMaxCapsules);
+    roots_.moved.resize(roots_.roots.size());
+    // The CPU may have had more.
+    reserveSpheres(std::max(mostSpheres_, spheresBefore_.size()), capsules, spheres_);
+    spheresBefore_.reserve(mostSpheres_);
+    capsulesBefore_.reserve(capsules);
+    moving_.reserve(mostSpheres_);
+    movingCapsules_.reserve(capsules);
+    frame_.roots.resize(std::size_t{slotCount_} * 2);
+    frame_.waking.reserve(spheres_.waking.capacity());
+    frame_.spheres.reserve(mostSpheres_);
 }
 
 Slots GpuGuides::slots() const {
@@ -107,8 +123,8 @@ void GpuGuides::take(const FrameInput& input) {
     const Float3 shift = moveOrigin(input.origin_ws);
     const Float3 lowBefore = roots_.min_ws, highBefore = roots_.max_ws;
     takeFrameRoots(input.roots_ws, settings_.teleportDistance, true, roots_);
-    const Vector<Capsule> capsulesBefore = spheres_.capsules;
-    takeSpheres(settings_, shape_->longestStrand, {spheresBefore_, capsulesBefore}, input.spheres,
+    capsulesBefore_.assign(spheres_.capsules.begin(), spheres_.capsules.end());
+    takeSpheres(settings_, shape_->longestStrand, {spheresBefore_, capsulesBefore_}, input.spheres,
                 input.capsules, spheres_);
     takeWind(settings_, input, wind_);
     FramePlanInput planInput;
@@ -126,22 +142,22 @@ void GpuGuides::take(const FrameInput& input) {
     const EffectPlan plan =
         planFrame(settings_, planInput, wind_, spheres_.planned, spheres_.plannedMotion, input.dt);
     const std::uint32_t substeps = substepsIn(settings_, input.dt);
-    Vector<MovingSphere> moving;
-    Vector<MovingCapsule> capsules;
-    if (plan.on(Effect::collision)) moveCapsules(spheres_, substeps, moving, capsules);
-    const SubstepContext context = substepContext(settings_, plan, input.dt, substeps, moving, capsules);
+    moving_.clear();
+    movingCapsules_.clear();
+    if (plan.on(Effect::collision)) moveCapsules(spheres_, substeps, moving_, movingCapsules_);
+    const SubstepContext context =
+        substepContext(settings_, plan, input.dt, substeps, moving_, movingCapsules_);
     // The CPU may have had more spheres before it handed over.
     const std::size_t room = kWakingOfSphere * mostSpheres_, waking = spheres_.waking.size();
     const bool wakes = !(shift == Float3{}) || waking > room;
-    Frame frame;
-    frame.constants = frameConstants(
-        {settings_, wind_.wind, moving, std::min(waking, room), substep_, wakes, *origin_, shift}, context,
+    frame_.constants = frameConstants(
+        {settings_, wind_.wind, moving_, std::min(waking, room), substep_, wakes, *origin_, shift}, context,
         input, slots(), kBlockLanes);
-    frame.rods = rodConstants(context, wind_.wind, substep_, slots(), 0);
-    frame.roots = rootsOfSlots(*shape_, slots(), roots_.roots, roots_.moved);
-    frame.spheres = sphereConstants(moving, capsules);
-    frame.waking = wakingOf(spheres_);
-    frame_ = std::move(frame);
+    frame_.rods = rodConstants(context, wind_.wind, substep_, slots(), 0);
+    putRootsOfSlots(*shape_, slots(), roots_.roots, roots_.moved, frame_.roots);
+    putSphereConstants(moving_, movingCapsules_, frame_.spheres);
+    putWaking(spheres_, frame_.waking);
+    hasFrame_ = true;
     state_.reset();
     spheresBefore_.assign(spheres_.usable.begin(),
                           spheres_.usable.begin() + static_cast<std::ptrdiff_t>(spheres_.given));
@@ -153,15 +169,15 @@ void GpuGuides::fill(std::uint32_t buffer, std::span<std::byte> out) const {
     const auto rest = [&] { return restOfSlots(*shape_, slots()); };
     switch (buffer) {
         case HL_GPU_BUFFER_STEP:
-            return putGpu(out, std::span(&frame_->constants, 1));
+            return putGpu(out, std::span(&frame_.constants, 1));
         case HL_GPU_BUFFER_RODS:
-            return putGpu(out, std::span(&frame_->rods, 1));
+            return putGpu(out, std::span(&frame_.rods, 1));
         case HL_GPU_BUFFER_ROOTS_TO:
-            return putGpu(out, frame_->roots);
+            return putGpu(out, frame_.roots);
         case HL_GPU_BUFFER_SPHERES:
-            return putGpu(out, frame_->spheres);
+            return putGpu(out, frame_.spheres);
         case HL_GPU_BUFFER_WAKING:
-            return putGpu(out, frame_->waking);
+            return putGpu(out, frame_.waking);
         case HL_GPU_BUFFER_REST:
             return putGpu(out, rest().rest);
         case HL_GPU_BUFFER_SEGMENTS:

@@ -32,22 +32,24 @@ class GpuGuides {
               std::shared_ptr<const State> state, std::size_t mostSpheres);
 
     std::size_t mostSpheres() const { return mostSpheres_; }
-    /// A frame of dt above 0 and, with both ends of each capsule, at most mostSpheres().
+    /// A frame of dt above 0 and, with both ends of each capsule, at most mostSpheres(). Asks for no memory.
     void take(const FrameInput& input);
     /// False once a frame was taken: what HL_GPU_BEGIN fills with is of the time before.
     bool atBegin() const { return state_ != nullptr; }
-    bool hasFrame() const { return frame_.has_value(); }
+    bool hasFrame() const { return hasFrame_; }
     std::span<const RootFrame> roots() const { return roots_.roots; }
     /// HL_GPU_BUFFER_… of HL_GPU_BEGIN or HL_GPU_STEP; what it does not need of `out` becomes 0.
     void fill(std::uint32_t buffer, std::span<std::byte> out) const;
 
   private:
+    /// What HL_GPU_STEP fills with.
     struct Frame {
-        shaders::SimulationConstants constants;
-        shaders::RodConstants rods;
+        shaders::SimulationConstants constants{};
+        shaders::RodConstants rods{};
         Vector<shaders::float4> roots, waking;
         Vector<shaders::SphereConstants> spheres;
     };
+    void reserve();
     Slots slots() const;
     Float3 moveOrigin(std::array<double, 3> next);
 
@@ -61,9 +63,14 @@ class GpuGuides {
     FrameRoots roots_;
     FrameSpheres spheres_;
     Vector<Sphere> spheresBefore_;
+    Vector<Capsule> capsulesBefore_;
+    // Of a substep:
+    Vector<MovingSphere> moving_;
+    Vector<MovingCapsule> movingCapsules_;
     float substep_;
     std::optional<std::array<double, 3>> origin_;
-    std::optional<Frame> frame_;
+    Frame frame_;
+    bool hasFrame_ = false;
 };
 
 }  // namespace hairloom::runtime

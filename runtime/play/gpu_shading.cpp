@@ -149,9 +149,11 @@ void fillShading(const Asset& asset, std::uint32_t buffer, std::span<const std::
 
 using namespace hairloom::runtime;
 
-hl_code hl_gpu_lamp_init(const float to_light[3], const float centre[3], float radius, hl_gpu_lamp* lamp,
-                         hl_error* error) {
+hl_code hl_gpu_lamp_init_sized(const float to_light[3], const float centre[3], float radius,
+                               hl_gpu_lamp* lamp, size_t size, hl_error* error) {
     if (!to_light || !centre || !lamp) return nullRefused(error, "no direction, place or lamp");
+    if (const Outcome refused = checkSize<hl_gpu_lamp>("hl_gpu_lamp", size, kFirstLamp))
+        return say(error, refused);
     const Float3 given{to_light[0], to_light[1], to_light[2]}, middle{centre[0], centre[1], centre[2]};
     const float largest = std::max({std::abs(given.x), std::abs(given.y), std::abs(given.z)});
     if (!(largest > 0) || !std::isfinite(largest) || !std::isfinite(given.x + given.y + given.z))
@@ -174,9 +176,10 @@ hl_code hl_gpu_lamp_init(const float to_light[3], const float centre[3], float r
         out[2] = scale * axis.z;
         out[3] = 0.5f - scale * dot(axis, middle);
     };
-    *lamp = {{}, {}, {}, {to.x, to.y, to.z, 0}, {1, 1, 1, 0}, {0, 0, 0, column * column}};
-    row(across, lamp->across);
-    row(up, lamp->up);
-    row(to * -1.0f, lamp->away);
+    hl_gpu_lamp made{{}, {}, {}, {to.x, to.y, to.z, 0}, {1, 1, 1, 0}, {0, 0, 0, column * column}};
+    row(across, made.across);
+    row(up, made.up);
+    row(to * -1.0f, made.away);
+    giveBack(made, lamp, size);
     return say(error, HL_OK, HL_NO_PLACE, "");
 }

@@ -36,6 +36,15 @@ struct InstanceMemory {
     std::size_t guides, hairs, levels, thread;
 };
 InstanceMemory instanceMemory(const Asset& asset);
+/// Of an instance beside its engine and its FollowHairs.
+std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t velocities);
+/// How many strands have how many points.
+Map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset);
+/// Whether some layers have materials of their own.
+bool hasMaterials(const Asset& asset);
+
+/// Of hl_frame.spheres.
+inline constexpr std::size_t kMaxGivenSpheres = 4096;
 
 /// Of the settings that a layer's own material has.
 inline String layerGroup(std::size_t layer) {
@@ -223,6 +232,7 @@ class Instance {
     Float3 pivot_{};          // that heads nod about where something is measured
     WispMotion gpuWisps_;
     std::uint32_t gpuHairs_ = 0, gpuPoints_ = 0;  // of the asset, read or not, and of each
+    std::size_t gpuBlocks_ = 0, gpuLongest_ = 0;  // of guides in slots: blocks, and points of the longest
     std::optional<GpuGuides> gpuGuides_;          // from hl_gpu_begin() until the CPU moves the hair
     std::uint64_t asset_ = 0;                     // tells assets apart
     std::uint64_t changes_ = 1;                   // grows with all that changes what is read

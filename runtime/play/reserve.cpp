@@ -11,7 +11,6 @@ namespace {
 
 constexpr float kRehearsedRadius = 0.01f;  ///< m, of spheres at the roots: within reach of every strand
 constexpr float kRehearsedWind = 1;        ///< m/s
-constexpr std::size_t kMostReserved = 4096;
 
 /// Frames in still air and in wind, without spheres and among as many as there may be.
 void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const Sphere> spheres) {
@@ -39,9 +38,9 @@ void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const 
 }  // namespace
 
 Outcome Instance::reserve(const hl_reserve& wanted) {
-    if (wanted.spheres > kMostReserved)
+    if (wanted.spheres > kMaxGivenSpheres)
         return Refusal{HL_BAD_VALUE, "reserve.spheres is " + std::to_string(wanted.spheres) +
-                                         "; expected 0 to " + std::to_string(kMostReserved)};
+                                         "; expected 0 to " + std::to_string(kMaxGivenSpheres)};
     if (wanted.previous_guides > 1 || wanted.previous_hairs > 1)
         return Refusal{HL_BAD_VALUE, "reserve.previous_guides and previous_hairs are 0 or 1"};
     // In a copy: where memory ends in the middle, this one is as it was.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x53494c48;  // "HLIS"
 constexpr std::uint32_t kSavedVersion = 4;
-constexpr std::size_t kMostSpheres = 4096, kMostBodyBones = 255;
+constexpr std::size_t kMostBodyBones = 255;
 
 struct Head {
     std::uint32_t magic, version;
@@ -119,8 +119,8 @@ State readState(Reader& reader, const State& like) {
         state.rests.push_back({time, reader.value<std::uint32_t>() != 0});
     }
     const std::uint64_t spheres = reader.peekCount();
-    if (spheres > kMostSpheres) reader.good = false;
-    reader.all(state.spheres, static_cast<std::size_t>(std::min<std::uint64_t>(spheres, kMostSpheres)));
+    if (spheres > kMaxGivenSpheres) reader.good = false;
+    reader.all(state.spheres, static_cast<std::size_t>(std::min<std::uint64_t>(spheres, kMaxGivenSpheres)));
     const std::uint64_t capsules = reader.peekCount();
     if (capsules > kMaxCapsules) reader.good = false;
     reader.all(state.capsules, static_cast<std::size_t>(std::min<std::uint64_t>(capsules, kMaxCapsules)));

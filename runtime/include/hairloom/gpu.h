@@ -32,7 +32,9 @@
  * NUMBERS says which of hl_asset_hairs() each is.
  *
  * Binding: in Direct3D register `number` of class B (constants), T (read) or U (written); in Vulkan set 0,
- * binding `number` + HL_GPU_VULKAN_B, _T or _U, uniform buffers for B and storage buffers for T and U. */
+ * binding `number` + HL_GPU_VULKAN_B, _T or _U, uniform buffers for B and storage buffers for T and U.
+ * Compile HLSL for Direct3D with the macro HAIRLOOM_DXBC and, of compute shaders, with strict IEEE
+ * arithmetic. */
 
 #include "hairloom/hairloom.h"
 
@@ -203,8 +205,8 @@ HL_API hl_code hl_gpu_fill_frame(hl_instance* instance, uint32_t buffer, void* d
 /* From here on the pass GUIDES moves the hair, from where the CPU has it. hl_instance_reset(), _load(),
  * _step(), _play(), _set() and another level end it, and copies are on the CPU: begin again. What
  * hl_instance_read() gives stays as it was. The hair meets spheres, not the skin. HL_BAD_VALUE where
- * strandModel is springs, clampedPoints is not 2, or the level is not the finest. Takes memory, as
- * hl_gpu_step() does. */
+ * strandModel is springs, clampedPoints is not 2, or the level is not the finest. Takes memory: hl_gpu_step()
+ * asks for none but for more spheres than there were, and hl_gpu_fill_frame() of its buffers for none. */
 HL_API hl_code hl_gpu_begin(hl_instance* instance, hl_error* error);
 /* Takes a frame as hl_instance_step() does; HL_WRONG_SIZE where it has more spheres than HL_GPU_SPHERES and
  * than the asset, where each capsule has both of its ends to itself. With dt 0 nothing
@@ -238,8 +240,11 @@ typedef struct hl_gpu_view {
     float min_pixels;  /* narrower hairs are as wide, and a share of their pixels is left out; 1 */
     uint32_t points, hairs;
 } hl_gpu_view;
-/* All but clip_from_world, eye and pixel_size, which become 0. */
-HL_API hl_code hl_gpu_view_init(const hl_asset* asset, hl_gpu_view* view, hl_error* error);
+/* All but clip_from_world, eye and pixel_size, which become 0. `size` is sizeof(hl_gpu_view), which the plain
+ * name tells. */
+HL_API hl_code hl_gpu_view_init_sized(const hl_asset* asset, hl_gpu_view* view, size_t size, hl_error* error);
+#define hl_gpu_view_init(asset, view, error) \
+    hl_gpu_view_init_sized((asset), (view), sizeof(hl_gpu_view), (error))
 /* The constant block of a lamp far away: where its grid of fibres lies, and its light. Space as of
  * hl_gpu_view. */
 typedef struct hl_gpu_lamp {
@@ -252,11 +257,16 @@ typedef struct hl_gpu_lamp {
 /* A lamp of white light 1 in the direction `to_light` (three numbers, not 0), and a grid around the ball of
  * `radius` metres at `centre`. Hair outside casts no shadow: give the head's place and about the hair's
  * length and a half. HL_BAD_VALUE of what is no direction, place or radius. */
-HL_API hl_code hl_gpu_lamp_init(const float to_light[3], const float centre[3], float radius,
-                                hl_gpu_lamp* lamp, hl_error* error);
+HL_API hl_code hl_gpu_lamp_init_sized(const float to_light[3], const float centre[3], float radius,
+                                      hl_gpu_lamp* lamp, size_t size, hl_error* error);
+#define hl_gpu_lamp_init(to_light, centre, radius, lamp, error) \
+    hl_gpu_lamp_init_sized((to_light), (centre), (radius), (lamp), sizeof(hl_gpu_lamp), (error))
 /* After another hair_share: sets `hairs` and specular[3], so that fewer hairs cover as much, and nothing
  * else. */
-HL_API hl_code hl_gpu_frame_view(const hl_instance* instance, hl_gpu_view* view, hl_error* error);
+HL_API hl_code hl_gpu_frame_view_sized(const hl_instance* instance, hl_gpu_view* view, size_t size,
+                                       hl_error* error);
+#define hl_gpu_frame_view(instance, view, error) \
+    hl_gpu_frame_view_sized((instance), (view), sizeof(hl_gpu_view), (error))
 
 #ifdef __cplusplus
 }
