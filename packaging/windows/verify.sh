@@ -166,6 +166,24 @@ walkThroughTheEditor() {
     HAIRLOOM_VIEWPORT=apart roomTests editor none 'WalkTest.*:PictureTest.AWindow*'
 }
 
+# buildsDirect3D: samples/direct3d by what is installed of the runtime alone, and beside Microsoft's compiler.
+buildsDirect3D() {
+    rm -rf "$out/direct3d" "$out/direct3d-prefix"
+    cmake --install "$out" --component runtime --prefix "$out/direct3d-prefix" &&
+        cmake -S samples/direct3d -B "$out/direct3d" -G Ninja -DCMAKE_BUILD_TYPE=Release "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$out/bin" \
+            "-DCMAKE_TOOLCHAIN_FILE=$PWD/packaging/windows/mingw64.cmake" "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror -D_WIN32_WINNT=0x0A00" \
+            "-Dhairloom-runtime_DIR=$(dirname "$(find "$out/direct3d-prefix" -name hairloom-runtime-config.cmake)")" &&
+        cmake --build "$out/direct3d"
+}
+
+# playsOnDirect3D STYLE OPTION…: its hairs lie where the CPU has them.
+playsOnDirect3D() {
+    local asset=$pictures/$1.hairrt
+    [ -f "$asset" ] || cli export "$pictures/$1.hairloom" --format runtime -o "$asset" || return
+    underWine direct3d_hair '^as expected' "$asset" "$out/direct3d-prefix/share/hairloom-runtime/shaders" --check "${@:2}" || return
+    measured "$(tr -d '\r' < "$said/printed.txt" | sed -n "s/^apart from the CPU's: //p")"
+}
+
 rm -rf "$said" "$pictures" "$screenshots" "$results"
 mkdir -p "$said" "$pictures" "$screenshots"
 archives=${HAIRLOOM_WINDOWS_ARCHIVES:-../shared/windows-sysroot}
@@ -194,6 +212,7 @@ check "pictures as inputs" "Vulkan" readsPictures short
 check "samples/window" "Vulkan" tests/samples/window_screenshot.sh "$screenshots/window-vulkan.png" \
     "$wine" "$out/bin/hairloom-window.exe" shoulder --guides --backend vulkan --width 480 --height 480
 
+check "samples/direct3d builds" "CPU" buildsDirect3D
 check "clang 14 on the sources for Windows" "CPU" packaging/windows/clang.sh "$out"
 for room in "${on_cpu[@]}"; do check "tests of $room" "CPU" roomTests "$room" none; done
 
@@ -212,6 +231,8 @@ for renderer in gl vulkan; do
         check "picture of '$style'" "$backend" likeVulkan "$style.hairloom" 0.02 "$pictures/$style-d3d11-$renderer.png"
         check "strands of '$style' alone" "$backend" likeVulkan "$style.hair" 0.001 "$pictures/$style-strands-d3d11-$renderer.png"
     done
+    check "samples/direct3d" "$backend" playsOnDirect3D short -o "$pictures/direct3d-$renderer.ppm" --frames 10
+    check "samples/direct3d, shaded" "$backend" playsOnDirect3D short -o "$pictures/direct3d-shaded-$renderer.ppm" --frames 5 --shade
     check "samples/window" "$backend" tests/samples/window_screenshot.sh "$screenshots/window-d3d11-$renderer.png" \
         "$wine" "$out/bin/hairloom-window.exe" shoulder --guides --backend d3d11 --width 480 --height 480
     if [ "$with_editor" = ON ]; then

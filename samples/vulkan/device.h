@@ -5,34 +5,15 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <string>
 #include <vector>
 
-constexpr std::uint32_t kWidth = 640, kHeight = 640;
+#include "../gpu_host.h"
+
 constexpr VkFormat kColour = VK_FORMAT_R8G8B8A8_SRGB, kDepth = VK_FORMAT_D32_SFLOAT;
 
-[[noreturn]] inline void fail(const std::string& words) {
-    std::fprintf(stderr, "%s\n", words.c_str());
-    std::exit(1);
-}
 inline void check(VkResult result, const char* what) {
     if (result != VK_SUCCESS) fail(std::string(what) + ": VkResult " + std::to_string(result));
-}
-/// At a multiple of 16 bytes, as assets want it.
-struct alignas(16) Piece {
-    unsigned char bytes[16];
-};
-inline std::vector<Piece> readFile(const std::string& name, std::size_t& size) {
-    std::ifstream file(name, std::ios::binary | std::ios::ate);
-    if (!file) fail(name + ": cannot be read");
-    size = static_cast<std::size_t>(file.tellg());
-    std::vector<Piece> pieces(size / sizeof(Piece) + 1);
-    file.seekg(0);
-    file.read(reinterpret_cast<char*>(pieces.data()), static_cast<std::streamsize>(size));
-    return pieces;
 }
 
 struct Buffer {

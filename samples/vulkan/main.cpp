@@ -2,26 +2,20 @@
 // Plays a runtime asset with Vulkan 1.3: the CPU steps guides, or with --gpu a kernel does. The kernels of
 // share/hairloom-runtime/shaders make all hairs of them and draw them as ribbons, and nothing is read back
 // but the last image, which is written as PPM.
-//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--shade] [--share S] [--compare]
+//   vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--shade] [--share S] [--compare] [--check]
 // --frames 0 draws the hair at rest. --shade draws it as its material says, with shadows of hair on hair.
 // --share makes and draws that share of the hairs, above 0 to 1, as a character far off has them.
-// --compare reads the hairs of each frame back and says how far they are from hl_instance_read_hairs().
-
-#include <hairloom/gpu.h>
-#include <hairloom/hairloom.hpp>
+// --compare reads the hairs of each frame back and says how far they are from hl_instance_read_hairs();
+// --check fails where that is more than docs/gpu-simulation.md says.
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "device.h"
 
 namespace {
-
-void check(hl_code code, const hl_error& error) {
-    if (code != HL_OK) fail(error.words);
-}
 
 /// A row of HL_GPU_BINDINGS.
 struct Row {
@@ -194,115 +188,18 @@ void draw(const Gpu& gpu, const std::vector<Pass>& passes, const Image& colour, 
     check(vkQueueWaitIdle(gpu.queue), "vkQueueWaitIdle");
 }
 
-/// Looks at the hair from the front; Vulkan's clip space has y downwards and depth from 0. A lamp shines from
-/// where that of `view` does.
-void look(const hl_asset_info& asset, hl_gpu_view& view, hl_gpu_lamp& lamp) {
-    std::array<float, 3> centre{};
-    float size = 0, squares = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-        centre[c] = 0.5f * (asset.bounds_min[c] + asset.bounds_max[c]);
-        const float side = asset.bounds_max[c] - asset.bounds_min[c];
-        size = std::max(size, side);
-        squares += side * side;
-    }
-    const float away = 2 * size, f = 2.2f, nearest = 0.05f, farthest = 2 * away + 1;
-    const float z = farthest / (nearest - farthest);
-    const std::array<float, 3> eye{centre[0], centre[1], centre[2] + away};
-    const float matrix[16] = {
-        f, 0, 0, 0, 0, -f, 0, 0, 0, 0, z, -1, -f * eye[0], f * eye[1], z * nearest - z * eye[2], eye[2]};
-    std::copy_n(matrix, 16, view.clip_from_world);
-    std::copy_n(eye.begin(), 3, view.eye);
-    view.pixel_size = 2 / (f * kHeight);
-    hl_error error{};
-    check(hl_gpu_lamp_init(view.to_light, centre.data(), 0.55f * std::sqrt(squares), &lamp, &error), error);
-    std::fill_n(lamp.light, 3, 2.0f);
-    std::printf("seen from %.6f %.6f %.6f towards %.6f %.6f %.6f\n", eye[0], eye[1], eye[2], centre[0],
-                centre[1], centre[2]);
-}
-
-/// Metres: how far hairs in the device's buffer lie from those of the CPU at most, and in the mean of
-/// squares. `slots`: where the device has each of the CPU's hairs.
-void compare(const Buffer& made, const std::vector<std::uint32_t>& slots, const std::vector<float>& expected,
-             double& farthest, double& squares) {
-    const auto* const at = static_cast<const float*>(made.mapped);
-    double sum = 0;
-    const std::size_t points = expected.size() / 3, ofHair = points / slots.size();
-    for (std::size_t p = 0; p < points; ++p) {
-        const std::size_t there = slots[p / ofHair] * ofHair + p % ofHair;
-        double squared = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double apart =
-                static_cast<double>(at[4 * there + c]) - static_cast<double>(expected[3 * p + c]);
-            squared += apart * apart;
-        }
-        farthest = std::max(farthest, std::sqrt(squared));
-        sum += squared;
-    }
-    squares = std::max(squares, std::sqrt(sum / static_cast<double>(points)));
-}
-
-/// Where the device has each of the hairs that the CPU reads: it makes those first that are left longest.
-std::vector<std::uint32_t> slotsOf(const hl_instance* onCpu, const Buffer& numbers, std::uint32_t hairs) {
-    std::vector<std::uint32_t> read(hairs), slots(hairs), slotOf(numbers.bytes / sizeof(std::uint32_t), ~0u);
-    hl_error error{};
-    check(hl_instance_hair_numbers(onCpu, read.data(), read.size(), &error), error);
-    const auto* const known = static_cast<const std::uint32_t*>(numbers.mapped);
-    for (std::uint32_t slot = 0; slot < hairs; ++slot) slotOf[known[slot]] = slot;
-    for (std::uint32_t hair = 0; hair < hairs; ++hair) {
-        slots[hair] = slotOf[read[hair]];
-        if (slots[hair] == ~0u) fail("the device makes other hairs than the CPU reads");
-    }
-    return slots;
-}
-
-void writeImage(const char* name, const Buffer& pixels) {
-    std::ofstream file(name, std::ios::binary);
-    file << "P6\n" << kWidth << ' ' << kHeight << "\n255\n";
-    const auto* const at = static_cast<const char*>(pixels.mapped);
-    for (std::size_t p = 0; p < std::size_t{kWidth} * kHeight; ++p) file.write(at + 4 * p, 3);
-    if (!file.flush()) fail(std::string(name) + ": cannot be written");
-}
-
 }  // namespace
 
 int main(int count, char** words) {
-    if (count < 3)
-        fail("vulkan_hair ASSET SHADERS [-o IMAGE] [--frames N] [--gpu] [--shade] [--share S] [--compare]");
-    const char* image = nullptr;
-    int frames = 60;
-    float share = 1;
-    bool comparing = false, onGpu = false, shading = false;
-    for (int i = 3; i < count; ++i) {
-        const std::string word = words[i];
-        if (word == "--compare")
-            comparing = true;
-        else if (word == "--gpu")
-            onGpu = true;
-        else if (word == "--shade")
-            shading = true;
-        else if (word == "-o" && i + 1 < count)
-            image = words[++i];
-        else if (word == "--share" && i + 1 < count)
-            share = std::strtof(words[++i], nullptr);
-        else if (word == "--frames" && i + 1 < count)
-            frames = std::max(0, std::atoi(words[++i]));
-        else
-            fail(word + ": not known");
-    }
-
-    if (onGpu && frames == 0) fail("--frames 0 is for guides on the CPU");
+    const Options options = optionsOf(count, words);
     hl_error error{};
     std::size_t size = 0;
-    const std::vector<Piece> bytes = readFile(words[1], size);
+    const std::vector<Piece> bytes = readFile(options.asset, size);
     hairloom::game::Asset asset;
-    hairloom::game::Instance hair, onCpu;
+    hairloom::game::Instance hair;
     if (!asset.open(bytes.data(), size, &error)) fail(error.words);
     if (!hair.make(asset, HL_GUIDES | HL_LEVELS, nullptr, &error)) fail(error.words);
-    if (!hair.setLevel(HL_LEVEL_FINEST, share, &error)) fail(error.words);
-    // There to compare with, and for nothing else.
-    if (comparing && (!onCpu.make(asset, HL_HAIRS | HL_LEVELS, nullptr, &error) ||
-                      !onCpu.setLevel(HL_LEVEL_FINEST, share, &error)))
-        fail(error.words);
+    if (!hair.setLevel(HL_LEVEL_FINEST, options.share, &error)) fail(error.words);
 
     const Gpu gpu;
     std::vector<Buffer> buffers;
@@ -317,19 +214,18 @@ int main(int count, char** words) {
     }
     std::vector<Pass> passes;
     for (std::uint32_t p = 0; p < HL_GPU_PASS_COUNT; ++p) {
-        if (p == HL_GPU_PASS_GUIDES && !onGpu) continue;
-        if (p >= HL_GPU_PASS_RIBBONS && (p != HL_GPU_PASS_RIBBONS) != shading) continue;
+        if (!runs(p, options)) continue;
         Pass& pass = passes.emplace_back();
         pass.info.size = sizeof pass.info;
         check(hl_gpu_frame_pass(hair.get(), p, &pass.info, &error), error);
         bindBuffers(gpu, buffers, p, pass);
-        makePipeline(gpu, words[2], pass);
+        makePipeline(gpu, options.shaders, pass);
     }
     hl_gpu_view view;
     hl_gpu_lamp lamp;
     check(hl_gpu_view_init(asset.get(), &view, &error), error);
     check(hl_gpu_frame_view(hair.get(), &view, &error), error);
-    look(asset.describe(), view, lamp);
+    look(asset.describe(), -1, view, lamp);
     std::memcpy(buffers[HL_GPU_BUFFER_VIEW].mapped, &view, sizeof view);
     std::memcpy(buffers[HL_GPU_BUFFER_LAMP].mapped, &lamp, sizeof lamp);
 
@@ -339,7 +235,7 @@ int main(int count, char** words) {
                 check(hl_gpu_fill_frame(hair.get(), b, buffers[b].mapped, buffers[b].bytes, &error), error);
         }
     };
-    if (onGpu) {
+    if (options.onGpu) {
         check(hl_gpu_begin(hair.get(), &error), error);
         fill(HL_GPU_BEGIN);
         fill(HL_GPU_GUIDES);
@@ -351,38 +247,29 @@ int main(int count, char** words) {
     const Image depth =
         gpu.image(kDepth, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
     const Buffer pixels = gpu.buffer(std::size_t{4} * kWidth * kHeight, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    std::vector<float> expected;
-    const std::vector<std::uint32_t> slots =
-        comparing ? slotsOf(onCpu.get(), buffers[HL_GPU_BUFFER_NUMBERS], view.hairs)
-                  : std::vector<std::uint32_t>();
-    double farthest = 0, squares = 0;
-    const float wind[3] = {2, 0, 1};
-    for (int f = std::min(1, frames); f <= frames; ++f) {
-        hairloom::game::Frame frame;
-        const float turn = 0.3f * std::sin(0.1f * static_cast<float>(f)), c = std::cos(turn),
-                    s = std::sin(turn);
-        const float head[12] = {c, 0, s, 0, 0, 1, 0, 0, -s, 0, c, 0};
-        frame.time = f / 60.0;
-        frame.head = head;
-        frame.wind = wind;
-        if (f == 0) frame.dt = 0;
-        check(onGpu ? hl_gpu_step(hair.get(), &frame, &error) : hl_instance_step(hair.get(), &frame, &error),
+    std::optional<Comparison> comparison;
+    if (options.comparing) {
+        const Buffer& numbers = buffers[HL_GPU_BUFFER_NUMBERS];
+        comparison.emplace(asset, options.share, static_cast<const std::uint32_t*>(numbers.mapped),
+                           numbers.bytes / sizeof(std::uint32_t), view.hairs);
+    }
+    for (int f = std::min(1, options.frames); f <= options.frames; ++f) {
+        const Turning turning(f);
+        check(options.onGpu ? hl_gpu_step(hair.get(), &turning.frame, &error)
+                            : hl_instance_step(hair.get(), &turning.frame, &error),
               error);
         fill(HL_GPU_FRAME);
-        fill(onGpu ? HL_GPU_STEP : HL_GPU_GUIDES);
-        draw(gpu, passes, colour, depth, pixels, shading ? 0 : 0.5f);
-        if (!comparing) continue;
-        if (!onCpu.step(frame, &error) || !onCpu.readHairs(expected, &error)) fail(error.words);
-        compare(buffers[HL_GPU_BUFFER_POINTS], slots, expected, farthest, squares);
+        fill(options.onGpu ? HL_GPU_STEP : HL_GPU_GUIDES);
+        draw(gpu, passes, colour, depth, pixels, options.shading ? 0 : 0.5f);
+        if (comparison)
+            comparison->step(turning.frame, static_cast<const float*>(buffers[HL_GPU_BUFFER_POINTS].mapped));
     }
-    if (image) writeImage(image, pixels);
+    if (options.image) writeImage(options.image, pixels.mapped, std::size_t{4} * kWidth);
     std::size_t uploaded = 0;
     for (const hl_gpu_buffer_info& info : infos) {
-        if (info.fill == HL_GPU_FRAME || info.fill == (onGpu ? HL_GPU_STEP : HL_GPU_GUIDES))
+        if (info.fill == HL_GPU_FRAME || info.fill == (options.onGpu ? HL_GPU_STEP : HL_GPU_GUIDES))
             uploaded += info.bytes;
     }
-    std::printf("%u hairs, %d frames, %zu bytes uploaded in each\n", view.hairs, frames, uploaded);
-    if (comparing)
-        std::printf("apart from the CPU's: %.3g m at most, %.3g m root mean square\n", farthest, squares);
-    return 0;
+    std::printf("%u hairs, %d frames, %zu bytes uploaded in each\n", view.hairs, options.frames, uploaded);
+    return comparison ? comparison->say(options) : 0;
 }

@@ -22,7 +22,8 @@ bool inRuntime(const std::string& file) {
 
 /// What games are told to copy (docs/integrate.md).
 bool isForGames(const std::string& file) {
-    return file == "samples/player/main.cpp" || file.rfind("samples/vulkan/", 0) == 0 ||
+    return file == "samples/player/main.cpp" || file == "samples/gpu_host.h" ||
+           file.rfind("samples/vulkan/", 0) == 0 || file.rfind("samples/direct3d/", 0) == 0 ||
            file == "tests/runtime/installed/step_strands.cpp";
 }
 

@@ -49,18 +49,18 @@ endfunction()
 foreach(style IN ITEMS short shoulder)
     write_sample_asset(${style} --spheres-only)  # guides on the GPU meet spheres, not the skin
     set(image "${PICTURES}/vulkan-${style}.ppm")
-    play(${style} -o "${image}" --frames 20 --compare)
+    play(${style} -o "${image}" --frames 20 --check)
     # docs/gpu-simulation.md: 1e-6 m in hairs of 0.2 m.
     if(NOT output MATCHES "36000 hairs, .*apart from the CPU's: ([0-9]\\.?[0-9]*e-0[6-9]|0) m at most")
         message(FATAL_ERROR "${style}: expected 36000 hairs within 0.00001 m of the CPU's")
     endif()
     # The same with guides on the GPU (docs/gpu-simulation.md), in few frames: lavapipe takes its time for rods.
-    play(${style} --frames 6 --gpu --compare)
+    play(${style} --frames 6 --gpu --check)
     if(NOT output MATCHES "at most, ([0-9]\\.?[0-9]*e-(0[5-9]|1[0-9])|0|0\\.0001[0-9]*) m root mean square")
         message(FATAL_ERROR "${style}: expected 0.0002 m root mean square of the CPU's at most")
     endif()
     # A share of them: other dispatches, the same hairs as the CPU reads then.
-    play(${style} --frames 5 --share 0.3 --compare)
+    play(${style} --frames 5 --share 0.3 --check)
     if(NOT output MATCHES "1[0-9][0-9][0-9][0-9] hairs, .*apart from the CPU's: ([0-9]\\.?[0-9]*e-0[6-9]|0) m at most")
         message(FATAL_ERROR "${style}: expected about a third of 36000 hairs within 0.00001 m of the CPU's")
     endif()
