@@ -45,7 +45,8 @@ class EngineMethod : public StrandMethod {
 
     void reset(const SceneInput& scene, const HeadPose& pose) override { engine_.reset(scene.rootsAt(pose)); }
 
-    void step(const SceneInput&, const HeadPose&, const runtime::FrameInput& input) override {
+    void step(const SceneInput& scene, const HeadPose&, const runtime::FrameInput& input) override {
+        engine_.setSkinSpheres(scene.skinSpheres());
         engine_.step(input);
         const runtime::StepReport& report = engine_.lastStep();
         milliseconds_ = report.milliseconds;

@@ -5,6 +5,7 @@
 
 #include "core/groom/carried_weight.h"
 #include "core/groom/spheres.h"
+#include "core/simulation/scene_input.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom {
@@ -40,11 +41,17 @@ Sag distances(const Groom& groom, std::span<const Vec3f> positions_ws) {
     return sag;
 }
 
+/// Spheres that push the groom's hair: rods meet the skin in place of those that stand for it.
+std::vector<CollisionSphere> pushingSpheres(const Groom& groom) {
+    if (groom.simulation.strandModel != runtime::StrandModel::rods) return groom.spheres;
+    const auto ofSkin = skinSpheresOf(groom);
+    return keptSpheres(groom.spheres, [&](std::size_t s) { return ofSkin.empty() || ofSkin[s] == 0; });
+}
+
 /// How deep the strand's points stand in collision spheres, metres; below 0 outside.
-float depthOf(const Groom& groom, std::uint32_t strand) {
+float depthOf(const Groom& groom, const ColliderDistance& distance, std::uint32_t strand) {
     const runtime::SimulationSettings& s = groom.simulation;
     const auto points = groom.strand(strand);
-    const ColliderDistance distance(groom.spheres);
     float deepest = -1e30f;
     for (std::size_t p = s.clampedPoints; p < points.size(); ++p) {
         const float along = static_cast<float>(p) / static_cast<float>(points.size() - 1);
@@ -81,11 +88,13 @@ Groom holdingItsShape(const Groom& groom) {
 
 std::vector<SaggingStrand> strandsThatSag(const Groom& groom, const Sag& sag, double limitMm) {
     std::vector<SaggingStrand> strands;
+    const std::vector<CollisionSphere> spheres = pushingSpheres(groom);
+    const ColliderDistance distance(spheres);
     const bool limp = !(runtime::greatestStiffness(groom.simulation) > 0);
     for (std::uint32_t s = 0; s < sag.strandMm.size(); ++s) {
         const auto mm = static_cast<double>(sag.strandMm[s]);
         if (!(mm > limitMm)) continue;
-        const float depth = depthOf(groom, s);
+        const float depth = depthOf(groom, distance, s);
         std::string reason = "the strand does not carry its weight";
         if (limp) {
             reason = "its stiffness is zero";

@@ -6,6 +6,7 @@
 #include "core/animation/root_motion.h"
 #include "core/groom/spheres.h"
 #include "core/groom/validate.h"
+#include "hairloom/body_spheres.h"
 
 namespace hairloom {
 namespace {
@@ -29,6 +30,11 @@ std::vector<runtime::Sphere> spheresAt(std::span<const CollisionSphere> spheres,
         placed[s] = toSphere(centre_ws, spheres[s].radius);
     }
     return placed;
+}
+
+runtime::Vector<std::uint8_t> skinSpheresOf(const Groom& groom) {
+    if (!groom.body) return {};
+    return runtime::spheresOfSkin(*groom.body, spheresAt(groom.spheres, {}), capsulesOf(groom.spheres));
 }
 
 std::vector<runtime::BonePose> bodyAt(const Groom& groom, const HeadPose& pose) {
@@ -55,6 +61,14 @@ Result<SceneInput> SceneInput::make(const Groom& groom) {
                     finding.fix.empty() ? "expected a groom that validates" : finding.fix);
     }
     return SceneInput(groom);
+}
+
+SceneInput::SceneInput(const Groom& groom)
+    : groom_(groom), bindings_(groom.rootBindings()), skinSpheres_(skinSpheresOf(groom)) {}
+
+void SceneInput::setSpheres(std::vector<CollisionSphere> spheres) {
+    groom_.spheres = std::move(spheres);
+    skinSpheres_ = skinSpheresOf(groom_);
 }
 
 runtime::StrandsView SceneInput::strands() const {

@@ -59,6 +59,10 @@ std::string Engine::setBody(std::shared_ptr<const BodyField> body) {
     return {};
 }
 
+void Engine::setSkinSpheres(std::span<const std::uint8_t> ofSkin) {
+    impl_->skinSpheres_.assign(ofSkin.begin(), ofSkin.end());
+}
+
 std::size_t Engine::bodyBytes() const {
     if (!impl_->meetsBody()) return 0;
     const std::size_t loads = impl_->plan_.on(Effect::collision)
@@ -131,7 +135,7 @@ const StepReport& Engine::lastStep() const {
 }
 
 Measurements Engine::measure() const {
-    return measureState(*impl_->shape_, impl_->state_, impl_->settings_);
+    return measureState(*impl_->shape_, impl_->state_, impl_->settings_, impl_->spheres_.ofSkin);
 }
 
 std::size_t Engine::effectBytes(Effect effect) const {

@@ -352,8 +352,13 @@ void Engine::Impl::wakeBlocks() {
 Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     Frame frame{};
     frame.input = &input;
-    frame.context = substepContext(settings_, plan_, input.dt, substeps_, movingSpheres_, movingCapsules_);
-    if (!model().listsSpheres) {
+    const std::span<const MovingSphere> spheres(movingSpheres_);
+    frame.context =
+        substepContext(settings_, plan_, input.dt, substeps_,
+                       model().listsSpheres ? spheres.first(pressing_) : spheres, movingCapsules_);
+    if (model().listsSpheres) {
+        frame.context.shelters = spheres;
+    } else {
         // Those along capsules come last.
         const auto given = std::count_if(
             spheres_.usable.begin(), spheres_.usable.begin() + static_cast<std::ptrdiff_t>(spheres_.given),
@@ -406,6 +411,8 @@ void Engine::Impl::step(const FrameInput& input) {
     report_.rejectedWinds = takeWind(settings_, input, wind_);
     report_.substeps = substeps_ = substepsOf(input);
     takeBody(input);
+    if (!movingBody_.empty() && skinSpheres_.size() == spheres_.given)
+        spheres_.ofSkin.assign(skinSpheres_.begin(), skinSpheres_.end());
     wakeBlocks();
     replan(spheres_.planned, spheres_.plannedMotion,
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
@@ -414,8 +421,9 @@ void Engine::Impl::step(const FrameInput& input) {
     if (!plan_.on(Effect::collision)) {
         movingSpheres_ = {};
         movingCapsules_ = {};
+        pressing_ = 0;
     } else if (model().listsSpheres) {
-        moveCapsules(spheres_, substeps_, movingSpheres_, movingCapsules_);
+        pressing_ = moveCapsules(spheres_, substeps_, movingSpheres_, movingCapsules_);
         scratch_.reserveSpheres(spheres_.given, movingCapsules_.size());
     } else {
         moveSpheres(spheres_, substeps_, movingSpheres_);

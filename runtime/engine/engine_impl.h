@@ -81,9 +81,10 @@ struct Engine::Impl : InMemory {
     Host host_;
     std::shared_ptr<const RestShape> shape_;
     std::shared_ptr<const BodyField> body_;
-    Floats clearances_;     // of the body; empty without one
-    Floats bodySeen_;       // kBodyPlanes, per block
-    bool bodyLost_ = true;  // what they say is void
+    Floats clearances_;                 // of the body; empty without one
+    Floats bodySeen_;                   // kBodyPlanes, per block
+    bool bodyLost_ = true;              // what they say is void
+    Vector<std::uint8_t> skinSpheres_;  // as Engine::setSkinSpheres() was told
     BodyTable bodyTable_;
     Vector<std::uint32_t> bodyCarriers_;  // carriersOf()
     OwnedStrands strands_;                // as their model has them
@@ -99,6 +100,7 @@ struct Engine::Impl : InMemory {
     Floats nextRoots_;  // as State::roots, at the frame's end
     FrameSpheres spheres_;
     Vector<MovingSphere> movingSpheres_;
+    std::size_t pressing_ = 0;  // of them, those that stand for no skin
     Vector<MovingCapsule> movingCapsules_;
     MovingBody movingBody_;
     bool bodyMoves_ = false;

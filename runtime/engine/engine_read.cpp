@@ -70,7 +70,8 @@ void readVelocities(const RestShape& shape, const State& state, std::span<Float3
                  });
 }
 
-Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings) {
+Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings,
+                          std::span<const std::uint8_t> skinSpheres) {
     Measurements result;
     const double rate = state.substep > 0.0f ? 1.0 / static_cast<double>(state.substep) : 0.0;
     const SimulationSettings& s = settings;
@@ -107,8 +108,14 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
                     static_cast<double>(sphere.radius) + collisionRadius - lengthOf(at_ws - sphere.center_ws);
                 result.maxPenetration = std::max(result.maxPenetration, depth);
             };
-            for (const Sphere& sphere : state.spheres) meet(sphere);
+            const auto isOfSkin = [&](std::size_t k) {
+                return k < skinSpheres.size() && skinSpheres[k] != 0;
+            };
+            for (std::size_t k = 0; k < state.spheres.size(); ++k) {
+                if (!isOfSkin(k)) meet(state.spheres[k]);
+            }
             for (const Capsule& capsule : state.capsules) {
+                if (isOfSkin(capsule.first) && isOfSkin(capsule.second)) continue;
                 if (isCapsule(capsule, state.spheres))
                     meet(
                         nearestOfCapsule(state.spheres[capsule.first], state.spheres[capsule.second], at_ws));
@@ -142,7 +149,7 @@ std::size_t Engine::Impl::baseBytes() const {
            (state_.spheres.size() + spheres_.usable.size() + spheres_.planned.size()) * sizeof(Sphere) +
            (spheres_.motion.size() + spheres_.plannedMotion.size()) * sizeof(Float3) +
            (state_.capsules.size() + spheres_.capsules.size()) * sizeof(Capsule) + spheres_.ends.size() +
-           state_.rests.size() * sizeof(Rest) +
+           spheres_.ofSkin.size() + skinSpheres_.size() + state_.rests.size() * sizeof(Rest) +
            (nextRoots_.size() + clearances_.size() + bodySeen_.size()) * sizeof(float) + bodyTable_.bytes() +
            blockReports_.size() * sizeof(BlockReport) + scratch_.bytes();
 }

@@ -85,6 +85,9 @@ MovingCapsule movingOf(const FrameSpheres& spheres, const Capsule& capsule, std:
                  length(spheres.usable[capsule.second].center_ws - spheres.usable[capsule.first].center_ws));
     moving.around = {(first.from_ws + second.from_ws) * 0.5f, (first.step + second.step) * 0.5f,
                      0.5f * apart + widest, std::max(first.stepLength, second.stepLength)};
+    // Nothing comes near it.
+    if (spheres.ofSkin[capsule.first] != 0 && spheres.ofSkin[capsule.second] != 0)
+        moving.around.radius = -kFarthest;
     return moving;
 }
 
@@ -155,6 +158,7 @@ void takeSpheres(const SimulationSettings& settings, float longestStrand, const 
     spheres.usable.assign(given.begin(), given.end());
     spheres.given = given.size();
     spheres.motion.assign(given.size(), Float3{});
+    spheres.ofSkin.assign(given.size(), 0);
     spheres.rejected = 0;
     for (std::size_t i = 0; i < given.size(); ++i) {
         Sphere& sphere = spheres.usable[i];
@@ -181,18 +185,24 @@ void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, Vector<Mov
     }
 }
 
-void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving,
-                  Vector<MovingCapsule>& capsules) {
+std::size_t moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving,
+                         Vector<MovingCapsule>& capsules) {
     moving.clear();
     capsules.clear();
     moving.reserve(spheres.given);
     capsules.reserve(spheres.capsules.size());
     const float share = 1.0f / static_cast<float>(substeps);
-    for (std::size_t i = 0; i < spheres.given; ++i) {
-        if (spheres.usable[i].radius > 0.0f && spheres.ends[i] == 0)
-            moving.push_back(movingOf(spheres, i, share));
-    }
+    const auto move = [&](bool ofSkin) {
+        for (std::size_t i = 0; i < spheres.given; ++i) {
+            if (spheres.usable[i].radius > 0.0f && spheres.ends[i] == 0 && (spheres.ofSkin[i] != 0) == ofSkin)
+                moving.push_back(movingOf(spheres, i, share));
+        }
+        return moving.size();
+    };
+    const std::size_t pressing = move(false);
+    move(true);
     for (const Capsule& capsule : spheres.capsules) capsules.push_back(movingOf(spheres, capsule, substeps));
+    return pressing;
 }
 
 std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& input, FrameWind& wind) {

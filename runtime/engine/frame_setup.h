@@ -16,11 +16,12 @@ namespace hairloom::runtime {
 
 /// The spheres of a frame. Those that cannot be used stay in their place at radius 0.
 struct FrameSpheres {
-    Vector<Sphere> usable;      ///< those of the frame, then those along capsules
-    std::size_t given = 0;      ///< of the frame
-    Vector<Capsule> capsules;   ///< between usable ones, each pair once
-    Vector<std::uint8_t> ends;  ///< 1 for a sphere that is the end of a capsule
-    Vector<Float3> motion;      ///< each one's displacement during the frame; none for a cut
+    Vector<Sphere> usable;        ///< those of the frame, then those along capsules
+    std::size_t given = 0;        ///< of the frame
+    Vector<Capsule> capsules;     ///< between usable ones, each pair once
+    Vector<std::uint8_t> ends;    ///< 1 for a sphere that is the end of a capsule
+    Vector<Float3> motion;        ///< each one's displacement during the frame; none for a cut
+    Vector<std::uint8_t> ofSkin;  ///< 1 for a sphere of the frame that a body is met in the place of
     /// What a plan looks at: the usable ones, and a sphere around each capsule.
     Vector<Sphere> planned;
     Vector<Float3> plannedMotion;
@@ -41,9 +42,10 @@ void takeSpheres(const SimulationSettings& settings, float longestStrand, const 
                  std::span<const Sphere> given, std::span<const Capsule> capsules, FrameSpheres& spheres);
 /// Those with a radius, on their way through the frame's substeps, capsules as spheres along them.
 void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving);
-/// Likewise, for what meets capsules as they are: their ends are none of the spheres.
-void moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving,
-                  Vector<MovingCapsule>& capsules);
+/// Likewise, for what meets capsules as they are: their ends are none of the spheres. Those of skin come
+/// last; returns how many come before them. Capsules of skin are nowhere near anything.
+std::size_t moveCapsules(const FrameSpheres& spheres, std::uint32_t substeps, Vector<MovingSphere>& moving,
+                         Vector<MovingCapsule>& capsules);
 
 /// The wind of a frame.
 struct FrameWind {

@@ -14,6 +14,8 @@ namespace hairloom::runtime {
 void readPositions(const RestShape& shape, const State& state, std::span<Float3> positions_ws);
 /// In the same order, metres per second over the last substep.
 void readVelocities(const RestShape& shape, const State& state, std::span<Float3> velocities_ws);
-Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings);
+/// `skinSpheres`: as Engine::setSkinSpheres() has them; what is inside these is not.
+Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings,
+                          std::span<const std::uint8_t> skinSpheres = {});
 
 }  // namespace hairloom::runtime

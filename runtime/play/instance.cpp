@@ -10,6 +10,7 @@
 #include "engine/state.h"
 #include "engine/strand_model.h"
 #include "follow/follow_kernels.h"
+#include "hairloom/body_spheres.h"
 #include "hairloom/capsules.h"
 
 namespace hairloom::runtime {
@@ -108,6 +109,11 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
         instance.body_ = makeShared<const BodyField>(std::move(*body.field));
         instance.bodyPose_.resize(std::max<std::size_t>(instance.bodyBones_.size(), 1));
         instance.engine_.setBody(instance.body_);
+        Vector<Sphere> spheres_ss;
+        for (const asset::Sphere& sphere : asset.spheres)
+            spheres_ss.push_back({{sphere.centre[0], sphere.centre[1], sphere.centre[2]}, sphere.radius});
+        instance.skinSpheres_ = spheresOfSkin(*instance.body_, spheres_ss, instance.restCapsules_);
+        instance.engine_.setSkinSpheres(instance.skinSpheres_);
     }
     if (wantsLevels) instance.makeLevels(asset, strands);
     return {std::move(instance), {}};
@@ -271,6 +277,9 @@ Outcome Instance::step(const hl_frame& frame) {
     played_ = false;
     leaveGpu();
     takeTurns();
+    // A game's own spheres are what it says.
+    const auto ofSkin = frame.spheres ? std::span<const std::uint8_t>() : std::span(skinSpheres_);
+    if (Engine* const engine = engineOfLevel()) engine->setSkinSpheres(ofSkin);
     if (levels_)
         stepLevel(input);
     else
@@ -376,7 +385,7 @@ hl_instance_info Instance::describe() const {
                  hairGroups_.size() * sizeof(std::uint32_t) + radii_.ofHairs.size() * 2 * sizeof(float) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
                  restCapsules_.size() * sizeof(Capsule) + (body_ ? body_->bytes() : 0) +
-                 spheres_.size() * sizeof(Sphere) + bytesOfLevels() +
+                 spheres_.size() * sizeof(Sphere) + skinSpheres_.size() + bytesOfLevels() +
                  (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3) +
                  allStrands_.size() * sizeof(std::uint32_t) + rootsBefore_.size() * sizeof(Float3) +
                  (clip_ ? clip_->bytes() : 0);

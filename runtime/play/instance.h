@@ -204,6 +204,7 @@ class Instance {
     Vector<Capsule> restCapsules_, capsules_;
     Vector<Sphere> spheres_;
     std::shared_ptr<const BodyField> body_;  ///< null: none
+    Vector<std::uint8_t> skinSpheres_;       // which of restSpheres_ stand for it
     Vector<std::size_t> bodyBones_;          // of a frame's bones
     Vector<BonePose> bodyPose_;
     Vector<RootFrame> roots_;

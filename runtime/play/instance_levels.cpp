@@ -39,6 +39,7 @@ void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
         levels_->engines.push_back(
             std::move(*Engine::make({level.offsets, level.positions_ss}, settings, host_).engine));
         if (body_) levels_->engines.back().setBody(body_);
+        levels_->engines.back().setSkinSpheres(skinSpheres_);
     }
     levels_->placed.resize(roots_.size());
     levels_->fade.resize(positions_.size());

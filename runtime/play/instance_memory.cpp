@@ -47,7 +47,7 @@ std::size_t sphereBytes(const Asset& asset) {
     const auto capsules = static_cast<std::size_t>(std::count_if(
         asset.spheres.begin(), asset.spheres.end(), [](const auto& sphere) { return sphere.joined > 0; }));
     const std::size_t along = kMaxAlongCapsule * (sizeof(Sphere) + sizeof(Float3) + 2 * sizeof(MovingSphere));
-    return asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
+    return asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere) + 3) +
            capsules * (along + 4 * sizeof(Capsule) + 3 * sizeof(MovingCapsule));
 }
 

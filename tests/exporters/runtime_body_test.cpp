@@ -129,6 +129,43 @@ TEST_F(RuntimeBody, GivesTheBitsOfTheEditorsSimulation) {
     EXPECT_GT(lost, 0.02f);
 }
 
+TEST_F(RuntimeBody, SpheresThatStandForTheSkinLeaveHairToIt) {
+    Groom with = hairyBall();
+    with.spheres = {{"skull", Vec3f(0, 0.02f, 0), 0.09f, {}, -1}};
+    Instance bare, skull, own;
+    ASSERT_TRUE(bare.make(opened(hairyBall()), HL_GUIDES | HL_LEVELS));
+    ASSERT_TRUE(skull.make(opened(with), HL_GUIDES | HL_LEVELS));
+    ASSERT_TRUE(own.make(opened(with), HL_GUIDES));
+    std::vector<float> points, others, pushed;
+    const auto sameAt = [&](int first, int last) {
+        for (int f = first; f <= last; ++f) {
+            step(bare, f);
+            step(skull, f);
+        }
+        EXPECT_TRUE(bare.readGuides(points) && skull.readGuides(others));
+        return points == others;
+    };
+    EXPECT_TRUE(sameAt(0, 30));
+    // A game's spheres push, whatever they stand for.
+    for (int f = 0; f <= 30; ++f) {
+        std::array<float, 12> head = rows(noddingAt(f).head_ws.matrix());
+        const Vec3f centre = noddingAt(f).head_ws * Vec3f(0, 0.02f, 0);
+        const std::array<float, 4> sphere{centre.x(), centre.y(), centre.z(), 0.09f};
+        Frame given(kFrame);
+        given.head = head.data();
+        given.time = static_cast<double>(f) * static_cast<double>(kFrame);
+        given.spheres = sphere.data();
+        given.sphere_count = 1;
+        ASSERT_TRUE(f == 0 ? own.reset(given) : own.step(given));
+    }
+    ASSERT_TRUE(own.readGuides(pushed));
+    EXPECT_NE(pushed, others);
+    // The engine of a coarser level knows, too.
+    for (Instance* hair : {&bare, &skull})
+        ASSERT_EQ(hl_instance_set_level(hair->get(), 1, 1, nullptr), HL_OK);
+    EXPECT_TRUE(sameAt(31, 60));
+}
+
 TEST_F(RuntimeBody, SavedStatesRunOnWithTheSameBits) {
     const Asset asset = opened(hairyBall());
     Instance hair, other;

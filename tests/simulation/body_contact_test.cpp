@@ -15,45 +15,16 @@
 #include "core/simulation/simulation.h"
 #include "hairloom/engine.h"
 #include "tests/geometry/test_meshes.h"
+#include "tests/simulation/hairy_ball.h"
 
 namespace hairloom {
 namespace {
 
 constexpr float kFrame = 1.0f / 60;
-constexpr std::uint32_t kPoints = 12;
-
-/// Hair of 12 cm that stands out from the upper half of a ball of 10 cm, which no sphere protects.
-Groom hairyBall() {
-    const auto ball = std::make_shared<const ScalpMesh>(test::meshOf(test::icosphereSoup(4, 0.1f)));
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<Vec3f> positions;
-    Random random(2);
-    while (offsets.size() <= 60) {
-        Vec3f out = test::randomPoint(random, 1).normalized();
-        out.y() = std::abs(out.y());
-        for (std::uint32_t p = 0; p < kPoints; ++p)
-            positions.push_back((0.1f + 0.12f * static_cast<float>(p) / (kPoints - 1)) * out);
-        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
-    }
-    Groom groom = makeGroom(std::move(offsets), std::move(positions));
-    groom.scalp = ball;
-    groom.simulation.angularStiffness = 0.05f;  // falls on the ball
-    groom.simulation.restGravity = 0;
-    return groom;
-}
-
-Groom withBody(Groom groom) {
-    auto baked = bakeBodyOf(groom, nullptr);
-    if (!baked) throw std::runtime_error(baked.error().message());
-    groom.body = baked->field;
-    return groom;
-}
-
-/// hairyBall() with its skin, measured once.
-const Groom& hairyBody() {
-    static const Groom kGroom = withBody(hairyBall());
-    return kGroom;
-}
+using test::hairyBall;
+using test::hairyBody;
+using test::withBody;
+constexpr std::uint32_t kPoints = test::kBallHairPoints;
 
 /// Metres that points lie in the ball, but for the first two of each strand.
 float deepest(std::span<const Vec3f> points, const HeadPose& pose) {

@@ -97,6 +97,11 @@ class Engine {
     /// out of it than they were authored. Springs pass through it. Empty, or BodyField::problem().
     std::string setBody(std::shared_ptr<const BodyField> body);
 
+    /// Of each sphere of the frames that follow, 1 where it stands for the skin of the body, as
+    /// spheresOfSkin() tells: what meets the body passes through it, and it keeps off wind alone. Empty, and
+    /// in frames with another number of spheres: none does.
+    void setSkinSpheres(std::span<const std::uint8_t> ofSkin);
+
     /// Memory that the body and what is known of it take; 0 where there is none, or springs pass through it.
     std::size_t bodyBytes() const;
 
