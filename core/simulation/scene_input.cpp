@@ -66,9 +66,9 @@ Result<SceneInput> SceneInput::make(const Groom& groom) {
 SceneInput::SceneInput(const Groom& groom)
     : groom_(groom), bindings_(groom.rootBindings()), skinSpheres_(skinSpheresOf(groom)) {}
 
-void SceneInput::setSpheres(std::vector<CollisionSphere> spheres) {
+void SceneInput::setSpheres(std::vector<CollisionSphere> spheres, bool atRest) {
     groom_.spheres = std::move(spheres);
-    skinSpheres_ = skinSpheresOf(groom_);
+    skinSpheres_ = atRest ? skinSpheresOf(groom_) : runtime::Vector<std::uint8_t>();
 }
 
 runtime::StrandsView SceneInput::strands() const {

@@ -26,7 +26,8 @@ class SceneInput {
 
     const Groom& groom() const { return groom_; }
     void setSettings(const runtime::SimulationSettings& settings) { groom_.simulation = settings; }
-    void setSpheres(std::vector<CollisionSphere> spheres);
+    /// `atRest`: they are where the groom's are; others do not tell what they would be at rest.
+    void setSpheres(std::vector<CollisionSphere> spheres, bool atRest = true);
     /// Lives as long as this.
     runtime::StrandsView strands() const;
     /// One per strand; metres, world.

@@ -98,8 +98,8 @@ Status Simulation::setStyle(std::span<const Vec3f> restPositions) {
         {reinterpret_cast<const runtime::Float3*>(restPositions.data()), restPositions.size()});
 }
 
-void Simulation::setSpheres(std::vector<CollisionSphere> spheres) {
-    impl_->scene.setSpheres(std::move(spheres));
+void Simulation::setSpheres(std::vector<CollisionSphere> spheres, bool atRest) {
+    impl_->scene.setSpheres(std::move(spheres), atRest);
 }
 
 void Simulation::step(float dt, const HeadPose& given) {

@@ -89,8 +89,9 @@ class Simulation {
     /// all as it was: another number of points, other roots or lengths, a method that has no angles to aim
     /// at.
     Status setStyle(std::span<const Vec3f> restPositions);
-    /// Collision spheres in place of the groom's, from the next step on.
-    void setSpheres(std::vector<CollisionSphere> spheres);
+    /// Collision spheres in place of the groom's, from the next step on. `atRest`: where they are while the
+    /// head is at rest, which shows what they represent; others push hair, be they in the skin or not.
+    void setSpheres(std::vector<CollisionSphere> spheres, bool atRest = true);
 
     /// Advances by `dt` seconds (0 < dt ≤ 0.1) to `pose`.
     void step(float dt, const HeadPose& pose);

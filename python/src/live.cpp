@@ -29,6 +29,7 @@ using namespace nb::literals;
 struct PyLive {
     Groom groom;
     std::optional<Simulation> simulation;
+    std::optional<std::vector<CollisionSphere>> spheres_ws;  ///< that were given last
     std::vector<std::size_t> bones;  ///< of the body, which matrix moves each; empty: the first moves all
     double time = 0;
     std::atomic<bool> inUse = false;
@@ -89,9 +90,9 @@ HeadPose poseOf(PyLive& live, const LiveScene& scene) {
             pose.body_ws.push_back(matrixOf(rows.values().subspan(4 * bone, 4)));
     }
     if (!scene.spheres.is_none()) {
-        live.groom.spheres = spheresOf("spheres", scene.spheres, live.groom.spheres);
-        for (const CollisionSphere& ball : live.groom.spheres) pose.sphereCentres_ws.push_back(ball.centre);
-        if (live.simulation) live.simulation->setSpheres(live.groom.spheres);
+        live.spheres_ws = spheresOf("spheres", scene.spheres, live.spheres_ws.value_or(live.groom.spheres));
+        for (const CollisionSphere& ball : *live.spheres_ws) pose.sphereCentres_ws.push_back(ball.centre);
+        if (live.simulation) live.simulation->setSpheres(*live.spheres_ws, false);
     }
     return pose;
 }
@@ -101,6 +102,7 @@ void resetLive(PyLive& live, nb::handle scalp, nb::handle head, nb::handle spher
     const HeadPose pose = poseOf(live, {scalp, head, spheres, bones});
     auto made = withoutGil([&] { return Simulation::make(live.groom, pose); });
     live.simulation.emplace(unwrap(std::move(made)));
+    if (live.spheres_ws) live.simulation->setSpheres(*live.spheres_ws, false);
     live.time = 0;
 }
 

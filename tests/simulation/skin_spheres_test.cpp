@@ -135,5 +135,20 @@ TEST(SkinSpheres, AreToldAgainWhenSpheresChange) {
     EXPECT_GT(farthest(before, after), 0.02f);
 }
 
+/// A script has them in the world, wherever the head is.
+TEST(SkinSpheres, OfWhichNobodyKnowsWhereTheyRestPush) {
+    const std::vector<CollisionSphere> bulging{sphereAt({0, 0.02f, 0}, 0.09f)};
+    const auto settledWith = [&](bool atRest) {
+        auto simulation = Simulation::make(ballWith({}), {});
+        EXPECT_TRUE(simulation);
+        simulation->setSpheres(bulging, atRest);
+        for (int f = 0; f < 60; ++f) simulation->step(kFrame, {});
+        return std::vector<Vec3f>(simulation->positions_ws().begin(), simulation->positions_ws().end());
+    };
+    const std::vector<Vec3f> skin = settled(ballWith({}));
+    EXPECT_EQ(settledWith(true), skin);
+    EXPECT_GT(farthest(settledWith(false), skin), 5e-3f);
+}
+
 }  // namespace
 }  // namespace hairloom
