@@ -15,6 +15,7 @@
 #include "core/editing/sphere_parts.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/spheres.h"
+#include "core/simulation/scene_input.h"
 
 namespace hairloom::cli {
 namespace {
@@ -81,6 +82,8 @@ Status fitFewSpheres(Groom& groom, const Actor* actor, const CollidersOptions& o
 /// skin; without bones the whole head moves it.
 Report rowsOf(const Groom& groom) {
     Report rows = Report::array();
+    const auto ofSkin = skinSpheresOf(groom);
+    const auto isOfSkin = [&](std::size_t s) { return !ofSkin.empty() && ofSkin[s] != 0; };
     const auto bone = [](const std::string& name) { return name.empty() ? Report(nullptr) : Report(name); };
     const auto rowOf = [&](const char* kind, const CollisionSphere& sphere) {
         return Report{{"kind", kind},
@@ -95,10 +98,13 @@ Report rowsOf(const Groom& groom) {
         Report row = rowOf("capsule", groom.spheres[first]);
         row["end"] = rowOf("sphere", groom.spheres[second]);
         row["end"].erase("kind");
+        row["of_skin"] = isOfSkin(first) && isOfSkin(second);
         rows.push_back(std::move(row));
     }
     for (std::size_t s = 0; s < groom.spheres.size(); ++s) {
-        if (!isEnd[s]) rows.push_back(rowOf("sphere", groom.spheres[s]));
+        if (isEnd[s]) continue;
+        rows.push_back(rowOf("sphere", groom.spheres[s]));
+        rows.back()["of_skin"] = isOfSkin(s);
     }
     if (!groom.body) return rows;
     if (groom.body->bones.empty()) rows.push_back(Report{{"kind", "field"}, {"bone", nullptr}});

@@ -11,6 +11,7 @@
 #include <QTimer>
 #include <QTreeWidget>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "core/documents/body_fit.h"
 #include "core/editing/document.h"
@@ -18,6 +19,7 @@
 #include "core/editing/sphere_commands.h"
 #include "core/editing/sphere_parts.h"
 #include "core/groom/spheres.h"
+#include "core/simulation/scene_input.h"
 #include "editor/fields/length_text.h"
 #include "editor/fields/option_form.h"
 #include "editor/panels/panel.h"
@@ -55,6 +57,7 @@ class SpheresPanel : public QWidget {
           fit_(new QLabel),
           skin_(new QCheckBox("Collide with the skin")),
           skinFit_(new QLabel),
+          skinSpheres_(new QLabel),
           skinNote_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
@@ -151,6 +154,10 @@ class SpheresPanel : public QWidget {
         skinFit_->setProperty("role", "dim");
         skinFit_->setWordWrap(true);
         layout.addWidget(skinFit_);
+        skinSpheres_->setObjectName("bodySpheres");
+        skinSpheres_->setProperty("role", "dim");
+        skinSpheres_->setWordWrap(true);
+        layout.addWidget(skinSpheres_);
         skinNote_->setObjectName("bodyNote");
         skinNote_->setWordWrap(true);
         layout.addWidget(skinNote_);
@@ -187,6 +194,14 @@ class SpheresPanel : public QWidget {
                                          "fit spheres")
                                : QString("This simulation method ignores the skin. Select the strand "
                                          "engine, or fit spheres"));
+        const auto ofSkin = skinSpheresOf(groom);
+        const auto left = std::ranges::count(ofSkin, 1);
+        skinSpheres_->setVisible(!passes && left > 0);
+        skinSpheres_->setText(passes || left == 0
+                                  ? QString()
+                                  : QString("%1 of %2 spheres lie in the skin. Hair meets the skin instead")
+                                        .arg(left)
+                                        .arg(groom.spheres.size()));
     }
 
     void fitSkin() {
@@ -374,6 +389,7 @@ class SpheresPanel : public QWidget {
     QLabel* fit_;
     QCheckBox* skin_;
     QLabel* skinFit_;
+    QLabel* skinSpheres_;
     QLabel* skinNote_;
     std::shared_ptr<const runtime::BodyField> fitted_;  ///< that the words are of
 };

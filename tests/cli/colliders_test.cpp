@@ -68,6 +68,13 @@ TEST_F(Colliders, AreListedAndMeasuredAsTheyWereFitted) {
     EXPECT_FALSE(nine["colliders"][8]["bone"].is_null());
     EXPECT_GT(nine["colliders"][8]["radius"], 0);
 
+    // Those that only represent the skin are left to it, where it is fitted.
+    const auto both = runJson("colliders nine.hairloom --fit field -o both.hairloom");
+    std::size_t left = 0;
+    for (const auto& row : both["colliders"]) left += row.value("of_skin", false) ? 1 : 0;
+    EXPECT_GE(left, 5u);
+    for (const auto& row : nine["colliders"]) EXPECT_EQ(row["of_skin"], false);
+
     // Without a file to write, a fit is measured alone.
     const std::string before = readText(folder / "nine.hairloom");
     EXPECT_LT(runJson("colliders nine.hairloom --fit field --kilobytes 300")["worst_gap_mm"],

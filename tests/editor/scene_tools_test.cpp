@@ -126,9 +126,12 @@ TEST_F(ToolsTest, TheSkinIsACollider) {
     EXPECT_TRUE(find<QLabel>("bodyWords")->text().contains("Worst gap"))
         << find<QLabel>("bodyWords")->text().toStdString();
     EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
+    const auto* spheres = find<QLabel>("bodySpheres");
+    EXPECT_TRUE(spheres->text().contains("spheres lie in the skin")) << spheres->text().toStdString();
     runtime::SimulationSettings springs = groom().simulation;
     springs.strandModel = runtime::StrandModel::springs;
     document().perform(editing::setPhysics(document().editing().model(), springs, "springs"));
+    EXPECT_TRUE(spheres->text().isEmpty());
     EXPECT_TRUE(find<QLabel>("bodyNote")->text().contains("Springs pass through"));
     document().goToStep(2);
     EXPECT_TRUE(find<QLabel>("bodyNote")->text().isEmpty());
