@@ -287,10 +287,12 @@ class BodySearch {
         const Float3 normal{found[0], found[1], found[2]}, way{found[kWay], found[kWay + 1], found[kWay + 2]};
         const std::size_t pitch = block_.pitch;
         float* const other = plane + kBodyOther * kWidth;
-        const auto isOther = [&](const float* at, std::size_t step) {
+        const auto isOther = [&](const float* at, std::size_t step, float level) {
             const Float3 n{at[0], at[step], at[2 * step]};
             const float along = dot(normal, n);
-            return along > kFoldsBack && along < kFoldsAhead && dot(n, n) > 0.0f;
+            // In a gap that is narrower than the node is wide both sides push it, towards each other.
+            const bool between = found[kDistance] > 0.0f && level + dot(n, moved) > 0.0f;
+            return (along > kFoldsBack || between) && along < kFoldsAhead && dot(n, n) > 0.0f;
         };
         const auto put = [&](const float* at, std::size_t step, float level) {
             for (std::size_t k = 0; k < 3; ++k) other[k * kWidth] = at[k * step];
@@ -300,8 +302,9 @@ class BodySearch {
         if (isSlow(moved) && isSlow(moved - way)) {
             if (plane[kKnown * kWidth] > 0.0f) {
                 const bool pressed = plane[kDistance * kWidth] < reach;
-                if (pressed && isOther(plane, kWidth)) return put(plane, kWidth, plane[kLevel * kWidth]);
-                if (isOther(other, kWidth)) return;
+                const float level = plane[kLevel * kWidth];
+                if (pressed && isOther(plane, kWidth, level)) return put(plane, kWidth, level);
+                if (isOther(other, kWidth, other[3 * kWidth])) return;
             }
             const float* const fold = block_.rod.fold + i;
             for (const float* at : {fold, fold + 4 * pitch}) {
@@ -309,7 +312,8 @@ class BodySearch {
                 if (block_.rod.load[i] == 0.0f) break;
                 // It goes with the skin that was found.
                 const Float3 n{at[0], at[pitch], at[2 * pitch]};
-                if (isOther(at, pitch)) return put(at, pitch, at[3 * pitch] - dot(n, way));
+                const float level = at[3 * pitch] - dot(n, way);
+                if (isOther(at, pitch, level)) return put(at, pitch, level);
             }
         }
         for (std::size_t k = 0; k < 4; ++k) other[k * kWidth] = 0.0f;
@@ -317,7 +321,7 @@ class BodySearch {
 
     static constexpr std::size_t kDistance = 3, kWay = 5, kKnown = 8, kMeets = 10, kLevel = 11;
     /// Cosines of the angle between two planes of folded skin: what is nearer to 1 is one plane, and of two
-    /// that look away from each other one would hold the node on the wrong side.
+    /// that look away from each other, as those of a thin part, one would hold the node on the wrong side.
     static constexpr float kFoldsBack = -0.2f, kFoldsAhead = 0.99f;
 
     const MovingBody& body_;
