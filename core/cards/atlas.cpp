@@ -1,11 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "core/cards/texture.h"
 
 namespace hairloom::cards {
+
+namespace {
+
+/// How high a square is filled, from its left to its right (Jylänki 2010, the skyline).
+class Skyline {
+  public:
+    explicit Skyline(std::uint32_t side) : side_(side) {}
+
+    /// Puts a rectangle where it lies lowest, at the left of such places. Nothing where it does not fit.
+    std::optional<std::array<std::uint32_t, 2>> put(std::uint32_t width, std::uint32_t height) {
+        std::optional<std::array<std::uint32_t, 2>> best;
+        for (std::size_t i = 0; i < steps_.size() && steps_[i].x + width <= side_; ++i) {
+            std::uint32_t top = 0;
+            for (std::size_t k = i; k < steps_.size() && steps_[k].x < steps_[i].x + width; ++k)
+                top = std::max(top, steps_[k].y);
+            if (top + height <= side_ && (!best || top < (*best)[1])) best = {steps_[i].x, top};
+        }
+        if (best) raise((*best)[0], (*best)[0] + width, (*best)[1] + height);
+        return best;
+    }
+
+  private:
+    struct Step {
+        std::uint32_t x, y;  ///< so high from here to the next
+    };
+    void raise(std::uint32_t begin, std::uint32_t end, std::uint32_t y) {
+        std::vector<Step> steps;
+        std::uint32_t behind = 0;
+        for (const Step& step : steps_) {
+            if (step.x < begin) steps.push_back(step);
+            if (step.x <= end) behind = step.y;
+        }
+        steps.push_back({begin, y});
+        if (end < side_) steps.push_back({end, behind});
+        for (const Step& step : steps_)
+            if (step.x > end) steps.push_back(step);
+        steps_ = std::move(steps);
+    }
+    std::uint32_t side_;
+    std::vector<Step> steps_{{0, 0}};
+};
+
+}  // namespace
 
 std::vector<Rect> packed(std::span<const std::array<std::uint32_t, 2>> sizes, std::uint32_t side,
                          std::uint32_t padding) {
@@ -13,15 +58,11 @@ std::vector<Rect> packed(std::span<const std::array<std::uint32_t, 2>> sizes, st
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return sizes[a][1] > sizes[b][1]; });
     std::vector<Rect> rects(sizes.size());
-    std::uint32_t x = 0, y = 0, shelf = 0;
+    Skyline skyline(side);
     for (const std::size_t i : order) {
-        const std::uint32_t width = sizes[i][0] + 2 * padding, height = sizes[i][1] + 2 * padding;
-        if (width > side) return {};
-        if (x + width > side) x = 0, y += shelf, shelf = 0;
-        if (y + height > side) return {};
-        rects[i] = {x + padding, y + padding, sizes[i][0], sizes[i][1]};
-        x += width;
-        shelf = std::max(shelf, height);
+        const auto at = skyline.put(sizes[i][0] + 2 * padding, sizes[i][1] + 2 * padding);
+        if (!at) return {};
+        rects[i] = {(*at)[0] + padding, (*at)[1] + padding, sizes[i][0], sizes[i][1]};
     }
     return rects;
 }

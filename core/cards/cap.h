@@ -21,6 +21,8 @@ struct CapChart {
     std::vector<std::uint32_t> indices;  ///< three a triangle, outwards
     /// Share of the skin that strands hide, seen straight on, by squares of the plane, row by row.
     std::vector<float> hidden;
+    /// Mean coverage that its picture is to have, by the same squares. Empty: as leaveToCards() has it.
+    std::vector<float> wanted;
 };
 
 /// Hairs up to a length, laid on the planes that touch the skin at their roots. Those that stand straight up
@@ -51,8 +53,9 @@ struct WornTriangle {
     std::array<Vec2f, 3> place;  ///< in the picture, 0 … 1
 };
 
-/// Thins what bakeCap() made where cards cover the skin and strands leave some of it bare: cap and cards show
-/// the same hairs, and twice as many hide too much. The cap is not made denser.
+/// Makes what bakeCap() made as dense as CapChart::wanted says. Without that, thins it where cards cover the
+/// skin and strands leave some of it bare: cap and cards show the same hairs, and twice as many hide too
+/// much.
 void leaveToCards(std::span<const WornTriangle> cards, const CapChart& chart, Picture& picture);
 
 }  // namespace hairloom::cards

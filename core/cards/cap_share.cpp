@@ -3,15 +3,16 @@
 #include <cmath>
 #include <limits>
 
-#include "core/cards/cap.h"
+#include "core/cards/cap_squares.h"
 #include "core/cards/raster.h"
 
 namespace hairloom::cards {
 namespace {
 
-constexpr float kSample = 0.001f;                // metres: what of cards is looked at
-constexpr int kFiner = 4;                        // samples of strands along one of cards
-constexpr int kSquare = 4;                       // samples along a square, over which shares are means
+constexpr float kSample = 0.001f;  // metres: what of cards is looked at
+constexpr int kFiner = 4;          // samples of strands along one of cards
+constexpr int kSquare = 4;         // samples along a square of CapSquares
+static_assert(kSquare * kSample == CapSquares::kSide);
 constexpr float kBelow = 0.004f, kNear = 0.02f;  // metres below and above the skin: hair that grows there
 // Few eyes look straight on. Aslant, hair hides more skin, as more layers of it do, and cards part where it
 // does not: where hair is dense it hides as so many layers more, where it is sparse as itself.
@@ -25,8 +26,8 @@ class Ground {
           along_(chart.plane.along[0]),
           outwards_(chart.plane.normal[0]),
           corner_(chart.plane.centre[0] - chart.plane.halfWidth[0] * across_) {
-        columns_ = squaresOf(2 * chart.plane.halfWidth[0]) * kSquare;
-        rows_ = squaresOf(chart.plane.length()) * kSquare;
+        const CapSquares squares(chart);
+        columns_ = squares.across() * kSquare, rows_ = squares.down() * kSquare;
         heights_.assign(samples(), -std::numeric_limits<float>::infinity());
         for (std::size_t i = 0; i + 2 < chart.indices.size(); i += 3) {
             std::array<Vec3f, 3> at;
@@ -73,27 +74,33 @@ class Ground {
     }
 
   private:
-    static int squaresOf(float metres) {
-        return std::max(1, static_cast<int>(std::ceil(metres / (kSample * kSquare))));
-    }
     Vec3f across_, along_, outwards_, corner_;
     int columns_, rows_;
     std::vector<float> heights_;
 };
 
-/// Of squares, between their middles. `x` and `y` in squares.
-float between(const std::vector<float>& squares, int across, float x, float y) {
-    const int down = static_cast<int>(squares.size()) / across;
-    const float left = std::clamp(x - 0.5f, 0.0f, static_cast<float>(across - 1));
-    const float top = std::clamp(y - 0.5f, 0.0f, static_cast<float>(down - 1));
-    const int x0 = static_cast<int>(left), y0 = static_cast<int>(top);
-    const int x1 = std::min(x0 + 1, across - 1), y1 = std::min(y0 + 1, down - 1);
-    const auto at = [&](int column, int row) {
-        return squares[static_cast<std::size_t>(row) * static_cast<std::size_t>(across) +
-                       static_cast<std::size_t>(column)];
-    };
-    const float u = left - static_cast<float>(x0), v = top - static_cast<float>(y0);
-    return (1 - v) * ((1 - u) * at(x0, y0) + u * at(x1, y0)) + v * ((1 - u) * at(x0, y1) + u * at(x1, y1));
+/// Texels of a chart as `wanted`, one a square, has them on average: thinner by a factor, denser as more
+/// layers of the same hair would be.
+void setMeans(const CapChart& chart, const std::vector<float>& wanted, Picture& picture) {
+    constexpr float kMostLayers = 8, kLeast = 1e-4f;
+    const CapSquares squares(chart);
+    std::vector<float> thinner =
+        squares.means(picture.width, picture.height,
+                      [&](std::uint32_t x, std::uint32_t y) { return picture.at(x, y).coverage; });
+    std::vector<float> layers(thinner.size(), 1);
+    for (std::size_t i = 0; i < thinner.size(); ++i) {
+        const float own = thinner[i];
+        thinner[i] = own > kLeast ? std::min(1.0f, wanted[i] / own) : 1.0f;
+        if (own > kLeast && own < 1 && wanted[i] > own)
+            layers[i] = std::min(kMostLayers, std::log1p(-std::min(wanted[i], 0.99f)) / std::log1p(-own));
+    }
+    for (std::uint32_t y = 0; y < picture.height; ++y) {
+        for (std::uint32_t x = 0; x < picture.width; ++x) {
+            const Vec2f at = squares.ofTexel(x, y, picture.width, picture.height);
+            float& coverage = picture.at(x, y).coverage;
+            coverage = 1 - std::pow(1 - squares.between(thinner, at) * coverage, squares.between(layers, at));
+        }
+    }
 }
 
 }  // namespace
@@ -128,6 +135,10 @@ void setHidden(const Hair& hair, CapChart& chart) {
 }
 
 void leaveToCards(std::span<const WornTriangle> cards, const CapChart& chart, Picture& picture) {
+    if (!chart.wanted.empty()) {
+        setMeans(chart, chart.wanted, picture);
+        return;
+    }
     const Ground ground(chart);
     std::vector<float> open(ground.samples(), 1);  // what cards leave of the skin
     for (const WornTriangle& t : cards) {
@@ -149,24 +160,11 @@ void leaveToCards(std::span<const WornTriangle> cards, const CapChart& chart, Pi
             });
     }
     std::vector<float> keep = ground.means([&](std::size_t sample) { return open[sample]; });
-    const int across = ground.columns() / kSquare;
+    const CapSquares squares(chart);
     // What the cap covers by itself.
-    std::vector<float> own(keep.size()), counts(keep.size());
-    const float perColumn =
-        1 / (kSample * kSquare * static_cast<float>(picture.width)) * 2 * chart.plane.halfWidth[0];
-    const float perRow = 1 / (kSample * kSquare * static_cast<float>(picture.height)) * chart.plane.length();
-    const auto place = [&](std::uint32_t x, std::uint32_t y) {
-        return Vec2f(perColumn * (static_cast<float>(x) + 0.5f), perRow * (static_cast<float>(y) + 0.5f));
-    };
-    for (std::uint32_t y = 0; y < picture.height; ++y) {
-        for (std::uint32_t x = 0; x < picture.width; ++x) {
-            const Vec2f at = place(x, y);
-            const auto square = std::min(static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(across) +
-                                             static_cast<std::size_t>(at.x()),
-                                         own.size() - 1);
-            own[square] += picture.at(x, y).coverage, counts[square] += 1;
-        }
-    }
+    const std::vector<float> own =
+        squares.means(picture.width, picture.height,
+                      [&](std::uint32_t x, std::uint32_t y) { return picture.at(x, y).coverage; });
     for (std::size_t i = 0; i < keep.size(); ++i) {
         if (!(own[i] > 0) || keep[i] >= 1) {  // nothing to leave, or nobody to leave it to
             keep[i] = 1;
@@ -176,12 +174,12 @@ void leaveToCards(std::span<const WornTriangle> cards, const CapChart& chart, Pi
         const float hidden = chart.hidden[i];
         const float wanted = std::pow(1 - hidden, 1 + kLayers * hidden * hidden);
         const float missing = std::clamp(1 - wanted / std::max(keep[i], 1e-6f), 0.0f, 1.0f);
-        keep[i] = std::min(1.0f, missing * counts[i] / own[i]);
+        keep[i] = std::min(1.0f, missing / own[i]);
     }
     for (std::uint32_t y = 0; y < picture.height; ++y) {
         for (std::uint32_t x = 0; x < picture.width; ++x) {
-            const Vec2f at = place(x, y);
-            picture.at(x, y).coverage *= between(keep, across, at.x(), at.y());
+            const Vec2f at = squares.ofTexel(x, y, picture.width, picture.height);
+            picture.at(x, y).coverage *= squares.between(keep, at);
         }
     }
 }

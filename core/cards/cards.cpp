@@ -13,11 +13,15 @@
 namespace hairloom::cards {
 namespace {
 
-constexpr std::uint32_t kPadding = 4;  // texels around a picture
+// Texels around a picture, of their own: as far as mip maps reach that a level is seen with before the next
+// one takes over.
+constexpr std::uint32_t kPadding = 2;
 constexpr std::uint32_t kLeastSide = 64;
 constexpr std::uint32_t kMostTextures = 256;
 constexpr float kCapTexels = 1.5f;          // of the cap's textures beside those of cards
+constexpr float kCoarsestCap = 2.5f;        // likewise, where cards get textures of their own instead
 constexpr float kCoarser = 1.25f;           // than asked for, that texels may be
+constexpr float kWidest = 1.6f;             // likewise, where cards get textures of their own instead
 constexpr std::uint32_t kHairStations = 9;  // of strands, while they are sorted into bundles
 
 Status check(const CardOptions& options) {
@@ -110,9 +114,9 @@ std::uint32_t texelsOf(float metres, float texel, float least) {
     return static_cast<std::uint32_t>(std::clamp(metres / texel, least, 16384.0f));
 }
 
-/// Width of texels in metres, and their length by it.
+/// Width of texels in metres, their length by it, and how much wider those of the cap are.
 struct TexelSize {
-    float width, longer = 1;
+    float width, longer = 1, cap = kCapTexels;
 };
 
 /// Rects of all textures with texels of that size; empty where they do not fit.
@@ -124,7 +128,7 @@ std::vector<Rect> rectsFor(const Cards& cards, const TexelSize& texel, std::uint
                          texelsOf(strip.length(), texel.longer * texel.width, 8)});
     }
     // Hairs on the cap lie side by side as cards have them, and are mostly hidden by these.
-    const float ofCap = kCapTexels * texel.width;
+    const float ofCap = texel.cap * texel.width;
     for (const CapChart& chart : cards.cap)
         sizes.push_back(
             {texelsOf(meanWidth(chart.plane), ofCap, 4), texelsOf(chart.plane.length(), ofCap, 4)});
@@ -157,12 +161,19 @@ Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
         "fewer textures or a larger atlas");
 }
 
-/// The textures of the cards in the same atlas, with longer texels and none wider than kCoarser times what is
-/// asked for or, where that is more, than the layout has them.
+/// The textures of the cards in the same atlas, as fine as fit there: with longer texels, then coarser ones
+/// on the cap, then wider ones, up to kWidest times what is asked for or, where that is more, than the layout
+/// has.
 std::optional<Layout> filled(const Cards& cards, const Layout& layout, float texel) {
-    const float widest = std::max(layout.texel, kCoarser * texel);
-    for (const TexelSize& size : {TexelSize{texel}, TexelSize{texel, 2}, TexelSize{texel, kLongestTexel},
-                                  TexelSize{widest, 2}, TexelSize{widest, kLongestTexel}}) {
+    const float widest = std::max(layout.texel, kWidest * texel);
+    std::vector<TexelSize> sizes{{texel}, {texel, 2}};
+    constexpr float kStep = 1.125f;
+    for (float width = texel;; width = std::min(kStep * width, widest)) {
+        for (const float cap : {kCapTexels, kCoarsestCap})
+            sizes.push_back({width, kLongestTexel, std::max(1.0f, cap * texel / width)});
+        if (width >= widest) break;
+    }
+    for (const TexelSize& size : sizes) {
         auto rects = rectsFor(cards, size, layout.side);
         if (!rects.empty()) return Layout{std::move(rects), layout.side, size.width};
     }

@@ -12,6 +12,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
+#include "core/cards/cap_fit.h"
 #include "core/cards/level_shots.h"
 #include "core/cards/raster.h"
 #include "core/cards/rig.h"
@@ -51,18 +52,17 @@ struct Work {
     }
 };
 
+template <class T>
+std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::size_t>& which) {
+    std::vector<T> some;
+    for (const std::size_t i : which) some.push_back(all[i]);
+    return some;
+}
+
 /// Pictures of a level from some directions.
 Shooting shoot(const Work& work, const Level& level, const std::vector<std::size_t>& which, std::uint32_t px,
                Shown shown = Shown::all) {
-    std::vector<View> views;
-    for (const std::size_t v : which) views.push_back(work.views[v]);
-    return shoot(work.stage, level.content, views, px, kSamplesPerHead, shown);
-}
-
-std::vector<Shot> chosen(const std::vector<Shot>& shots, const std::vector<std::size_t>& which) {
-    std::vector<Shot> some;
-    for (const std::size_t v : which) some.push_back(shots[v]);
-    return some;
+    return shoot(work.stage, level.content, chosen(work.views, which), px, kSamplesPerHead, shown);
 }
 
 Result<Shares> measured(const Work& work, const Level& level, Shown shown = Shown::all) {
@@ -107,7 +107,8 @@ Status makeStrands(const Work& work, Level& level) {
     return {};
 }
 
-/// Sets thickness and brightness of the level's cards so that coverage and light are those of the strands.
+/// Sets thickness and brightness of the level's cards and how dense its cap is, so that coverage and light
+/// are those of the strands, and skin is seen where it is seen between these.
 Status calibrate(const Work& work, Level& level) {
     // Measured where they lie: atlases take tens of megabytes.
     Cards& made = std::get<Cards>(level.content);
@@ -115,15 +116,23 @@ Status calibrate(const Work& work, Level& level) {
     constexpr double kSmall = 0.1, kOfThickHair = 0.4, kLeast = 0.15;
     float thickness = 1;
     double power = 1, lastCover = 0, lastThick = 0;
+    const auto which = work.viewsFor(level.spec);
+    const auto strands = chosen(work.strands.at(level.spec.headPx), which);
+    const CapSight sight(work.hair, made.cap, chosen(work.views, which), level.spec.headPx);
+    constexpr int kCapRounds = 3;
     for (int round = 0; round < kRounds; ++round) {
-        const auto off = measured(work, level);
-        if (!off) return tl::unexpected(off.error());
-        const double brighter = 1 / std::max(off->light, 1e-9);
+        work.tick();
+        const Shooting shooting = shoot(work, level, which, level.spec.headPx);
+        if (cancelled(work.cancel)) return stopped();
+        const Shares off = sharesOf(strands, shooting.shots);
+        const double brighter = 1 / std::max(off.light, 1e-9);
         made.brightness = std::clamp(made.brightness * static_cast<float>(brighter), 0.25f, 4.0f);
-        const bool covers = std::abs(off->coverage - 1) < kFarEnough;
+        const bool covers = std::abs(off.coverage - 1) < kFarEnough;
+        const bool hasCap = round + 1 >= kCapRounds;
+        if (!hasCap) sight.fit(strands, shooting.shots, made);
         if (!covers) {
             constexpr float kThinnest = 0.2f, kThickest = 8;
-            const double cover = std::log(std::max(off->coverage, 1e-3));
+            const double cover = std::log(std::max(off.coverage, 1e-3));
             const auto thick = static_cast<double>(std::log(thickness));
             if (round == 0) power = std::abs(cover) < kSmall ? kOfThickHair : 1;
             if (round > 0 && thick != lastThick)
@@ -131,15 +140,16 @@ Status calibrate(const Work& work, Level& level) {
             lastCover = cover, lastThick = thick;
             thickness =
                 std::clamp(thickness * static_cast<float>(std::exp(-cover / power)), kThinnest, kThickest);
+        }
+        if (!covers || !hasCap) {
             if (auto status = bakeAtlas(work.hair, work.light, thickness, made, work.cancel); !status)
                 return status;
         }
         buildMesh(made);
-        if (covers && std::abs(off->light - 1) < kFarEnough) break;
+        if (covers && hasCap && std::abs(off.light - 1) < kFarEnough) break;
     }
     // What was baked last has a light of its own. The middle of those where it takes over and where the next
     // one does, so that neither step is large.
-    const auto which = work.viewsFor(level.spec);
     const auto near = lightAt(work, level, level.spec.headPx, which),
                far = lightAt(work, level, level.untilPx, which);
     if (!near || !far) return tl::unexpected((near ? far : near).error());

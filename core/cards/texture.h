@@ -71,7 +71,8 @@ struct Atlas {
     std::uint32_t side() const { return levels.empty() ? 0 : levels[0].width; }
 };
 
-/// Sizes of pictures as shelves of a square, with `padding` texels around each; empty where they do not fit.
+/// Places of pictures of these sizes in a square, with `padding` texels around each; empty where they do not
+/// fit.
 std::vector<Rect> packed(std::span<const std::array<std::uint32_t, 2>> sizes, std::uint32_t side,
                          std::uint32_t padding);
 

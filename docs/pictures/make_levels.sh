@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes the tables and pictures of docs/levels.md anew: the chain of each sample and, where ../shared/data has her, of Sintel.
-# Takes about ten minutes on two cores.
+# make_levels.sh [STYLE...]: makes the tables and pictures of docs/levels.md anew: the chain of each sample and, where
+# ../shared/data has her, of Sintel; or of the styles that are named. Takes about ten minutes on two cores.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 cli=build/release/bin/hairloom-cli
@@ -18,7 +18,8 @@ putBetween() {
     cp "$out/levels.md" docs/levels.md
 }
 
-for style in short shoulder long sintel; do
+[ $# -gt 0 ] || set -- short shoulder long sintel
+for style; do
     if [ "$style" = sintel ]; then
         [ -f "$sintel" ] || continue
         groom=$sintel

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/cards/cap_fit.h"
 #include "core/cards/rig.h"
 #include "tests/cards/card_samples.h"
 
@@ -256,6 +257,102 @@ TEST(Cap, IsThinnerWhereCardsHideMoreSkinThanStrandsDo) {
     const double sparse = halves(0.05f, 0.002f)[0];
     EXPECT_LT(sparse, alone[0] + 1e-6) << "no denser than it was";
     EXPECT_GT(sparse, 0.9 * alone[0]);
+}
+
+/// Skin that a level shows and strands hide, and the other way round, summed up over where the cap decides.
+struct Wrong {
+    double bare = 0, hidden = 0;
+    double all() const { return bare + hidden; }
+};
+class CapJudge {
+  public:
+    CapJudge(std::span<const Shot> strands, std::span<const Shot> without, std::span<const Shot> with)
+        : strands_(strands), without_(without), with_(with) {}
+    Wrong wrong(std::span<const Shot> level) const {
+        Wrong sum;
+        for (std::size_t v = 0; v < strands_.size(); ++v) {
+            // By squares of 4 pixels: which hair covers which pixel is chance.
+            constexpr std::uint32_t kSide = 4;
+            for (std::uint32_t y = 0; y + kSide <= strands_[v].height; y += kSide) {
+                for (std::uint32_t x = 0; x + kSide <= strands_[v].width; x += kSide) {
+                    double more = 0, decides = 0;
+                    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+                        const std::size_t at = std::size_t{y + i / kSide} * strands_[v].width + x + i % kSide;
+                        more += static_cast<double>(level[v].skin[at] - strands_[v].skin[at]);
+                        decides += static_cast<double>(without_[v].skin[at] - with_[v].skin[at]);
+                    }
+                    constexpr double kDecides = 0.25;
+                    if (decides < kDecides * kSide * kSide) continue;
+                    (more > 0 ? sum.bare : sum.hidden) += std::abs(more);
+                }
+            }
+        }
+        return sum;
+    }
+
+  private:
+    std::span<const Shot> strands_, without_, with_;
+};
+
+TEST(Cap, IsFittedToTheSkinThatStrandsLeaveBare) {
+    Hair hair = ballHair(6000);
+    addBallHead(hair);
+    const auto light = HairLight::make(hair, nullptr);
+    ASSERT_TRUE(light);
+    auto made = makeCards(hair, *light, {.cards = 60, .texel = 0.001f}, nullptr);
+    ASSERT_TRUE(made) << made.error().message();
+    constexpr std::uint32_t kPx = 128;
+    const std::vector<View> views = viewsAround(hair, 6);
+    const StrandLight onStrands = strandLight(hair, *light);
+    const auto shots = [&](const auto& draw) {
+        std::vector<Shot> all;
+        for (const View& view : views) {
+            Plate plate(view, 6 * kPx);
+            plate.drawHead(hair);
+            draw(plate);
+            all.push_back(plate.developed(kPx));
+        }
+        return all;
+    };
+    const auto strands = shots([&](Plate& plate) { plate.drawStrands(hair, onStrands); });
+    const auto level = [&] {
+        return shots([&](Plate& plate) { plate.drawCards(hair, *light, *made, kPx); });
+    };
+    const CapSight sight(hair, made->cap, views, kPx);
+    const auto levelShowing = [&](float shown) {
+        for (CapChart& chart : made->cap) chart.wanted.assign(chart.hidden.size(), shown);
+        EXPECT_TRUE(bakeAtlas(hair, *light, 1, *made, nullptr));
+        return level();
+    };
+    const auto without = levelShowing(0), with = levelShowing(0.9f);  // far too little, far too much
+    const CapJudge judge(strands, without, with);
+    const double bare = judge.wrong(without).all(), hidden = judge.wrong(with).all();
+    for (const auto* before : {&without, &with}) {
+        levelShowing(before == &without ? 0 : 0.9f);
+        sight.fit(strands, *before, *made);
+        ASSERT_TRUE(bakeAtlas(hair, *light, 1, *made, nullptr));
+        EXPECT_LT(judge.wrong(level()).all(), 0.6 * (before == &without ? bare : hidden));
+    }
+}
+
+TEST(Cap, StaysAsItIsWithoutAHead) {
+    const Hair hair = ballHair(1500);
+    const auto light = HairLight::make(hair, nullptr);
+    ASSERT_TRUE(light);
+    auto made = makeCards(hair, *light, {.cards = 20}, nullptr);
+    ASSERT_TRUE(made);
+    const std::vector<View> views = viewsAround(hair, 2);
+    std::vector<Shot> level;
+    for (const View& view : views) {
+        Plate plate(view, 256);
+        plate.drawCards(hair, *light, *made, 64);
+        level.push_back(plate.developed(64));
+    }
+    const std::vector<Texel> before = made->atlas.levels[0].texels;
+    CapSight(hair, made->cap, views, 64).fit(level, level, *made);
+    ASSERT_TRUE(bakeAtlas(hair, *light, 1, *made, nullptr));
+    for (std::size_t t = 0; t < before.size(); ++t)
+        ASSERT_EQ(made->atlas.levels[0].texels[t].coverage, before[t].coverage);
 }
 
 TEST(Cap, MovesWithTheHeadAndWearsTexturesOfItsOwn) {

@@ -32,6 +32,23 @@ inline Hair ballHair(std::uint32_t strands, std::uint32_t points = 12) {
     return hair;
 }
 
+/// A head below all of the hair of a ball.
+inline void addBallHead(Hair& hair) {
+    constexpr std::uint32_t kAround = 32;
+    for (std::uint32_t row = 0; row <= kAround / 2; ++row) {
+        for (std::uint32_t i = 0; i < kAround; ++i) {
+            const float up = kPi * static_cast<float>(row) / (kAround / 2),
+                        turn = 2 * kPi * static_cast<float>(i) / kAround;
+            hair.headPositions_ws.push_back(
+                0.099f * Vec3f(std::sin(up) * std::cos(turn), std::cos(up), std::sin(up) * std::sin(turn)));
+            if (row == 0) continue;
+            const std::uint32_t last = (row - 1) * kAround, next = row * kAround, j = (i + 1) % kAround;
+            for (const std::uint32_t k : {last + i, next + j, next + i, last + i, last + j, next + j})
+                hair.headIndices.push_back(k);
+        }
+    }
+}
+
 /// A flat ribbon: strands side by side along -Y in the plane of x, z up to `thickness` apart from it.
 inline Hair ribbonHair(std::uint32_t strands, float width, float thickness) {
     Hair hair;

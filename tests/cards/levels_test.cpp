@@ -130,19 +130,7 @@ TEST(Levels, OfABallComeNearTheStrands) {
 
 TEST(Levels, AreMeasuredFromTwiceAsManyDirections) {
     Hair hair = ballHair(3000);
-    // A head below all of it.
-    constexpr std::uint32_t kAround = 32;
-    for (std::uint32_t row = 0; row <= kAround / 2; ++row)
-        for (std::uint32_t i = 0; i < kAround; ++i) {
-            const float up = kPi * static_cast<float>(row) / (kAround / 2),
-                        turn = 2 * kPi * static_cast<float>(i) / kAround;
-            hair.headPositions_ws.push_back(
-                0.099f * Vec3f(std::sin(up) * std::cos(turn), std::cos(up), std::sin(up) * std::sin(turn)));
-            if (row == 0) continue;
-            const std::uint32_t last = (row - 1) * kAround, next = row * kAround, j = (i + 1) % kAround;
-            for (const std::uint32_t k : {last + i, next + j, next + i, last + i, last + j, next + j})
-                hair.headIndices.push_back(k);
-        }
+    addBallHead(hair);
     const auto specs = parseLevels("strands:1@128,strands:0.5@128,cards:3@128");
     ChainOptions options;
     options.directions = 3;

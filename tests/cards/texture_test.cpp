@@ -198,6 +198,12 @@ TEST(Atlas, PacksWithoutOverlapOrNotAtAll) {
     EXPECT_TRUE(packed(sizes, 64, 4).empty());
 }
 
+TEST(Atlas, PacksSmallPicturesBesideTallOnes) {
+    std::vector<std::array<std::uint32_t, 2>> sizes{{40, 124}};
+    for (int i = 0; i < 16; ++i) sizes.push_back({16, 26});  // four rows of four
+    EXPECT_EQ(packed(sizes, 128, 2).size(), sizes.size());
+}
+
 TEST(Atlas, CoverageAloneIsThatOfWholeTexels) {
     Baked baked = bakedRibbon(80);
     const Rect rect{4, 6, 64, 128};
