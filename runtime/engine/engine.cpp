@@ -78,7 +78,9 @@ void Engine::setClock(std::function<std::uint64_t()> nanoseconds) {
 }
 
 bool Engine::step(const FrameInput& input) {
-    if (input.roots_ws.size() != strandCount()) return false;
+    if (input.roots_ws.size() != strandCount() || input.inner.size() > kMaxInnerPoses) return false;
+    for (const InnerPose& pose : input.inner)
+        if (pose.roots_ws.size() != strandCount()) return false;
     impl_->step(input);
     return true;
 }
@@ -99,7 +101,10 @@ std::shared_ptr<const State> Engine::state() const {
 
 void Engine::keepMemory() {
     impl_->keepsMemory_ = true;
-    if (impl_->meetsBody()) impl_->state_.body.reserve(std::max<std::size_t>(impl_->body_->bones.size(), 1));
+    const std::size_t bones = impl_->meetsBody() ? std::max<std::size_t>(impl_->body_->bones.size(), 1) : 0;
+    impl_->state_.body.reserve(bones);
+    impl_->pieces_.reserve(strandCount(), bones);
+    impl_->rootsNow_.reserve(strandCount());
 }
 
 bool Engine::setState(const State& state) {

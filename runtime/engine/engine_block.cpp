@@ -90,9 +90,9 @@ void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat tur
     }
 }
 
-/// Lanes whose roots go farther in the frame than teleportDistance start where they end.
+/// Lanes whose roots go farther in the frame than teleportDistance, or are cut, start where they end.
 void Engine::Impl::teleportLanes(const BlockView& view, float* rows, const float* next) const {
-    const float cut = settings_.teleportDistance * settings_.teleportDistance;
+    const float cut = teleportDistance_ * std::abs(teleportDistance_);
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         const auto position = [&](const float* from) {
             return Float3{from[lane], from[kBlockLanes + lane], from[2 * kBlockLanes + lane]};

@@ -81,6 +81,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     state_.origin_ws.reset();
     FrameInput here;
     here.roots_ws = roots_ws;
+    teleportDistance_ = settings_.teleportDistance;
     takeRoots(here);
     // What effects have stays for the next frame, which knows its spheres: it takes no memory where they are
     // on.
@@ -221,7 +222,7 @@ void Engine::Impl::moveOrigin(std::array<double, 3> origin_ws) {
 /// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
 void Engine::Impl::takeRoots(const FrameInput& input) {
     RootBounds bounds = noRoots();
-    const float cut = settings_.teleportDistance * settings_.teleportDistance;
+    const float cut = teleportDistance_ * std::abs(teleportDistance_);
     const Kernels& table = kernels();
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         const Block& block = shape_->blocks[b];
@@ -290,8 +291,7 @@ void Engine::Impl::allocateForBody() {
 
 /// More than the settings ask for where there is a body and hair or roots are so fast that a substep would
 /// take them through it: what one substep has to push out by a segment's length it turns by a right angle.
-std::uint32_t Engine::Impl::substepsOf(const FrameInput& input) const {
-    const std::uint32_t usual = substepsIn(settings_, input.dt);
+std::uint32_t Engine::Impl::substepsOf(const FrameInput& input, std::uint32_t usual) const {
     if (!meetsBody()) return usual;
     constexpr float kFar = 0.025f, kNear = 0.01f;  // metres in a substep: too far, and what is wanted then
     const float way = std::max(rootMotion_, state_.fastest * input.dt);
@@ -317,7 +317,7 @@ void Engine::Impl::takeBody(const FrameInput& input) {
         state_.body.size() == to.size() ? std::span<const BonePose>(state_.body) : to;
     for (std::size_t b = 0; b < to.size(); ++b) {
         // A cut carries it along.
-        if (length(to[b].origin - from[b].origin) > settings_.teleportDistance) {
+        if (length(to[b].origin - from[b].origin) > teleportDistance_) {
             from = to;
             bodyLost_ = true;
         }
@@ -396,20 +396,20 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     return frame;
 }
 
-void Engine::Impl::step(const FrameInput& input) {
-    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return;
+void Engine::Impl::stepStraight(const FrameInput& input, std::uint32_t substeps) {
     const std::uint64_t begin = host_.nanoseconds ? host_.nanoseconds() : 0;
     report_ = {};
 
     moveOrigin(input.origin_ws);
     const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
+    teleportDistance_ = input.cut ? -1.0f : settings_.teleportDistance;
     takeRoots(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
-    takeSpheres(settings_, shape_->longestStrand, {state_.spheres, state_.capsules}, input.spheres,
+    takeSpheres(settings_, shape_->longestStrand, {state_.spheres, state_.capsules, input.cut}, input.spheres,
                 input.capsules, spheres_);
     report_.rejectedSpheres = spheres_.rejected;
     report_.rejectedWinds = takeWind(settings_, input, wind_);
-    report_.substeps = substeps_ = substepsOf(input);
+    report_.substeps = substeps_ = substepsOf(input, substeps);
     takeBody(input);
     if (!movingBody_.empty() && skinSpheres_.size() == spheres_.given)
         spheres_.ofSkin.assign(skinSpheres_.begin(), skinSpheres_.end());
@@ -434,7 +434,8 @@ void Engine::Impl::step(const FrameInput& input) {
     state_.capsules.reserve(spheres_.capsules.size());
     const Frame frame = makeFrame(input);
     if (hairGrid_.isOn() && !plan_.stages().empty())
-        hairGrid_.update(*shape_, state_, nextRoots_, settings_, frame.context.h, substeps_, host_);
+        hairGrid_.update(*shape_, state_, nextRoots_, settings_, {frame.context.h, substeps_, input.cut},
+                         host_);
     runBlocks(frame);
     const std::span<const Sphere> given = std::span(spheres_.usable).first(spheres_.given);
     state_.spheres.assign(given.begin(), given.end());

@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 
+#include "engine/frame_pieces.h"
 #include "engine/frame_setup.h"
 #include "engine/hair_grid.h"
 #include "engine/moving_body.h"
@@ -38,6 +39,9 @@ struct Engine::Impl : InMemory {
     void setBody(std::shared_ptr<const BodyField> body);
     bool setState(const State& state);
     void step(const FrameInput& input);
+    /// A frame without poses inside, in so many substeps or more.
+    void stepStraight(const FrameInput& input, std::uint32_t substeps);
+    void readRoots(Vector<RootFrame>& roots_ws) const;
     void addVelocities(std::span<const Float3> changes_ws);
     std::size_t effectBytes(Effect effect) const;
     std::size_t baseBytes() const;
@@ -57,7 +61,7 @@ struct Engine::Impl : InMemory {
     void forBlocks(const std::function<void(std::size_t)>& each);
     void takeRoots(const FrameInput& input);
     void repairRoots(std::size_t block);
-    std::uint32_t substepsOf(const FrameInput& input) const;
+    std::uint32_t substepsOf(const FrameInput& input, std::uint32_t usual) const;
     void takeBody(const FrameInput& input);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
@@ -105,7 +109,10 @@ struct Engine::Impl : InMemory {
     MovingBody movingBody_;
     bool bodyMoves_ = false;
     std::uint32_t substeps_ = 1;
-    float rootMotion_ = 0.0f;  // metres, the longest way of a root
+    float rootMotion_ = 0.0f;        // metres, the longest way of a root
+    float teleportDistance_ = 0.0f;  // metres; negative: everything that moves is cut
+    FramePieces pieces_;
+    Vector<RootFrame> rootsNow_;  // one per strand, where a piece needs them
 };
 
 /// What all blocks share in one step.

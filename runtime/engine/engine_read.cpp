@@ -151,7 +151,8 @@ std::size_t Engine::Impl::baseBytes() const {
            (state_.capsules.size() + spheres_.capsules.size()) * sizeof(Capsule) + spheres_.ends.size() +
            spheres_.ofSkin.size() + skinSpheres_.size() + state_.rests.size() * sizeof(Rest) +
            (nextRoots_.size() + clearances_.size() + bodySeen_.size()) * sizeof(float) + bodyTable_.bytes() +
-           blockReports_.size() * sizeof(BlockReport) + scratch_.bytes();
+           blockReports_.size() * sizeof(BlockReport) + scratch_.bytes() + pieces_.bytes() +
+           rootsNow_.size() * sizeof(RootFrame);
 }
 
 }  // namespace hairloom::runtime

@@ -167,7 +167,7 @@ void takeSpheres(const SimulationSettings& settings, float longestStrand, const 
             ++spheres.rejected;
             continue;
         }
-        if (i < before.spheres.size() && before.spheres[i].radius > 0.0f) {
+        if (!before.isCut && i < before.spheres.size() && before.spheres[i].radius > 0.0f) {
             const Float3 motion = sphere.center_ws - before.spheres[i].center_ws;
             if (length(motion) <= settings.teleportDistance) spheres.motion[i] = motion;
         }

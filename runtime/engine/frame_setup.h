@@ -34,6 +34,7 @@ struct FrameSpheres {
 struct FormerSpheres {
     std::span<const Sphere> spheres;
     std::span<const Capsule> capsules;
+    bool isCut = false;  ///< nothing of it says how fast spheres are
 };
 /// Room for so many of a frame: takeSpheres() of no more asks for no memory.
 void reserveSpheres(std::size_t given, std::size_t capsules, FrameSpheres& spheres);

@@ -142,11 +142,11 @@ HairBox HairGrid::chooseBox(const HairBox& before) const {
 }
 
 void HairGrid::update(const RestShape& shape, const State& state, const Floats& nextRoots,
-                      const SimulationSettings& settings, float h, std::uint32_t count, const Host& host) {
+                      const SimulationSettings& settings, const HairGridFrame& given, const Host& host) {
     const std::size_t blocks = shape.blocks.size();
-    const float time = h * static_cast<float>(count);
+    const float time = given.h * static_cast<float>(given.substeps);
     const Head before = std::exchange(head_, headAt(shape, nextRoots)), now = headAt(shape, state.roots);
-    const bool cut = !(length(head_.at - now.at) <= settings.teleportDistance);
+    const bool cut = given.isCut || !(length(head_.at - now.at) <= settings.teleportDistance);
     motion_ = {};
     if (cut) {
         head_ = now;

@@ -28,6 +28,13 @@ inline Float3 hairRootAt(const Floats& rows, std::size_t block, std::uint32_t la
     return {at[0], at[kBlockLanes], at[2 * kBlockLanes]};
 }
 
+/// The substeps that a grid is for.
+struct HairGridFrame {
+    float h;  ///< seconds of each
+    std::uint32_t substeps;
+    bool isCut = false;  ///< the head jumps
+};
+
 /// What it knows follows from the rest shape, the settings and the state of each frame: copies and snapshots
 /// go on with the same bits. Sums are of whole numbers: their order does not matter.
 class HairGrid {
@@ -38,10 +45,10 @@ class HairGrid {
     /// Metres: as authored or chosen, larger where the authored hair would take more than 2¹⁴ cells.
     float cell() const { return cell_; }
 
-    /// What points of blocks that move feel in a frame of `count` substeps of h seconds; roots as
-    /// State::roots, at its end. Points that are no numbers, or far outside of all hair, feel nothing.
+    /// What points of blocks that move feel in a frame; roots as State::roots, at its end. Points that are no
+    /// numbers, or far outside of all hair, feel nothing.
     void update(const RestShape& shape, const State& state, const Floats& nextRoots,
-                const SimulationSettings& settings, float h, std::uint32_t count, const Host& host);
+                const SimulationSettings& settings, const HairGridFrame& given, const Host& host);
     /// Sleepers have moved, or are others.
     void forget() { work_.sleepersCounted = false; }
     void show(const Block& block, BlockView& view) const;

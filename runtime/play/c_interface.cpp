@@ -153,6 +153,12 @@ void hl_frame_init(hl_frame* frame) {
     frame->dt = 1.0f / 60.0f;
 }
 
+void hl_pose_init(hl_pose* pose) {
+    if (!pose) return;
+    *pose = {};
+    pose->size = sizeof(hl_pose);
+}
+
 hl_code hl_instance_reset(hl_instance* instance, const hl_frame* frame, hl_error* error) {
     return withFrame(instance, frame, error,
                      [](Instance& hair, const hl_frame& known) { return hair.reset(known); });

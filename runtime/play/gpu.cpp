@@ -247,6 +247,10 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
     if (Outcome refused = place(frame, input)) return refused;
     takeTurns();
     played_ = false;
+    if (frame.inner_count > 0 && host_.log && !saidInnerOnGpu_) {
+        host_.log("hl_gpu_step goes straight to the end of each frame: poses inside are left out");
+        saidInnerOnGpu_ = true;
+    }
     gpuGuides_->take(input);
     takeOrigin(frame);
     asleep_ = last_.known = false;

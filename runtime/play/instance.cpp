@@ -12,23 +12,10 @@
 #include "follow/follow_kernels.h"
 #include "hairloom/body_spheres.h"
 #include "hairloom/capsules.h"
+#include "play/frame_values.h"
 
 namespace hairloom::runtime {
 namespace {
-
-Refusal wrongSize(const std::string& what, std::size_t size, std::size_t wanted) {
-    return {HL_WRONG_SIZE, std::to_string(size) + " " + what + "; expected " + std::to_string(wanted)};
-}
-
-Float3 float3At(const float* values, std::size_t index) {
-    return {values[3 * index], values[3 * index + 1], values[3 * index + 2]};
-}
-
-Matrix34 matrixAt(const float* values, std::size_t index) {
-    Matrix34 matrix;
-    std::copy_n(values + 12 * index, 12, matrix.begin());
-    return matrix;
-}
 
 /// `usual` where the asset has none, or one out of range.
 float numberWithin(const Asset& asset, std::string_view name, double min, double max, double usual) {
@@ -125,115 +112,11 @@ std::uint64_t Instance::numberOf(const Asset& asset) {
            asset::checksum(asset.residuals);
 }
 
-Outcome Instance::placeRoots(const hl_frame& frame) {
-    const Matrix34 head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
-    if (frame.roots) {
-        if (frame.root_count != roots_.size()) return wrongSize("roots", frame.root_count, roots_.size());
-        for (std::size_t s = 0; s < roots_.size(); ++s) {
-            const float* root = frame.roots + 7 * s;
-            roots_[s] = {{root[0], root[1], root[2]}, {root[3], root[4], root[5], root[6]}};
-        }
-        return std::nullopt;
-    }
-    if (frame.scalp) {
-        if (frame.scalp_count != poses_.scalpVertexCount())
-            return wrongSize("scalp vertices", frame.scalp_count, poses_.scalpVertexCount());
-        if (!poses_.hasScalp()) return Refusal{HL_BAD_VALUE, "the asset's roots stand on no scalp"};
-        poses_.followScalp({frame.scalp, 3 * frame.scalp_count}, roots_);
-        return std::nullopt;
-    }
-    if (frame.bones) {
-        if (frame.bone_count != poses_.boneCount())
-            return wrongSize("bones", frame.bone_count, poses_.boneCount());
-        if (poses_.hasScalp()) {
-            poses_.followBones({frame.bones, 12 * frame.bone_count}, head, roots_);
-            return std::nullopt;
-        }
-    }
-    poses_.followHead(head, roots_);
-    return std::nullopt;
-}
-
-Outcome Instance::placeSpheres(const hl_frame& frame, FrameInput& input) {
-    if (frame.spheres) {
-        if (frame.sphere_count > kMaxGivenSpheres)
-            return wrongSize("spheres", frame.sphere_count, kMaxGivenSpheres);
-        if (spheres_.size() < frame.sphere_count) spheres_.resize(frame.sphere_count);
-        for (std::size_t s = 0; s < frame.sphere_count; ++s) {
-            const float* sphere = frame.spheres + 4 * s;
-            spheres_[s] = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
-        }
-        input.spheres = std::span(spheres_).first(frame.sphere_count);
-        return placeCapsules(frame, input);
-    }
-    const Matrix34 head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
-    for (std::size_t s = 0; s < restSpheres_.size(); ++s) {
-        const asset::Sphere& sphere = restSpheres_[s];
-        const bool boned = frame.bones && sphere.bone >= 0;
-        const Matrix34 matrix = boned ? matrixAt(frame.bones, static_cast<std::size_t>(sphere.bone)) : head;
-        spheres_[s] = {transform(matrix, {sphere.centre[0], sphere.centre[1], sphere.centre[2]}),
-                       sphere.radius};
-    }
-    input.spheres = std::span(spheres_).first(restSpheres_.size());
-    input.capsules = restCapsules_;
-    return std::nullopt;
-}
-
-Outcome Instance::placeCapsules(const hl_frame& frame, FrameInput& input) {
-    if (!frame.capsules) return std::nullopt;
-    if (frame.capsule_count > kMaxCapsules) return wrongSize("capsules", frame.capsule_count, kMaxCapsules);
-    capsules_.clear();
-    for (std::size_t c = 0; c < frame.capsule_count; ++c) {
-        const Capsule capsule{frame.capsules[2 * c], frame.capsules[2 * c + 1]};
-        const std::uint32_t farther = std::max(capsule.first, capsule.second);
-        if (farther >= frame.sphere_count)
-            return Refusal{HL_BAD_VALUE, "capsule " + std::to_string(c) + " ends at sphere " +
-                                             std::to_string(farther) + " of " +
-                                             std::to_string(frame.sphere_count)};
-        if (capsule.first == capsule.second)
-            return Refusal{HL_BAD_VALUE, "capsule " + std::to_string(c) + " joins sphere " +
-                                             std::to_string(farther) + " with itself; expected two spheres"};
-        capsules_.push_back(capsule);
-    }
-    input.capsules = capsules_;
-    return std::nullopt;
-}
-
-/// Roots alone do not say where the skin is: it stays where it was.
-void Instance::placeBody(const hl_frame& frame, FrameInput& input) {
-    if (!body_) return;
-    const auto poseOf = [](const Matrix34& m) {
-        return BonePose{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
-    };
-    if (frame.bones && !bodyBones_.empty()) {
-        for (std::size_t b = 0; b < bodyBones_.size(); ++b)
-            bodyPose_[b] = poseOf(matrixAt(frame.bones, bodyBones_[b]));
-        input.body_ws = bodyPose_;
-    } else if (frame.head || !(frame.roots || frame.scalp)) {
-        bodyPose_[0] = poseOf(frame.head ? matrixAt(frame.head, 0) : kIdentity34);
-        input.body_ws = std::span(bodyPose_).first(1);
-    }
-}
-
-Outcome Instance::place(const hl_frame& frame, FrameInput& input) {
-    if (frame.bones && frame.bone_count != poses_.boneCount())
-        return wrongSize("bones", frame.bone_count, poses_.boneCount());
-    // Last, since it is what read-outs look at: nothing is refused any more once it has begun to write.
-    if (Outcome refused = placeSpheres(frame, input)) return refused;
-    if (Outcome refused = placeRoots(frame)) return refused;
-    rootsKnown_ = true;
-    placeBody(frame, input);
-    input.dt = frame.dt;
-    input.time = frame.time;
-    input.roots_ws = roots_;
-    if (frame.wind) input.wind_ws = float3At(frame.wind, 0);
-    input.origin_ws = {frame.origin[0], frame.origin[1], frame.origin[2]};
-    return std::nullopt;
-}
-
 Outcome Instance::reset(const hl_frame& frame) {
     FrameInput input;
-    if (Outcome refused = place(frame, input)) return refused;
+    hl_frame end = frame;
+    end.inner_count = 0;
+    if (Outcome refused = place(end, input)) return refused;
     leaveGpu();
     played_ = playedWaits_ = false;
     engine_.reset(roots_);
@@ -270,7 +153,8 @@ Outcome Instance::step(const hl_frame& frame) {
     if (frame.dt == 0) return std::nullopt;
     if (Outcome refused = checkStep(frame)) return refused;
     // Nothing wakes it: a step would leave every bit as it is.
-    if (asleep_ && asBefore(frame)) return std::nullopt;
+    if (Outcome refused = checkInner(frame)) return refused;
+    if (asleep_ && asBefore(frame) && innerAsBefore(frame)) return std::nullopt;
     settlePlayed();
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
@@ -388,7 +272,7 @@ hl_instance_info Instance::describe() const {
                  spheres_.size() * sizeof(Sphere) + skinSpheres_.size() + bytesOfLevels() +
                  (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3) +
                  allStrands_.size() * sizeof(std::uint32_t) + rootsBefore_.size() * sizeof(Float3) +
-                 (clip_ ? clip_->bytes() : 0);
+                 (clip_ ? clip_->bytes() : 0) + inner_.bytes();
     return info;
 }
 

@@ -148,6 +148,7 @@ class Instance {
                       const std::optional<std::array<double, 3>>& origin_ws);
     void placeRootsOfLevels();
     void holdMotion(const FrameInput& input);
+    void takeRootsOfLevel(const Engine& engine, FrameInput& input);
     Engine* engineOfLevel() { return engineAt(level()); }
     /// Null of the rigid level.
     Engine* engineAt(std::uint32_t level);
@@ -183,6 +184,10 @@ class Instance {
     void grow(const hl_reserve& wanted);
     static Outcome checkStep(const hl_frame& frame);
     Outcome place(const hl_frame& frame, FrameInput& input);
+    Outcome checkInner(const hl_frame& frame) const;
+    Outcome placeInner(const hl_frame& frame, FrameInput& input);
+    /// Of a frame that is asBefore().
+    bool innerAsBefore(const hl_frame& frame) const;
     Outcome placeRoots(const hl_frame& frame);
     void placeBody(const hl_frame& frame, FrameInput& input);
     Outcome placeSpheres(const hl_frame& frame, FrameInput& input);
@@ -209,6 +214,19 @@ class Instance {
     Vector<BonePose> bodyPose_;
     Vector<RootFrame> roots_;
     Vector<Quat> turns_;
+    /// Of the frame under way, pose after pose.
+    struct Inner {
+        Vector<InnerPose> poses;
+        Vector<RootFrame> roots, simulatedRoots;  // of all guides, of those of the level
+        Vector<Sphere> spheres;
+        Vector<BonePose> body;
+        std::size_t bytes() const {
+            return poses.capacity() * sizeof(InnerPose) +
+                   (roots.capacity() + simulatedRoots.capacity()) * sizeof(RootFrame) +
+                   spheres.capacity() * sizeof(Sphere) + body.capacity() * sizeof(BonePose);
+        }
+    } inner_;
+    bool saidInnerOnGpu_ = false;
     /// What the last step was given, where all of it is a head or bones; hair that sleeps needs no other.
     struct LastFrame {
         bool known = false, hasWind = false;

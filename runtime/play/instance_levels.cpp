@@ -126,7 +126,7 @@ void Instance::holdMotion(const FrameInput& input) {
         }
         levels.placed[g] = root;
     }
-    const bool known = levels.origin.has_value() && looked > 0 && std::isfinite(squares);
+    const bool known = !input.cut && levels.origin.has_value() && looked > 0 && std::isfinite(squares);
     levels.velocity = known ? sum * (1 / (looked * input.dt)) : Float3{};
     const float speed = known ? std::sqrt(squares / looked) / input.dt : 0;
     const float kept = 1 / (1 + input.dt / kHeld);
@@ -138,13 +138,28 @@ void Instance::holdMotion(const FrameInput& input) {
         if (!std::isfinite(axis)) axis = 0;
 }
 
+/// Those of the guides that the level simulates.
+void Instance::takeRootsOfLevel(const Engine& engine, FrameInput& input) {
+    const std::size_t count = engine.strandCount();
+    input.roots_ws = std::span<const RootFrame>(levels_->simulatedRoots).first(count);
+    if (input.inner.empty()) return;
+    const Level& level = levels_->set->coarser[levels_->level - 1];
+    inner_.simulatedRoots.clear();
+    for (const InnerPose& pose : inner_.poses) {
+        for (const std::uint32_t guide : level.guides) inner_.simulatedRoots.push_back(pose.roots_ws[guide]);
+    }
+    for (std::size_t i = 0; i < inner_.poses.size(); ++i)
+        inner_.poses[i].roots_ws =
+            std::span<const RootFrame>(inner_.simulatedRoots).subspan(i * count, count);
+    input.inner = inner_.poses;
+}
+
 void Instance::stepLevel(FrameInput& input) {
     Levels& levels = *levels_;
     holdMotion(input);
     placeRootsOfLevels();
     if (Engine* const engine = engineOfLevel()) {
-        if (engine != &engine_)
-            input.roots_ws = std::span<const RootFrame>(levels.simulatedRoots).first(engine->strandCount());
+        if (engine != &engine_) takeRootsOfLevel(*engine, input);
         engine->step(input);
         if (engine->asleep() == engine->strandCount()) levels.motion = levels.wind = 0;
     }

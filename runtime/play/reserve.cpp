@@ -30,6 +30,9 @@ void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const 
             engine.step(input);
             input.capsules = std::span(capsules).first(count > 0 ? capsules.size() : 0);
             if (!input.capsules.empty()) engine.step(input);
+            const InnerPose inside{roots, input.spheres};
+            input.inner = {&inside, 1};
+            engine.step(input);
         }
     }
     engine.setState(*before);
@@ -43,6 +46,9 @@ Outcome Instance::reserve(const hl_reserve& wanted) {
                                          "; expected 0 to " + std::to_string(kMaxGivenSpheres)};
     if (wanted.previous_guides > 1 || wanted.previous_hairs > 1)
         return Refusal{HL_BAD_VALUE, "reserve.previous_guides and previous_hairs are 0 or 1"};
+    if (wanted.inner > kMaxInnerPoses)
+        return Refusal{HL_BAD_VALUE, "reserve.inner is " + std::to_string(wanted.inner) + "; expected 0 to " +
+                                         std::to_string(kMaxInnerPoses)};
     // In a copy: where memory ends in the middle, this one is as it was.
     Instance grown(*this);
     grown.grow(wanted);
@@ -66,6 +72,14 @@ void Instance::grow(const hl_reserve& wanted) {
         rehearse(levels_->engines[i], fewer, spheres);
     }
     last_.bones.reserve(12 * poses_.boneCount());
+    if (wanted.inner > 0) {
+        const std::size_t poses = wanted.inner;
+        inner_.poses.reserve(poses);
+        inner_.roots.reserve(poses * roots_.size());
+        if (levels_) inner_.simulatedRoots.reserve(poses * levels_->simulatedRoots.size());
+        inner_.spheres.reserve(poses * count);
+        inner_.body.reserve(poses * bodyPose_.size());
+    }
     if (wanted.previous_guides > 0) shown_[0].positions.reserve(positions_.size());
     if (wanted.previous_hairs > 0 && hairs_)
         shown_[1].positions.reserve(std::size_t{hairs_->hairCount()} * hairs_->pointsPerHair());

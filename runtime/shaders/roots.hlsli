@@ -82,7 +82,7 @@ void enterFrame() {
     const float4 turnedTo = gRootsTo[2 * gSlot + 1];
     const float3 displacement = to - from;
     // A cut carries the strand along rigidly.
-    const bool teleported = !(dot(displacement, displacement) <= gFrame.teleportDistance * gFrame.teleportDistance);
+    const bool teleported = !(dot(displacement, displacement) <= gFrame.teleportDistance * abs(gFrame.teleportDistance));
     if (teleported) {
         const float4 turn = multiply(turnedTo, conjugate(rotationFrom));
         ALONE ALL_POINTS(p) {

@@ -56,7 +56,7 @@ struct SimulationConstants {
     float h;                   ///< seconds of a substep
     float dt;                  ///< seconds of the frame
     float rescale;             ///< this substep over the last frame's
-    float teleportDistance;    ///< metres
+    float teleportDistance;    ///< metres; negative: all that moves is cut
     float slowSquared;         ///< square metres in a substep; slower strands rest
     float sleepDelay;          ///< seconds
     uint groups;               ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW

@@ -108,7 +108,7 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_reserve, spheres, 8, 4),
         MEMBER(hl_reserve, previous_guides, 12, 4),
         MEMBER(hl_reserve, previous_hairs, 16, 4),
-        MEMBER(hl_reserve, unused, 20, 4),
+        MEMBER(hl_reserve, inner, 20, 4),
         MEMBER(hl_read, size, 0, 8),
         MEMBER(hl_read, hairs, 8, 4),
         MEMBER(hl_read, position_format, 12, 4),
@@ -151,6 +151,16 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_frame, origin, 104, 24),
         MEMBER(hl_frame, capsules, 128, 8),
         MEMBER(hl_frame, capsule_count, 136, 8),
+        MEMBER(hl_frame, inner, 144, 8),
+        MEMBER(hl_frame, inner_count, 152, 8),
+        MEMBER(hl_frame, cut, 160, 4),
+        MEMBER(hl_frame, unused, 164, 4),
+        MEMBER(hl_pose, size, 0, 8),
+        MEMBER(hl_pose, head, 8, 8),
+        MEMBER(hl_pose, bones, 16, 8),
+        MEMBER(hl_pose, scalp, 24, 8),
+        MEMBER(hl_pose, roots, 32, 8),
+        MEMBER(hl_pose, spheres, 40, 8),
         MEMBER(hl_instance_info, guides, 0, 4),
         MEMBER(hl_instance_info, guide_points, 4, 4),
         MEMBER(hl_instance_info, hairs, 8, 4),
@@ -210,7 +220,8 @@ TEST(Abi, StructsLieAsTheyDid) {
     EXPECT_EQ(sizeof(hl_bone), 72u);
     EXPECT_EQ(sizeof(hl_layer), 24u);
     EXPECT_EQ(sizeof(hl_jobs), 16u);
-    EXPECT_EQ(sizeof(hl_frame), 144u);
+    EXPECT_EQ(sizeof(hl_frame), 168u);
+    EXPECT_EQ(sizeof(hl_pose), 48u);
     EXPECT_EQ(sizeof(hl_instance_info), 40u);
     EXPECT_EQ(sizeof(hl_out), 24u);
     EXPECT_EQ(sizeof(hl_effect), 136u);
@@ -252,6 +263,7 @@ TEST(Abi, FunctionsTakeWhatTheyTook) {
     EXPECT_TRUE((isA<hl_code(ConstHair, Hair*, hl_error*)>(&hl_instance_copy)));
     EXPECT_TRUE((isA<void(Hair)>(&hl_instance_free)));
     EXPECT_TRUE((isA<void(hl_frame*)>(&hl_frame_init)));
+    EXPECT_TRUE((isA<void(hl_pose*)>(&hl_pose_init)));
     EXPECT_TRUE((isA<hl_code(Hair, const hl_frame*, hl_error*)>(&hl_instance_reset)));
     EXPECT_TRUE((isA<hl_code(Hair, const hl_frame*, hl_error*)>(&hl_instance_step)));
     EXPECT_TRUE((isA<hl_code(Hair, const char*, const double*, size_t, hl_error*)>(&hl_instance_set)));

@@ -112,7 +112,7 @@ class Engine {
     void setClock(std::function<std::uint64_t()> nanoseconds);
 
     /// Advances by input.dt to the end of the frame. A dt that is not above 0 changes nothing. One root per
-    /// strand.
+    /// strand, in poses inside the frame as well.
     bool step(const FrameInput& input);
 
     /// Changes velocities between frames, as a HairVolume does (alternatives/hair_volume.h): one change

@@ -257,6 +257,18 @@ HL_API hl_code hl_instance_make_hosted(const hl_asset* asset, uint32_t what, con
 HL_API hl_code hl_instance_copy(const hl_instance* instance, hl_instance** out, hl_error* error);
 HL_API void hl_instance_free(hl_instance* instance); /* null is allowed */
 
+/* Where things are at a time within a frame, as hl_frame has them at its end, and as many: a pose has those
+ * that its frame has, and no others. Begin with hl_pose_init(). */
+typedef struct hl_pose {
+    size_t size; /* sizeof(hl_pose), set by hl_pose_init(); the same in all poses of a frame */
+    const float* head;
+    const float* bones;
+    const float* scalp;
+    const float* roots;
+    const float* spheres;
+} hl_pose;
+HL_API void hl_pose_init(hl_pose* pose);
+
 /* Where the head is at the end of a frame. Begin with hl_frame_init(); what stays 0 or null is not there.
  * Roots follow, the first of these that is there: `roots`, `scalp`, `bones`, `head`. Spheres follow
  * `spheres`, else `bones`, else `head`. A matrix or root that is not finite leaves its strands where they
@@ -282,6 +294,17 @@ typedef struct hl_frame {
     const uint32_t* capsules; /* 2 of each: numbers of two of the frame's spheres, whose hull is a tapered
                                  capsule. Without `spheres` the asset's own capsules count instead */
     size_t capsule_count;     /* up to 256 */
+    /* Poses on the way there, one after another, at equal shares of dt: three are those at the quarters of
+     * the frame. Substeps see the motion through them; without, all goes straight to the end. Matrices of
+     * poses are finite. An instance takes 28 bytes more for each guide and pose, asked for at the first such
+     * frame. hl_gpu_step leaves them out, and says so once in the log. */
+    const hl_pose* inner;
+    size_t inner_count; /* up to 15 */
+    /* 1: the frame does not continue from the one before. Roots, spheres and skin jump to its first pose, and
+     * take the hair along with its motion, as roots do that jump farther than `teleportDistance`.
+     * hl_instance_reset puts hair at rest instead */
+    uint32_t cut;
+    uint32_t unused; /* 0 */
 } hl_frame;
 HL_API void hl_frame_init(hl_frame* frame);
 
@@ -322,15 +345,15 @@ HL_API hl_code hl_instance_choose(hl_instance* instance, const char* name, const
 
 /* Memory ahead of time. hl_instance_make asks for what an instance holds, its first frames of new effects and
  * of more spheres for more. After this call no step, reset, change of level or read asks for any, whatever
- * head, bones and wind do, as long as frames have no more spheres, no more capsules than these, and no
- * setting is replaced. The state stays. Takes as long as some frames at each level, and the memory of a copy
- * meanwhile. Copies of the instance have to be told again. */
+ * head, bones and wind do, as long as frames have no more spheres, no more capsules than these, no more poses
+ * inside, and no setting is replaced. The state stays. Takes as long as some frames at each level, and the
+ * memory of a copy meanwhile. Copies of the instance have to be told again. */
 typedef struct hl_reserve {
     size_t size;      /* sizeof(hl_reserve), set by hl_reserve_init() */
     uint32_t spheres; /* that hl_frame.spheres will have at most, up to 4096; 0: the asset's own */
     uint32_t previous_guides,
         previous_hairs; /* 1 where reads of guides, of hairs will ask for hl_read.previous */
-    uint32_t unused;    /* 0 */
+    uint32_t inner;     /* poses that hl_frame.inner will have at most, up to 15; 0: none */
 } hl_reserve;
 HL_API void hl_reserve_init(hl_reserve* reserve);
 HL_API hl_code hl_instance_reserve(hl_instance* instance, const hl_reserve* reserve, hl_error* error);

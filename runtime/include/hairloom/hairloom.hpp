@@ -29,6 +29,11 @@ struct Frame : hl_frame {
     }
 };
 
+/// A pose within a frame, likewise.
+struct Pose : hl_pose {
+    Pose() { hl_pose_init(this); }
+};
+
 /// Values of `components` floats each, one after another.
 inline hl_out tight(std::vector<float>& values, std::size_t components) {
     return {values.data(), values.size() * sizeof(float), components * sizeof(float)};

@@ -34,6 +34,7 @@ struct StrandsView {
 
 inline constexpr std::uint32_t kMaxPoints = 512;
 inline constexpr std::size_t kMaxCapsules = 256;
+inline constexpr std::size_t kMaxInnerPoses = 15;
 
 /// A collision sphere. A radius that is not above 0, or anything not finite, takes it out of the frame.
 struct Sphere {
@@ -45,6 +46,14 @@ struct Sphere {
 /// that joins a sphere with itself, is left out.
 struct Capsule {
     std::uint32_t first, second;
+};
+
+/// Where roots and colliders are at a time within a frame; metres, from the frame's origin.
+struct InnerPose {
+    std::span<const RootFrame> roots_ws;  ///< one per strand
+    /// As many as the frame has. If a pose has another number, all spheres go straight through the frame.
+    std::span<const Sphere> spheres = {};
+    std::span<const BonePose> body_ws = {};  ///< likewise
 };
 
 /// Everything that changes from frame to frame.
@@ -70,6 +79,16 @@ struct FrameInput {
     /// speed follows from the frame before. Empty, of another size or not finite: the body stays where it
     /// was, and is nowhere before the first.
     std::span<const BonePose> body_ws = {};
+    /// Poses on the way, at equal shares of dt: three are those at the quarters of the frame. At most
+    /// kMaxInnerPoses. Substeps see the motion through them; without, everything goes straight to the end of
+    /// the frame. teleportDistance then counts from pose to pose, and hair beside a body may take more
+    /// substeps where a part of the frame is fast. Not seen by alternatives/, nor by an engine on a GPU whose
+    /// roots are found there.
+    std::span<const InnerPose> inner = {};
+    /// The frame does not continue from the one before: roots, spheres and body jump to its first pose,
+    /// however near that is, and take the hair along rigidly with its velocities turned. Engine::reset()
+    /// instead puts hair at rest.
+    bool cut = false;
 };
 
 }  // namespace hairloom::runtime
