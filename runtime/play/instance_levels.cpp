@@ -146,7 +146,11 @@ void Instance::takeRootsOfLevel(const Engine& engine, FrameInput& input) {
     const Level& level = levels_->set->coarser[levels_->level - 1];
     inner_.simulatedRoots.clear();
     for (const InnerPose& pose : inner_.poses) {
-        for (const std::uint32_t guide : level.guides) inner_.simulatedRoots.push_back(pose.roots_ws[guide]);
+        for (const std::uint32_t guide : level.guides) {
+            // To the bit as holdMotion() has those of the frame. The engine leaves out what is no root.
+            RootFrame root = pose.roots_ws[guide];
+            inner_.simulatedRoots.push_back(usableWithin(root, kFarthest) ? root : pose.roots_ws[guide]);
+        }
     }
     for (std::size_t i = 0; i < inner_.poses.size(); ++i)
         inner_.poses[i].roots_ws =

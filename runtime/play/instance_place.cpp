@@ -161,16 +161,19 @@ Outcome Instance::checkInner(const hl_frame& frame) const {
         return Refusal{HL_WRONG_SIZE, "poses inside the frame that are not at multiples of 8 bytes"};
     const hl_pose own{sizeof(hl_pose), frame.head, frame.bones, frame.scalp, frame.roots, frame.spheres};
     for (std::size_t i = 0; i < frame.inner_count; ++i) {
-        const std::string name = "pose " + std::to_string(i + 1) + " of " +
-                                 std::to_string(frame.inner_count) + " inside the frame";
+        // Words are made where they are needed: they take memory.
+        const auto name = [&] {
+            return "pose " + std::to_string(i + 1) + " of " + std::to_string(frame.inner_count) +
+                   " inside the frame";
+        };
         const hl_pose pose = innerPoseAt(frame, i);
         if (pose.size != frame.inner->size)
-            return Refusal{HL_WRONG_SIZE, name + " says that it has " + std::to_string(pose.size) +
+            return Refusal{HL_WRONG_SIZE, name() + " says that it has " + std::to_string(pose.size) +
                                               " bytes; expected " + std::to_string(frame.inner->size) +
                                               ", as the first"};
         const auto differs = [&](const char* what, const float* given, const float* ofFrame) -> Outcome {
             if ((given != nullptr) == (ofFrame != nullptr)) return std::nullopt;
-            return Refusal{HL_BAD_VALUE, name + (given ? " has " : " has no ") + what +
+            return Refusal{HL_BAD_VALUE, name() + (given ? " has " : " has no ") + what +
                                              (given ? ", which the frame has not" : ", which the frame has")};
         };
         for (const auto& [what, given, ofFrame] :
@@ -184,7 +187,7 @@ Outcome Instance::checkInner(const hl_frame& frame) const {
                    std::all_of(matrices, matrices + 12 * count, [](float v) { return std::isfinite(v); });
         };
         if (!isFinite(pose.head, 1) || !isFinite(pose.bones, frame.bone_count))
-            return Refusal{HL_BAD_VALUE, name + " has a matrix that is not finite"};
+            return Refusal{HL_BAD_VALUE, name() + " has a matrix that is not finite"};
     }
     return std::nullopt;
 }
