@@ -45,7 +45,7 @@ Result<render::Image> pictureOf(const Groom& groom, const Simulation& simulation
 Result<Rested> rest(const Groom& groom, int frames, std::uint32_t side) {
     auto simulation = Simulation::make(groom, {});
     if (!simulation) return tl::unexpected(simulation.error());
-    for (int f = 0; f < frames; ++f) simulation->step(runtime::kUsualFrame, {});
+    for (int f = 0; f < frames; ++f) simulation->step(runtime::kUsualFrame, HeadPose{});
     const auto points = simulation->positions_ws();
     auto picture = pictureOf(groom, *simulation, side);
     if (!picture) return tl::unexpected(picture.error());

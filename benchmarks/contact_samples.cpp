@@ -41,11 +41,11 @@ class OfSample {
         auto simulation = Simulation::make(groom_, {});
         if (!simulation) return tl::unexpected(simulation.error());
         const int second = quick_ ? 2 : 60;
-        for (int f = 0; f < 5 * second; ++f) simulation->step(runtime::kUsualFrame, {});
+        for (int f = 0; f < 5 * second; ++f) simulation->step(runtime::kUsualFrame, HeadPose{});
         rows.push_back({fmt::format("{} at rest, strands above 1 mm/s after 5 s", name_),
                         countAbove(speedsOf(groom_, *simulation), 0.001f), "", 0,
                         "strands that lie on folds of the skin"});
-        for (int f = 0; f < 5 * second; ++f) simulation->step(runtime::kUsualFrame, {});
+        for (int f = 0; f < 5 * second; ++f) simulation->step(runtime::kUsualFrame, HeadPose{});
         rows.push_back({fmt::format("{} at rest, strands awake after 10 s", name_),
                         static_cast<double>(groom_.strandCount() - simulation->stats().restingStrands), "", 0,
                         "strands that lie on folds of the skin"});
@@ -69,7 +69,7 @@ class OfSample {
             std::vector<CollisionSphere> spheres = groom_.spheres;
             spheres.push_back({"hand", top + Vec3f(0, kRadius + kAbove + 0.1f * left, 0), kRadius, {}, -1});
             simulation->setSpheres(std::move(spheres));
-            simulation->step(runtime::kUsualFrame, {});
+            simulation->step(runtime::kUsualFrame, HeadPose{});
             const auto now = simulation->positions_ws();
             for (std::size_t p = 0; f > 6 * second && p < now.size(); ++p)
                 jump = std::max(jump, (now[p] - last[p]).norm());

@@ -23,7 +23,8 @@ Status LiveShots::stepWithin(std::uint64_t frame) {
     for (std::uint32_t step = 1; step < pace_.steps(); ++step) {
         const float time = pace_.timeOf(static_cast<float>(frame), step);
         if (auto given = keyed_.give(hair_, time); !given) return given;
-        if (auto moved = hair_.step(pace_.dt(), motion_.poseAt(time)); !moved) return moved;
+        const HeadStep head = stepOf(motion_, hair_.pose(), time - pace_.dt(), time);
+        if (auto moved = hair_.step(pace_.dt(), head); !moved) return moved;
     }
     return {};
 }
@@ -59,8 +60,8 @@ Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::Rende
             if (auto past = renderer_.recordPast(**list, how); !past) return tl::unexpected(past.error());
         }
         if (auto given = giveMaterial(time); !given) return tl::unexpected(given.error());
-        if (auto moved = hair_.step(**list, pace_.dt(), motion_.poseAt(time)); !moved)
-            return tl::unexpected(moved.error());
+        const HeadStep head = stepOf(motion_, hair_.pose(), time - pace_.dt(), time);
+        if (auto moved = hair_.step(**list, pace_.dt(), head); !moved) return tl::unexpected(moved.error());
         if (auto shown = hair_.show(renderer_, scene_); !shown) return tl::unexpected(shown.error());
         if (how.temporal && frame_ + 1 < frame) {
             if (auto drawn = renderer_.record(**list, how, nullptr); !drawn)

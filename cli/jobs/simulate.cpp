@@ -283,8 +283,9 @@ Result<Report> simulate(const SimulateOptions& options) {
         for (std::uint32_t step = 1; step <= steps; ++step) {
             const float time = timeOf(frame, step);
             if (auto given = keyed.give(*simulation, time); !given) return given;
-            pose = (*motion)->poseAt(time);
-            simulation->step(dt, pose);
+            HeadStep head = stepOf(**motion, pose, time - dt, time);
+            simulation->step(dt, head);
+            pose = std::move(head.end);
         }
         return simulation->status();
     };

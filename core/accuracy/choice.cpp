@@ -55,6 +55,7 @@ bool hasValue(const Groom& groom, std::string_view field, double value) {
     const auto atLeast = [value](std::size_t count) { return value >= static_cast<double>(count); };
     if (field == kPointsAxis) return value == static_cast<double>(maxPoints(groom));
     if (field == kEngineAxis || field == kHairVolumeAxis) return value == 0;
+    if (field == kHeadSeenAxis) return value == 1;
     if (field == kSpheresAxis) return atLeast(groom.spheres.size());
     if (field == kGuidesAxis) return atLeast(groom.strandCount());
     if (field == kHairsPerGuideAxis) return value == groom.interpolation.followPerGuide;

@@ -16,7 +16,13 @@ constexpr std::uint32_t kFirstSubsteps = 4;
 ErrorSplitter::ErrorSplitter(const GridHair& hair, const std::vector<GridAxis>& axes,
                              const runtime::SimulationSettings& settings, std::span<const HeadPose> poses,
                              const SceneTime& time, const GroundTruth& exact)
-    : hair_(hair), axes_(axes), settings_(settings), poses_(poses), time_(time), exact_(exact) {}
+    : hair_(hair),
+      axes_(axes),
+      settings_(settings),
+      poses_(poses),
+      framePoses_(framePosesOf(poses, time)),
+      time_(time),
+      exact_(exact) {}
 
 Result<const ErrorSplitter::Converged*> ErrorSplitter::converged(const std::vector<double>& values,
                                                                  std::uint32_t points, bool rods) {
@@ -43,8 +49,8 @@ Result<const ErrorSplitter::Converged*> ErrorSplitter::converged(const std::vect
     before.finite = false;
     for (std::uint32_t substeps = kFirstSubsteps; substeps <= kConvergedSubsteps; substeps *= 2) {
         settings.substeps = substeps;
-        auto outcome = runScene(some.hair, poses_, time_, {some.strands, exact_.followed.shares},
-                                hair_.optionsAt(values));
+        auto outcome = runScene(some.hair, poses_, hair_.timeAt(values, time_),
+                                {some.strands, exact_.followed.shares}, hair_.optionsAt(values));
         if (!outcome) return tl::unexpected(outcome.error());
         Trajectory& now = outcome->trajectory;
         if (now.finite && before.finite) {
@@ -53,7 +59,7 @@ Result<const ErrorSplitter::Converged*> ErrorSplitter::converged(const std::vect
         }
         before = std::move(now);
     }
-    hair_.moveToOwnRoots(values, exact_.followed, poses_, best.trajectory);
+    hair_.moveToOwnRoots(values, exact_.followed, framePoses_, best.trajectory);
     return &made_.emplace(std::move(key), std::move(best)).first->second;
 }
 

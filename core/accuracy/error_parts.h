@@ -31,6 +31,7 @@ class ErrorSplitter {
     const std::vector<GridAxis>& axes_;
     const runtime::SimulationSettings& settings_;
     std::span<const HeadPose> poses_;
+    std::vector<HeadPose> framePoses_;
     const SceneTime& time_;
     const GroundTruth& exact_;
     std::map<std::vector<double>, Converged> made_;

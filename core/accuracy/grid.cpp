@@ -30,6 +30,7 @@ const OwnAxis* findOwn(std::string_view field) {
     static const std::vector<OwnAxis> all{{kPointsAxis, kFewestPoints, double{runtime::kMaxPoints}},
                                           {kThreadsAxis, 0, kMaxThreads},
                                           {kEngineAxis, 0, 1, {"cpu", "gpu"}},
+                                          {kHeadSeenAxis, 0, 1, {"ends", "quarters"}},
                                           {kHairVolumeAxis, 0, 1},
                                           {kSpheresAxis, 0, kMaxSpheres},
                                           {kGuidesAxis, 1, kMaxGuides},
@@ -47,9 +48,9 @@ Status checkValue(const GridAxis& axis, double value) {
     const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
     if (!field || field->components() != 1) {
         return fail(fmt::format("there is no setting '{}' of one number", axis.field),
-                    fmt::format("expected {}, {}, {}, {}, {}, {}, {} or a field of the simulation",
-                                kPointsAxis, kThreadsAxis, kEngineAxis, kHairVolumeAxis, kSpheresAxis,
-                                kGuidesAxis, kHairsPerGuideAxis));
+                    fmt::format("expected {}, {}, {}, {}, {}, {}, {}, {} or a field of the simulation",
+                                kPointsAxis, kThreadsAxis, kEngineAxis, kHeadSeenAxis, kHairVolumeAxis,
+                                kSpheresAxis, kGuidesAxis, kHairsPerGuideAxis));
     }
     runtime::SimulationSettings settings;
     if (runtime::setFieldValue(settings, *field, value)) return {};

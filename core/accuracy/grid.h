@@ -26,6 +26,9 @@ inline constexpr std::string_view kThreadsAxis = "threads";
 
 /// What moves the strands: "cpu" or "gpu", by its index.
 inline constexpr std::string_view kEngineAxis = "engine";
+/// Where substeps see the head: at the "ends" of frames, straight between them, or at their "quarters", as
+/// the tool itself simulates; by its index.
+inline constexpr std::string_view kHeadSeenAxis = "headSeen";
 /// Hair-hair collision through a volume between frames: 0 or 1.
 inline constexpr std::string_view kHairVolumeAxis = "hairVolume";
 /// Collision spheres that stay, the first of the groom's.

@@ -39,6 +39,7 @@ GridHair::GridHair(SceneHair authored, const std::vector<GridAxis>& axes, const 
       points_(findAxis(axes, kPointsAxis)),
       threads_(findAxis(axes, kThreadsAxis)),
       engine_(findAxis(axes, kEngineAxis)),
+      headSeen_(findAxis(axes, kHeadSeenAxis)),
       hairVolume_(findAxis(axes, kHairVolumeAxis)),
       spheres_(findAxis(axes, kSpheresAxis)),
       guides_(findAxis(axes, kGuidesAxis)),
@@ -112,6 +113,11 @@ SimulationOptions GridHair::optionsAt(const std::vector<double>& values) const {
     return options;
 }
 
+SceneTime GridHair::timeAt(const std::vector<double>& values, SceneTime time) const {
+    if (headSeen_) time.seesWithin = values[*headSeen_] > 0;
+    return time;
+}
+
 const StrandFollow* GridHair::followersAt(const std::vector<double>& values) const {
     return hairsPerGuide_ ? followers_.at(hairsAt(values)).get() : nullptr;
 }
@@ -148,7 +154,7 @@ GridHair::Some GridHair::alone(SceneHair hair, const std::vector<std::uint32_t>&
 }
 
 void GridHair::moveToOwnRoots(const std::vector<double>& values, const Followed& followed,
-                              std::span<const HeadPose> poses, Trajectory& trajectory) const {
+                              std::span<const HeadPose> framePoses, Trajectory& trajectory) const {
     const Guides* guides = guidesAt(values);
     if (!guides || trajectory.points_ws.empty()) return;
     std::vector<std::uint32_t> guideStrands;
@@ -162,7 +168,7 @@ void GridHair::moveToOwnRoots(const std::vector<double>& values, const Followed&
     const std::size_t shares = followed.shares.size();
     const std::size_t frames = trajectory.points_ws.size() / trajectory.pointsPerFrame;
     for (std::size_t frame = 0; frame < frames; ++frame) {
-        const auto roots = scene->rootsAt(inWorld(poses[frame + 1]));
+        const auto roots = scene->rootsAt(inWorld(framePoses[frame + 1]));
         Vec3f* point = trajectory.points_ws.data() + frame * trajectory.pointsPerFrame;
         for (std::size_t s = 0; s < followed.strands.size(); ++s) {
             const runtime::Float3 own = roots[placeIn(needed, followed.strands[s])].position;

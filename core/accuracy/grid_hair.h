@@ -26,6 +26,8 @@ class GridHair {
     SceneHair at(const std::vector<double>& values, std::uint32_t points) const;
     /// What runs it.
     SimulationOptions optionsAt(const std::vector<double>& values) const;
+    /// How much of the head's motion that sees.
+    SceneTime timeAt(const std::vector<double>& values, SceneTime time) const;
     /// Hairs that follow what is simulated; null without.
     const StrandFollow* followersAt(const std::vector<double>& values) const;
     /// The finest strands of the grid with the scene's own settings, every strand for itself.
@@ -44,9 +46,9 @@ class GridHair {
     std::vector<std::uint32_t> followedAt(const std::vector<std::uint32_t>& strands,
                                           const std::vector<double>& values) const;
     /// From points of guides to those of `followed`, strands of the authored hair: each at its own root.
-    /// poses[0] is the start, and a frame is one step.
+    /// `framePoses`: the start, and the end of each frame.
     void moveToOwnRoots(const std::vector<double>& values, const Followed& followed,
-                        std::span<const HeadPose> poses, Trajectory& trajectory) const;
+                        std::span<const HeadPose> framePoses, Trajectory& trajectory) const;
 
     ThreadLimit limitThreads(const std::vector<double>& values) const;
 
@@ -69,7 +71,8 @@ class GridHair {
 
     const std::vector<GridAxis>* axes_;
     const MethodMaker* gpuEngine_;
-    std::optional<std::size_t> points_, threads_, engine_, hairVolume_, spheres_, guides_, hairsPerGuide_;
+    std::optional<std::size_t> points_, threads_, engine_, headSeen_, hairVolume_, spheres_, guides_,
+        hairsPerGuide_;
     SceneHair authored_;
     std::map<double, SceneHair> byPoints_;
     std::map<double, Guides> byGuides_;

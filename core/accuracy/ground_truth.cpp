@@ -53,6 +53,7 @@ Result<GroundTruth> EngineConverged::compute(const SceneHair& hair, const HeadMo
     assert(maxSubsteps_ >= 2 * kFewestSubsteps);
     SceneTime fine = time;
     fine.stepsPerFrame = kStepsPerFrame;
+    fine.posesWithin = 0;
     const std::vector<HeadPose> poses = posesOf(motion, fine);
     auto before = run(hair, poses, fine, followed, kFewestSubsteps);
     if (!before) return tl::unexpected(before.error());

@@ -112,17 +112,17 @@ Status measureRest(SceneHair hair, const HeadPose& pose, const SimulationOptions
     return simulation->status();
 }
 
-std::vector<double> headDepths(const Groom& groom, std::span<const HeadPose> poses,
+std::vector<double> headDepths(const Groom& groom, std::span<const HeadPose> framePoses,
                                std::span<const Trajectory* const> trajectories) {
     std::vector<double> deepest(trajectories.size(), 0.0);
     if (!groom.scalp) return deepest;
     const Skin atRest(groom.scalp);
     // By frame, then by trajectory: the tree of a frame serves all of them.
-    const std::size_t frames = poses.size() - 1;
+    const std::size_t frames = framePoses.size() - 1;
     std::vector<float> depths(frames * trajectories.size(), 0.0f);
     parallelFor(frames, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t frame = begin; frame < end; ++frame) {
-            const PosedHead head(atRest, poses[frame + 1]);
+            const PosedHead head(atRest, framePoses[frame + 1]);
             for (std::size_t t = 0; t < trajectories.size(); ++t) {
                 const Trajectory& run = *trajectories[t];
                 if (!run.finite || run.points_ws.empty()) continue;

@@ -28,7 +28,7 @@ Status measureRest(SceneHair hair, const HeadPose& pose, const SimulationOptions
 
 /// How deep points of each trajectory are in the head at most, mm; 0 without one. poses[0] is the start, and
 /// a frame of the trajectories is one step. What is empty or not finite is 0.
-std::vector<double> headDepths(const Groom& groom, std::span<const HeadPose> poses,
+std::vector<double> headDepths(const Groom& groom, std::span<const HeadPose> framePoses,
                                std::span<const Trajectory* const> trajectories);
 
 }  // namespace hairloom

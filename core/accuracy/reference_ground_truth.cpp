@@ -222,6 +222,7 @@ Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const Hea
     if (!scene) return tl::unexpected(scene.error());
     SceneTime fine = time;
     fine.stepsPerFrame = kStepsPerFrame;
+    fine.posesWithin = 0;
     const SceneFrames frames = framesOf(*scene, motion, fine);
     const reference::Goal goal{1e-3 * options_.toleranceMm, kFirstSubsteps, options_.maxSubsteps, 4,
                                options_.cancelled};

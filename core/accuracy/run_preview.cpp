@@ -52,13 +52,21 @@ Result<RunPreview> previewRun(const Groom& groom, const HeadMotion& motion, cons
     applyValues(measured.options.axes, values, hair.groom.simulation);
     const PointsOnOther points(hair, authored);
     RunPreview preview;
-    preview.poses = posesOf(motion, measured.options.time);
+    SceneTime time = measured.options.time;
+    const auto headSeen = findAxis(measured.options.axes, kHeadSeenAxis);
+    const std::uint32_t within = headSeen && values[*headSeen] == 0 ? 0 : time.posesWithin;
+    time.posesWithin = 0;
+    preview.poses = posesOf(motion, time);
     auto simulation = Simulation::make(hair.groom, preview.poses.front(), {});
     if (!simulation) return tl::unexpected(simulation.error());
     for (std::size_t frame = 0; frame < preview.poses.size(); ++frame) {
         if (cancelled && cancelled())
             return fail("the preview was cancelled", "expected it to run to its end");
-        if (frame > 0) simulation->step(1 / measured.options.time.framesPerSecond, preview.poses[frame]);
+        if (frame > 0) {
+            const float at = static_cast<float>(frame), rate = time.framesPerSecond;
+            const HeadPose& before = preview.poses[frame - 1];
+            simulation->step(1 / rate, stepOf(motion, before, (at - 1) / rate, at / rate, within));
+        }
         preview.positions_ws.push_back(points.read(simulation->positions_ws()));
     }
     return preview;

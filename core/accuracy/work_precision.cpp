@@ -53,14 +53,15 @@ Status unlessCancelled(const WorkPrecisionOptions& options) {
 /// Where each run's hair goes; the first run of each setting, which also warms the caches.
 Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Trajectory& groundTruth,
                  const Followed& followed, WorkPrecision& result, Counted& counted) {
+    const std::vector<HeadPose> framePoses = framePosesOf(poses, result.options.time);
     for (WorkPrecisionRun& run : result.runs) {
         if (auto status = unlessCancelled(result.options); !status) return status;
         const ThreadLimit limit = hair.limitThreads(run.values);
-        auto outcome = runScene(hair.at(run.values), poses, result.options.time,
+        auto outcome = runScene(hair.at(run.values), poses, hair.timeAt(run.values, result.options.time),
                                 {hair.followedAt(followed.strands, run.values), followed.shares},
                                 hair.optionsAt(run.values));
         if (!outcome) return tl::unexpected(outcome.error());
-        hair.moveToOwnRoots(run.values, followed, poses, outcome->trajectory);
+        hair.moveToOwnRoots(run.values, followed, framePoses, outcome->trajectory);
         run.stateHash = outcome->stateHash;
         run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0 || outcome->restoredStrands > 0;
         if (!run.diverged) {
@@ -85,7 +86,8 @@ Status findOtherErrors(const GridHair& hair, const Groom& groom, std::span<const
                        std::vector<std::uint32_t> strands, WorkPrecision& result, Counted& counted) {
     std::vector<const Trajectory*> trajectories;
     for (const WorkPrecisionRun& run : result.runs) trajectories.push_back(&run.trajectory);
-    const std::vector<double> depths = headDepths(groom, poses, trajectories);
+    const std::vector<double> depths =
+        headDepths(groom, framePosesOf(poses, result.options.time), trajectories);
     const std::size_t every = (strands.size() + kRestingStrands - 1) / kRestingStrands;
     for (std::size_t s = 0; s * every < strands.size(); ++s) strands[s] = strands[s * every];
     strands.resize((strands.size() + every - 1) / every);
@@ -137,8 +139,8 @@ Status timeAll(const GridHair& hair, std::span<const HeadPose> poses, WorkPrecis
             if (auto status = unlessCancelled(result.options); !status) return status;
             const ThreadLimit limit = hair.limitThreads(result.runs[r].values);
             const std::vector<double>& values = result.runs[r].values;
-            const auto outcome = runScene(hair.at(values), poses, result.options.time, {},
-                                          hair.optionsAt(values), hair.followersAt(values));
+            const auto outcome = runScene(hair.at(values), poses, hair.timeAt(values, result.options.time),
+                                          {}, hair.optionsAt(values), hair.followersAt(values));
             if (!outcome) return tl::unexpected(outcome.error());
             times[r].push_back(outcome->millisecondsPerFrame);
             counted.add();

@@ -145,11 +145,19 @@ std::uint32_t maxPoints(const Groom& groom) {
 
 std::vector<HeadPose> posesOf(const HeadMotion& motion, const SceneTime& time) {
     std::vector<HeadPose> poses;
-    const float stepsPerSecond = time.framesPerSecond * static_cast<float>(time.stepsPerFrame);
-    for (std::uint32_t step = 0; step <= time.frames * time.stepsPerFrame; ++step) {
-        poses.push_back(motion.poseAt(static_cast<float>(step) / stepsPerSecond));
+    const std::uint32_t posesPerFrame = time.stepsPerFrame * (time.posesWithin + 1);
+    const float posesPerSecond = time.framesPerSecond * static_cast<float>(posesPerFrame);
+    for (std::uint32_t pose = 0; pose <= time.frames * posesPerFrame; ++pose) {
+        poses.push_back(motion.poseAt(static_cast<float>(pose) / posesPerSecond));
     }
     return poses;
+}
+
+std::vector<HeadPose> framePosesOf(std::span<const HeadPose> poses, const SceneTime& time) {
+    std::vector<HeadPose> ofFrames;
+    for (std::size_t frame = 0; frame <= time.frames; ++frame)
+        ofFrames.push_back(poses[frame * time.stepsPerFrame * (time.posesWithin + 1)]);
+    return ofFrames;
 }
 
 std::vector<float> evenShares(std::uint32_t count) {
@@ -176,7 +184,8 @@ TrajectoryError compare(const Trajectory& run, const Trajectory& groundTruth) {
 Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> poses, const SceneTime& time,
                              const Followed& followed, const SimulationOptions& options,
                              const StrandFollow* followers) {
-    assert(poses.size() == std::size_t{time.frames} * time.stepsPerFrame + 1);
+    const std::size_t posesPerStep = time.posesWithin + 1;
+    assert(poses.size() == std::size_t{time.frames} * time.stepsPerFrame * posesPerStep + 1);
     auto simulation = Simulation::make(hair.groom, poses[0], options);
     if (!simulation) return tl::unexpected(simulation.error());
     const MaterialPoints points(hair, followed);
@@ -194,7 +203,14 @@ Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> po
     const float dt = 1.0f / (time.framesPerSecond * static_cast<float>(time.stepsPerFrame));
     for (std::uint32_t frame = 0; frame < time.frames && trajectory.finite; ++frame) {
         for (std::uint32_t step = 1; step <= time.stepsPerFrame; ++step) {
-            simulation->step(dt, poses[std::size_t{frame} * time.stepsPerFrame + step]);
+            const std::size_t end = (std::size_t{frame} * time.stepsPerFrame + step) * posesPerStep;
+            auto within = poses.subspan(end - time.posesWithin, time.seesWithin ? time.posesWithin : 0);
+            const auto stays = [&](const HeadPose& pose) {
+                return isSamePlace(pose, poses[end - posesPerStep]);
+            };
+            // As stepOf() has it.
+            if (stays(poses[end]) && std::ranges::all_of(within, stays)) within = {};
+            simulation->step(dt, poses[end], within);
         }
         if (following) following->follow(simulation->positions_ws());
         trajectory.finite = points.read(simulation->positions_ws(), trajectory.points_ws);

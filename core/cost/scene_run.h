@@ -40,11 +40,16 @@ struct SceneTime {
     float framesPerSecond = 60;
     /// Steps of the engine in each frame, each to the head's pose at its end.
     std::uint32_t stepsPerFrame = 1;
+    /// Poses that the engine is given within each step, at equal shares of it.
+    std::uint32_t posesWithin = kPosesWithin;
+    bool seesWithin = true;  ///< false: it is given the end of each step alone, out of the same poses
 };
 
-/// The poses of a run, one more than there are steps: poses[0] is the start. Made once for many runs, because
-/// a clip skins the whole head for each.
+/// The poses of a run, `posesWithin` + 1 for each step behind the start, poses[0]. Made once for many runs,
+/// because a clip skins the whole head for each.
 std::vector<HeadPose> posesOf(const HeadMotion& motion, const SceneTime& time);
+/// Of these the start, and the one at the end of each frame.
+std::vector<HeadPose> framePosesOf(std::span<const HeadPose> poses, const SceneTime& time);
 
 /// Material points at the end of each frame.
 struct Trajectory {

@@ -139,8 +139,9 @@ Result<ResumeReport> writeResumed(TakeReader& source, const Groom& given, const 
         for (std::uint32_t step = 1; step <= pace.steps(); ++step) {
             const float time = pace.timeOf(static_cast<float>(frame), step);
             if (auto set = keyed.give(*simulation, time); !set) return set;
-            pose = motion.poseAt(time);
-            simulation->step(pace.dt(), pose);
+            HeadStep head = stepOf(motion, pose, time - pace.dt(), time);
+            simulation->step(pace.dt(), head);
+            pose = std::move(head.end);
         }
         return {};
     };

@@ -80,7 +80,7 @@ class StrandEngine {
     /// else is asked of the engine.
     Status record(gpu::CommandList& list, const runtime::FrameInput& input);
     /// Likewise; the roots are what the list has written into their buffer before, those of `input` are not
-    /// read.
+    /// read, nor are poses inside it: record a frame for each.
     Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots& roots);
 
     std::uint32_t strandCount() const;

@@ -26,7 +26,8 @@ constexpr std::size_t kBlocksPerJob = 8;
 /// Takes the roots that the frame ends on; whether some have moved.
 bool StrandEngine::Impl::takeRoots(const runtime::FrameInput& input) {
     assert(input.roots_ws.size() == placed.roots.size());
-    runtime::takeFrameRoots(input.roots_ws, wanted.teleportDistance, !rootsOfDevice, placed);
+    runtime::takeFrameRoots(input.roots_ws, input.cut ? -1.0f : wanted.teleportDistance, !rootsOfDevice,
+                            placed);
     rootsOfDevice = false;
     return std::ranges::find(placed.moved, true) != placed.moved.end();
 }
@@ -201,12 +202,36 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
     known.reset();
     moveOrigin(input.origin_ws);
+    constexpr std::array<std::uint32_t, kReportWords> kNothing{};
+    list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
+    if (input.inner.empty() || deviceRoots != nullptr) return recordStraight(list, input, deviceRoots);
+    pieces.take(input, runtime::substepsIn(wanted, input.dt));
+    for (std::size_t i = 0; i < pieces.count(); ++i) {
+        if (i > 0) {
+            originShift = {};
+            forgetLastPiece(list);
+        }
+        const runtime::FrameInput part = pieces.at(i, {placed.roots, spheresBefore, {}});
+        if (auto recorded = recordStraight(list, part, nullptr); !recorded) return recorded;
+    }
+    return {};
+}
+
+/// Strands are asleep and fast at the end of a frame; what was restored and guarded counts all through it.
+void StrandEngine::Impl::forgetLastPiece(gpu::CommandList& list) {
+    constexpr std::array<std::uint32_t, 1> kNone{};
+    for (const std::uint64_t word : {kReportFastest, kReportAsleep})
+        list.updateBuffer(reportBuffer, 4 * word, std::as_bytes(std::span(kNone)));
+}
+
+Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input,
+                                          const DeviceRoots* deviceRoots) {
     const Float3 lowBefore = placed.min_ws, highBefore = placed.max_ws;
     const bool found = deviceRoots != nullptr;
     const bool moves = found ? takeRoots(*deviceRoots) : takeRoots(input);
     const runtime::Vector<runtime::Capsule> capsulesBefore = frameSpheres.capsules;
-    runtime::takeSpheres(wanted, shape->longestStrand, {spheresBefore, capsulesBefore}, input.spheres,
-                         input.capsules, frameSpheres);
+    runtime::takeSpheres(wanted, shape->longestStrand, {spheresBefore, capsulesBefore, input.cut},
+                         input.spheres, input.capsules, frameSpheres);
     const Float3 low{std::min(placed.min_ws.x, lowBefore.x), std::min(placed.min_ws.y, lowBefore.y),
                      std::min(placed.min_ws.z, lowBefore.z)};
     const Float3 high{std::max(placed.max_ws.x, highBefore.x), std::max(placed.max_ws.y, highBefore.y),
@@ -225,8 +250,6 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     const runtime::SubstepContext context =
         runtime::substepContext(run.settings, run.plan, input.dt, substeps, movingSpheres, movingCapsules);
 
-    constexpr std::array<std::uint32_t, 4> kNothing{};
-    list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
     // Roots that rest are there already, once the device knows that they do.
     if (substep == 0.0f || moves || rootsMoved) {
         if (!found) uploadRoots(list, placed.moved);

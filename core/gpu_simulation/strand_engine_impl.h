@@ -6,9 +6,13 @@
 
 #include "core/gpu_simulation/strand_engine.h"
 #include "core/gpu_simulation/strand_model.h"
+#include "runtime/engine/frame_pieces.h"
 #include "runtime/engine/gpu_frame.h"
 
 namespace hairloom::gpu_simulation {
+
+/// Words of StrandEngine::reportWords() that are of the end of a frame.
+inline constexpr std::size_t kReportFastest = 0, kReportAsleep = 2;
 
 struct StrandEngine::Impl {
     /// What a frame is to run by.
@@ -38,6 +42,7 @@ struct StrandEngine::Impl {
     std::uint32_t rejectedWinds = 0;
     runtime::FrameSpheres frameSpheres;
     runtime::Vector<runtime::Sphere> spheresBefore;
+    runtime::FramePieces pieces;
     runtime::Vector<runtime::MovingSphere> movingSpheres;
     runtime::Vector<runtime::MovingCapsule> movingCapsules;  // where the model meets them as they are
     float substep = 0.0f;                                    ///< seconds of the last one; 0 before the first
@@ -70,6 +75,10 @@ struct StrandEngine::Impl {
     Result<bool> kernelsFor(const Run& next, bool wait);
     // strand_engine_frame.cpp
     Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots* deviceRoots);
+    /// Without poses inside, from the origin of now.
+    Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input,
+                          const DeviceRoots* deviceRoots);
+    void forgetLastPiece(gpu::CommandList& list);
     bool takeRoots(const runtime::FrameInput& input);
     bool takeRoots(const DeviceRoots& given);
     Status gatherRoots(gpu::CommandList& list, const DeviceRoots& given);

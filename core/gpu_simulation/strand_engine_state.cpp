@@ -216,9 +216,9 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
 
 FrameReport StrandEngine::reportFrom(std::span<const std::uint32_t, kReportWords> words, float substep) {
     FrameReport report;
-    if (substep > 0.0f) report.fastest = std::sqrt(std::bit_cast<float>(words[0])) / substep;
+    if (substep > 0.0f) report.fastest = std::sqrt(std::bit_cast<float>(words[kReportFastest])) / substep;
     report.restoredStrands = words[1];
-    report.asleep = words[2];
+    report.asleep = words[kReportAsleep];
     report.guardedStrands = words[3];
     return report;
 }

@@ -24,6 +24,22 @@ constexpr std::uint32_t kMaxGroups = 65535;  // of one dimension, on every devic
 constexpr float kSlack = 0.01f;              // metres around where hair was seen
 constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
 
+runtime::BonePose toBonePose(const Eigen::Affine3f& m) {
+    const auto column = [&](int i) {
+        const Vec3f c = m.matrix().col(i).head<3>();
+        return runtime::Float3{c.x(), c.y(), c.z()};
+    };
+    return {column(0), column(1), column(2), column(3)};
+}
+
+Eigen::Affine3f toAffine(const runtime::BonePose& bone) {
+    const auto column = [](runtime::Float3 v) { return Vec3f(v.x, v.y, v.z); };
+    Eigen::Affine3f m = Eigen::Affine3f::Identity();
+    m.linear() << column(bone.x), column(bone.y), column(bone.z);
+    m.translation() = column(bone.origin);
+    return m;
+}
+
 constexpr std::size_t kReportBytes = gpu_simulation::StrandEngine::kReportWords * 4;
 constexpr std::size_t kMeasureBytes = HAIRLOOM_MEASURE_WORDS * 4;
 constexpr std::size_t kExtentBytes = HAIRLOOM_EXTENT_WORDS * 4;
@@ -152,19 +168,34 @@ Status DeviceHair::setSettings(const runtime::SimulationSettings& settings) {
     return {};
 }
 
-std::vector<Eigen::Affine3f> DeviceHair::bonesOf(const HeadPose& pose) const {
-    if (skinned_ && !pose.bones_ws.empty()) return pose.bones_ws;
-    return {Eigen::Affine3f(pose.head_ws)};
+/// From the head at rest to the world, as FrameInput::body_ws has bones.
+std::vector<runtime::BonePose> DeviceHair::bonesOf(const HeadPose& pose) const {
+    std::vector<runtime::BonePose> bones;
+    const auto add = [&](const Eigen::Affine3f& bone) { bones.push_back(toBonePose(bone)); };
+    if (skinned_ && !pose.bones_ws.empty())
+        std::ranges::for_each(pose.bones_ws, add);
+    else
+        add(Eigen::Affine3f(pose.head_ws));
+    return bones;
 }
 
 gpu::BufferPtr DeviceHair::drawnPoints() const {
     return follow_ ? follow_->positions_ws() : engine_.positions_ws();
 }
 
-Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const HeadPose& pose) {
+Status DeviceHair::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input) {
+    bones_.assign(input.body_ws.begin(), input.body_ws.end());
+    placedSpheres_.assign(input.spheres.begin(), input.spheres.end());
+    std::vector<Eigen::Affine3f> bones(bones_.size());
+    std::ranges::transform(bones_, bones.begin(), toAffine);
+    head_.record(list, bones);
+    return engine_.record(list, input, head_.roots());
+}
+
+Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const HeadPose& pose,
+                          std::span<const HeadPose> within) {
     listen();
     ++frame_;
-    head_.record(list, bonesOf(pose));
     auto spheres = spheresAt(spheres_, pose);
     runtime::FrameInput input;
     input.dt = dt;
@@ -174,7 +205,23 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
     input.capsules = capsules;
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
-    if (auto recorded = engine_.record(list, input, head_.roots()); !recorded) return recorded;
+    const auto bones = bonesOf(pose);
+    input.body_ws = bones;
+    // Bones make the roots on the device, part after part of the frame.
+    std::vector<std::vector<runtime::Sphere>> spheresWithin;
+    std::vector<std::vector<runtime::BonePose>> bonesWithin;
+    for (const HeadPose& on : within) {
+        spheresWithin.push_back(spheresAt(spheres_, on));
+        bonesWithin.push_back(bonesOf(on));
+    }
+    std::vector<runtime::InnerPose> poses;
+    for (std::size_t i = 0; i < within.size(); ++i) poses.push_back({{}, spheresWithin[i], bonesWithin[i]});
+    input.inner = poses;
+    pieces_.take(input, runtime::substepsIn(engine_.settings(), dt));
+    for (std::size_t i = 0; i < pieces_.count(); ++i) {
+        const runtime::FrameInput part = pieces_.at(i, {{}, placedSpheres_, bones_});
+        if (auto recorded = recordStraight(list, part); !recorded) return recorded;
+    }
     if (follow_) {
         gpu_simulation::FollowInput guides{engine_.positions_ws(), engine_.velocities_ws(), {}};
         guides.roots_ws = head_.roots().frames_ws;

@@ -12,6 +12,7 @@
 #include "core/live/groom_scene.h"
 #include "core/render/renderer.h"
 #include "core/simulation/scene_input.h"
+#include "runtime/engine/frame_pieces.h"
 
 namespace hairloom {
 
@@ -44,7 +45,9 @@ class DeviceHair {
     void setReadsPositions(bool on) { readsPositions_ = on; }
 
     /// Records a frame of `dt` seconds that ends on `pose`, outside a pass; `time`: seconds at its end.
-    Status record(gpu::CommandList& list, float dt, double time, const HeadPose& pose);
+    /// `within`: poses on the way, at equal shares of dt.
+    Status record(gpu::CommandList& list, float dt, double time, const HeadPose& pose,
+                  std::span<const HeadPose> within = {});
     /// The list that record() recorded into went to the device.
     void submitted(gpu::SubmissionPtr submission);
     /// Hands over what the last record() moves, to a renderer that has the scene.
@@ -76,7 +79,9 @@ class DeviceHair {
         : device_(&device), input_(std::move(input)), engine_(std::move(engine)), head_(std::move(head)) {}
 
     Status makeBuffers();
-    std::vector<Eigen::Affine3f> bonesOf(const HeadPose& pose) const;
+    std::vector<runtime::BonePose> bonesOf(const HeadPose& pose) const;
+    /// What goes straight on through a frame, or a part of one.
+    Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input);
     void recordMeasures(gpu::CommandList& list, std::span<const runtime::Sphere> spheres);
     void recordExtent(gpu::CommandList& list);
     void recordReadback(gpu::CommandList& list);
@@ -94,6 +99,9 @@ class DeviceHair {
     gpu_simulation::GpuHead head_;
     std::optional<gpu_simulation::GpuFollowHairs> follow_;
     std::vector<CollisionSphere> spheres_;
+    runtime::FramePieces pieces_;
+    std::vector<runtime::BonePose> bones_;        ///< of the last frame
+    std::vector<runtime::Sphere> placedSpheres_;  ///< likewise
     bool skinned_ = false, readsPositions_ = false;
     float reach_ = 0;  ///< metres that hair gets away from its root
     std::uint32_t drawnPointCount_ = 0, sampleCount_ = 0, sampleStep_ = 1;

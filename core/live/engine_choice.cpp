@@ -39,12 +39,15 @@ Result<double> cpuMilliseconds(const Groom& groom, const HeadMotion& motion) {
     if (!simulation) return tl::unexpected(simulation.error());
     auto scene = GroomScene::make(groom, {}, {});
     if (!scene) return tl::unexpected(scene.error());
+    HeadPose before = motion.poseAt(0);
     Stopwatch watch;
     for (int frame = 1; frame <= kWarmUp + kMeasured; ++frame) {
         if (frame == kWarmUp + 1) watch = {};
-        const HeadPose pose = motion.poseAt(kFrame * static_cast<float>(frame));
-        simulation->step(kFrame, pose);
-        scene->pose(simulation->positions_ws(), simulation->velocities_ws(), pose);
+        const float time = kFrame * static_cast<float>(frame);
+        HeadStep head = stepOf(motion, before, time - kFrame, time);
+        simulation->step(kFrame, head);
+        scene->pose(simulation->positions_ws(), simulation->velocities_ws(), head.end);
+        before = std::move(head.end);
     }
     return 1e3 * watch.seconds() / kMeasured;
 }
@@ -54,7 +57,8 @@ Result<double> gpuMilliseconds(gpu::Device& device,
                                const Groom& groom, const HeadMotion& motion) {
     const auto scene = GroomScene::make(groom, {}, {});
     if (!scene) return tl::unexpected(scene.error());
-    auto hair = DeviceHair::make(device, kernels, *scene, nullptr, motion.poseAt(0));
+    HeadPose before = motion.poseAt(0);
+    auto hair = DeviceHair::make(device, kernels, *scene, nullptr, before);
     if (!hair) return tl::unexpected(hair.error());
     Stopwatch watch;
     for (int frame = 1; frame <= kWarmUp + kMeasured; ++frame) {
@@ -62,7 +66,9 @@ Result<double> gpuMilliseconds(gpu::Device& device,
         auto list = device.createCommandList();
         if (!list) return tl::unexpected(list.error());
         const float time = kFrame * static_cast<float>(frame);
-        auto recorded = hair->record(**list, kFrame, static_cast<double>(time), motion.poseAt(time));
+        HeadStep head = stepOf(motion, before, time - kFrame, time);
+        auto recorded = hair->record(**list, kFrame, static_cast<double>(time), head.end, head.within);
+        before = std::move(head.end);
         if (!recorded) return tl::unexpected(recorded.error());
         auto submission = device.submit(std::move(*list));
         if (!submission) return tl::unexpected(submission.error());

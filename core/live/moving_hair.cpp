@@ -76,27 +76,27 @@ void MovingHair::setReadsPositions(bool on) {
     if (auto* const gpu = std::get_if<DeviceHair>(&hair_)) gpu->setReadsPositions(on);
 }
 
-Status MovingHair::step(gpu::CommandList& list, float dt, const HeadPose& pose) {
+Status MovingHair::step(gpu::CommandList& list, float dt, const HeadStep& head) {
     auto* const gpu = std::get_if<DeviceHair>(&hair_);
-    if (!gpu) return step(dt, pose);
+    if (!gpu) return step(dt, head);
     time_ += static_cast<double>(dt);
-    pose_ = pose;
+    pose_ = head.end;
     ++frames_;
-    return gpu->record(list, dt, time_, pose);
+    return gpu->record(list, dt, time_, head.end, head.within);
 }
 
-Status MovingHair::step(float dt, const HeadPose& pose) {
+Status MovingHair::step(float dt, const HeadStep& head) {
     if (auto* const cpu = std::get_if<Simulation>(&hair_)) {
         time_ += static_cast<double>(dt);
-        pose_ = pose;
+        pose_ = head.end;
         const Stopwatch watch;
-        cpu->step(dt, pose);
+        cpu->step(dt, head);
         simulateMs_ = 1e3 * watch.seconds();
         return cpu->status();
     }
     auto list = device_->createCommandList();
     if (!list) return tl::unexpected(list.error());
-    if (auto recorded = step(**list, dt, pose); !recorded) return recorded;
+    if (auto recorded = step(**list, dt, head); !recorded) return recorded;
     auto submission = device_->submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
     submitted(*submission);

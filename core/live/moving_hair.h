@@ -61,16 +61,22 @@ class MovingHair {
     /// Whether a GPU reports where all strands are, for marks that are drawn on them.
     void setReadsPositions(bool on);
 
-    /// Moves hair and head by `dt` seconds to `pose`. What a GPU does is recorded into `list`, outside a
-    /// pass; submitted() is told when the list went to the device.
-    Status step(gpu::CommandList& list, float dt, const HeadPose& pose);
+    /// Moves hair and head by `dt` seconds to the end of the step. What a GPU does is recorded into `list`,
+    /// outside a pass; submitted() is told when the list went to the device.
+    Status step(gpu::CommandList& list, float dt, const HeadStep& head);
     /// To where the motion is then.
     Status step(gpu::CommandList& list, float dt, const HeadMotion& motion) {
-        return step(list, dt, motion.poseAt(static_cast<float>(time_ + static_cast<double>(dt))));
+        return step(list, dt,
+                    stepOf(motion, pose_, static_cast<float>(time_),
+                           static_cast<float>(time_ + static_cast<double>(dt))));
     }
     void submitted(const gpu::SubmissionPtr& submission);
     /// The same, with a list of its own.
-    Status step(float dt, const HeadPose& pose);
+    Status step(float dt, const HeadStep& head);
+    /// Straight to the pose.
+    Status step(float dt, const HeadPose& pose) { return step(dt, HeadStep{pose, {}}); }
+    /// The pose of the last step.
+    const HeadPose& pose() const { return pose_; }
     /// Seconds, of the last step.
     double time() const { return time_; }
 

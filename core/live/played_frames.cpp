@@ -17,7 +17,7 @@ Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& ran
     const auto timeOf = [&](std::uint32_t frame, std::uint32_t step) {
         return pace.timeOf(static_cast<float>(frame) - static_cast<float>(range.handles), step);
     };
-    HeadPose pose = inWorld(motion.poseAt(timeOf(0, steps)));
+    HeadPose last = motion.poseAt(timeOf(0, steps)), pose = inWorld(last);
     KeyedSettings keyed(motion, groom.simulation, timeOf(0, steps));
     Groom begun = groom;
     begun.simulation = keyed.first();
@@ -32,8 +32,10 @@ Status play(const Groom& groom, const HeadMotion& motion, const PlayedRange& ran
         for (std::uint32_t step = 1; frame > 0 && step <= steps; ++step) {
             const float time = timeOf(frame, step);
             if (auto given = keyed.give(*simulation, time); !given) return given;
-            pose = inWorld(motion.poseAt(time));
-            simulation->step(pace.dt(), pose);
+            HeadStep head = stepOf(motion, last, time - pace.dt(), time);
+            simulation->step(pace.dt(), inWorld(head));
+            last = std::move(head.end);
+            pose = inWorld(last);
         }
         const auto positions_ws = simulation->positions_ws();
         auto taken = take(frame, {{positions_ws.begin(), positions_ws.end()}, pose, range.framesPerSecond});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hairloom {
 namespace {
@@ -90,6 +91,34 @@ void moveBy(const Eigen::Isometry3f& offset, HeadPose& pose) {
     for (auto* bones : {&pose.bones_ws, &pose.body_ws}) {
         for (Eigen::Affine3f& bone : *bones) bone = offset * bone;
     }
+}
+
+HeadStep inWorld(HeadStep step) {
+    step.end = inWorld(std::move(step.end));
+    for (HeadPose& pose : step.within) pose = inWorld(std::move(pose));
+    return step;
+}
+
+bool isSamePlace(const HeadPose& a, const HeadPose& b) {
+    const auto sameBones = [](const std::vector<Eigen::Affine3f>& x, const std::vector<Eigen::Affine3f>& y) {
+        return std::ranges::equal(x, y,
+                                  [](const auto& m, const auto& n) { return m.matrix() == n.matrix(); });
+    };
+    return a.origin_ws == b.origin_ws && a.head_ws.matrix() == b.head_ws.matrix() &&
+           a.sphereCentres_ws == b.sphereCentres_ws && sameBones(a.bones_ws, b.bones_ws) &&
+           sameBones(a.body_ws, b.body_ws) && a.scalpPositions_ws == b.scalpPositions_ws;
+}
+
+HeadStep stepOf(const HeadMotion& motion, const HeadPose& before, float from, float to,
+                std::uint32_t posesWithin) {
+    HeadStep step{motion.poseAt(to), {}};
+    for (std::uint32_t i = 1; i <= posesWithin; ++i) {
+        const float share = static_cast<float>(i) / static_cast<float>(posesWithin + 1);
+        step.within.push_back(motion.poseAt(from + (to - from) * share));
+    }
+    const auto stays = [&](const HeadPose& pose) { return isSamePlace(pose, before); };
+    if (stays(step.end) && std::ranges::all_of(step.within, stays)) step.within.clear();
+    return step;
 }
 
 Result<std::unique_ptr<HeadMotion>> makeRigidMotion(std::string_view name, const Groom& groom) {

@@ -36,6 +36,28 @@ HeadPose inWorld(HeadPose pose);
 /// Moves all of it rigidly, measured from its origin; the wind stays.
 void moveBy(const Eigen::Isometry3f& offset, HeadPose& pose);
 
+class HeadMotion;
+
+/// A step of a motion: where it ends, and the poses on the way there, at equal shares of its time.
+struct HeadStep {
+    HeadPose end;
+    std::vector<HeadPose> within;  ///< empty: the head goes straight, or stays
+};
+
+/// Poses within a step, unless somebody asks for others: those at its quarters.
+inline constexpr std::uint32_t kPosesWithin = 3;
+
+HeadStep inWorld(HeadStep step);
+
+/// Whether head, spheres and bones are the same in both; the wind may differ.
+bool isSamePlace(const HeadPose& a, const HeadPose& b);
+
+/// The step from `before`, which is where the motion is at `from` seconds, to where it is at `to`. Where the
+/// head stays on its pose, as in a clip that stands still, there are no poses within: substeps see the same
+/// without them.
+HeadStep stepOf(const HeadMotion& motion, const HeadPose& before, float from, float to,
+                std::uint32_t posesWithin = kPosesWithin);
+
 class HeadMotion {
   public:
     virtual ~HeadMotion() = default;

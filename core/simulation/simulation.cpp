@@ -102,7 +102,28 @@ void Simulation::setSpheres(std::vector<CollisionSphere> spheres, bool atRest) {
     impl_->scene.setSpheres(std::move(spheres), atRest);
 }
 
-void Simulation::step(float dt, const HeadPose& given) {
+namespace {
+
+/// Of the engine, measured from the origin of the pose that the frame ends on.
+struct WithinFrame {
+    std::vector<runtime::RootFrame> roots;
+    std::vector<runtime::Sphere> spheres;
+    std::vector<runtime::BonePose> body;
+};
+
+WithinFrame withinFrame(const SceneInput& scene, HeadPose pose, const Vec3d& origin_ws) {
+    const Vec3d shift = pose.origin_ws - origin_ws;
+    if (!shift.isZero(0)) {
+        // moveBy() turns about the pose's own origin, and moves.
+        moveBy(Eigen::Isometry3f(Eigen::Translation3f(shift.cast<float>())), pose);
+    }
+    return {scene.rootsAt(pose), scene.spheresAt(pose), bodyAt(scene.groom(), pose)};
+}
+
+}  // namespace
+
+void Simulation::step(float dt, const HeadPose& given, std::span<const HeadPose> within) {
+    assert(within.size() <= runtime::kMaxInnerPoses);
     HAIRLOOM_PROFILE("simulation step");
     impl_->time += static_cast<double>(dt);
     const HeadPose pose = impl_->method->measuresFromOrigin() ? given : inWorld(given);
@@ -121,6 +142,11 @@ void Simulation::step(float dt, const HeadPose& given) {
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
     const auto body = bodyAt(impl_->scene.groom(), pose);
     input.body_ws = body;
+    std::vector<WithinFrame> onTheWay;
+    for (const HeadPose& on : within) onTheWay.push_back(withinFrame(impl_->scene, on, pose.origin_ws));
+    std::vector<runtime::InnerPose> poses;
+    for (const WithinFrame& on : onTheWay) poses.push_back({on.roots, on.spheres, on.body});
+    input.inner = poses;
     impl_->method->step(impl_->scene, pose, input);
     impl_->readPositions();
     impl_->substeps += impl_->method->substeps().value_or(substepsIn(impl_->scene.groom().simulation, dt));

@@ -93,8 +93,10 @@ class Simulation {
     /// head is at rest, which shows what they represent; others push hair, be they in the skin or not.
     void setSpheres(std::vector<CollisionSphere> spheres, bool atRest = true);
 
-    /// Advances by `dt` seconds (0 < dt ≤ 0.1) to `pose`.
-    void step(float dt, const HeadPose& pose);
+    /// Advances by `dt` seconds (0 < dt ≤ 0.1) to `pose`. `within`: poses on the way there, at equal shares
+    /// of dt, at most runtime::kMaxInnerPoses; methods other than the strand engine see the end alone.
+    void step(float dt, const HeadPose& pose, std::span<const HeadPose> within = {});
+    void step(float dt, const HeadStep& head) { step(dt, head.end, head.within); }
 
     /// Points in the order of the groom's points; metres, world space.
     std::span<const Vec3f> positions_ws() const;

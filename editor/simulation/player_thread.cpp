@@ -27,6 +27,14 @@ std::vector<CollisionSphere> without(std::vector<CollisionSphere> spheres, const
     return spheres;
 }
 
+/// Linear in position, spherical in rotation.
+Eigen::Isometry3f between(const Eigen::Isometry3f& from, const Eigen::Isometry3f& to, float share) {
+    Eigen::Isometry3f mixed = Eigen::Isometry3f::Identity();
+    mixed.linear() = Quatf(from.linear()).slerp(share, Quatf(to.linear())).normalized().toRotationMatrix();
+    mixed.translation() = from.translation() + share * (to.translation() - from.translation());
+    return mixed;
+}
+
 /// The groom with these settings, without the effects that are left out.
 Groom without(Groom groom, const runtime::SimulationSettings& settings, const QStringList& leftOut) {
     groom.simulation = without(settings, leftOut);
@@ -49,6 +57,8 @@ struct Player::Playing {
     double from = 0;                    ///< seconds of the motion, where frames are counted from
     std::uint64_t frame = 0;            ///< since there
     runtime::SimulationSettings given;  ///< that hair has, but for what is left out
+    HeadPose last;                      ///< of the motion, where the last step ended
+    Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();  ///< by which it was dragged there
 
     double time(std::uint32_t step) const {
         return from + static_cast<double>(pace.timeOf(static_cast<float>(frame), step));
@@ -66,9 +76,27 @@ struct Player::Playing {
     runtime::SimulationSettings settingsAt(double time) const {
         return motion->settingsAt(static_cast<float>(time), groom->simulation).value_or(groom->simulation);
     }
-    HeadPose poseAt(double time, const WorkerRequests& taken) const {
-        HeadPose pose = motion->poseAt(static_cast<float>(time));
-        moveBy(taken.offset, pose);
+    HeadPose startAt(double time, const WorkerRequests& taken) {
+        last = motion->poseAt(static_cast<float>(time));
+        offset = taken.offset;
+        return placed(last, taken, offset);
+    }
+    /// To the end of that step of the frame. A head that is dragged goes along within it.
+    HeadStep stepTo(std::uint32_t step, const WorkerRequests& taken) {
+        const double to = time(step), from = to - static_cast<double>(pace.dt());
+        HeadStep head = stepOf(*motion, last, static_cast<float>(from), static_cast<float>(to));
+        last = head.end;
+        const float parts = static_cast<float>(head.within.size() + 1);
+        for (std::size_t i = 0; i < head.within.size(); ++i) {
+            const float share = static_cast<float>(i + 1) / parts;
+            head.within[i] = placed(std::move(head.within[i]), taken, between(offset, taken.offset, share));
+        }
+        offset = taken.offset;
+        head.end = placed(std::move(head.end), taken, offset);
+        return head;
+    }
+    static HeadPose placed(HeadPose pose, const WorkerRequests& taken, const Eigen::Isometry3f& dragged) {
+        moveBy(dragged, pose);
         if (taken.leftOut.contains("wind")) pose.wind_ws.reset();
         return pose;
     }
@@ -119,7 +147,7 @@ bool Player::prepare(Playing& playing, WorkerRequests& taken) {
     if (!playing.groom || !playing.motion) return false;
     playing.given = playing.settingsAt(playing.time());
     const auto tried = std::make_shared<const Groom>(without(*playing.groom, playing.given, taken.leftOut));
-    start.pose = playing.poseAt(playing.time(), taken);
+    start.pose = playing.startAt(playing.time(), taken);
     start.time = playing.time();
     taken.changed = false;  // it begins with what has changed
 
@@ -164,7 +192,7 @@ void Player::settle(Playing& playing, const HeadPose& first) {
             if (requests_->stop || requests_->restart) return;
         }
         // What fails here fails in the next frame as well, which says so.
-        if (!playing.transport.step(playing.pace.dt(), nullptr, pose, refused)) return;
+        if (!playing.transport.step(playing.pace.dt(), nullptr, {}, pose, refused)) return;
     }
 }
 
@@ -178,8 +206,10 @@ Status Player::stepFrame(Playing& playing, WorkerRequests& taken, HairPose& pose
         if (std::exchange(taken.changed, false) || settings != playing.given)
             changed = std::make_shared<const Groom>(without(*playing.groom, settings, taken.leftOut));
         playing.given = settings;
-        pose.head = playing.poseAt(time, taken);
-        auto stepped = playing.transport.step(playing.pace.dt(), std::move(changed), pose, refused);
+        HeadStep head = playing.stepTo(step, taken);
+        pose.head = std::move(head.end);
+        auto stepped = playing.transport.step(playing.pace.dt(), std::move(changed), std::move(head.within),
+                                              pose, refused);
         if (!stepped) return stepped;
     }
     return {};
@@ -201,7 +231,7 @@ void Player::advance(Playing& playing, WorkerRequests& taken) {
         Q_EMIT failed(
             QString("The GPU stopped simulating (%1). The CPU continues").arg(errorText(stepped.error())));
         if (!prepare(playing, again)) return;
-        stepped = playing.transport.step(playing.pace.dt(), nullptr, *pose, refused);
+        stepped = playing.transport.step(playing.pace.dt(), nullptr, {}, *pose, refused);
     }
     if (!stepped) refused = stepped;
     if (!refused) refuse(refused.error());

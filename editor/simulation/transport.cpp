@@ -53,16 +53,18 @@ void Transport::stop() {
     there_.reset();
 }
 
-Status Transport::step(float dt, std::shared_ptr<const Groom> changed, HairPose& pose, Status& refused) {
+Status Transport::step(float dt, std::shared_ptr<const Groom> changed, std::vector<HeadPose> within,
+                       HairPose& pose, Status& refused) {
+    const HeadStep head{pose.head, std::move(within)};
     if (here_) {
         if (changed) refused = take(*here_, *changed);
-        const Status stepped = here_->step(dt, pose.head);
+        const Status stepped = here_->step(dt, head);
         const auto points = here_->positions_ws();
         pose.positions_ws.assign(points.begin(), points.end());
         pose.velocities_ws = here_->velocities_ws();
         return stepped;
     }
-    underWay_.push_back(there_->post([dt, changed = std::move(changed), head = pose.head,
+    underWay_.push_back(there_->post([dt, changed = std::move(changed), head,
                                       wanted = there_->wantsPositions()](PlayedHair* played) -> Reported {
         MovingHair* const hair = played ? played->hair() : nullptr;
         if (!hair) return {fail("the device was lost"), {}, {}};

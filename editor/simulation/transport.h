@@ -32,7 +32,9 @@ class Transport {
     /// Advances by `dt` seconds to the head of `pose`, and writes there where strands are. `changed`: the
     /// groom whose settings and spheres count from now on; null: nothing changed. An error ends it; `refused`
     /// is why settings were not taken, which leaves all as it was.
-    Status step(float dt, std::shared_ptr<const Groom> changed, HairPose& pose, Status& refused);
+    /// `within`: poses on the way there, at equal shares of dt.
+    Status step(float dt, std::shared_ptr<const Groom> changed, std::vector<HeadPose> within, HairPose& pose,
+                Status& refused);
     /// Since the start, as far as it is known by now.
     SimulationStats stats() const { return here_ ? here_->stats() : reported_.stats; }
     /// For another engine to go on from. Null where it cannot be had any more.

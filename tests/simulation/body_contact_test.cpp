@@ -178,7 +178,7 @@ TEST(BodyContact, HairComesToRestInAFold) {
         groom = withBody(std::move(groom));
         auto made = Simulation::make(groom, {});
         ASSERT_TRUE(made) << made.error().message();
-        for (int f = 0; f < 900; ++f) made->step(kFrame, {});
+        for (int f = 0; f < 900; ++f) made->step(kFrame, HeadPose{});
         EXPECT_LT(made->stats().fastestMmPerSecond, 1);
         EXPECT_EQ(made->stats().restingStrands, groom.strandCount());
         EXPECT_EQ(made->stats().restoredStrands, 0u);

@@ -236,5 +236,43 @@ TEST(HairHair, MethodsThatTakeNoVelocitiesRefuseIt) {
     EXPECT_EQ(engine.has_value(), TakesVelocities<runtime::Engine>);
 }
 
+/// The head is seen at the quarters of a step: a step of 1/30 s is its four quarters.
+TEST(HeadSteps, AreTheirFourQuarters) {
+    Groom groom = hangingHair();
+    groom.spheres = {{"ball", Vec3f(0.02f, 1.5f, 0.1f), 0.03f, ""}};
+    const auto motion = makeRigidMotion("nod", groom);
+    auto whole = Simulation::make(groom, (*motion)->poseAt(0));
+    auto quarters = Simulation::make(groom, (*motion)->poseAt(0));
+    auto ends = Simulation::make(groom, (*motion)->poseAt(0));
+    ASSERT_TRUE(whole && quarters && ends);
+    constexpr float kStep = 1.0f / 30;
+    HeadPose before = (*motion)->poseAt(0);
+    for (int f = 1; f <= 20; ++f) {
+        const float from = static_cast<float>(f - 1) * kStep, to = static_cast<float>(f) * kStep;
+        HeadStep head = stepOf(**motion, before, from, to);
+        ASSERT_EQ(head.within.size(), kPosesWithin);
+        whole->step(kStep, head);
+        ends->step(kStep, head.end);
+        for (const HeadPose& pose : head.within) quarters->step(kStep / 4, pose);
+        quarters->step(kStep / 4, head.end);
+        before = std::move(head.end);
+    }
+    EXPECT_EQ(whole->stats().stateHash, quarters->stats().stateHash);
+    EXPECT_GT(largestDistance(whole->positions_ws(), ends->positions_ws()), 1e-4f);
+}
+
+TEST(HeadSteps, AHeadThatStaysHasNoPosesWithin) {
+    const Groom groom = hangingHair();
+    const auto still = makeRigidMotion("none", groom), nod = makeRigidMotion("nod", groom);
+    EXPECT_TRUE(stepOf(**still, (*still)->poseAt(0), 0, 0.1f).within.empty());
+    EXPECT_EQ(stepOf(**nod, (*nod)->poseAt(0), 0, 0.1f).within.size(), kPosesWithin);
+    // Back where it was at the end, after half a swing.
+    EXPECT_EQ(stepOf(**nod, (*nod)->poseAt(0), 0, 0.8f).within.size(), kPosesWithin);
+    HeadPose turned = (*nod)->poseAt(0.1f);
+    EXPECT_FALSE(isSamePlace((*nod)->poseAt(0), turned));
+    turned.wind_ws = Vec3f::UnitX();
+    EXPECT_TRUE(isSamePlace((*nod)->poseAt(0.1f), turned));
+}
+
 }  // namespace
 }  // namespace hairloom
