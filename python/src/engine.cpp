@@ -119,20 +119,53 @@ std::vector<runtime::Capsule> joinedBy(nb::handle capsules, std::size_t spheres)
     return joined;
 }
 
+std::vector<Sphere> spheresOf(nb::handle spheres) {
+    std::vector<Sphere> balls;
+    if (spheres.is_none()) return balls;
+    const Input<Vec4f> given("spheres", spheres);
+    for (const Vec4f& ball : given.values()) {
+        if (!(ball.w() > 0))
+            raiseArgument("spheres", fmt::format("has the radius {}", ball.w()), "radii above 0 m");
+        balls.push_back({{ball.x(), ball.y(), ball.z()}, ball.w()});
+    }
+    return balls;
+}
+
+/// What a pose within a frame has.
+struct Within {
+    std::vector<RootFrame> roots;
+    std::vector<Sphere> spheres;
+};
+
+std::vector<Within> posesWithin(const PyEngine& self, nb::handle inner, std::size_t spheres) {
+    std::vector<Within> poses;
+    if (inner.is_none()) return poses;
+    constexpr const char* kExpected = "a list of (root_positions, root_rotations, spheres)";
+    if (!nb::isinstance<nb::sequence>(inner)) raiseArgument("inner", "is no list", kExpected);
+    for (const nb::handle given : nb::cast<nb::sequence>(inner)) {
+        if (!nb::isinstance<nb::tuple>(given) || nb::len(given) != 3)
+            raiseArgument("inner", "has a pose that is no tuple of three", kExpected);
+        const auto pose = nb::cast<nb::tuple>(given);
+        poses.push_back({rootsOf(self, pose[0], pose[1]), spheresOf(pose[2])});
+        if (poses.back().spheres.size() != spheres)
+            raiseArgument("inner", fmt::format("has a pose of {} spheres", poses.back().spheres.size()),
+                          fmt::format("{}, as many as the frame", spheres));
+    }
+    if (poses.size() > runtime::kMaxInnerPoses)
+        raiseArgument("inner", fmt::format("has {} poses", poses.size()),
+                      fmt::format("at most {}", runtime::kMaxInnerPoses));
+    return poses;
+}
+
 void step(PyEngine& self, double dt, nb::handle positions, nb::handle rotations, nb::handle spheres,
-          const std::optional<std::array<float, 3>>& wind, nb::handle capsules) {
+          const std::optional<std::array<float, 3>>& wind, nb::handle capsules, nb::handle inner, bool cut) {
     const Use use(self.inUse, kTheEngine);
     if (!(dt > 0 && dt <= 1)) raiseArgument("dt", fmt::format("is {}", dt), "above 0 s, at most 1 s");
     const auto roots = rootsOf(self, positions, rotations);
-    std::vector<Sphere> balls;
-    if (!spheres.is_none()) {
-        const Input<Vec4f> given("spheres", spheres);
-        for (const Vec4f& ball : given.values()) {
-            if (!(ball.w() > 0))
-                raiseArgument("spheres", fmt::format("has the radius {}", ball.w()), "radii above 0 m");
-            balls.push_back({{ball.x(), ball.y(), ball.z()}, ball.w()});
-        }
-    }
+    const std::vector<Sphere> balls = spheresOf(spheres);
+    const std::vector<Within> within = posesWithin(self, inner, balls.size());
+    std::vector<runtime::InnerPose> poses;
+    for (const Within& pose : within) poses.push_back({pose.roots, pose.spheres});
     const std::vector<runtime::Capsule> joined = joinedBy(capsules, balls.size());
     runtime::FrameInput input;
     input.dt = static_cast<float>(dt);
@@ -140,6 +173,8 @@ void step(PyEngine& self, double dt, nb::handle positions, nb::handle rotations,
     input.roots_ws = roots;
     input.spheres = balls;
     input.capsules = joined;
+    input.inner = poses;
+    input.cut = cut;
     if (wind) {
         const Float3 velocity{(*wind)[0], (*wind)[1], (*wind)[2]};
         if (!(runtime::length(velocity) <= 1000))
@@ -220,21 +255,27 @@ void bindEngine(nb::module_& module) {
              "float32 (strands, 3), metres, "
              "world space. root_rotations: float32 (strands, 4), quaternions x, y, z, w. None leaves the "
              "strands as authored.")
-        .def("step", &step, "dt"_a, "root_positions"_a.none(), "root_rotations"_a.none() = nb::none(),
-             "spheres"_a.none() = nb::none(), "wind"_a.none() = nb::none(), "capsules"_a.none() = nb::none(),
-             nb::sig("def step(self, dt: float, root_positions: object, root_rotations: object | None = "
-                     "None, spheres: object | "
-                     "None = None, wind: tuple[float, float, float] | None = None, capsules: object | None = "
-                     "None) -> None"),
-             "Advances by dt seconds, above 0 and at most 1, to the roots at the end of the frame. Releases "
-             "the GIL.\n\n"
-             "root_positions and root_rotations as in reset(). spheres: float32 (k, 4), centre and radius > "
-             "0, metres, world space. "
-             "Sphere i is sphere i of the frame before. wind: m/s, at most 1000, in place of the settings' "
-             "own. capsules: uint32 (k, 2), at most 256, the numbers of two of the spheres each, whose hull "
-             "is a tapered capsule.\n\n"
-             "Raises ArgumentError for other types or shapes, and BusyError while another thread uses this "
-             "engine.")
+        .def(
+            "step", &step, "dt"_a, "root_positions"_a.none(), "root_rotations"_a.none() = nb::none(),
+            "spheres"_a.none() = nb::none(), "wind"_a.none() = nb::none(), "capsules"_a.none() = nb::none(),
+            "inner"_a.none() = nb::none(), "cut"_a = false,
+            nb::sig("def step(self, dt: float, root_positions: object, root_rotations: object | None = "
+                    "None, spheres: object | "
+                    "None = None, wind: tuple[float, float, float] | None = None, capsules: object | None = "
+                    "None, inner: list[tuple[object, object | None, object | None]] | None = None, cut: bool "
+                    "= False) -> None"),
+            "Advances by dt seconds, above 0 and at most 1, to the roots at the end of the frame. Releases "
+            "the GIL.\n\n"
+            "root_positions and root_rotations as in reset(). spheres: float32 (k, 4), centre and radius > "
+            "0, metres, world space. "
+            "Sphere i is sphere i of the frame before. wind: m/s, at most 1000, in place of the settings' "
+            "own. capsules: uint32 (k, 2), at most 256, the numbers of two of the spheres each, whose hull "
+            "is a tapered capsule. inner: at most 15 poses on the way there, at equal shares of dt, each a "
+            "tuple (root_positions, root_rotations, spheres), so that three are those at the quarters of the "
+            "frame. cut: the frame does not continue from the one before, and hair jumps along with its "
+            "roots.\n\n"
+            "Raises ArgumentError for other types or shapes, and BusyError while another thread uses this "
+            "engine.")
         .def("positions", &enginePositions, "out"_a.none() = nb::none(),
              nb::sig("def positions(self, out: numpy.typing.NDArray[numpy.float32] | None = None) -> "
                      "numpy.typing.NDArray[numpy.float32]"),

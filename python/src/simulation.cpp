@@ -29,6 +29,7 @@ using namespace nb::literals;
 struct PySimulation {
     Groom groom;
     std::unique_ptr<HeadMotion> motion;
+    HeadPose last;  ///< where the last step ended
     std::optional<KeyedSettings> keyed;
     std::optional<Simulation> simulation;
     std::uint64_t next = 1;
@@ -57,12 +58,12 @@ Status begin(PySimulation& run, const std::string& motion, const std::string& ch
     run.motion = std::move(*moving);
     run.keyed.emplace(*run.motion, run.groom.simulation);
     run.groom.simulation = run.keyed->first();
-    const HeadPose start = run.motion->poseAt(0);
-    auto made = Simulation::make(run.groom, start);
+    run.last = run.motion->poseAt(0);
+    auto made = Simulation::make(run.groom, run.last);
     if (!made) return tl::unexpected(made.error());
     run.simulation.emplace(std::move(*made));
     const FramePace& pace = run.span.pace;
-    for (std::uint64_t i = 0; i < pace.preRoll * pace.steps(); ++i) run.simulation->step(pace.dt(), start);
+    for (std::uint64_t i = 0; i < pace.preRoll * pace.steps(); ++i) run.simulation->step(pace.dt(), run.last);
     return run.simulation->status();
 }
 
@@ -101,17 +102,17 @@ PyFrame nextFrame(PySimulation& run) {
     PyFrame frame{
         run.next, static_cast<double>(run.next) / static_cast<double>(pace.framesPerSecond), {}, {}, {}};
     unwrap(withoutGil([&]() -> Status {
-        HeadPose pose;
         for (std::uint32_t step = 1; step <= pace.steps(); ++step) {
             const float time = pace.timeOf(static_cast<float>(run.next), step);
             if (auto given = run.keyed->give(*run.simulation, time); !given) return given;
-            pose = run.motion->poseAt(time);
-            run.simulation->step(pace.dt(), pose);
+            HeadStep head = stepOf(*run.motion, run.last, time - pace.dt(), time);
+            run.simulation->step(pace.dt(), head);
+            run.last = std::move(head.end);
         }
         const auto points = run.simulation->positions_ws();
         frame.positions_ws = std::make_shared<const std::vector<Vec3f>>(points.begin(), points.end());
         frame.velocities_ws = std::make_shared<const std::vector<Vec3f>>(run.simulation->velocities_ws());
-        frame.pose = std::make_shared<const HeadPose>(inWorld(pose));
+        frame.pose = std::make_shared<const HeadPose>(inWorld(run.last));
         return run.simulation->status();
     }));
     ++run.next;

@@ -72,6 +72,32 @@ class Engines(unittest.TestCase):
         self.assertGreater(inside(missed), 2e-3)
         self.assertLess(inside(held), 1e-3)
 
+    def test_a_frame_of_quarters_is_its_four_quarter_frames(self) -> None:
+        whole, quarters, ends = self.make(substeps=2), self.make(substeps=2), self.make(substeps=2)
+
+        def swung(frame: int, quarter: int) -> np.ndarray[Any, Any]:
+            shift = 0.05 * np.sin(9 * (frame + quarter / 4) / 30)
+            return np.ascontiguousarray(self.roots + np.array([shift, 0, 0], np.float32))
+
+        for frame in range(20):
+            whole.step(1 / 30, swung(frame, 4), inner=[(swung(frame, q), None, None) for q in (1, 2, 3)])
+            ends.step(1 / 30, swung(frame, 4))
+            for q in (1, 2, 3, 4):
+                quarters.step(1 / 120, swung(frame, q))
+        self.assertEqual(whole.state_hash, quarters.state_hash)
+        self.assertNotEqual(whole.state_hash, ends.state_hash)
+
+    def test_a_cut_takes_the_hair_along(self) -> None:
+        cut, whipped = self.make(), self.make()
+        away = np.ascontiguousarray(self.roots + np.array([0.3, 0, 0], np.float32))
+        cut.step(DT, away, cut=True)
+        whipped.step(DT, away)
+        still = self.make()
+        still.step(DT, self.roots)
+        shift = np.array([0.3, 0, 0], np.float32)
+        np.testing.assert_allclose(cut.positions() - shift, still.positions(), atol=1e-5)
+        self.assertGreater(float(np.abs(whipped.positions() - shift - still.positions()).max()), 0.01)
+
     def test_output_arrays_are_filled_in_place(self) -> None:
         out = np.zeros((160, 3), np.float32)
         self.assertIs(self.engine.positions(out), out)
@@ -101,6 +127,11 @@ class Engines(unittest.TestCase):
             {"root_positions": self.roots, "spheres": np.ones((2, 4), np.float32), "capsules": np.array([[0, 2]], np.uint32)},
             {"root_positions": self.roots, "spheres": np.ones((2, 4), np.float32), "capsules": np.array([[0, 1]], np.int32)},
             {"root_positions": self.roots, "wind": (1e9, 0, 0)},
+            {"root_positions": self.roots, "inner": 3},
+            {"root_positions": self.roots, "inner": [self.roots]},
+            {"root_positions": self.roots, "inner": [(self.roots, None, None)] * 16},
+            {"root_positions": self.roots, "inner": [(self.roots[:-1].copy(), None, None)]},
+            {"root_positions": self.roots, "inner": [(self.roots, None, np.ones((1, 4), np.float32))]},
             {"root_positions": self.roots, "dt": 0},
             {"root_positions": self.roots, "dt": float("nan")},
         ]
