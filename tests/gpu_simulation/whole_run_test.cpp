@@ -2,6 +2,7 @@
 // Whole runs: beside the engine on the CPU, beside the reference in double precision, and what only shows
 // over many frames.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/cost/benchmark_scenes.h"
@@ -80,6 +81,50 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     cpu.readPositions(onCpu);
     EXPECT_LE(meanDistance(positionsOf(gpu), onCpu), 2e-3);
     EXPECT_NEAR(energyGpu, energyCpu, 0.05 * energyCpu);
+}
+
+/// Poses inside a frame come to the bits of the frames that they stand for, and a cut takes the hair along.
+TEST_F(WholeRun, AFrameOfQuartersIsItsFourQuarterFrames) {
+    const scenes::HeadOfHair head(16, 16);
+    for (const auto model : {runtime::StrandModel::rods, runtime::StrandModel::springs}) {
+        SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, model);
+        settings.substeps = 2;
+        StrandEngine whole = engineOf(head.view(), settings, options());
+        StrandEngine quarters = engineOf(head.view(), settings, options());
+        std::vector<RootFrame> roots;
+        head.placeRoots(0.0, roots);
+        ASSERT_TRUE(whole.reset(roots));
+        ASSERT_TRUE(quarters.reset(roots));
+        constexpr float kSlow = 1.0f / 30.0f;
+        for (int f = 1; f <= 8; ++f) {
+            const double time = f * static_cast<double>(kSlow);
+            std::array<std::vector<RootFrame>, 4> poses;
+            std::vector<runtime::InnerPose> inner;
+            for (std::size_t q = 0; q < 4; ++q) {
+                const double at = time - static_cast<double>(kSlow) * static_cast<double>(3 - q) / 4.0;
+                head.placeRoots(at, poses[q]);
+                runtime::FrameInput part{kSlow / 4.0f, at, poses[q], head.spheres};
+                part.cut = f == 5 && q == 0;
+                ASSERT_TRUE(quarters.step(part));
+                if (q < 3) inner.push_back({poses[q], head.spheres});
+            }
+            runtime::FrameInput input{kSlow, time, poses[3], head.spheres};
+            input.inner = inner;
+            input.cut = f == 5;
+            ASSERT_TRUE(whole.step(input));
+            ASSERT_EQ(whole.stateHash().value(), quarters.stateHash().value()) << f;
+        }
+        // Half a metre farther on in one frame.
+        const std::vector<Float3> before = positionsOf(whole);
+        head.placeRoots(8.0 * static_cast<double>(kSlow), roots);
+        for (RootFrame& root : roots) root.position.x += 0.5f;
+        runtime::FrameInput jump{1e-4f, 8.0 * static_cast<double>(kSlow), roots, {}};
+        jump.cut = true;
+        ASSERT_TRUE(whole.step(jump));
+        std::vector<Float3> there = before;
+        for (Float3& at : there) at.x += 0.5f;
+        EXPECT_LT(farthest(positionsOf(whole), there), 2e-3) << "what it moves by itself in 0.1 ms";
+    }
 }
 
 /// Backward Euler of a turning head in wind.
