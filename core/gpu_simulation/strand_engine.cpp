@@ -232,8 +232,8 @@ Status StrandEngine::record(gpu::CommandList& list, const runtime::FrameInput& i
 }
 
 Status StrandEngine::record(gpu::CommandList& list, const runtime::FrameInput& input,
-                            const DeviceRoots& roots) {
-    return impl_->record(list, input, &roots);
+                            const DeviceRoots& roots, bool continues) {
+    return impl_->record(list, input, &roots, continues);
 }
 
 const runtime::SimulationSettings& StrandEngine::settings() const {

@@ -80,8 +80,9 @@ class StrandEngine {
     /// else is asked of the engine.
     Status record(gpu::CommandList& list, const runtime::FrameInput& input);
     /// Likewise; the roots are what the list has written into their buffer before, those of `input` are not
-    /// read, nor are poses inside it: record a frame for each.
-    Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots& roots);
+    /// read, nor are poses inside it: record a frame for each, whose reports add up where `continues`.
+    Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots& roots,
+                  bool continues = false);
 
     std::uint32_t strandCount() const;
     std::uint32_t pointCount() const;

@@ -198,12 +198,16 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
 }
 
 Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameInput& input,
-                                  const DeviceRoots* deviceRoots) {
+                                  const DeviceRoots* deviceRoots, bool continues) {
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
     known.reset();
     moveOrigin(input.origin_ws);
-    constexpr std::array<std::uint32_t, kReportWords> kNothing{};
-    list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
+    if (continues) {
+        forgetLastPiece(list);
+    } else {
+        constexpr std::array<std::uint32_t, kReportWords> kNothing{};
+        list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
+    }
     if (input.inner.empty() || deviceRoots != nullptr) return recordStraight(list, input, deviceRoots);
     pieces.take(input, runtime::substepsIn(wanted, input.dt));
     for (std::size_t i = 0; i < pieces.count(); ++i) {

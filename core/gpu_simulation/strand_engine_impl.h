@@ -74,7 +74,8 @@ struct StrandEngine::Impl {
                runtime::Float3 low, runtime::Float3 high);
     Result<bool> kernelsFor(const Run& next, bool wait);
     // strand_engine_frame.cpp
-    Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots* deviceRoots);
+    Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots* deviceRoots,
+                  bool continues = false);
     /// Without poses inside, from the origin of now.
     Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input,
                           const DeviceRoots* deviceRoots);

@@ -121,6 +121,8 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
         hair.restSample_.push_back(drawn[i]);
     hair.sampleCount_ = static_cast<std::uint32_t>(hair.restSample_.size());
     if (auto made = hair.makeBuffers(); !made) return tl::unexpected(made.error());
+    hair.placedSpheres_ = spheresAt(hair.spheres_, start);
+    hair.bones_ = hair.bonesOf(start);
     hair.forgetSeen(start);
     return hair;
 }
@@ -183,13 +185,13 @@ gpu::BufferPtr DeviceHair::drawnPoints() const {
     return follow_ ? follow_->positions_ws() : engine_.positions_ws();
 }
 
-Status DeviceHair::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input) {
+Status DeviceHair::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues) {
     bones_.assign(input.body_ws.begin(), input.body_ws.end());
     placedSpheres_.assign(input.spheres.begin(), input.spheres.end());
     std::vector<Eigen::Affine3f> bones(bones_.size());
     std::ranges::transform(bones_, bones.begin(), toAffine);
     head_.record(list, bones);
-    return engine_.record(list, input, head_.roots());
+    return engine_.record(list, input, head_.roots(), continues);
 }
 
 Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const HeadPose& pose,
@@ -220,7 +222,7 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
     pieces_.take(input, runtime::substepsIn(engine_.settings(), dt));
     for (std::size_t i = 0; i < pieces_.count(); ++i) {
         const runtime::FrameInput part = pieces_.at(i, {{}, placedSpheres_, bones_});
-        if (auto recorded = recordStraight(list, part); !recorded) return recorded;
+        if (auto recorded = recordStraight(list, part, i > 0); !recorded) return recorded;
     }
     if (follow_) {
         gpu_simulation::FollowInput guides{engine_.positions_ws(), engine_.velocities_ws(), {}};

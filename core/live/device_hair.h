@@ -81,7 +81,7 @@ class DeviceHair {
     Status makeBuffers();
     std::vector<runtime::BonePose> bonesOf(const HeadPose& pose) const;
     /// What goes straight on through a frame, or a part of one.
-    Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input);
+    Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues);
     void recordMeasures(gpu::CommandList& list, std::span<const runtime::Sphere> spheres);
     void recordExtent(gpu::CommandList& list);
     void recordReadback(gpu::CommandList& list);

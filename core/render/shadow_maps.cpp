@@ -272,7 +272,9 @@ namespace {
 void setFilter(shaders::LightConstants& c, float texels, float hairTexels, float widening) {
     c.filterTexels = texels;
     if (!(widening > 1)) return;
-    c.tapDistance = std::max(hairTexels * widening, 1.0f);
+    // Where hairs begin to grow wider the change is gradual.
+    const float share = 4 * (widening - 1);
+    c.tapDistance = share < 1 ? share : std::max(hairTexels * widening, 1.0f);
     // Mean sum of the squares of a B-spline's weights across a hair; along it all texels see the same hair.
     const float kept = texels < 2 ? 1.0f : texels < 4 ? 0.55f : 0.43f;
     const auto stopped = [](float stopping, float portion) {

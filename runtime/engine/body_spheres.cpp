@@ -26,11 +26,15 @@ void forEachDirection(Visit&& visit) {
 bool isOfSkin(const BodyField& field, const Sphere& sphere) {
     if (!(sphere.radius > 0.0f) || !(field.at(sphere.center_ws).distance < 0.0f)) return false;
     bool bulges = false;
+    int places = 0, unknown = 0;
     forEachDirection([&](Float3 direction) {
         const float away = field.at(sphere.center_ws + direction * sphere.radius).distance;
+        ++places;
+        unknown += std::isfinite(away) ? 0 : 1;
         bulges = bulges || (std::isfinite(away) && away > kMostBulge * sphere.radius);
     });
-    return !bulges;
+    // Skin that is open, as at the neck, lets a sphere look out of what the field knows; a hat's lies there.
+    return !bulges && unknown <= places / 3;
 }
 
 }  // namespace
@@ -39,15 +43,25 @@ Vector<std::uint8_t> spheresOfSkin(const BodyField& field, std::span<const Spher
                                    std::span<const Capsule> capsules) {
     Vector<std::uint8_t> ofSkin(spheres_ss.size());
     for (std::size_t s = 0; s < spheres_ss.size(); ++s) ofSkin[s] = isOfSkin(field, spheres_ss[s]) ? 1 : 0;
+    Vector<std::uint8_t> inSkin;  // capsules all along
     for (const Capsule& capsule : capsules) {
-        if (!isCapsule(capsule, spheres_ss)) continue;
-        const Sphere &first = spheres_ss[capsule.first], &second = spheres_ss[capsule.second];
-        bool all = ofSkin[capsule.first] != 0 && ofSkin[capsule.second] != 0;
+        bool all = isCapsule(capsule, spheres_ss);
         if (all) {
-            forEachAlongCapsule(first, second,
+            forEachAlongCapsule(spheres_ss[capsule.first], spheres_ss[capsule.second],
                                 [&](const Sphere& between, float) { all = all && isOfSkin(field, between); });
         }
-        if (!all) ofSkin[capsule.first] = ofSkin[capsule.second] = 0;
+        inSkin.push_back(all ? 1 : 0);
+    }
+    // An end that pushes makes its capsules push, and these their other ends.
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t c = 0; c < capsules.size(); ++c) {
+            if (!isCapsule(capsules[c], spheres_ss)) continue;
+            std::uint8_t &first = ofSkin[capsules[c].first], &second = ofSkin[capsules[c].second];
+            if ((inSkin[c] != 0 && first != 0 && second != 0) || (first == 0 && second == 0)) continue;
+            first = second = 0;
+            changed = true;
+        }
     }
     return ofSkin;
 }

@@ -60,7 +60,10 @@ std::string Engine::setBody(std::shared_ptr<const BodyField> body) {
 }
 
 void Engine::setSkinSpheres(std::span<const std::uint8_t> ofSkin) {
+    if (std::equal(ofSkin.begin(), ofSkin.end(), impl_->skinSpheres_.begin(), impl_->skinSpheres_.end()))
+        return;
     impl_->skinSpheres_.assign(ofSkin.begin(), ofSkin.end());
+    impl_->skinSpheresChanged_ = true;
 }
 
 std::size_t Engine::bodyBytes() const {

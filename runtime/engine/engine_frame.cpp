@@ -345,8 +345,11 @@ void Engine::Impl::wakeBlocks() {
     const bool windy = length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         Rest& rest = state_.rests[b];
-        if (rest.asleep && (windy || bodyMoves_ || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
+        if (rest.asleep &&
+            (windy || bodyMoves_ || skinSpheresChanged_ || blockReports_[b].rootsMoved || sphereNear(b)))
+            rest = {};
     }
+    skinSpheresChanged_ = false;
 }
 
 Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {

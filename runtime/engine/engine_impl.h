@@ -89,6 +89,7 @@ struct Engine::Impl : InMemory {
     Floats bodySeen_;                   // kBodyPlanes, per block
     bool bodyLost_ = true;              // what they say is void
     Vector<std::uint8_t> skinSpheres_;  // as Engine::setSkinSpheres() was told
+    bool skinSpheresChanged_ = false;   // since the last frame
     BodyTable bodyTable_;
     Vector<std::uint32_t> bodyCarriers_;  // carriersOf()
     OwnedStrands strands_;                // as their model has them

@@ -150,6 +150,7 @@ void reserveSpheres(std::size_t given, std::size_t capsules, FrameSpheres& spher
     spheres.plannedMotion.reserve(along + capsules);
     spheres.capsules.reserve(capsules);
     spheres.ends.reserve(given);
+    spheres.ofSkin.reserve(given);
     spheres.waking.reserve(2 * (given + capsules));
 }
 

@@ -243,8 +243,11 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
         return Refusal{HL_WRONG_SIZE, std::to_string(spheres) + " spheres" +
                                           (capsules > 0 ? " with the ends of each capsule" : "") +
                                           "; expected at most " + std::to_string(gpuGuides_->mostSpheres())};
+    if (Outcome refused = checkInner(frame)) return refused;
+    hl_frame end = frame;
+    end.inner_count = 0;
     FrameInput input;
-    if (Outcome refused = place(frame, input)) return refused;
+    if (Outcome refused = place(end, input)) return refused;
     takeTurns();
     played_ = false;
     if (frame.inner_count > 0 && host_.log && !saidInnerOnGpu_) {

@@ -171,6 +171,10 @@ Outcome Instance::checkInner(const hl_frame& frame) const {
             return Refusal{HL_WRONG_SIZE, name() + " says that it has " + std::to_string(pose.size) +
                                               " bytes; expected " + std::to_string(frame.inner->size) +
                                               ", as the first"};
+        const char* const bytes = reinterpret_cast<const char*>(frame.inner) + i * pose.size;
+        if (pose.size > sizeof pose &&
+            std::any_of(bytes + sizeof pose, bytes + pose.size, [](char byte) { return byte != 0; }))
+            return Refusal{HL_NEWER, name() + " asks for what this library does not know"};
         const auto differs = [&](const char* what, const float* given, const float* ofFrame) -> Outcome {
             if ((given != nullptr) == (ofFrame != nullptr)) return std::nullopt;
             return Refusal{HL_BAD_VALUE, name() + (given ? " has " : " has no ") + what +
@@ -200,6 +204,11 @@ Outcome Instance::placeInner(const hl_frame& frame, FrameInput& input) {
     inner_.body.clear();
     if (frame.inner_count == 0) return std::nullopt;
     const std::size_t spheres = input.spheres.size();
+    // What may fail comes before anything is written: memory.
+    inner_.poses.reserve(frame.inner_count);
+    inner_.roots.reserve(frame.inner_count * roots_.size());
+    inner_.spheres.reserve(frame.inner_count * spheres);
+    inner_.body.reserve(frame.inner_count * bodyPose_.size());
     std::size_t bones = 0;
     for (std::size_t i = 0; i < frame.inner_count; ++i) {
         const hl_frame at = frameAtPose(frame, innerPoseAt(frame, i));

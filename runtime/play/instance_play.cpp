@@ -116,7 +116,7 @@ void Instance::playOnto(const HeadBefore& before, const hl_frame& frame, float r
             bool turns = before.known;
             if (before.known) {
                 const Float3 moved = root.position - rootsBefore_[s];
-                turns = dot(moved, moved) <= cut * cut;
+                turns = frame.cut == 0 && dot(moved, moved) <= cut * cut;
                 if (turns) carried = moved * perSecond;
             }
             positions_[offsets_[s]] = root.position;

@@ -71,6 +71,9 @@ void Instance::grow(const hl_reserve& wanted) {
         for (const std::uint32_t guide : levels_->set->coarser[i].guides) fewer.push_back(roots[guide]);
         rehearse(levels_->engines[i], fewer, spheres);
     }
+    engine_.setSkinSpheres(skinSpheres_);
+    for (std::size_t i = 0; levels_ && i < levels_->engines.size(); ++i)
+        levels_->engines[i].setSkinSpheres(skinSpheres_);
     last_.bones.reserve(12 * poses_.boneCount());
     if (wanted.inner > 0) {
         const std::size_t poses = wanted.inner;

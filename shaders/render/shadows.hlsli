@@ -138,7 +138,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
     const int reach = texels / 2;
     // Hairs that stand for several are wider than texels. Texels as far from each other as such hairs are wide are averaged, and
     // then let light through by the mean of their fibres: what all hairs would do, which hardly differ from texel to texel.
-    const bool spread = light.tapDistance > 0.0;
+    const bool spread = light.tapDistance > 1.0;
     const float step = max(light.tapDistance, 1.0);
     const float2 place = uv * (light.tileSize / step) - float(reach);
     const int2 base = int2(floor(place));
@@ -179,7 +179,8 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
         }
     }
     result.fibres = fibres;
-    result.passed = !hair ? 1.0 : spread ? exp(-light.stopping * fibres) : passed;
+    if (light.tapDistance > 0.0) passed = lerp(passed, exp(-light.stopping * fibres), min(light.tapDistance, 1.0));
+    result.passed = hair ? passed : 1.0;
     result.allFibres = max(all, fibres);
     result.visibility = head ? visible : 1.0;
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.

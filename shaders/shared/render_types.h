@@ -128,7 +128,8 @@ struct LightConstants {
     float filterTexels;    // a side of what is averaged: 1, 3 or 5
     float layerCount;      // of opacity, or nodes of transmittance
     float layerGrowth;     // of their widths from one to the next; 0: early ends (opacity.hlsli)
-    float tapDistance;     // texels between those that are averaged; 0: neighbours, each for itself (occlusion())
+    float tapDistance;     // texels between those that are averaged (occlusion()); below 1 the share of what their mean lets
+                           // through in the light that passes, 0: each lets through for itself
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.

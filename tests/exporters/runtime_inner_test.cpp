@@ -75,8 +75,9 @@ TEST_F(RuntimeInner, AFrameOfQuartersIsItsFourQuarterFrames) {
             ASSERT_TRUE(whole.step(nod.whole(), &error)) << error.what();
             for (std::size_t i = 0; i <= kWithin; ++i) ASSERT_TRUE(quarters.step(nod.part(i)));
             // A level of one substep in 1/60 s has two in this frame.
-            if (whole.describe().asleep == 0 && level < 2)
+            if (whole.describe().asleep == 0 && level < 2) {
                 ASSERT_EQ(whole.hash(), quarters.hash()) << "level " << level << ", frame " << f;
+            }
         }
         const auto one = guides(whole), other = guides(quarters);
         float farthest = 0;

@@ -102,6 +102,35 @@ class RodRun : public GpuSimulationTest {
             return sum / static_cast<double>(a.size());
         }
     };
+    /// How far hair comes, at most and in the mean, from where the CPU has it if its points begin some
+    /// roundings off: hair that is about to slide off one side or the other is not sure of it.
+    struct Spread {
+        double farthest = 0.0, mean = 0.0;
+    };
+    template <class Frames>
+    static Spread spreadOnCpu(const StrandSet& strands, const SimulationSettings& settings,
+                              const Frames& frames) {
+        std::vector<Float3> sure, nudged;
+        Spread spread;
+        for (std::uint32_t run = 0; run < 9; ++run) {
+            StrandSet set = strands;
+            test::Dice dice(run);
+            if (run > 0)
+                for (Float3& p : set.points) p = p + dice.inside(1e-7f);
+            runtime::Engine engine = *runtime::Engine::make(set.view(), settings).engine;
+            frames([&](const runtime::FrameInput& input) { engine.step(input); });
+            std::vector<Float3>& into = run > 0 ? nudged : sure;
+            into.resize(engine.pointCount());
+            engine.readPositions(into);
+            if (run == 0) continue;
+            spread.farthest = std::max(spread.farthest, RodRun::farthest(nudged, sure));
+            double sum = 0.0;
+            for (std::size_t i = 0; i < sure.size(); ++i)
+                sum += static_cast<double>(length(nudged[i] - sure[i]));
+            spread.mean = std::max(spread.mean, sum / static_cast<double>(sure.size()));
+        }
+        return spread;
+    }
     static double farthest(std::span<const Float3> a, std::span<const Float3> b) {
         double maximum = 0.0;
         for (std::size_t i = 0; i < a.size(); ++i) {
@@ -394,20 +423,25 @@ TEST_F(RodRun, StrandsLieOnACapsuleAsOnTheCpu) {
                                             {{0.09f, -0.08f, 0.165f}, 0.05f}};
     const std::vector<runtime::Capsule> capsules{{0, 1}};
     const std::vector<RootFrame> roots = strands.roots();
+    const auto frames = [&](bool joined, const auto& step) {
+        for (int f = 1; f <= 20; ++f) {
+            runtime::FrameInput input{kFrame, f / 60.0, roots};
+            input.spheres = ends;
+            if (joined) input.capsules = capsules;
+            step(input);
+        }
+    };
     Both held(strands, s, options());
+    frames(true, [&](const runtime::FrameInput& input) { held.step(input); });
     runtime::Engine missed = *runtime::Engine::make(strands.view(), s).engine;
-    for (int f = 1; f <= 20; ++f) {
-        runtime::FrameInput input{kFrame, f / 60.0, roots};
-        input.spheres = ends;
-        missed.step(input);
-        input.capsules = capsules;
-        held.step(input);
-    }
+    frames(false, [&](const runtime::FrameInput& input) { missed.step(input); });
     std::vector<Float3> past(missed.pointCount());
     missed.readPositions(past);
     EXPECT_GT(RodRun::farthest(held.onGpu(), past), 0.03) << "without it they fall past";
-    EXPECT_LT(held.meanDistance(), 1e-4);
-    EXPECT_LT(held.farthest(), 1e-3);
+    const Spread spread = spreadOnCpu(strands, s, [&](const auto& step) { frames(true, step); });
+    EXPECT_LT(spread.farthest, 5e-3);
+    EXPECT_LT(held.meanDistance(), std::max(1e-4, 2.0 * spread.mean));
+    EXPECT_LT(held.farthest(), std::max(1e-3, 2.0 * spread.farthest));
     for (const Float3& x : held.onGpu()) {
         const runtime::Sphere nearest = runtime::nearestOfCapsule(ends[0], ends[1], x);
         EXPECT_LT(nearest.radius - length(x - nearest.center_ws), 0.001f);
@@ -423,22 +457,27 @@ TEST_F(RodRun, CapsulesThatMoveAndNarrowTakeStrandsAlongAsOnTheCpu) {
     const std::vector<runtime::Capsule> capsules{{0, 1}, {1, 2}, {2, 2}, {3, 40}};
     for (const std::size_t others : {0u, 40u}) {
         SCOPED_TRACE(others);
+        const auto frames = [&](const auto& step) {
+            for (int f = 1; f <= 30; ++f) {
+                const float way = 0.003f * static_cast<float>(f);
+                std::vector<runtime::Sphere> spheres{{{-0.06f, -0.09f, -0.14f + way}, 0.03f},
+                                                     {{0.05f, -0.12f, -0.07f + way}, 0.015f},
+                                                     {{0.18f, -0.08f, -0.15f + way}, 0.04f}};
+                for (std::size_t k = 0; k < others; ++k)
+                    spheres.push_back({{1.0f + 0.1f * static_cast<float>(k), 0.0f, 0.0f}, 0.04f});
+                runtime::FrameInput input{kFrame, f / 60.0, roots};
+                input.spheres = spheres;
+                input.capsules = capsules;
+                step(input);
+            }
+        };
         Both both(strands, rods(), options());
-        for (int f = 1; f <= 30; ++f) {
-            const float way = 0.003f * static_cast<float>(f);
-            std::vector<runtime::Sphere> spheres{{{-0.06f, -0.09f, -0.14f + way}, 0.03f},
-                                                 {{0.05f, -0.12f, -0.07f + way}, 0.015f},
-                                                 {{0.18f, -0.08f, -0.15f + way}, 0.04f}};
-            for (std::size_t k = 0; k < others; ++k)
-                spheres.push_back({{1.0f + 0.1f * static_cast<float>(k), 0.0f, 0.0f}, 0.04f});
-            runtime::FrameInput input{kFrame, f / 60.0, roots};
-            input.spheres = spheres;
-            input.capsules = capsules;
-            both.step(input);
-        }
+        frames([&](const runtime::FrameInput& input) { both.step(input); });
+        const Spread spread = spreadOnCpu(strands, rods(), frames);
         EXPECT_GT(RodRun::farthest(both.onGpu(), strands.view().restPositions_ss), 0.02);
-        EXPECT_LT(both.meanDistance(), 1e-4);
-        EXPECT_LT(both.farthest(), 1e-3);
+        EXPECT_LT(spread.farthest, 5e-3);
+        EXPECT_LT(both.meanDistance(), std::max(1e-4, 2.0 * spread.mean));
+        EXPECT_LT(both.farthest(), std::max(1e-3, 2.0 * spread.farthest));
     }
 }
 

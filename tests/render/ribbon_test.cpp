@@ -321,6 +321,32 @@ TEST_F(RibbonTest, LightAndCoverAreSteadyOverDistance) {
     EXPECT_LT(minimum, 450u);
 }
 
+// In the shadow of other hairs, which are fewer and wider in its maps as well: each takes as much light as
+// those it stands for.
+TEST_F(RibbonTest, FewerHairsShadeAsAllDo) {
+    TestHead head(6000);
+    std::fill(head.strands.radii.begin(), head.strands.radii.end(), 0.00006f);
+    RenderScene scene = head.scene();
+    scene.background = Vec3f::Zero();
+    scene.meshes[0].albedo = Vec3f::Zero();
+    scene.lights = {Light{}};
+    scene.environment = Environment();
+    RenderOptions how = options(64, 16);
+    how.shadowResolution = 512;
+    for (const Shadows shadows : {Shadows::deepOpacity, Shadows::opacityMaps, Shadows::adaptive}) {
+        how.shadows = shadows;
+        how.detail = 0;
+        const double all = meanLuminance(draw(scene, how));
+        for (const float detail : {0.1f, 0.3f, 0.6f}) {
+            how.detail = detail;
+            const double some = meanLuminance(draw(scene, how));
+            EXPECT_LT(strands, 6000u);
+            EXPECT_NEAR(some / all, 1, 0.06)
+                << detail << " pixels, " << strands << " hairs, shadows " << static_cast<int>(shadows);
+        }
+    }
+}
+
 // What hair covers falls with the square of the distance, and no pixel of thin hair stays bright.
 TEST_F(RibbonTest, HairThinsWithDistanceAndDoesNotSparkle) {
     Walk walk(*device, 150, 0.00004f);

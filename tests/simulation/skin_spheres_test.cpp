@@ -52,11 +52,17 @@ TEST(SkinSpheres, AreThoseThatLieInTheSkinOrBulgeALittle) {
     EXPECT_EQ(told({sphereAt({0, 0, 0}, 0.14f), sphereAt({0, 0.14f, 0}, 0.05f),
                     sphereAt({0, 0.11f, 0}, 0.05f), sphereAt({0, 0, 0}, -1.0f)}),
               (std::vector{0, 0, 0, 0}));
+    // Hats so wide that the table of distances ends inside them.
+    EXPECT_EQ(told({sphereAt({0, 0, 0}, 0.2f), sphereAt({0, 0.02f, 0}, 0.3f)}), (std::vector{0, 0}));
     // Both ends lie inside; so does all between them.
     EXPECT_EQ(told({sphereAt({0, -0.04f, 0}, 0.05f, 1), sphereAt({0, 0.04f, 0}, 0.05f)}),
               (std::vector{1, 1}));
     // One end is a hand.
     EXPECT_EQ(told({sphereAt({0, 0, 0}, 0.05f, 1), sphereAt({0, 0.2f, 0}, 0.05f)}), (std::vector{0, 0}));
+    // A chain of which the last is a hand: a capsule that pushes has two ends that do, in whichever order.
+    EXPECT_EQ(told({sphereAt({0, 0, 0}, 0.05f, 1), sphereAt({0, 0.02f, 0}, 0.05f, 2),
+                    sphereAt({0, 0.2f, 0}, 0.05f)}),
+              (std::vector{0, 0, 0}));
     Groom bare = ballWith({sphereAt({0, 0, 0}, 0.05f)});
     bare.body.reset();
     EXPECT_TRUE(skinSpheresOf(bare).empty());
@@ -104,11 +110,11 @@ TEST(SkinSpheres, PushNothingWhereTheSkinIsMet) {
 TEST(SkinSpheres, AreNotWhatHairIsInside) {
     auto simulation = Simulation::make(ballWith({sphereAt({0, 0.02f, 0}, 0.09f)}), {});
     ASSERT_TRUE(simulation);
-    for (int f = 0; f < 10; ++f) simulation->step(kFrame, {});
+    for (int f = 0; f < 10; ++f) simulation->step(kFrame, HeadPose{});
     EXPECT_EQ(simulation->stats().maxPenetrationMm, 0);
     auto hat = Simulation::make(ballWith({sphereAt({0, 0, 0}, 0.14f)}), {});
     ASSERT_TRUE(hat);
-    hat->step(kFrame, {});
+    hat->step(kFrame, HeadPose{});
     EXPECT_GT(hat->stats().maxPenetrationMm, 10);
 }
 
@@ -127,10 +133,10 @@ TEST(SkinSpheres, AreToldAgainWhenSpheresChange) {
     Groom groom = ballWith({sphereAt({0, 0, 0}, 0.1f)});
     auto simulation = Simulation::make(groom, {});
     ASSERT_TRUE(simulation);
-    for (int f = 0; f < 30; ++f) simulation->step(kFrame, {});
+    for (int f = 0; f < 30; ++f) simulation->step(kFrame, HeadPose{});
     const std::vector<Vec3f> before(simulation->positions_ws().begin(), simulation->positions_ws().end());
     simulation->setSpheres({sphereAt({0, 0, 0}, 0.14f)});
-    for (int f = 0; f < 60; ++f) simulation->step(kFrame, {});
+    for (int f = 0; f < 60; ++f) simulation->step(kFrame, HeadPose{});
     const std::vector<Vec3f> after(simulation->positions_ws().begin(), simulation->positions_ws().end());
     EXPECT_GT(farthest(before, after), 0.02f);
 }
@@ -142,7 +148,7 @@ TEST(SkinSpheres, OfWhichNobodyKnowsWhereTheyRestPush) {
         auto simulation = Simulation::make(ballWith({}), {});
         EXPECT_TRUE(simulation);
         simulation->setSpheres(bulging, atRest);
-        for (int f = 0; f < 60; ++f) simulation->step(kFrame, {});
+        for (int f = 0; f < 60; ++f) simulation->step(kFrame, HeadPose{});
         return std::vector<Vec3f>(simulation->positions_ws().begin(), simulation->positions_ws().end());
     };
     const std::vector<Vec3f> skin = settled(ballWith({}));

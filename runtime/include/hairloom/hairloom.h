@@ -300,9 +300,9 @@ typedef struct hl_frame {
      * frame. hl_gpu_step leaves them out, and says so once in the log. */
     const hl_pose* inner;
     size_t inner_count; /* up to 15 */
-    /* 1: the frame does not continue from the one before. Roots, spheres and skin jump to its first pose, and
-     * take the hair along with its motion, as roots do that jump farther than `teleportDistance`.
-     * hl_instance_reset puts hair at rest instead */
+    /* 1: the frame does not continue from the one before. Roots, spheres and skin jump to its first pose, or
+     * to that at the first substep's end if it is later, and take the hair along, as roots do that jump
+     * farther than `teleportDistance`. hl_instance_reset puts hair at rest instead */
     uint32_t cut;
     uint32_t unused; /* 0 */
 } hl_frame;

@@ -85,9 +85,9 @@ struct FrameInput {
     /// substeps where a part of the frame is fast. Not seen by alternatives/, nor by an engine on a GPU whose
     /// roots are found there.
     std::span<const InnerPose> inner = {};
-    /// The frame does not continue from the one before: roots, spheres and body jump to its first pose,
-    /// however near that is, and take the hair along rigidly with its velocities turned. Engine::reset()
-    /// instead puts hair at rest.
+    /// The frame does not continue from the one before: roots, spheres and body jump to its first pose, or to
+    /// that at the first substep's end if it is later, however near, and take the hair along rigidly with its
+    /// velocities turned. Engine::reset() instead puts hair at rest.
     bool cut = false;
 };
 
