@@ -288,10 +288,15 @@ HairDetail detailOf(const RendererState& state) {
     HairDetail detail;
     detail.subdivisions = state.options.subdivisions;
     const Box3f hair = state.scene.hairBounds();
-    // Of hair much thinner than a pixel, the fragments that sorting keeps are its lit outside alone.
+    // Of hair much thinner than a pixel, the fragments that sorting keeps are its lit outside alone. A few
+    // hairs do not lie over each other, and would be gone.
     constexpr float kLeastSorted = 0.25f;
-    const float pixels = std::max(state.options.detail,
-                                  state.options.transparency == Transparency::sorted ? kLeastSorted : 0.0f);
+    constexpr std::uint32_t kFewHairs = 64;
+    const bool merges = state.options.transparency == Transparency::sorted &&
+                        std::ranges::all_of(state.scene.batches, [](const DrawBatch& batch) {
+                            return batch.strandCount() > kFewHairs;
+                        });
+    const float pixels = std::max(state.options.detail, merges ? kLeastSorted : 0.0f);
     if (pixels <= 0 || hair.isEmpty()) return detail;
     constexpr float kPixelsPerSegment = 2;
     constexpr float kMinShare = 1.0f / 64;

@@ -289,6 +289,7 @@ TEST_F(RuntimeCalls, EveryNullAndEveryNumberIsRefusedWithWords) {
     hl_host_init(nullptr);
     hl_frame_init(nullptr);
     hl_play_init(nullptr);
+    hl_pose_init(nullptr);
     hl_reserve_init(nullptr);
     hl_read_init(nullptr);
     hl_crowd_limits_init(nullptr);
@@ -296,9 +297,9 @@ TEST_F(RuntimeCalls, EveryNullAndEveryNumberIsRefusedWithWords) {
     EXPECT_EQ(hl_instance_hash(nullptr), 0u);
     EXPECT_EQ(hl_version(), static_cast<std::uint32_t>(HL_VERSION));
     seen_.insert({"hl_instance_make", "hl_instance_make_hosted", "hl_instance_copy", "hl_set_allocator",
-                  "hl_allocator_init", "hl_host_init", "hl_frame_init", "hl_play_init", "hl_reserve_init",
-                  "hl_read_init", "hl_crowd_limits_init", "hl_instance_free", "hl_instance_hash",
-                  "hl_version"});
+                  "hl_allocator_init", "hl_host_init", "hl_frame_init", "hl_play_init", "hl_pose_init",
+                  "hl_reserve_init", "hl_read_init", "hl_crowd_limits_init", "hl_instance_free",
+                  "hl_instance_hash", "hl_version"});
     (void)bytes;
 
     std::set<std::string> listed;
