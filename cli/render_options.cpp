@@ -231,10 +231,8 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
            "covers a random part of the samples, weighted blends in any order. auto uses "
            "stochastic for averaged frames, sorted for single frames on a GPU, and weighted otherwise")
         ->check(CLI::IsMember(namesOf(kTransparency)));
-    job.add_option(
-           "--detail", options->detail,
-           "Skip hairs thinner than this part of a pixel and widen the others. 0 draws all, but sorted "
-           "transparency uses 0.25 at least")
+    job.add_option("--detail", options->detail,
+                   "Skip hairs thinner than this part of a pixel and widen the others. 0 draws all")
         ->check(CLI::Range(0.0, 100.0));
     job.add_option("--exposure", options->exposure, "Exposure: multiplies light before the tone curve")
         ->check(CLI::Range(1e-3, 1e3));

@@ -288,24 +288,14 @@ HairDetail detailOf(const RendererState& state) {
     HairDetail detail;
     detail.subdivisions = state.options.subdivisions;
     const Box3f hair = state.scene.hairBounds();
-    // Of hair much thinner than a pixel, the fragments that sorting keeps are its lit outside alone. A few
-    // hairs do not lie over each other, and would be gone.
-    constexpr float kLeastSorted = 0.25f;
-    constexpr std::uint32_t kFewHairs = 64;
-    const bool merges = state.options.transparency == Transparency::sorted &&
-                        std::ranges::all_of(state.scene.batches, [](const DrawBatch& batch) {
-                            return batch.strandCount() > kFewHairs;
-                        });
-    const float pixels = std::max(state.options.detail, merges ? kLeastSorted : 0.0f);
-    if (pixels <= 0 || hair.isEmpty()) return detail;
+    if (state.options.detail <= 0 || hair.isEmpty()) return detail;
     constexpr float kPixelsPerSegment = 2;
     constexpr float kMinShare = 1.0f / 64;
     const HairMeasure measure = state.scene.measure();
     const float distance = std::max(distances(state.camera, hair)[0], 1e-3f);
     const float pixel =
         pixelSpread(state.camera, state.options) * (state.camera.isOrthographic() ? 1.0f : distance);
-    detail.share = std::clamp(measure.diameter / pixel / pixels, kMinShare, 2.0f);
-    if (state.options.detail <= 0) return detail;
+    detail.share = std::clamp(measure.diameter / pixel / state.options.detail, kMinShare, 2.0f);
     const float pieces = std::ceil(measure.segment / pixel / kPixelsPerSegment);
     detail.subdivisions =
         static_cast<std::uint32_t>(std::clamp(pieces, 1.0f, static_cast<float>(state.options.subdivisions)));

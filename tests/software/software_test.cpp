@@ -126,23 +126,6 @@ TEST_F(SoftwareTest, TransparentKindsThatAreAskedForAreDrawn) {
     expectFinite(draw(scene, how));
 }
 
-// Many hairs lie over each other in a pixel, of which sorting keeps eight.
-TEST_F(SoftwareTest, HairMuchThinnerThanAPixelKeepsItsLight) {
-    TestHead head(6000);
-    std::fill(head.strands.radii.begin(), head.strands.radii.end(), 0.00006f);
-    RenderScene scene = head.scene();
-    scene.meshes[0].albedo = scene.background = Vec3f::Zero();
-    RenderOptions how = options(48);
-    how.frames = 4;
-    const Picture sorted = draw(scene, how);
-    how.transparency = Transparency::stochastic;
-    how.frames = 32;
-    const Picture many = draw(scene, how);
-    EXPECT_EQ(many.strands, 6000u);
-    EXPECT_LT(sorted.strands, 6000u);
-    EXPECT_NEAR(meanLuminance(sorted.linear) / meanLuminance(many.linear), 1, 0.05);
-}
-
 TEST_F(SoftwareTest, NothingIsTheBackground) {
     RenderScene scene;
     scene.background = Vec3f(0.1f, 0.2f, 0.3f);
