@@ -135,8 +135,12 @@ TEST(RunPreview, HasThePointsOfTheGroomWhateverRan) {
     same.simulation.substeps = 2;
     auto simulation = Simulation::make(same, own->poses.front(), {});
     ASSERT_TRUE(simulation.has_value());
-    for (std::size_t frame = 1; frame < own->poses.size(); ++frame)
-        simulation->step(1 / measured.options.time.framesPerSecond, own->poses[frame]);
+    const SceneTime& time = measured.options.time;
+    for (std::size_t frame = 1; frame < own->poses.size(); ++frame) {
+        const float at = static_cast<float>(frame), rate = time.framesPerSecond;
+        simulation->step(
+            1 / rate, stepOf(**motion, own->poses[frame - 1], (at - 1) / rate, at / rate, time.posesWithin));
+    }
     const auto last = simulation->positions_ws();
     for (std::size_t p = 0; p < last.size(); ++p) {
         EXPECT_LT((own->positions_ws.back()[p] - last[p]).norm(), 1e-6f);
