@@ -39,6 +39,9 @@ struct GpuBench {
         crossesAll;  ///< strands from which the GPU is faster than one, all threads
 };
 
+/// The rows of Figure 27 alone, of Options::strands. Error: there is no GPU, or it fails.
+Result<GpuBench> measureFigure27(const Options& options);
+
 Report reportOf(const GpuBench& bench);
 std::string csvOf(const GpuBench& bench);
 std::string markdownOf(const GpuBench& bench, const std::string& command);

@@ -175,7 +175,7 @@ Status measureDetails(Rows& rows, const Extent& extent, GpuBench& bench) {
     return {};
 }
 
-Result<GpuBench> measureAll(const Options& options) {
+Result<GpuBench> measureGpu(const Options& options, bool figureAlone) {
     const Extent extent = extentOf(options);
     gpu::DeviceOptions wanted;
     wanted.backend = gpu::Backend::Vulkan;
@@ -193,6 +193,10 @@ Result<GpuBench> measureAll(const Options& options) {
     if (!bandwidth) return tl::unexpected(bandwidth.error());
     bench.copyBandwidth = *bandwidth;
     Rows rows(**device, extent.seconds);
+    if (figureAlone) {
+        if (auto status = measureFigure(rows, extent, bench); !status) return tl::unexpected(status.error());
+        return bench;
+    }
     const auto& hair = samples();
     if (!hair) return tl::unexpected(hair.error());
     for (const Sample& sample : *hair) {
@@ -206,7 +210,7 @@ Result<GpuBench> measureAll(const Options& options) {
 }
 
 Result<Outcome> runGpuSim(const Options& options) {
-    const auto bench = measureAll(options);
+    const auto bench = measureGpu(options, false);
     if (!bench) return tl::unexpected(bench.error());
     return Outcome{reportOf(*bench),
                    {},
@@ -216,6 +220,10 @@ Result<Outcome> runGpuSim(const Options& options) {
 }
 
 }  // namespace
+
+Result<GpuBench> measureFigure27(const Options& options) {
+    return measureGpu(options, true);
+}
 
 Benchmark gpuSimBenchmark() {
     return {"gpu-sim",

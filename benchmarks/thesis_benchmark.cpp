@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "benchmarks/gpu_sim.h"
 #include "benchmarks/sim.h"
 #include "core/documents/sample.h"
 #include "core/documents/sample_material.h"
@@ -103,16 +104,6 @@ std::string bytesAsText(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// What `bench gpu-sim` writes, or why there is none.
-Result<Outcome> figure27(const Options& options) {
-    const auto found = std::ranges::find(benchmarks(), "gpu-sim", &Benchmark::name);
-    Options measuring = options;
-    measuring.progress = {};
-    measuring.strands = options.quick ? std::vector<std::uint32_t>{100, 300}
-                                      : std::vector<std::uint32_t>{100, 300, 1000, 3000};
-    return found->run(measuring);
-}
-
 Result<Outcome> runThesis(const Options& options) {
     std::size_t done = 0;
     const auto stepForward = [&] {
@@ -154,11 +145,12 @@ Result<Outcome> runThesis(const Options& options) {
     }
 
     page += "## Figure 27\n\n";
-    if (auto graph = figure27(options); graph) {
-        const auto at =
-            std::ranges::find(graph->files, "figure-27.svg", &std::pair<std::string, std::string>::first);
-        outcome.files.push_back(*at);
-        outcome.report["figure_27"] = graph->report;
+    Options measuring = options;
+    measuring.strands = options.quick ? std::vector<std::uint32_t>{100, 300}
+                                      : std::vector<std::uint32_t>{100, 300, 1000, 3000};
+    if (const auto graph = measureFigure27(measuring); graph) {
+        outcome.files.emplace_back("figure-27.svg", figureOf(*graph));
+        outcome.report["figure_27"] = reportOf(*graph);
         page +=
             "The thesis' graphs of the GPU (GTX 560 Ti) and the CPU cross at about 1,000 guides.\n\n"
             "![Figure 27](figure-27.svg)\n";

@@ -290,13 +290,11 @@ JobRun declare(CLI::App& job) {
     list("--points", options->points,
          "Points per strand to measure, instead of the groom's own, a half and a quarter");
     list("--thread-counts", options->threadCounts, "Thread counts to measure instead of --threads");
-    job.add_option(
-        "--vary", options->vary,
-        "Another setting to measure as FIELD=VALUE,VALUE,… You can repeat this option. FIELD is a "
-        "simulation setting, engine (cpu,gpu), headSeen (ends,quarters: poses of the head within a "
-        "frame), hairVolume (0,1: hair-hair collision between "
-        "frames), spheres (first N spheres), guides "
-        "(N simulated strands; the others follow) or hairsPerGuide (time only)");
+    job.add_option("--vary", options->vary,
+                   "Another setting to measure as FIELD=VALUE,VALUE,… You can repeat this option. FIELD is a "
+                   "simulation setting, engine (cpu,gpu), headSeen (ends,quarters: poses of the head within "
+                   "a frame), hairVolume (0,1: hair-hair collision between frames), spheres (first N "
+                   "spheres), guides (N simulated strands; the others follow) or hairsPerGuide (time only)");
     job.add_option("--view", options->view,
                    "View file (docs/cli.md) with a camera and a size. Adds errors in pixels of this view")
         ->type_name("FILE");

@@ -128,8 +128,8 @@ Status calibrate(const Work& work, Level& level) {
         const double brighter = 1 / std::max(off.light, 1e-9);
         made.brightness = std::clamp(made.brightness * static_cast<float>(brighter), 0.25f, 4.0f);
         const bool covers = std::abs(off.coverage - 1) < kFarEnough;
-        const bool hasCap = round + 1 >= kCapRounds;
-        if (!hasCap) sight.fit(strands, shooting.shots, made);
+        const bool capIsFitted = round + 1 >= kCapRounds;
+        if (!capIsFitted) sight.fit(strands, shooting.shots, made);
         if (!covers) {
             constexpr float kThinnest = 0.2f, kThickest = 8;
             const double cover = std::log(std::max(off.coverage, 1e-3));
@@ -141,12 +141,12 @@ Status calibrate(const Work& work, Level& level) {
             thickness =
                 std::clamp(thickness * static_cast<float>(std::exp(-cover / power)), kThinnest, kThickest);
         }
-        if (!covers || !hasCap) {
+        if (!covers || !capIsFitted) {
             if (auto status = bakeAtlas(work.hair, work.light, thickness, made, work.cancel); !status)
                 return status;
         }
         buildMesh(made);
-        if (covers && hasCap && std::abs(off.light - 1) < kFarEnough) break;
+        if (covers && capIsFitted && std::abs(off.light - 1) < kFarEnough) break;
     }
     // What was baked last has a light of its own. The middle of those where it takes over and where the next
     // one does, so that neither step is large.

@@ -205,11 +205,7 @@ Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> po
         for (std::uint32_t step = 1; step <= time.stepsPerFrame; ++step) {
             const std::size_t end = (std::size_t{frame} * time.stepsPerFrame + step) * posesPerStep;
             auto within = poses.subspan(end - time.posesWithin, time.seesWithin ? time.posesWithin : 0);
-            const auto stays = [&](const HeadPose& pose) {
-                return isSamePlace(pose, poses[end - posesPerStep]);
-            };
-            // As stepOf() has it.
-            if (stays(poses[end]) && std::ranges::all_of(within, stays)) within = {};
+            if (staysThrough(poses[end - posesPerStep], within, poses[end])) within = {};
             simulation->step(dt, poses[end], within);
         }
         if (following) following->follow(simulation->positions_ws());

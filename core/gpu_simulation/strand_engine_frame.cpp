@@ -26,7 +26,7 @@ constexpr std::size_t kBlocksPerJob = 8;
 /// Takes the roots that the frame ends on; whether some have moved.
 bool StrandEngine::Impl::takeRoots(const runtime::FrameInput& input) {
     assert(input.roots_ws.size() == placed.roots.size());
-    runtime::takeFrameRoots(input.roots_ws, input.cut ? -1.0f : wanted.teleportDistance, !rootsOfDevice,
+    runtime::takeFrameRoots(input.roots_ws, runtime::teleportDistanceOf(wanted, input), !rootsOfDevice,
                             placed);
     rootsOfDevice = false;
     return std::ranges::find(placed.moved, true) != placed.moved.end();

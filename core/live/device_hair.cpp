@@ -24,14 +24,6 @@ constexpr std::uint32_t kMaxGroups = 65535;  // of one dimension, on every devic
 constexpr float kSlack = 0.01f;              // metres around where hair was seen
 constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
 
-runtime::BonePose toBonePose(const Eigen::Affine3f& m) {
-    const auto column = [&](int i) {
-        const Vec3f c = m.matrix().col(i).head<3>();
-        return runtime::Float3{c.x(), c.y(), c.z()};
-    };
-    return {column(0), column(1), column(2), column(3)};
-}
-
 Eigen::Affine3f toAffine(const runtime::BonePose& bone) {
     const auto column = [](runtime::Float3 v) { return Vec3f(v.x, v.y, v.z); };
     Eigen::Affine3f m = Eigen::Affine3f::Identity();

@@ -109,6 +109,11 @@ bool isSamePlace(const HeadPose& a, const HeadPose& b) {
            sameBones(a.body_ws, b.body_ws) && a.scalpPositions_ws == b.scalpPositions_ws;
 }
 
+bool staysThrough(const HeadPose& before, std::span<const HeadPose> within, const HeadPose& end) {
+    const auto stays = [&](const HeadPose& pose) { return isSamePlace(pose, before); };
+    return stays(end) && std::ranges::all_of(within, stays);
+}
+
 HeadStep stepOf(const HeadMotion& motion, const HeadPose& before, float from, float to,
                 std::uint32_t posesWithin) {
     HeadStep step{motion.poseAt(to), {}};
@@ -116,8 +121,7 @@ HeadStep stepOf(const HeadMotion& motion, const HeadPose& before, float from, fl
         const float share = static_cast<float>(i) / static_cast<float>(posesWithin + 1);
         step.within.push_back(motion.poseAt(from + (to - from) * share));
     }
-    const auto stays = [&](const HeadPose& pose) { return isSamePlace(pose, before); };
-    if (stays(step.end) && std::ranges::all_of(step.within, stays)) step.within.clear();
+    if (staysThrough(before, step.within, step.end)) step.within.clear();
     return step;
 }
 

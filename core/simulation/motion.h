@@ -51,6 +51,8 @@ HeadStep inWorld(HeadStep step);
 
 /// Whether head, spheres and bones are the same in both; the wind may differ.
 bool isSamePlace(const HeadPose& a, const HeadPose& b);
+/// Whether all poses of a step are in the place of `before`: substeps see the same without those within.
+bool staysThrough(const HeadPose& before, std::span<const HeadPose> within, const HeadPose& end);
 
 /// The step from `before`, which is where the motion is at `from` seconds, to where it is at `to`. Where the
 /// head stays on its pose, as in a clip that stands still, there are no poses within: substeps see the same

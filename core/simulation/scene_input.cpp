@@ -37,20 +37,21 @@ runtime::Vector<std::uint8_t> skinSpheresOf(const Groom& groom) {
     return runtime::spheresOfSkin(*groom.body, spheresAt(groom.spheres, {}), capsulesOf(groom.spheres));
 }
 
+runtime::BonePose toBonePose(const Eigen::Affine3f& m) {
+    const Mat3f linear = m.linear();
+    return {toFloat3(linear.col(0)), toFloat3(linear.col(1)), toFloat3(linear.col(2)),
+            toFloat3(m.translation())};
+}
+
 std::vector<runtime::BonePose> bodyAt(const Groom& groom, const HeadPose& pose) {
     if (!groom.body) return {};
-    const auto toPose = [](const Eigen::Affine3f& m) {
-        const Mat3f linear = m.linear();
-        return runtime::BonePose{toFloat3(linear.col(0)), toFloat3(linear.col(1)), toFloat3(linear.col(2)),
-                                 toFloat3(m.translation())};
-    };
     if (!pose.body_ws.empty() && pose.body_ws.size() == std::max<std::size_t>(groom.body->bones.size(), 1)) {
         std::vector<runtime::BonePose> poses;
-        for (const Eigen::Affine3f& bone : pose.body_ws) poses.push_back(toPose(bone));
+        for (const Eigen::Affine3f& bone : pose.body_ws) poses.push_back(toBonePose(bone));
         return poses;
     }
     if (!pose.scalpPositions_ws.empty()) return {};
-    return {toPose(Eigen::Affine3f(pose.head_ws.matrix()))};
+    return {toBonePose(Eigen::Affine3f(pose.head_ws.matrix()))};
 }
 
 Result<SceneInput> SceneInput::make(const Groom& groom) {

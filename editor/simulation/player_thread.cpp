@@ -83,8 +83,8 @@ struct Player::Playing {
     }
     /// To the end of that step of the frame. A head that is dragged goes along within it.
     HeadStep stepTo(std::uint32_t step, const WorkerRequests& taken) {
-        const double to = time(step), from = to - static_cast<double>(pace.dt());
-        HeadStep head = stepOf(*motion, last, static_cast<float>(from), static_cast<float>(to));
+        const double end = time(step), begin = end - static_cast<double>(pace.dt());
+        HeadStep head = stepOf(*motion, last, static_cast<float>(begin), static_cast<float>(end));
         last = head.end;
         const float parts = static_cast<float>(head.within.size() + 1);
         for (std::size_t i = 0; i < head.within.size(); ++i) {

@@ -10,14 +10,15 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr float kMostBulge = 0.25f;  ///< of the radius
+constexpr int kDirections = 128;
 
 /// Visits places all over a sphere of radius 1, about as far apart from each other.
 template <class Visit>
 void forEachDirection(Visit&& visit) {
-    constexpr int kCount = 128;
     const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
-    for (int k = 0; k < kCount; ++k) {
-        const double z = 1.0 - (2.0 * k + 1.0) / kCount, across = std::sqrt(1.0 - z * z), turn = golden * k;
+    for (int k = 0; k < kDirections; ++k) {
+        const double z = 1.0 - (2.0 * k + 1.0) / kDirections, across = std::sqrt(1.0 - z * z),
+                     turn = golden * k;
         visit(Float3{static_cast<float>(across * std::cos(turn)), static_cast<float>(across * std::sin(turn)),
                      static_cast<float>(z)});
     }
@@ -26,15 +27,14 @@ void forEachDirection(Visit&& visit) {
 bool isOfSkin(const BodyField& field, const Sphere& sphere) {
     if (!(sphere.radius > 0.0f) || !(field.at(sphere.center_ws).distance < 0.0f)) return false;
     bool bulges = false;
-    int places = 0, unknown = 0;
+    int unknown = 0;
     forEachDirection([&](Float3 direction) {
         const float away = field.at(sphere.center_ws + direction * sphere.radius).distance;
-        ++places;
         unknown += std::isfinite(away) ? 0 : 1;
         bulges = bulges || (std::isfinite(away) && away > kMostBulge * sphere.radius);
     });
     // Skin that is open, as at the neck, lets a sphere look out of what the field knows; a hat's lies there.
-    return !bulges && unknown <= places / 3;
+    return !bulges && unknown <= kDirections / 3;
 }
 
 }  // namespace

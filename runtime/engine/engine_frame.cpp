@@ -405,7 +405,7 @@ void Engine::Impl::stepStraight(const FrameInput& input, std::uint32_t substeps)
 
     moveOrigin(input.origin_ws);
     const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
-    teleportDistance_ = input.cut ? -1.0f : settings_.teleportDistance;
+    teleportDistance_ = teleportDistanceOf(settings_, input);
     takeRoots(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
     takeSpheres(settings_, shape_->longestStrand, {state_.spheres, state_.capsules, input.cut}, input.spheres,

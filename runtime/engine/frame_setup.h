@@ -30,6 +30,10 @@ struct FrameSpheres {
     /// hair: what sleeps there wakes up.
     Vector<Sphere> waking;
 };
+/// Metres; negative where the frame is cut: as far as nothing may move.
+inline float teleportDistanceOf(const SimulationSettings& settings, const FrameInput& input) {
+    return input.cut ? -1.0f : settings.teleportDistance;
+}
 /// What the last frame had: usable spheres, and capsules between these.
 struct FormerSpheres {
     std::span<const Sphere> spheres;

@@ -34,7 +34,7 @@ shaders::SimulationConstants frameConstants(const GpuFrame& frame, const Substep
     c.dt = input.dt;
     const bool keepsWays = !modelOf(s.strandModel).keepsVelocities;
     c.rescale = frame.before > 0.0f && keepsWays ? context.h / frame.before : 1.0f;
-    c.teleportDistance = input.cut ? -1.0f : s.teleportDistance;
+    c.teleportDistance = teleportDistanceOf(s, input);
     const float slow = s.sleepSpeed * context.h;
     c.slowSquared = slow * slow;
     c.sleepDelay = s.sleepDelay;

@@ -24,4 +24,10 @@ inline Matrix34 matrixAt(const float* values, std::size_t index) {
     return matrix;
 }
 
+/// The frame as one that goes straight to its end.
+inline hl_frame withoutInner(hl_frame frame) {
+    frame.inner_count = 0;
+    return frame;
+}
+
 }  // namespace hairloom::runtime

@@ -10,6 +10,7 @@
 
 #include "follow/follow_gpu.h"
 #include "play/c_words.h"
+#include "play/frame_values.h"
 #include "play/gpu_guides.h"
 #include "play/gpu_shading.h"
 #include "shaders/ribbon_types.h"
@@ -244,10 +245,8 @@ Outcome Instance::stepGpu(const hl_frame& frame) {
                                           (capsules > 0 ? " with the ends of each capsule" : "") +
                                           "; expected at most " + std::to_string(gpuGuides_->mostSpheres())};
     if (Outcome refused = checkInner(frame)) return refused;
-    hl_frame end = frame;
-    end.inner_count = 0;
     FrameInput input;
-    if (Outcome refused = place(end, input)) return refused;
+    if (Outcome refused = place(withoutInner(frame), input)) return refused;
     takeTurns();
     played_ = false;
     if (frame.inner_count > 0 && host_.log && !saidInnerOnGpu_) {

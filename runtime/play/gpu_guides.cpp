@@ -122,7 +122,7 @@ Float3 GpuGuides::moveOrigin(std::array<double, 3> next) {
 void GpuGuides::take(const FrameInput& input) {
     const Float3 shift = moveOrigin(input.origin_ws);
     const Float3 lowBefore = roots_.min_ws, highBefore = roots_.max_ws;
-    takeFrameRoots(input.roots_ws, input.cut ? -1.0f : settings_.teleportDistance, true, roots_);
+    takeFrameRoots(input.roots_ws, teleportDistanceOf(settings_, input), true, roots_);
     capsulesBefore_.assign(spheres_.capsules.begin(), spheres_.capsules.end());
     takeSpheres(settings_, shape_->longestStrand, {spheresBefore_, capsulesBefore_, input.cut}, input.spheres,
                 input.capsules, spheres_);

@@ -114,9 +114,7 @@ std::uint64_t Instance::numberOf(const Asset& asset) {
 
 Outcome Instance::reset(const hl_frame& frame) {
     FrameInput input;
-    hl_frame end = frame;
-    end.inner_count = 0;
-    if (Outcome refused = place(end, input)) return refused;
+    if (Outcome refused = place(withoutInner(frame), input)) return refused;
     leaveGpu();
     played_ = playedWaits_ = false;
     engine_.reset(roots_);
@@ -152,8 +150,8 @@ Outcome Instance::checkStep(const hl_frame& frame) {
 Outcome Instance::step(const hl_frame& frame) {
     if (frame.dt == 0) return std::nullopt;
     if (Outcome refused = checkStep(frame)) return refused;
-    // Nothing wakes it: a step would leave every bit as it is.
     if (Outcome refused = checkInner(frame)) return refused;
+    // Nothing wakes it: a step would leave every bit as it is.
     if (asleep_ && asBefore(frame) && innerAsBefore(frame)) return std::nullopt;
     settlePlayed();
     FrameInput input;

@@ -237,7 +237,7 @@ Outcome Instance::read(hl_read& read, bool wantsBounds) {
     else
         readGuidesInto(reading);
     if (read.previous.data) {
-        shown.still = wasShown && shown.state == now;
+        shown.still = !wasShown || shown.state == now;
         shown.state = now;
         shown.origin = origin_;
     }
