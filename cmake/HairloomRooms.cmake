@@ -124,15 +124,16 @@ function(hairloom_optimise_little target)
     endif()
 endfunction()
 
-# hairloom_test(NAME [SOURCES file...] LINK target... [PRECOMPILE header...] [TIMEOUT seconds] [SLOW filter])
+# hairloom_test(NAME [SOURCES file...] LINK target... [PRECOMPILE header...] [TIMEOUT seconds] [SLOW filter] [BY_SUITE])
 # Every *_test.cpp of the folder is part of it; SOURCES are what else is.
 # Each gtest case becomes a ctest entry NAME.Suite.Case; where programs run under Wine, whose start takes longer than most
 # cases, all cases together become the entry NAME. Tests find the repository through tests/support/source_dir.h.
 # Tests are compiled once and run for moments: what they include is precompiled, once for all or with PRECOMPILE's together for
 # this one, and they are optimised little. SLOW is a filter of GoogleTest for cases that take seconds: they have the label
 # NAME-slow, which ./dev test --quick leaves out, and begin before others, so that no core waits for the last. They have 300 s.
+# BY_SUITE: the entries are NAME.Suite, since cases of a suite share what takes longer than they do, as kernels of a device.
 function(hairloom_test name)
-    cmake_parse_arguments(ARG "" "TIMEOUT;SLOW" "SOURCES;LINK;PRECOMPILE" ${ARGN})
+    cmake_parse_arguments(ARG "BY_SUITE" "TIMEOUT;SLOW" "SOURCES;LINK;PRECOMPILE" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 120)
     endif()
@@ -148,6 +149,16 @@ function(hairloom_test name)
     if(CMAKE_CROSSCOMPILING)
         add_test(NAME ${name} COMMAND test_${name} --gtest_brief=1)
         set_tests_properties(${name} PROPERTIES TIMEOUT 900 LABELS ${name})
+        return()
+    endif()
+    if(ARG_BY_SUITE)
+        set(suites "${CMAKE_CURRENT_BINARY_DIR}/test_${name}_suites.cmake")
+        add_custom_command(TARGET test_${name} POST_BUILD BYPRODUCTS "${suites}" VERBATIM
+            COMMAND "${CMAKE_COMMAND}" "-DPROGRAM=$<TARGET_FILE:test_${name}>" "-DNAME=${name}" "-DSLOW=${ARG_SLOW}"
+                    "-DTIMEOUT=${ARG_TIMEOUT}" "-DFILE=${suites}" -P "${PROJECT_SOURCE_DIR}/cmake/discover_suites.cmake")
+        file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/test_${name}_entries.cmake"
+            "if(EXISTS \"${suites}\")\n  include(\"${suites}\")\nelse()\n  add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)\nendif()\n")
+        set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${CMAKE_CURRENT_BINARY_DIR}/test_${name}_entries.cmake")
         return()
     endif()
     if(ARG_SLOW)
