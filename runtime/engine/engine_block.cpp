@@ -8,6 +8,39 @@
 #include "engine/engine_impl.h"
 
 namespace hairloom::runtime {
+namespace {
+
+/// Whether no strand has gone farther than `reach` metres from where the anchors have it. Else they are moved
+/// there.
+bool stays(const BlockView& blockView, float reach, Rest& rest) {
+    const auto placeOf = [&](std::uint32_t anchor, std::uint32_t lane) {
+        const std::uint32_t point = (blockView.points - 1) * (anchor + 1) / Rest::kAnchors;
+        const std::size_t i = std::size_t{point} * kBlockLanes + lane;
+        return Float3{blockView.position.x[i], blockView.position.y()[i], blockView.position.z()[i]};
+    };
+    bool all = true;
+    for (std::uint32_t a = 0; a < Rest::kAnchors && all; ++a) {
+        const float* const at = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const Float3 away =
+                placeOf(a, lane) - Float3{at[lane], at[kBlockLanes + lane], at[2 * kBlockLanes + lane]};
+            all = all && dot(away, away) < reach * reach;
+        }
+    }
+    if (all) return true;
+    for (std::uint32_t a = 0; a < Rest::kAnchors; ++a) {
+        float* const at = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const Float3 place = placeOf(a, lane);
+            at[lane] = place.x;
+            at[kBlockLanes + lane] = place.y;
+            at[2 * kBlockLanes + lane] = place.z;
+        }
+    }
+    return false;
+}
+
+}  // namespace
 
 void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame) {
     BlockReport& report = blockReports_[block];
@@ -58,18 +91,24 @@ void Engine::Impl::restoreStrands(std::size_t block, const BlockView& blockView)
     report.fastest = 0.0f;
 }
 
-/// Counts how long the block has been at rest, and puts it to sleep.
+/// Counts how long the block has been at rest, and puts it to sleep. At rest is what is slow, and what
+/// trembles in its place, as hair does that lies on an edge of the skin: in five delays it goes no farther
+/// than slow hair may in one. That takes longer, since hair that swings turns round in its place, too.
 void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Frame& frame) {
+    constexpr float kLonger = 5.0f;
     Rest& rest = state_.rests[block];
     const BlockReport& report = blockReports_[block];
-    const float slow = settings_.sleepSpeed * frame.context.h;
-    if (report.rootsMoved || report.restored > 0 || !(report.fastest < slow * slow)) {
+    if (report.rootsMoved || report.restored > 0) {
         rest = {};
         return;
     }
-    rest.time += frame.input->dt;
-    rest.asleep = rest.time >= settings_.sleepDelay;
+    const float slow = settings_.sleepSpeed * frame.context.h, delay = settings_.sleepDelay;
+    rest.time = report.fastest < slow * slow ? rest.time + frame.input->dt : 0.0f;
+    rest.stayed = stays(blockView, settings_.sleepSpeed * delay, rest) ? rest.stayed + frame.input->dt : 0.0f;
+    const bool isSlow = rest.time > 0.0f && rest.time >= delay, trembles = rest.stayed > kLonger * delay;
+    rest.asleep = isSlow || trembles;
     if (!rest.asleep) return;
+    if (!isSlow) rest.time = rest.stayed;
     const std::size_t floats = std::size_t{blockView.points} * kBlockLanes;
     std::copy_n(blockView.position.x, floats, blockView.previous.x);
     std::copy_n(blockView.position.y(), floats, blockView.previous.y());

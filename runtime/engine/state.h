@@ -85,8 +85,13 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const
 
 /// How long a block has been at rest.
 struct Rest {
-    float time = 0.0f;  ///< seconds
+    /// Points of a strand that say whether it stays: at each quarter of them, the tip last.
+    static constexpr std::uint32_t kAnchors = 4;
+
+    float time = 0.0f;  ///< seconds for which all points were slow
     bool asleep = false;
+    float stayed = 0.0f;  ///< seconds for which no strand has left its anchors
+    std::array<float, kAnchors * 3 * kBlockLanes> anchors{};  ///< metres: x, y, z of each in all lanes
 
     friend bool operator==(const Rest&, const Rest&) = default;
 };

@@ -12,7 +12,7 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x53494c48;  // "HLIS"
-constexpr std::uint32_t kSavedVersion = 4;
+constexpr std::uint32_t kSavedVersion = 5;
 constexpr std::size_t kMostBodyBones = 255;
 
 struct Head {
@@ -88,6 +88,8 @@ void writeState(Writer& writer, const State& state) {
     for (const Rest& rest : state.rests) {
         writer.value(rest.time);
         writer.value(std::uint32_t{rest.asleep});
+        writer.value(rest.stayed);
+        writer.value(rest.anchors);
     }
     writer.all<Sphere>(state.spheres);
     writer.all<Capsule>(state.capsules);
@@ -115,8 +117,11 @@ State readState(Reader& reader, const State& like) {
     }
     if (reader.value<std::uint64_t>() != like.rests.size()) reader.good = false;
     for (std::size_t b = 0; b < like.rests.size() && reader.good; ++b) {
-        const auto time = reader.value<float>();
-        state.rests.push_back({time, reader.value<std::uint32_t>() != 0});
+        Rest& rest = state.rests.emplace_back();
+        rest.time = reader.value<float>();
+        rest.asleep = reader.value<std::uint32_t>() != 0;
+        rest.stayed = reader.value<float>();
+        rest.anchors = reader.value<decltype(rest.anchors)>();
     }
     const std::uint64_t spheres = reader.peekCount();
     if (spheres > kMaxGivenSpheres) reader.good = false;

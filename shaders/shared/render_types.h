@@ -128,8 +128,8 @@ struct LightConstants {
     float filterTexels;    // a side of what is averaged: 1, 3 or 5
     float layerCount;      // of opacity, or nodes of transmittance
     float layerGrowth;     // of their widths from one to the next; 0: early ends (opacity.hlsli)
-    float tapDistance;     // texels between those that are averaged (occlusion()); below 1 the share of what their mean lets
-                           // through in the light that passes, 0: each lets through for itself
+    // Texels between those that are averaged; below 1 the share of their mean in the light (occlusion()).
+    float tapDistance;
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.
@@ -237,8 +237,8 @@ struct RasterConstants {
 // Of a piece of hair in a texel: its depth as bits, how much of a fibre it is, and the number of what was
 // linked before it, from 1; 0: nothing.
 #define HAIRLOOM_LISTED_WORDS 3
-// Pieces of hair in a texel's list at most: one thread sorts them. A device ends what takes seconds, and Mesa's
-// llvmpipe leaves all loops of a thread after 65,535 turns together, of which these take 45,000.
+// Pieces of hair in a texel's list at most: one thread sorts them. A device ends what takes seconds, and
+// Mesa's llvmpipe leaves all loops of a thread after 65,535 turns together, of which these take 45,000.
 #define HAIRLOOM_LISTED_OF_TEXEL 2048
 #define HAIRLOOM_MAX_SHADOW_NODES 16
 

@@ -103,7 +103,9 @@ TEST(SampleTest, LongHairComesToRestAmongItsSpheresAfterStorms) {
     const auto certificate = certify(*groom, options);
     ASSERT_TRUE(certificate) << certificate.error().message();
     EXPECT_TRUE(certificate->failed.empty()) << inWords(*certificate);
-    EXPECT_GE(certificate->calm, 54u) << "most end with every point of eight strands below 5 mm/s";
+    EXPECT_GE(certificate->calm, 58u) << "nearly all end with every point of eight strands below 5 mm/s";
+    // In storm 28 a strand trembles on the edge of an ear, and sleeps there.
+    EXPECT_EQ(certificate->calmLate, 60u);
 }
 
 TEST(GroomSceneTest, PosingMovesHeadAndHairAndBackAgain) {

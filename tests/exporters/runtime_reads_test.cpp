@@ -16,7 +16,6 @@ namespace hairloom::test {
 namespace {
 
 using game::Frame;
-using game::Instance;
 using testing::HasSubstr;
 
 /// IEEE 754: sign, five bits of exponent, ten of the rest.

@@ -99,7 +99,10 @@ constexpr EffectRow kSpringRows[] = {
     {Effect::collision, decideCollision},
     {Effect::collisionRadius, decideCollisionRadius},
     {Effect::continuousCollision, springSweeps},
-    {Effect::hairHair, [](const PlanBuilder&) { return Decision{false, Reason::ofRodsAlone, 0.0f}; }},
+    {Effect::hairHair,
+     [](const PlanBuilder&) {
+         return Decision{false, Reason::ofRodsAlone, 0.0f};
+     }},
 };
 
 }  // namespace
