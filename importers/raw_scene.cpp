@@ -56,6 +56,9 @@ std::size_t facesWithoutPlace(const PolygonSoup& soup) {
 void scaleLengths(RawScene& scene, float factor) {
     if (factor == 1.0f) return;
     for (Vec3f& position : scene.soup.positions) position *= factor;
+    for (MorphTarget& target : scene.morphs) {
+        for (Vec3f& offset : target.offsets) offset *= factor;
+    }
     for (Bone& bone : scene.bones) {
         bone.rest.translation() *= factor;
         bone.inverseBind.translation() *= factor;
@@ -91,10 +94,11 @@ Status validate(const RawScene& scene) {
                                 soup.positions.size()));
     }
     if (auto status = validate(scene.skin, scene.bones.size()); !status) return status;
+    if (auto status = validate(scene.morphs, soup.positions.size()); !status) return status;
     const auto skeleton = Skeleton::make(scene.bones);
     if (!skeleton) return tl::unexpected(skeleton.error());
     for (const Clip& clip : scene.clips) {
-        if (auto status = validate(clip, *skeleton); !status) return status;
+        if (auto status = validate(clip, *skeleton, scene.morphs.size()); !status) return status;
     }
     return {};
 }

@@ -16,7 +16,8 @@ struct RawScene {
     PolygonSoup soup;
     std::vector<Bone> bones;
     std::vector<Clip> clips;
-    SkinWeights skin;  ///< per position of the soup, or empty
+    SkinWeights skin;                 ///< per position of the soup, or empty
+    std::vector<MorphTarget> morphs;  ///< of the soup's positions; those that clips move
     std::vector<std::string> warnings;
     float metresPerUnit = 0;  ///< as the file states it; 0 where it states none
     /// What the format takes for the unit where the file states none; 0 where it takes nothing.

@@ -33,9 +33,19 @@ constexpr auto kSceneMembers = [](auto& archive, auto& scene) {
             track(channel.rotation);
             track(channel.scale);
         });
+        archive.each(clip.morphs, [&](auto& channel) {
+            archive(channel.target);
+            track(channel.weight);
+        });
     });
     archive(scene.skin.bones);
     archive(scene.skin.weights);
+    archive.each(scene.morphs, [&](auto& target) {
+        archive(target.name);
+        archive(target.restWeight);
+        archive(target.vertices);
+        archive(target.offsets);
+    });
     archive.each(scene.warnings, archive);
     archive(scene.metresPerUnit);
     archive(scene.assumedMetresPerUnit);

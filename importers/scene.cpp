@@ -87,6 +87,7 @@ void cleanNames(RawScene& scene) {
     std::ranges::for_each(scene.warnings, clean);
     for (Bone& bone : scene.bones) clean(bone.name);
     for (Clip& clip : scene.clips) clean(clip.name);
+    for (MorphTarget& target : scene.morphs) clean(target.name);
 }
 
 /// Decides the unit, says so where a user should know, and turns all lengths into metres.
@@ -146,6 +147,7 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
     scene.skeleton = std::move(*skeleton);
     scene.clips = std::move(raw.clips);
     scene.skin = followVertices(raw.skin, scene.mesh.sourceVertices());
+    scene.morphs = morphsOf(raw.morphs, scene.mesh.sourceVertices());
     scene.warnings = std::move(raw.warnings);
     scene.format = name(format);
     return scene;

@@ -25,7 +25,8 @@ struct ImportedScene {
     ScalpMesh mesh;  ///< metres, Y up, at rest
     Skeleton skeleton;
     std::vector<Clip> clips;
-    SkinWeights skin;  ///< per vertex of `mesh`; empty when nothing moves it
+    SkinWeights skin;                 ///< per vertex of `mesh`; empty when no bone moves it
+    std::vector<MorphTarget> morphs;  ///< of `mesh`'s vertices; those that clips move
     std::vector<std::string> warnings;
     std::string format;       ///< "obj", "ply", "stl", "fbx", "gltf", "glb", "usd", "abc"
     float metresPerUnit = 1;  ///< that the file's lengths were multiplied with

@@ -11,6 +11,11 @@
 
 namespace hairloom {
 
+/// Vertices that all morph targets of a file together move, at most: 64 MiB. Targets beyond are left out.
+inline constexpr std::size_t kMostMorphed = std::size_t{1} << 22u;
+/// In a list of targets by their numbers in the file: one that is left out.
+inline constexpr std::uint32_t kNoMorph = 0xffffffffu;
+
 /// What stands for a track that the file does not have: the rest transform's part.
 void fillFromRest(Channel& channel, const Eigen::Affine3f& rest);
 

@@ -10,7 +10,7 @@
 
 namespace hairloom {
 Result<Actor> Actor::make(std::shared_ptr<const ScalpMesh> mesh, Skeleton skeleton, std::vector<Clip> clips,
-                          SkinWeights skin) {
+                          SkinWeights skin, std::vector<MorphTarget> morphs) {
     assert(mesh);
     if (skin.vertexCount() == 0) {
         skin.bones.resize(mesh->vertexCount());
@@ -21,14 +21,17 @@ Result<Actor> Actor::make(std::shared_ptr<const ScalpMesh> mesh, Skeleton skelet
                     fmt::format("the mesh has {}", mesh->vertexCount()));
     }
     if (auto status = validate(skin, skeleton.bones().size()); !status) return tl::unexpected(status.error());
+    if (auto status = validate(morphs, mesh->vertexCount()); !status) return tl::unexpected(status.error());
     for (const Clip& clip : clips) {
-        if (auto status = validate(clip, skeleton); !status) return tl::unexpected(status.error());
+        if (auto status = validate(clip, skeleton, morphs.size()); !status)
+            return tl::unexpected(status.error());
     }
     Actor actor;
     actor.mesh_ = std::move(mesh);
     actor.skeleton_ = std::move(skeleton);
     actor.clips_ = std::move(clips);
     actor.skin_ = std::move(skin);
+    actor.morphs_ = std::move(morphs);
     return actor;
 }
 
@@ -42,13 +45,19 @@ Result<std::uint32_t> Actor::findClip(std::string_view name) const {
         names.empty() ? "expected a character with clips, and it has none" : "expected one of " + names);
 }
 
-ActorPose Actor::posedBy(std::span<const Eigen::Affine3f> local) const {
+ActorPose Actor::posedBy(std::span<const Eigen::Affine3f> local, std::span<const float> weights) const {
     ActorPose pose;
+    if (!weights.empty()) pose.morphed_ss = morphedPositions(mesh_->positions(), morphs_, weights);
+    const bool isMorphed = !pose.morphed_ss.empty();
+    const std::vector<Vec3f> normals =
+        isMorphed ? morphedNormals(*mesh_, pose.morphed_ss) : std::vector<Vec3f>();
     pose.boneMatrices_ws = skinMatrices(skeleton_, local);
     pose.positions_ws.resize(mesh_->vertexCount());
     pose.normals_ws.resize(mesh_->vertexCount());
-    skinPositions(mesh_->positions(), skin_, pose.boneMatrices_ws, pose.positions_ws);
-    skinNormals(mesh_->normals(), skin_, pose.boneMatrices_ws, pose.normals_ws);
+    skinPositions(isMorphed ? std::span<const Vec3f>(pose.morphed_ss) : mesh_->positions(), skin_,
+                  pose.boneMatrices_ws, pose.positions_ws);
+    skinNormals(isMorphed ? std::span<const Vec3f>(normals) : mesh_->normals(), skin_, pose.boneMatrices_ws,
+                pose.normals_ws);
     if (placement_.matrix().isIdentity(0.0f)) return pose;
     for (Vec3f& position : pose.positions_ws) position = placement_ * position;
     for (Vec3f& normal : pose.normals_ws) normal = placement_.linear() * normal;
@@ -58,7 +67,8 @@ ActorPose Actor::posedBy(std::span<const Eigen::Affine3f> local) const {
 
 ActorPose Actor::poseAt(std::uint32_t clip, float time, Wrap wrap) const {
     assert(clip < clips_.size());
-    return posedBy(localMatrices(skeleton_, clips_[clip], time, wrap));
+    return posedBy(localMatrices(skeleton_, clips_[clip], time, wrap),
+                   morphWeights(morphs_, clips_[clip], time, wrap));
 }
 
 ActorPose Actor::poseBetween(const At& from, const At& to, float share) const {
@@ -66,11 +76,15 @@ ActorPose Actor::poseBetween(const At& from, const At& to, float share) const {
         assert(at.clip < clips_.size());
         return localMatrices(skeleton_, clips_[at.clip], at.time, at.wrap);
     };
-    return posedBy(blended(local(from), local(to), share));
+    const auto weights = [this](const At& at) {
+        return morphWeights(morphs_, clips_[at.clip], at.time, at.wrap);
+    };
+    return posedBy(blended(local(from), local(to), share),
+                   blended(morphs_, weights(from), weights(to), share));
 }
 
 ActorPose Actor::restPose() const {
-    return posedBy(localMatrices(skeleton_));
+    return posedBy(localMatrices(skeleton_), {});
 }
 
 std::vector<Eigen::Affine3f> Actor::sphereTransforms(std::span<const CollisionSphere> spheres,

@@ -16,6 +16,8 @@ namespace hairloom {
 
 /// Where a character stands at one time; metres, world space.
 struct ActorPose {
+    /// The mesh as morph targets have it before bones move it, per vertex; rest space. Empty: at rest.
+    std::vector<Vec3f> morphed_ss;
     std::vector<Vec3f> positions_ws;               ///< per vertex of the mesh
     std::vector<Vec3f> normals_ws;                 ///< per vertex, unit length
     std::vector<Eigen::Affine3f> boneMatrices_ws;  ///< per bone, from the mesh's rest space
@@ -23,15 +25,17 @@ struct ActorPose {
 
 class Actor {
   public:
-    /// Errors: weights that do not fit the mesh or the skeleton, clips that do not fit the skeleton. Empty
-    /// weights make a character that never moves.
+    /// Errors: weights or morph targets that do not fit the mesh, weights or clips that do not fit the
+    /// skeleton, clips that do not fit the targets. Empty weights make a character that no bone moves.
     static Result<Actor> make(std::shared_ptr<const ScalpMesh> mesh, Skeleton skeleton,
-                              std::vector<Clip> clips, SkinWeights skin);
+                              std::vector<Clip> clips, SkinWeights skin,
+                              std::vector<MorphTarget> morphs = {});
 
     const ScalpMesh& mesh() const { return *mesh_; }
     const Skeleton& skeleton() const { return skeleton_; }
     const std::vector<Clip>& clips() const { return clips_; }
     const SkinWeights& skin() const { return skin_; }
+    const std::vector<MorphTarget>& morphs() const { return morphs_; }
     /// Error: no clip of that name, listing those there are.
     Result<std::uint32_t> findClip(std::string_view name) const;
 
@@ -40,7 +44,7 @@ class Actor {
 
     /// Const and safe on any number of threads. `clip` is an index into clips().
     ActorPose poseAt(std::uint32_t clip, float time, Wrap wrap) const;
-    /// From the pose of `from` to that of `to`, bone by bone: `share` 0 … 1 of the way.
+    /// From the pose of `from` to that of `to`, bone by bone and weight by weight: `share` 0 … 1 of the way.
     struct At {
         std::uint32_t clip;
         float time;
@@ -61,12 +65,14 @@ class Actor {
                                                   const ActorPose& pose) const;
 
   private:
-    ActorPose posedBy(std::span<const Eigen::Affine3f> local) const;
+    /// `weights`: one a morph target, or none for those of rest.
+    ActorPose posedBy(std::span<const Eigen::Affine3f> local, std::span<const float> weights) const;
 
     std::shared_ptr<const ScalpMesh> mesh_;
     Skeleton skeleton_;
     std::vector<Clip> clips_;
     SkinWeights skin_;
+    std::vector<MorphTarget> morphs_;
     Eigen::Isometry3f placement_ = Eigen::Isometry3f::Identity();
 };
 

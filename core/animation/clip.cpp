@@ -13,6 +13,9 @@ namespace {
 bool finite(const Vec3f& value) {
     return value.allFinite();
 }
+bool finite(float value) {
+    return std::isfinite(value);
+}
 bool finite(const Quatf& value) {
     return value.coeffs().allFinite() && value.squaredNorm() > 0;
 }
@@ -61,7 +64,7 @@ float wrapped(float time, float duration, Wrap wrap) {
 
 }  // namespace
 
-Status validate(const Clip& clip, const Skeleton& skeleton) {
+Status validate(const Clip& clip, const Skeleton& skeleton, std::size_t morphTargets) {
     if (!std::isfinite(clip.duration) || clip.duration < 0) {
         return fail(fmt::format("clip '{}' lasts {} s", clip.name, clip.duration), "expected a duration ≥ 0");
     }
@@ -76,6 +79,14 @@ Status validate(const Clip& clip, const Skeleton& skeleton) {
         if (auto status = validateTrack(channel.rotation, where + ", rotation"); !status) return status;
         if (auto status = validateTrack(channel.scale, where + ", scale"); !status) return status;
     }
+    for (const MorphChannel& channel : clip.morphs) {
+        if (channel.target >= morphTargets)
+            return fail(fmt::format("clip '{}' moves morph target {}", clip.name, channel.target),
+                        fmt::format("there are {} targets", morphTargets));
+        const std::string where = fmt::format("clip '{}', morph target {}", clip.name, channel.target);
+        if (channel.weight.times.empty()) return fail(where + " has no keys", "expected at least one");
+        if (auto status = validateTrack(channel.weight, where); !status) return status;
+    }
     return {};
 }
 
@@ -89,6 +100,12 @@ Quatf sample(const Track<Quatf>& track, float time) {
     if (track.times.empty()) return Quatf::Identity();
     const Between at = locate(track.times, time);
     return track.values[at.first].slerp(at.fraction, track.values[at.second]).normalized();
+}
+
+float sample(const Track<float>& track, float time) {
+    if (track.times.empty()) return 0;
+    const Between at = locate(track.times, time);
+    return track.values[at.first] + at.fraction * (track.values[at.second] - track.values[at.first]);
 }
 
 std::vector<Eigen::Affine3f> localMatrices(const Skeleton& skeleton) {
@@ -108,6 +125,16 @@ std::vector<Eigen::Affine3f> localMatrices(const Skeleton& skeleton, const Clip&
                               Eigen::Scaling(sample(channel.scale, at, Vec3f::Ones()));
     }
     return local;
+}
+
+std::vector<float> morphWeights(std::span<const MorphTarget> targets, const Clip& clip, float time,
+                                Wrap wrap) {
+    std::vector<float> weights;
+    if (clip.morphs.empty()) return weights;
+    for (const MorphTarget& target : targets) weights.push_back(target.restWeight);
+    const float at = wrapped(time, clip.duration, wrap);
+    for (const MorphChannel& channel : clip.morphs) weights[channel.target] = sample(channel.weight, at);
+    return weights;
 }
 
 std::vector<Eigen::Affine3f> blended(std::span<const Eigen::Affine3f> from,

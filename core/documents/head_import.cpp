@@ -208,6 +208,7 @@ Result<ImportedHead> importHead(const std::string& path, const HeadImportOptions
         head.scene.skeleton = {};
         head.scene.clips.clear();
         head.scene.skin = {};
+        head.scene.morphs.clear();
     }
     auto part = partOfHead(head.scene.mesh, taken);
     if (!part) return tl::unexpected(inFile(part.error(), path));
@@ -215,6 +216,7 @@ Result<ImportedHead> importHead(const std::string& path, const HeadImportOptions
     if (!colliders) return tl::unexpected(inFile(colliders.error(), path));
     head.colliders = std::move(*colliders);
     head.scene.skin = weightsOf(head.scene.skin, part->sourceVertices());
+    head.scene.morphs = morphsOf(head.scene.morphs, part->sourceVertices());
     head.scene.mesh = std::move(*part);
     return head;
 }

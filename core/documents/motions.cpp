@@ -40,11 +40,12 @@ std::optional<std::vector<std::uint32_t>> verticesIn(const ScalpMesh& all, const
 
 /// The character on the groom's head where that has fewer groups than the file.
 void fitTo(const std::shared_ptr<const ScalpMesh>& head, std::shared_ptr<const ScalpMesh>& mesh,
-           SkinWeights& skin) {
+           SkinWeights& skin, std::vector<MorphTarget>& morphs) {
     if (!head || head->triangleCount() >= mesh->triangleCount()) return;
     const auto from = verticesIn(*mesh, *head);
     if (!from) return;
     skin = weightsOf(skin, *from);
+    morphs = morphsOf(morphs, *from);
     mesh = head;
 }
 
@@ -60,9 +61,9 @@ Result<std::shared_ptr<const Actor>> loadActor(const std::string& character, con
     auto scene = importSceneLoud(file, options);
     if (!scene) return tl::unexpected(scene.error());
     auto mesh = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
-    fitTo(groom.scalp, mesh, scene->skin);
+    fitTo(groom.scalp, mesh, scene->skin, scene->morphs);
     auto actor = Actor::make(std::move(mesh), std::move(scene->skeleton), std::move(scene->clips),
-                             std::move(scene->skin));
+                             std::move(scene->skin), std::move(scene->morphs));
     if (!actor) return tl::unexpected(inFile(actor.error(), file));
     return std::make_shared<const Actor>(std::move(*actor));
 }

@@ -60,7 +60,7 @@ Result<DocumentFiles::Opened> DocumentFiles::readHead(const std::string& path,
     if (!scene.warnings.empty()) notes += QString::fromStdString(scene.warnings.front());
     opened.note = notes.join("; ");
     auto actor = Actor::make(opened.groom.scalp, std::move(scene.skeleton), std::move(scene.clips),
-                             std::move(scene.skin));
+                             std::move(scene.skin), std::move(scene.morphs));
     if (actor) opened.actor = std::make_shared<const Actor>(std::move(*actor));
     return opened;
 }

@@ -76,7 +76,8 @@ Eigen::Affine3f axesToWorld(const aiMetadata& settings, std::vector<std::string>
 
 class Converter {
   public:
-    Converter(const aiScene& source, MeshFormat format) : source_(source), format_(format) {}
+    Converter(const aiScene& source, MeshFormat format)
+        : source_(source), format_(format), morphs_(source, scene_) {}
 
     RawScene convert() {
         Eigen::Affine3f toWorld = Eigen::Affine3f::Identity();
@@ -93,9 +94,10 @@ class Converter {
             anyUvs_ = anyUvs_ || source_.mMeshes[mesh]->HasTextureCoords(0);
             allNormals_ = allNormals_ && source_.mMeshes[mesh]->HasNormals();
         }
-        SkeletonBuilder skeleton(source_, toWorld, isGltf, scene_);
+        SkeletonBuilder skeleton(source_, toWorld, isGltf, morphs_, scene_);
         addNodes(skeleton);
-        skeleton.addClips();
+        skeleton.addClips(morphs_);
+        morphs_.finish();
         finish();
         return std::move(scene_);
     }
@@ -139,6 +141,7 @@ class Converter {
             const aiVector3D& p = mesh.mVertices[vertex];
             soup.positions.push_back(toWorld * Vec3f(p.x, p.y, p.z));
         }
+        morphs_.add(mesh, node, firstVertex, toWorld.linear());
         const std::uint32_t group = groupOf(mesh, node);
         const std::uint32_t material = hasMaterials() ? materialOf(mesh) : 0;
         const Mat3f normalMatrix = cofactors(toWorld.linear());
@@ -206,6 +209,7 @@ class Converter {
     const aiScene& source_;
     MeshFormat format_;
     RawScene scene_;
+    AssimpMorphs morphs_;
     std::unordered_map<std::string, std::uint32_t> groups_, materials_;
     bool anyUvs_ = false;
     bool allNormals_ = true;

@@ -49,7 +49,7 @@ Eigen::Affine3f toAffine(const aiMatrix4x4& m) {
 }
 
 SkeletonBuilder::SkeletonBuilder(const aiScene& source, const Eigen::Affine3f& toWorld,
-                                 bool ignoreSkinnedNodes, RawScene& scene)
+                                 bool ignoreSkinnedNodes, const AssimpMorphs& morphs, RawScene& scene)
     : source_(source), toWorld_(toWorld), ignoreSkinnedNodes_(ignoreSkinnedNodes), scene_(scene) {
     std::vector<const aiNode*> waiting{source.mRootNode};
     while (!waiting.empty()) {
@@ -73,6 +73,13 @@ SkeletonBuilder::SkeletonBuilder(const aiScene& source, const Eigen::Affine3f& t
         for (unsigned channel = 0; channel < source.mAnimations[animation]->mNumChannels; ++channel) {
             need(source.mAnimations[animation]->mChannels[channel]->mNodeName);
         }
+    }
+    for (const auto& [name, node] : nodeOfName_) {
+        const bool isSkinned =
+            std::any_of(node->mMeshes, node->mMeshes + node->mNumMeshes,
+                        [&](unsigned mesh) { return source.mMeshes[mesh]->mNumBones > 0; });
+        // What morphs is carried by something, so that it goes where the character is placed.
+        if (node->mNumMeshes > 0 && !isSkinned && morphs.isMoved(*node)) need(node->mName);
     }
     if (isNeeded(*source.mRootNode)) addBones(*source.mRootNode, kNoBone);
 }
@@ -186,7 +193,7 @@ void SkeletonBuilder::addWeights(const aiMesh& mesh, const aiNode& node, const E
     }
 }
 
-Clip SkeletonBuilder::convertClip(const aiAnimation& animation) const {
+Clip SkeletonBuilder::convertClip(const aiAnimation& animation, AssimpMorphs& morphs) const {
     const double rate = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : kDefaultTicksPerSecond;
     Clip clip;
     clip.name = animation.mName.C_Str();
@@ -209,14 +216,15 @@ Clip SkeletonBuilder::convertClip(const aiAnimation& animation) const {
         for (Quatf& value : channel.rotation.values) value.normalize();
         clip.channels.push_back(std::move(channel));
     }
+    morphs.addChannels(animation, rate, clip);
     return clip;
 }
 
-void SkeletonBuilder::addClips() {
+void SkeletonBuilder::addClips(AssimpMorphs& morphs) {
     for (unsigned index = 0; index < source_.mNumAnimations; ++index) {
-        Clip clip = convertClip(*source_.mAnimations[index]);
+        Clip clip = convertClip(*source_.mAnimations[index], morphs);
         if (clip.name.empty()) clip.name = fmt::format("clip {}", index + 1);
-        if (!clip.channels.empty()) scene_.clips.push_back(std::move(clip));
+        if (!clip.channels.empty() || !clip.morphs.empty()) scene_.clips.push_back(std::move(clip));
     }
 }
 

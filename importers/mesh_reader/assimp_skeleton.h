@@ -10,18 +10,20 @@
 #include <unordered_map>
 #include <vector>
 
+#include "importers/mesh_reader/assimp_morphs.h"
 #include "importers/raw_scene.h"
 
 namespace hairloom {
 
 Eigen::Affine3f toAffine(const aiMatrix4x4& matrix);
 
-/// The nodes that move something: joints of skins, nodes with a channel, and all nodes above these.
+/// The nodes that move something: joints of skins, nodes with a channel, meshes without a skin that morph,
+/// and all nodes above these.
 class SkeletonBuilder {
   public:
     /// Fills scene.bones. `toWorld` turns the file's axes so that Y is up.
     SkeletonBuilder(const aiScene& source, const Eigen::Affine3f& toWorld, bool ignoreSkinnedNodes,
-                    RawScene& scene);
+                    const AssimpMorphs& morphs, RawScene& scene);
 
     /// From the mesh's own space to the world at rest: through its node, or, where a skinned mesh's node is
     /// to be ignored as in glTF, where the topmost of its joints carries it.
@@ -30,7 +32,7 @@ class SkeletonBuilder {
     /// Appends skin weights for the vertices of one mesh of that node.
     void addWeights(const aiMesh& mesh, const aiNode& node, const Eigen::Affine3f& meshToWorld);
 
-    void addClips();
+    void addClips(AssimpMorphs& morphs);
 
     Eigen::Affine3f worldOf(const aiNode& node) const;
 
@@ -40,7 +42,7 @@ class SkeletonBuilder {
     std::uint32_t boneFor(std::uint32_t bone, const Eigen::Affine3f& inverseBind);
     /// The bone that moves a mesh without a skin, or kNoBone.
     std::uint32_t carrierOf(const aiNode& node);
-    Clip convertClip(const aiAnimation& animation) const;
+    Clip convertClip(const aiAnimation& animation, AssimpMorphs& morphs) const;
 
     const aiScene& source_;
     Eigen::Affine3f toWorld_;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -20,13 +21,14 @@ using Value = std::array<float, 4>;
 struct Keys {
     std::vector<float> times, values;
     std::size_t components = 3;
+    std::size_t stride = 3, first = 0;  ///< numbers of an element, and where the value is among them
     bool isCubic = false, isStep = false;
 
     /// 0: the tangent before the key, 1: the value, 2: the tangent behind it.
     Value at(std::size_t key, std::size_t part) const {
         Value value{};
         const std::size_t element = isCubic ? key * 3 + part : key;
-        for (std::size_t c = 0; c < components; ++c) value[c] = values[element * components + c];
+        for (std::size_t c = 0; c < components; ++c) value[c] = values[element * stride + first + c];
         return value;
     }
 };
@@ -81,6 +83,8 @@ void add(Track<T>& track, float time, const Value& value) {
         Quatf rotation(value[3], value[0], value[1], value[2]);
         if (rotation.norm() > 0) rotation.normalize();
         track.values.push_back(rotation);
+    } else if constexpr (std::is_same_v<T, float>) {
+        track.values.push_back(value[0]);
     } else {
         track.values.emplace_back(value[0], value[1], value[2]);
     }
@@ -105,18 +109,15 @@ Track<T> toTrack(const Keys& keys) {
     return track;
 }
 
-}  // namespace
-
-Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
-                const tinygltf::AnimationChannel& source, Channel& channel) {
-    const bool isRotation = source.target_path == "rotation";
-    if (!isRotation && source.target_path != "translation" && source.target_path != "scale") return {};
+/// Elements of `stride` numbers, which are `perValue` to a value of the accessor.
+Result<Keys> keysOf(const GltfFile& file, const tinygltf::Animation& animation,
+                    const tinygltf::AnimationChannel& source, std::size_t stride, std::uint32_t perValue) {
     if (source.sampler < 0 || static_cast<std::size_t>(source.sampler) >= animation.samplers.size())
         return fail(fmt::format("a channel refers to sampler {}", source.sampler),
                     fmt::format("there are {}", animation.samplers.size()));
     const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(source.sampler)];
     Keys keys;
-    keys.components = isRotation ? 4 : 3;
+    keys.stride = stride;
     keys.isCubic = sampler.interpolation == "CUBICSPLINE";
     keys.isStep = sampler.interpolation == "STEP";
     if (!keys.isCubic && !keys.isStep && !sampler.interpolation.empty() && sampler.interpolation != "LINEAR")
@@ -124,18 +125,47 @@ Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
                     "expected LINEAR, STEP or CUBICSPLINE");
     auto times = file.numbers(sampler.input, 1, "times of keys");
     if (!times) return tl::unexpected(times.error());
-    auto values = file.numbers(sampler.output, static_cast<std::uint32_t>(keys.components), "values of keys");
+    auto values = file.numbers(sampler.output, perValue, "values of keys");
     if (!values) return tl::unexpected(values.error());
-    const std::size_t wanted = times->size() * keys.components * (keys.isCubic ? 3 : 1);
+    const std::size_t wanted = times->size() * keys.stride * (keys.isCubic ? 3 : 1);
     if (values->size() != wanted)
         return fail(fmt::format("{} times of keys with {} numbers", times->size(), values->size()),
                     fmt::format("expected {}", wanted));
     keys.times = std::move(*times);
     keys.values = std::move(*values);
-    if (isRotation) channel.rotation = toTrack<Quatf>(keys);
-    if (source.target_path == "translation") channel.translation = toTrack<Vec3f>(keys);
-    if (source.target_path == "scale") channel.scale = toTrack<Vec3f>(keys);
+    return keys;
+}
+
+}  // namespace
+
+Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
+                const tinygltf::AnimationChannel& source, Channel& channel) {
+    const bool isRotation = source.target_path == "rotation";
+    if (!isRotation && source.target_path != "translation" && source.target_path != "scale") return {};
+    const std::uint32_t components = isRotation ? 4 : 3;
+    auto keys = keysOf(file, animation, source, components, components);
+    if (!keys) return tl::unexpected(keys.error());
+    keys->components = components;
+    if (isRotation) channel.rotation = toTrack<Quatf>(*keys);
+    if (source.target_path == "translation") channel.translation = toTrack<Vec3f>(*keys);
+    if (source.target_path == "scale") channel.scale = toTrack<Vec3f>(*keys);
     return {};
+}
+
+Result<std::vector<Track<float>>> readWeights(const GltfFile& file, const tinygltf::Animation& animation,
+                                              const tinygltf::AnimationChannel& source,
+                                              const std::vector<bool>& wanted) {
+    auto keys = keysOf(file, animation, source, wanted.size(), 1);
+    if (!keys) return tl::unexpected(keys.error());
+    if (!std::ranges::all_of(keys->values, [](float value) { return std::isfinite(value); }))
+        return fail("weights of keys are not finite");
+    keys->components = 1;
+    std::vector<Track<float>> tracks(wanted.size());
+    for (std::size_t target = 0; target < wanted.size(); ++target) {
+        keys->first = target;
+        if (wanted[target]) tracks[target] = toTrack<float>(*keys);
+    }
+    return tracks;
 }
 
 }  // namespace hairloom

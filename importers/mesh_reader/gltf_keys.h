@@ -12,8 +12,8 @@ struct AnimationChannel;
 
 namespace hairloom {
 
-/// Largest difference between a cubic spline and the straight pieces that it becomes: metres, factors, and
-/// components of a quaternion of unit length.
+/// Largest difference between a cubic spline and the straight pieces that it becomes: metres, factors,
+/// weights of morph targets, and components of a quaternion of unit length.
 inline constexpr float kCubicTolerance = 1e-5f;
 
 /// The track of `channel` that the source moves. A step becomes two keys that follow each other as closely as
@@ -22,5 +22,12 @@ inline constexpr float kCubicTolerance = 1e-5f;
 /// interpolation that is none.
 Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
                 const tinygltf::AnimationChannel& source, Channel& channel);
+
+/// The weights of morph targets that the source moves: a track for each of the node's targets, in their
+/// order, without keys where it is not wanted. Keys as in readKeys(). Errors: as there, numbers for fewer or
+/// more targets, numbers that are not finite.
+Result<std::vector<Track<float>>> readWeights(const GltfFile& file, const tinygltf::Animation& animation,
+                                              const tinygltf::AnimationChannel& source,
+                                              const std::vector<bool>& wanted);
 
 }  // namespace hairloom

@@ -139,8 +139,10 @@ void GltfNodes::addBones() {
     for (const tinygltf::Animation& animation : model.animations) {
         for (const tinygltf::AnimationChannel& channel : animation.channels) {
             const auto node = static_cast<std::size_t>(std::max(channel.target_node, 0));
-            if (channel.target_node >= 0 && node < isNeeded.size() && channel.target_path != "weights")
-                isNeeded[node] = true;
+            if (channel.target_node < 0 || node >= isNeeded.size()) continue;
+            // What morphs is carried by something, so that it goes where the character is placed.
+            const bool isCarrier = model.nodes[node].mesh >= 0 && model.nodes[node].skin < 0;
+            if (channel.target_path != "weights" || isCarrier) isNeeded[node] = true;
         }
     }
     const std::vector<std::uint32_t> order = inOrder();
@@ -260,7 +262,7 @@ Status GltfNodes::addWeights(std::uint32_t node, std::size_t count,
     return {};
 }
 
-Result<Clip> GltfNodes::convertClip(std::size_t number) const {
+Result<Clip> GltfNodes::convertClip(std::size_t number, GltfMorphs& morphs) const {
     const tinygltf::Animation& animation = file_->model().animations[number];
     Clip clip;
     clip.name = animation.name.empty() ? fmt::format("clip {}", number + 1) : animation.name;
@@ -283,22 +285,16 @@ Result<Clip> GltfNodes::convertClip(std::size_t number) const {
         clip.duration = std::max(clip.duration, lastTime(channel));
         fillFromRest(channel, localOf(file_->model().nodes[node]));
     }
+    morphs.addChannels(animation, clip);
     return clip;
 }
 
-Status GltfNodes::addClips() {
-    std::size_t morphs = 0;
-    const auto& animations = file_->model().animations;
-    for (std::size_t number = 0; number < animations.size(); ++number) {
-        auto clip = convertClip(number);
+Status GltfNodes::addClips(GltfMorphs& morphs) {
+    for (std::size_t number = 0; number < file_->model().animations.size(); ++number) {
+        auto clip = convertClip(number, morphs);
         if (!clip) return tl::unexpected(clip.error());
-        if (!clip->channels.empty()) scene_->clips.push_back(std::move(*clip));
-        morphs += std::ranges::any_of(animations[number].channels,
-                                      [](const auto& channel) { return channel.target_path == "weights"; });
+        if (!clip->channels.empty() || !clip->morphs.empty()) scene_->clips.push_back(std::move(*clip));
     }
-    if (morphs > 0)
-        scene_->warnings.push_back(
-            fmt::format("{} clips animate morph targets, which stay in their rest pose", morphs));
     return {};
 }
 

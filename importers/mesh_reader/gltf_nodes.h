@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "importers/mesh_reader/gltf_file.h"
+#include "importers/mesh_reader/gltf_morphs.h"
 #include "importers/raw_scene.h"
 
 namespace hairloom {
 
-/// The nodes that move something: joints of skins, nodes with a channel, and all nodes above these.
+/// The nodes that move something: joints of skins, nodes with a channel, meshes without a skin that morph,
+/// and all nodes above these.
 class GltfNodes {
   public:
     /// Fills scene.bones. Errors: nodes that are no forest, joints and channels without a node.
@@ -32,7 +34,7 @@ class GltfNodes {
                       std::vector<std::vector<std::pair<std::uint32_t, float>>> influences);
 
     /// Fills scene.clips. Errors: accessors that do not fit.
-    Status addClips();
+    Status addClips(GltfMorphs& morphs);
 
   private:
     struct Skin {
@@ -49,7 +51,7 @@ class GltfNodes {
     std::vector<std::uint32_t> inOrder() const;
     std::uint32_t boneFor(std::uint32_t bone, const Eigen::Affine3f& inverseBind);
     std::uint32_t carrierOf(std::uint32_t node);
-    Result<Clip> convertClip(std::size_t animation) const;
+    Result<Clip> convertClip(std::size_t animation, GltfMorphs& morphs) const;
 
     const GltfFile* file_;
     RawScene* scene_;

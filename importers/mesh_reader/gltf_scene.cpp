@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "importers/mesh_reader/gltf_draco.h"
+#include "importers/mesh_reader/gltf_morphs.h"
 #include "importers/mesh_reader/gltf_nodes.h"
 #include "importers/mesh_reader/tinygltf.h"
 #include "importers/scene_parts.h"
@@ -165,7 +166,7 @@ class PrimitiveReader {
 
 class Converter {
   public:
-    explicit Converter(const GltfFile& file) : file_(file), model_(file.model()) {}
+    explicit Converter(const GltfFile& file) : file_(file), model_(file.model()), morphs_(file, scene_) {}
 
     Result<RawScene> convert() {
         scene_.metresPerUnit = 1;
@@ -182,7 +183,8 @@ class Converter {
         for (const std::uint32_t node : nodes->shown()) {
             if (auto status = addNode(*nodes, node); !status) return tl::unexpected(status.error());
         }
-        if (auto status = nodes->addClips(); !status) return tl::unexpected(status.error());
+        morphs_.finish();
+        if (auto status = nodes->addClips(morphs_); !status) return tl::unexpected(status.error());
         finish();
         return std::move(scene_);
     }
@@ -212,11 +214,13 @@ class Converter {
                 ++leftOut_;
                 continue;
             }
-            auto primitive =
-                PrimitiveReader(file_, source, node.weights.empty() ? mesh.weights : node.weights).read();
+            auto primitive = PrimitiveReader(file_, source, restWeightsOf(model_, node)).read();
             if (!primitive) return tl::unexpected(primitive.error());
-            addTriangles(*primitive, nodes.meshToWorld(number),
-                         indexOf(nodes.nameOf(number), groups_, scene_.soup.groupNames), materialOf(source));
+            const Eigen::Affine3f toWorld = nodes.meshToWorld(number);
+            morphs_.add(number, source, static_cast<std::uint32_t>(scene_.soup.positions.size()),
+                        primitive->vertices, toWorld.linear());
+            addTriangles(*primitive, toWorld, indexOf(nodes.nameOf(number), groups_, scene_.soup.groupNames),
+                         materialOf(source));
             if (auto status = nodes.addWeights(number, primitive->vertices, std::move(primitive->influences));
                 !status)
                 return status;
@@ -265,7 +269,7 @@ class Converter {
         if (leftOut_ != 0)
             scene_.warnings.push_back(
                 fmt::format("{} primitives of points and lines were left out", leftOut_));
-        if (morphTargets_ != 0)
+        if (morphTargets_ != 0 && scene_.morphs.empty())
             scene_.warnings.push_back("morph targets keep the weights of their rest pose");
         if (badNormals_ != 0)
             scene_.warnings.push_back(
@@ -277,6 +281,7 @@ class Converter {
     const GltfFile& file_;
     const tinygltf::Model& model_;
     RawScene scene_;
+    GltfMorphs morphs_;
     std::unordered_map<std::string, std::uint32_t> groups_, materials_;
     bool anyUvs_ = false;
     bool allNormals_ = true;

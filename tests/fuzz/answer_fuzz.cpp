@@ -56,6 +56,8 @@ RawScene sampleScene() {
     channel.translation = {{0, 1}, {{0, 0, 0}, {0, 1, 0}}};
     channel.rotation = {{0}, {Quatf::Identity()}};
     scene.clips.front().channels = {channel};
+    scene.clips.front().morphs = {{0, {{0, 1}, {0, 1}}}};
+    scene.morphs = {{"brow", 0.5f, {0, 3}, {{0, 1, 0}, {0, 0, 1}}}};
     scene.skin.bones.assign(4, {0, 1, 0, 0});
     scene.skin.weights.assign(4, {0.5f, 0.5f, 0, 0});
     scene.warnings = {"a warning"};

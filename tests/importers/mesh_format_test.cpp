@@ -80,6 +80,8 @@ RawScene everything() {
     Channel channel;
     channel.rotation = {{0.0f, 1.0f}, {Quatf::Identity(), Quatf(0, 1, 0, 0)}};
     scene.clips = {{"nod", 1.0f, {channel}}};
+    scene.clips[0].morphs = {{1, {{0, 0.5f}, {0, 1}}}};
+    scene.morphs = {{"brow", 0, {1}, {{0, 0, 1}}}, {"jaw", 0.25f, {0, 2}, {{0, -1, 0}, {0, -2, 0}}}};
     scene.skin.bones = {{}, {}, {}};
     scene.skin.weights = {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}};
     scene.warnings = {"a warning"};
@@ -107,6 +109,13 @@ TEST(RawSceneStream, ReadsBackWhatWasWritten) {
     EXPECT_EQ(back->bones[0].rest.matrix(), scene.bones[0].rest.matrix());
     EXPECT_EQ(back->clips[0].channels[0].rotation.values[1].coeffs(), Quatf(0, 1, 0, 0).coeffs());
     EXPECT_EQ(back->skin.weights, scene.skin.weights);
+    ASSERT_EQ(back->morphs.size(), 2u);
+    EXPECT_EQ(back->morphs[1].name, "jaw");
+    EXPECT_EQ(back->morphs[1].restWeight, 0.25f);
+    EXPECT_EQ(back->morphs[1].vertices, scene.morphs[1].vertices);
+    EXPECT_EQ(back->morphs[1].offsets, scene.morphs[1].offsets);
+    EXPECT_EQ(back->clips[0].morphs[0].target, 1u);
+    EXPECT_EQ(back->clips[0].morphs[0].weight.values, scene.clips[0].morphs[0].weight.values);
     EXPECT_EQ(back->metresPerUnit, 0.01f);
     const auto error = readRawScene("x.fbx", answerOf(failIn("", Line{7}, "broken", "whole")), lacking);
     ASSERT_FALSE(error);
@@ -146,6 +155,13 @@ TEST(RawScene, ValidationRefusesWhatDoesNotFit) {
     EXPECT_THAT(problem([](RawScene& s) { s.bones[0].parent = 0; }), HasSubstr("form a cycle"));
     EXPECT_THAT(problem([](RawScene& s) { s.skin.bones[1][0] = 4; }), HasSubstr("vertex 1 follows bone 4"));
     EXPECT_THAT(problem([](RawScene& s) { s.clips[0].channels[0].bone = 1; }), HasSubstr("moves bone 1"));
+    EXPECT_THAT(problem([](RawScene& s) { s.clips[0].morphs[0].target = 2; }),
+                HasSubstr("moves morph target 2"));
+    EXPECT_THAT(problem([](RawScene& s) { s.morphs[1].vertices[0] = 3; }), HasSubstr("moves vertex 3"));
+    EXPECT_THAT(problem([](RawScene& s) { s.morphs[0].offsets.pop_back(); }),
+                HasSubstr("0 offsets for 1 vertices"));
+    EXPECT_THAT(problem([](RawScene& s) { s.morphs[0].offsets[0].x() = std::nanf(""); }),
+                HasSubstr("not finite"));
 }
 
 TEST(RawScene, ScalingLengthsLeavesAnglesAlone) {
@@ -154,6 +170,8 @@ TEST(RawScene, ScalingLengthsLeavesAnglesAlone) {
     EXPECT_EQ(scene.soup.positions[1], Vec3f(2, 0, 0));
     EXPECT_EQ(scene.bones[0].rest.translation(), Vec3f(2, 4, 6));
     EXPECT_TRUE(scene.bones[0].rest.linear().isIdentity());
+    EXPECT_EQ(scene.morphs[1].offsets[1], Vec3f(0, -4, 0));
+    EXPECT_EQ(scene.morphs[1].restWeight, 0.25f);
 }
 
 }  // namespace
