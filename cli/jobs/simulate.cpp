@@ -25,6 +25,7 @@
 #include "core/groom/file/project_file.h"
 #include "core/live/drawn_depth.h"
 #include "core/simulation/frame_record.h"
+#include "core/simulation/morph_meter.h"
 #include "core/simulation/rest_positions.h"
 #include "core/simulation/sag.h"
 #include "core/simulation/simulation.h"
@@ -112,6 +113,21 @@ void reportDepth(const std::optional<DrawnDepthMeter>& meter, Report& report) {
     report["authored_depth_mm"] = 1e3 * depth.authored;
     report["share_inside_mesh"] = depth.shareInside;
     if (depth.deepestFrame) report["deepest_frame"] = *depth.deepestFrame;
+}
+
+/// Null where no morph target moves a root.
+Report morphReport(const MorphMeter::Found& found, const Groom& groom, std::vector<std::string>& notes) {
+    constexpr float kTold = 0.0005f;  // metres
+    if (found.farthest == 0) return {};
+    if (groom.body && std::max(found.out, found.in) > kTold)
+        notes.push_back(
+            fmt::format("roots follow the skin that morph targets move, and the skin collider follows bones "
+                        "alone. At roots, the skin gets {:.1f} mm out of the collider and {:.1f} mm into it",
+                        1e3 * found.out, 1e3 * found.in));
+    return {{"farthest_mm", 1e3 * found.farthest},
+            {"out_mm", 1e3 * found.out},
+            {"in_mm", 1e3 * found.in},
+            {"collider", groom.body ? Report("bones") : Report()}};
 }
 
 Report sagReport(const Groom& groom, const Sag& sag) {
@@ -271,6 +287,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (!options.against.empty()) comparison.emplace(options.against);
 
     std::optional<DrawnDepthMeter> depth = depthMeter(*groom);
+    MorphMeter morphs(*groom);
     const std::uint64_t frames = span.frames + 2 * options.handles;
     const std::uint64_t settling = loop ? options.loopRepeats * span.frames : 0;  // at most
     Progress progress("simulating", pace.preRoll + settling + frames);
@@ -319,6 +336,7 @@ Result<Report> simulate(const SimulateOptions& options) {
             if (auto compared = comparison->add(*groom, frame - 1, shown); !compared)
                 return tl::unexpected(compared.error());
         }
+        morphs.add(pose);
         if (frame == frames) last.assign(shown.begin(), shown.end());
         progress.done(pace.preRoll + settling + frame);
     }
@@ -339,6 +357,7 @@ Result<Report> simulate(const SimulateOptions& options) {
         report["record"] = options.record;
     }
     reportDepth(depth, report);
+    report["morph_targets"] = morphReport(morphs.found(), *groom, notes);
     if (loop) {
         report["loop"] = loopReport(loop->report());
         report["loop"]["repeats"] = repeats;

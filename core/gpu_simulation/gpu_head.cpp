@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 
+#include "core/animation/morphs.h"
 #include "core/gpu_simulation/compiled_kernel.h"
 #include "core/gpu_simulation/strand_batch.h"
 #include "runtime/shaders/live_types.h"
@@ -25,13 +26,27 @@ Vec3f cornerOf(const Box3f& box, int corner) {
     return box.corner(static_cast<Box3f::CornerType>(corner));
 }
 
-/// Where the box of a bone's share may be: linear blends lie between what the bones alone would make.
-Box3f movedBox(std::span<const Box3f> boxes, std::span<const Eigen::Affine3f> bones) {
+Box3f grown(const Box3f& box, float by) {
+    const Vec3f around = Vec3f::Constant(by);
+    return box.isEmpty() ? box : Box3f(box.min() - around, box.max() + around);
+}
+
+/// Where the box of a bone's share may be, of points that are so far from it at most: linear blends lie
+/// between what the bones alone would make.
+Box3f movedBox(std::span<const Box3f> boxes, std::span<const Eigen::Affine3f> bones, float off) {
     Box3f all;
     for (std::size_t b = 0; b < boxes.size(); ++b) {
-        for (int i = 0; i < 8 && !boxes[b].isEmpty(); ++i) all.extend(bones[b] * cornerOf(boxes[b], i));
+        const Box3f box = grown(boxes[b], off);
+        for (int i = 0; i < 8 && !box.isEmpty(); ++i) all.extend(bones[b] * cornerOf(box, i));
     }
     return all;
+}
+
+/// The farthest that a way can become when bones turn and scale it.
+float stretchOf(std::span<const Eigen::Affine3f> bones) {
+    float most = 0;
+    for (const Eigen::Affine3f& bone : bones) most = std::max(most, bone.linear().norm());
+    return most;
 }
 
 runtime::Float3 toFloat3(const Vec3f& v) {
@@ -59,9 +74,13 @@ void GpuHead::measure(const HeadAtRest& head) {
             rootBoxes_[0].extend(head.roots[r]);
             continue;
         }
-        for (const std::uint32_t vertex : head.mesh->triangles()[head.bindings[r].triangle])
+        for (const std::uint32_t vertex : head.mesh->triangles()[head.bindings[r].triangle]) {
             addVertex(rootBoxes_, vertex, head.mesh->positions()[vertex]);
+            rootVertices_.push_back(vertex);
+        }
     }
+    std::ranges::sort(rootVertices_);
+    rootVertices_.erase(std::unique(rootVertices_.begin(), rootVertices_.end()), rootVertices_.end());
 }
 
 Status GpuHead::makeBuffers(gpu::Device& device, const HeadAtRest& head) {
@@ -125,6 +144,8 @@ Status GpuHead::makeBuffers(gpu::Device& device, const HeadAtRest& head) {
 Result<GpuHead> GpuHead::make(gpu::Device& device, const HeadAtRest& head) {
     assert(!head.roots.empty());
     GpuHead made;
+    made.device_ = &device;
+    made.mesh_ = head.mesh;
     made.rootCount_ = static_cast<std::uint32_t>(head.roots.size());
     made.vertexCount_ = head.mesh ? static_cast<std::uint32_t>(head.mesh->vertexCount()) : 0;
     made.skinned_ = head.mesh != nullptr && head.skin != nullptr;
@@ -145,33 +166,76 @@ Result<GpuHead> GpuHead::make(gpu::Device& device, const HeadAtRest& head) {
     return made;
 }
 
-/// Boxes and the longest way of a root; whether any bone has moved.
-void GpuHead::follow(std::span<const Eigen::Affine3f> bones_ws) {
+/// Keeps what morph targets make of the vertices.
+GpuHead::Morphing GpuHead::morph(std::span<const Vec3f> morphed_ss) {
+    Morphing morphing;
+    if (morphed_ss_.empty() && morphed_ss.empty()) return morphing;
+    const auto rest = mesh_->positions();
+    const auto was = morphed_ss_.empty() ? rest : std::span<const Vec3f>(morphed_ss_);
+    const auto is = morphed_ss.empty() ? rest : morphed_ss;
+    assert(is.size() == rest.size());
+    morphing.changes = !std::ranges::equal(was, is);
+    for (const std::uint32_t v : rootVertices_) {
+        morphing.wayOfRoots = std::max(morphing.wayOfRoots, (is[v] - was[v]).norm());
+        morphing.rootsOff =
+            std::max(morphing.rootsOff, std::max((is[v] - rest[v]).norm(), (was[v] - rest[v]).norm()));
+    }
+    for (std::uint32_t v = 0; v < vertexCount_; ++v)
+        morphing.verticesOff = std::max(morphing.verticesOff, (is[v] - rest[v]).norm());
+    morphed_ss_.assign(morphed_ss.begin(), morphed_ss.end());
+    return morphing;
+}
+
+/// Boxes and the longest way of a root; whether any bone or vertex has moved.
+void GpuHead::follow(std::span<const Eigen::Affine3f> bones_ws, std::span<const Vec3f> morphed_ss) {
     std::vector<Eigen::Affine3f> now(boneCount_ + 1, Eigen::Affine3f::Identity());
     for (std::size_t b = 0; b < boneCount_; ++b) now[b] = bones_ws[std::min(b, bones_ws.size() - 1)];
     const bool isFirst = bones_.empty();
-    roots_.moved = isFirst;
+    const Morphing morphing = morph(morphed_ss);
+    roots_.moved = isFirst || morphing.changes;
     roots_.motion = 0.0f;
     for (std::size_t b = 0; b < now.size() && !isFirst; ++b) {
         if (now[b].matrix() == bones_[b].matrix()) continue;
         roots_.moved = true;
         // The way of a point is a convex function of its position, so that none goes farther than a corner.
-        for (int i = 0; i < 8 && !rootBoxes_[b].isEmpty(); ++i) {
-            const Vec3f corner = cornerOf(rootBoxes_[b], i);
+        const Box3f box = grown(rootBoxes_[b], morphing.rootsOff);
+        for (int i = 0; i < 8 && !box.isEmpty(); ++i) {
+            const Vec3f corner = cornerOf(box, i);
             roots_.motion = std::max(roots_.motion, (now[b] * corner - bones_[b] * corner).norm());
         }
     }
+    if (!isFirst && morphing.wayOfRoots > 0) roots_.motion += morphing.wayOfRoots * stretchOf(now);
     bones_ = std::move(now);
-    bounds_ = movedBox(vertexBoxes_, bones_);
-    const Box3f roots = movedBox(rootBoxes_, bones_);
+    bounds_ = movedBox(vertexBoxes_, bones_, morphing.verticesOff);
+    const Box3f roots = movedBox(rootBoxes_, bones_, morphing.rootsOff);
     roots_.min_ws = toFloat3(roots.min());
     roots_.max_ws = toFloat3(roots.max());
 }
 
-void GpuHead::record(gpu::CommandList& list, std::span<const Eigen::Affine3f> bones_ws) {
+/// Vertices and normals before bones move them, where morph targets do.
+Status GpuHead::upload(gpu::CommandList& list) {
+    if (morphed_ss_.empty()) return {};
+    const std::size_t floats = std::size_t{vertexCount_} * 3;
+    for (auto& [buffer, name] :
+         {std::pair{&morphed_, "morphed head"}, {&morphedNormals_, "morphed normals"}}) {
+        if (*buffer != nullptr) continue;
+        auto made = makeBuffer<float>(*device_, name, Usage::ShaderRead, floats, {});
+        if (!made) return tl::unexpected(made.error());
+        *buffer = std::move(*made);
+    }
+    list.updateBuffer(morphed_, 0, std::as_bytes(std::span(morphed_ss_)));
+    const std::vector<Vec3f> normals = morphedNormals(*mesh_, morphed_ss_);
+    list.updateBuffer(morphedNormals_, 0, std::as_bytes(std::span(normals)));
+    return {};
+}
+
+Status GpuHead::record(gpu::CommandList& list, std::span<const Eigen::Affine3f> bones_ws,
+                       std::span<const Vec3f> morphed_ss) {
     assert(!bones_ws.empty());
-    follow(bones_ws);
-    if (!roots_.moved) return;
+    follow(bones_ws, morphed_ss);
+    if (!roots_.moved) return {};
+    if (auto uploaded = upload(list); !uploaded) return uploaded;
+    const bool isMorphed = !morphed_ss_.empty();
     std::vector<shaders::float4> rows;
     for (const Eigen::Affine3f& bone : bones_) {
         for (int r = 0; r < 3; ++r) {
@@ -188,9 +252,12 @@ void GpuHead::record(gpu::CommandList& list, std::span<const Eigen::Affine3f> bo
     list.beginPass(pass);
     if (vertexCount_ > 0) {
         list.setPipeline(vertexKernel_);
-        const std::array<Binding, 7> bound{Binding::read(0, bonesBuffer_), Binding::read(1, rest_),
-                                           Binding::read(2, restNormals_), Binding::read(3, boneOf_),
-                                           Binding::read(4, weights_),     Binding::write(0, positions_),
+        const std::array<Binding, 7> bound{Binding::read(0, bonesBuffer_),
+                                           Binding::read(1, isMorphed ? morphed_ : rest_),
+                                           Binding::read(2, isMorphed ? morphedNormals_ : restNormals_),
+                                           Binding::read(3, boneOf_),
+                                           Binding::read(4, weights_),
+                                           Binding::write(0, positions_),
                                            Binding::write(1, normals_)};
         list.bind(bound);
         list.setConstants(0, gpu::bytesOf(constants));
@@ -208,6 +275,7 @@ void GpuHead::record(gpu::CommandList& list, std::span<const Eigen::Affine3f> bo
     list.setConstants(0, gpu::bytesOf(constants));
     list.dispatch(groupsOf(rootCount_));
     list.endPass();
+    return {};
 }
 
 }  // namespace hairloom::gpu_simulation

@@ -92,7 +92,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
     std::vector<Vec3f> roots;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) roots.push_back(groom.strand(s).front());
     const std::vector<SurfacePoint> bindings = groom.rootBindings();
-    auto head = gpu_simulation::GpuHead::make(device, {groom.scalp.get(), skin, roots, bindings});
+    auto head = gpu_simulation::GpuHead::make(device, {groom.scalp, skin, roots, bindings});
     if (!head) return tl::unexpected(head.error());
     DeviceHair hair(device, std::move(*input), std::move(*engine), std::move(*head));
     hair.skinned_ = skin != nullptr && groom.scalp != nullptr;
@@ -115,6 +115,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
     if (auto made = hair.makeBuffers(); !made) return tl::unexpected(made.error());
     hair.placedSpheres_ = spheresAt(hair.spheres_, start);
     hair.bones_ = hair.bonesOf(start);
+    hair.morphed_ss_ = start.morphed_ss;
     hair.forgetSeen(start);
     return hair;
 }
@@ -173,16 +174,36 @@ std::vector<runtime::BonePose> DeviceHair::bonesOf(const HeadPose& pose) const {
     return bones;
 }
 
+/// Where vertices are before bones move them at the end of a piece; they go straight as bones do.
+std::vector<Vec3f> DeviceHair::morphedAt(std::size_t piece, const HeadPose& end,
+                                         std::span<const HeadPose> within) const {
+    const auto aim = pieces_.aimOf(piece);
+    const auto posed = [&](std::size_t pose) -> const std::vector<Vec3f>& {
+        return pose <= within.size() ? within[pose - 1].morphed_ss : end.morphed_ss;
+    };
+    const std::vector<Vec3f>& to = posed(aim.to);
+    const std::vector<Vec3f>& from = aim.from > 0 ? posed(aim.from) : morphed_ss_;
+    if (aim.share >= 1.0f || (from.empty() && to.empty())) return to;
+    const auto rest = input_.groom().scalp->positions();
+    const auto a = from.empty() ? rest : std::span<const Vec3f>(from);
+    const auto b = to.empty() ? rest : std::span<const Vec3f>(to);
+    std::vector<Vec3f> mixed(rest.size());
+    for (std::size_t v = 0; v < mixed.size(); ++v) mixed[v] = a[v] + aim.share * (b[v] - a[v]);
+    return mixed;
+}
+
 gpu::BufferPtr DeviceHair::drawnPoints() const {
     return follow_ ? follow_->positions_ws() : engine_.positions_ws();
 }
 
-Status DeviceHair::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues) {
+Status DeviceHair::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues,
+                                  std::vector<Vec3f> morphed_ss) {
     bones_.assign(input.body_ws.begin(), input.body_ws.end());
     placedSpheres_.assign(input.spheres.begin(), input.spheres.end());
     std::vector<Eigen::Affine3f> bones(bones_.size());
     std::ranges::transform(bones_, bones.begin(), toAffine);
-    head_.record(list, bones);
+    morphed_ss_ = std::move(morphed_ss);
+    if (auto recorded = head_.record(list, bones, morphed_ss_); !recorded) return recorded;
     return engine_.record(list, input, head_.roots(), continues);
 }
 
@@ -214,7 +235,8 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
     pieces_.take(input, runtime::substepsIn(engine_.settings(), dt));
     for (std::size_t i = 0; i < pieces_.count(); ++i) {
         const runtime::FrameInput part = pieces_.at(i, {{}, placedSpheres_, bones_});
-        if (auto recorded = recordStraight(list, part, i > 0); !recorded) return recorded;
+        auto morphed = morphedAt(i, pose, within);
+        if (auto recorded = recordStraight(list, part, i > 0, std::move(morphed)); !recorded) return recorded;
     }
     if (follow_) {
         gpu_simulation::FollowInput guides{engine_.positions_ws(), engine_.velocities_ws(), {}};

@@ -81,7 +81,10 @@ class DeviceHair {
     Status makeBuffers();
     std::vector<runtime::BonePose> bonesOf(const HeadPose& pose) const;
     /// What goes straight on through a frame, or a part of one.
-    Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues);
+    Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues,
+                          std::vector<Vec3f> morphed_ss);
+    std::vector<Vec3f> morphedAt(std::size_t piece, const HeadPose& end,
+                                 std::span<const HeadPose> within) const;
     void recordMeasures(gpu::CommandList& list, std::span<const runtime::Sphere> spheres);
     void recordExtent(gpu::CommandList& list);
     void recordReadback(gpu::CommandList& list);
@@ -101,6 +104,7 @@ class DeviceHair {
     std::vector<CollisionSphere> spheres_;
     runtime::FramePieces pieces_;
     std::vector<runtime::BonePose> bones_;        ///< of the last frame
+    std::vector<Vec3f> morphed_ss_;               ///< likewise; empty: no morph target moves the head
     std::vector<runtime::Sphere> placedSpheres_;  ///< likewise
     bool skinned_ = false, readsPositions_ = false;
     float reach_ = 0;  ///< metres that hair gets away from its root

@@ -57,6 +57,7 @@ HeadPose CharacterPoser::pose(ActorPose posed) const {
         pose.sphereCentres_ws.push_back(transforms[s] * spheres_[s].centre);
     pose.body_ws = actor_->sphereTransforms(bodyBones_, posed);
     pose.scalpPositions_ws = std::move(posed.positions_ws);
+    pose.morphed_ss = std::move(posed.morphed_ss);
     pose.bones_ws = std::move(posed.boneMatrices_ws);
     return pose;
 }

@@ -106,7 +106,8 @@ bool isSamePlace(const HeadPose& a, const HeadPose& b) {
     };
     return a.origin_ws == b.origin_ws && a.head_ws.matrix() == b.head_ws.matrix() &&
            a.sphereCentres_ws == b.sphereCentres_ws && sameBones(a.bones_ws, b.bones_ws) &&
-           sameBones(a.body_ws, b.body_ws) && a.scalpPositions_ws == b.scalpPositions_ws;
+           sameBones(a.body_ws, b.body_ws) && a.scalpPositions_ws == b.scalpPositions_ws &&
+           a.morphed_ss == b.morphed_ss;
 }
 
 bool staysThrough(const HeadPose& before, std::span<const HeadPose> within, const HeadPose& end) {

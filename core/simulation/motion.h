@@ -22,6 +22,9 @@ struct HeadPose {
     Eigen::Isometry3f head_ws = Eigen::Isometry3f::Identity();  ///< carries what no scalp vertex carries
     std::vector<Vec3f>
         scalpPositions_ws;  ///< per vertex of the groom's scalp; empty: the scalp moves with head_ws
+    /// Per vertex of the scalp, as morph targets have it before bones move it; the head's rest space. Empty:
+    /// at rest. What moves the scalp by bones alone reads it; scalpPositions_ws have it already.
+    std::vector<Vec3f> morphed_ss;
     std::vector<Vec3f> sphereCentres_ws;  ///< per collision sphere; empty: spheres move with head_ws
     /// Of the scalp's skin, from the head at rest to the world; empty where no skeleton moves it.
     std::vector<Eigen::Affine3f> bones_ws;

@@ -11,8 +11,8 @@ std::size_t bytesOf(const HairPose& pose) {
     constexpr std::size_t kNodes = 160;  // of both maps, and what counts references
     const auto of = [](const auto& values) { return values.size() * sizeof(values[0]); };
     return of(pose.positions_ws) + of(pose.velocities_ws) + of(pose.head.scalpPositions_ws) +
-           of(pose.head.bones_ws) + of(pose.head.body_ws) + of(pose.head.sphereCentres_ws) + sizeof(pose) +
-           kNodes;
+           of(pose.head.morphed_ss) + of(pose.head.bones_ws) + of(pose.head.body_ws) +
+           of(pose.head.sphereCentres_ws) + sizeof(pose) + kNodes;
 }
 
 }  // namespace

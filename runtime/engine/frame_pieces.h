@@ -30,20 +30,21 @@ class FramePieces {
     bool startsWithin(std::size_t piece) const;
     /// The frame of a piece. Its views live until the next call.
     FrameInput at(std::size_t piece, const PieceStart& start);
-    /// Memory for pieces that begin between poses.
-    void reserve(std::size_t roots, std::size_t bones);
-    std::size_t bytes() const;
-
-  private:
     /// What a piece goes towards: numbered poses, 0 the start of the frame and the last its end, and the
     /// share of the way there from `from`, or from the start of the piece where there is none.
     struct Aim {
         std::size_t from = 0, to = 0;
         float share = 1.0f;
     };
+    /// For what follows the poses beside the frame's own views.
+    Aim aimOf(std::size_t piece) const;
+    /// Memory for pieces that begin between poses.
+    void reserve(std::size_t roots, std::size_t bones);
+    std::size_t bytes() const;
+
+  private:
     std::uint32_t beginOf(std::size_t piece) const { return piece > 0 ? ends_[piece - 1] : 0; }
     std::size_t spans() const { return input_->inner.size() + 1; }
-    Aim aimOf(std::size_t piece) const;
     /// The same for what the poses inside do not have.
     Aim straightAimOf(std::size_t piece) const;
 

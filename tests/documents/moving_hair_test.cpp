@@ -7,6 +7,7 @@
 #include "core/render/flip.h"
 #include "core/render/picture.h"
 #include "tests/documents/small_head.h"
+#include "tests/documents/talking_groom.h"
 #include "tests/gpu/test_backend.h"
 
 namespace hairloom {
@@ -111,6 +112,34 @@ TEST_F(MovingHairTest, BothEnginesMoveAndDrawAlike) {
         const auto rest = stageOf(groom, *motion, EngineKind::cpu);
         EXPECT_GT(render::flipDifference(before, pictureOf(*rest))->mean, 0.03);
     }
+}
+
+TEST_F(MovingHairTest, BothEnginesKeepRootsOnAFaceThatTalks) {
+    test::TalkingGroom face(40);
+    face.groom.interpolation.followPerGuide = 0;
+    face.groom.material.rootRadius = 0.0008f;
+    const auto talk = makeMotion("clip:talk", {}, face.groom);
+    ASSERT_TRUE(talk) << talk.error().message();
+    const auto cpu = stageOf(face.groom, **talk, EngineKind::cpu);
+    const auto gpu = stageOf(face.groom, **talk, EngineKind::gpu);
+    for (const int frames : {15, 12, 18}) {
+        play(*cpu, frames);
+        play(*gpu, frames);
+        const auto here = positionsOf(*cpu), there = positionsOf(*gpu);
+        const test::FaceAt now = test::talkAt(cpu->hair.time());
+        EXPECT_LT(face.offSkin(here, now), 2e-5) << cpu->hair.time();
+        EXPECT_LT(face.offSkin(there, now), 2e-5) << gpu->hair.time();
+        EXPECT_LT(farthest(here, there), 1e-4f);
+    }
+    // The head is drawn where its morph targets have it, in the same light.
+    const auto flip = render::flipDifference(pictureOf(*cpu), pictureOf(*gpu));
+    ASSERT_TRUE(flip);
+    EXPECT_LT(flip->mean, 0.02);
+    const auto nod = makeMotion("clip:nod_and_turn", {}, face.groom);
+    ASSERT_TRUE(nod);
+    const auto still = stageOf(face.groom, **nod, EngineKind::gpu);
+    play(*still, 1);
+    EXPECT_GT(render::flipDifference(pictureOf(*gpu), pictureOf(*still))->mean, 0.005);
 }
 
 TEST_F(MovingHairTest, BothEnginesDrawLayersAsDenseAndInTheColoursTheyHave) {
