@@ -287,6 +287,33 @@ Status walk(const Work& work, Level& level) {
     return {};
 }
 
+/// Beside all strands from where it takes over on, at the distances of all levels, so that levels can be
+/// compared with each other.
+Status compareAlike(const Work& work, Level& level) {
+    constexpr std::size_t kDirections = 4;
+    std::vector<std::size_t> which;
+    for (std::size_t v = 0; v < work.views.size();
+         v += std::max<std::size_t>(1, work.views.size() / kDirections))
+        which.push_back(v);
+    const bool isAll = level.spec.kind == LevelKind::strands && level.spec.amount >= 1;
+    for (auto at = work.strands.rbegin(); at != work.strands.rend(); ++at) {
+        const auto& [px, strands] = *at;
+        if (px > level.spec.headPx) continue;  // nobody sees it from there
+        if (isAll) {
+            level.flips.push_back({px, 0});
+            continue;
+        }
+        work.tick();
+        const bool isOwn = px == level.spec.headPx;
+        const auto shots = isOwn ? chosen(level.shots, which) : shoot(work, level, which, px).shots;
+        if (cancelled(work.cancel)) return stopped();
+        const auto off = difference(chosen(strands, which), shots);
+        if (!off) return tl::unexpected(off.error());
+        level.flips.push_back({px, off->flip});
+    }
+    return {};
+}
+
 /// Beside all strands, from all directions, but for how it moves.
 Status measure(const Work& work, Level& level) {
     work.tick();
@@ -337,6 +364,9 @@ Status finish(const Work& work, Level& level) {
     }
     if (work.options.walk) {
         if (auto status = walk(work, level); !status) return status;
+    }
+    if (work.options.alike) {
+        if (auto status = compareAlike(work, level); !status) return status;
     }
     return count(work, level);
 }

@@ -41,6 +41,7 @@ struct ChainOptions {
     float springHz = kSpringHz;     ///< updates a second of the engine that springs are fitted for
     double strandsMoveMs = 0;       ///< what moving all hairs takes, as the caller measured it
     bool walk = false;              ///< Level::lights are measured, too
+    bool alike = false;             ///< Level::flips are measured, too
     bool measure = false;           ///< Level::measures, from as many directions again between those
     std::vector<HeldCard> held;     ///< cards shaped by hand
 };
@@ -62,6 +63,12 @@ struct LightAt {
     double light = 1;
 };
 
+/// FLIP to all strands, where a head is so many pixels high, by some of the directions.
+struct FlipAt {
+    std::uint32_t headPx = 0;
+    double flip = 0;
+};
+
 using LevelContent = std::variant<Hair, Cards, Shell>;
 
 struct Level {
@@ -74,6 +81,7 @@ struct Level {
     Difference difference;
     std::optional<Measures> measures;  ///< nothing unless asked for
     std::vector<LightAt> lights;  ///< from where it takes over to where the next does; empty unless asked for
+    std::vector<FlipAt> flips;    ///< where it and each later level takes over, the nearest first; likewise
     double drawMs = 0;            ///< by the judge, on one core, mean of all directions
     double moveMs = 0;            ///< on all cores
     LevelContent content;

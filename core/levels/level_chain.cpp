@@ -78,7 +78,7 @@ Result<cards::Chain> makeLevels(const Groom& groom, const LevelBudget& budget, L
     options.held = heldCards(groom.cardEdits, roots).cards;
     if (made == LevelsMade::all) {
         options.strandsMoveMs = followMilliseconds(groom);
-        options.walk = options.measure = true;
+        options.walk = options.measure = options.alike = true;
     }
     auto chain = cards::makeChain(*hair, *specs, options, progress, cancel);
     if (!chain) return chain;

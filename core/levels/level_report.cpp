@@ -75,18 +75,20 @@ std::vector<bool> failing(const Chain& chain) {
     return fails;
 }
 
-/// Error against cost: the same diagram as that of accuracy.
+/// Levels are compared at equal distances.
 Plot plotOf(const Chain& chain) {
     Plot plot;
-    plot.title = "Quality loss against draw time";
-    plot.x = {.title = "triangles", .scale = Scale::Logarithmic};
-    plot.y = {.title = "FLIP vs. all strands, at the level's distance", .scale = Scale::Linear, .low = 0};
-    Series series{.name = "levels", .line = LineStyle::Dashed};
+    plot.title = "Visible difference at equal distances";
+    plot.x = {.title = "distance, m", .scale = Scale::Logarithmic};
+    plot.y = {.title = "FLIP vs. all strands", .scale = Scale::Linear, .low = 0};
     for (const Level& level : chain.levels) {
-        series.points.push_back(
-            {.x = static_cast<double>(level.triangles), .y = level.difference.flip, .label = level.name});
+        Series series{.name = level.name, .line = LineStyle::Solid};
+        for (const cards::FlipAt& at : level.flips)
+            series.points.push_back({.x = cards::distanceOf(at.headPx), .y = at.flip});
+        if (series.points.empty())
+            series.points.push_back({.x = cards::distanceOf(level.spec.headPx), .y = level.difference.flip});
+        plot.series.push_back(std::move(series));
     }
-    plot.series.push_back(std::move(series));
     return plot;
 }
 
@@ -198,15 +200,26 @@ nlohmann::ordered_json toJson(const Level& level) {
     nlohmann::ordered_json lights = nlohmann::ordered_json::array();
     for (const cards::LightAt& at : level.lights)
         lights.push_back({{"distance_m", cards::distanceOf(at.headPx)}, {"light", at.light}});
-    nlohmann::ordered_json json{
-        {"name", level.name},           {"kind", cards::nameOf(level.spec.kind)},
-        {"hairs", level.hairs},         {"cards", level.cards()},
-        {"triangles", level.triangles}, {"bytes", level.bytes},
-        {"head_px", level.spec.headPx}, {"distance_m", cards::distanceOf(level.spec.headPx)},
-        {"coverage", off.coverage},     {"flip", off.flip},
-        {"flip_worst", off.worstFlip},  {"light", off.light},
-        {"lights", std::move(lights)},  {"silhouette_px", off.silhouettePx},
-        {"ms_draw", level.drawMs},      {"ms_move", level.moveMs}};
+    nlohmann::ordered_json flips = nlohmann::ordered_json::array();
+    for (const cards::FlipAt& at : level.flips)
+        flips.push_back({{"distance_m", cards::distanceOf(at.headPx)}, {"flip", at.flip}});
+    nlohmann::ordered_json json{{"name", level.name},
+                                {"kind", cards::nameOf(level.spec.kind)},
+                                {"hairs", level.hairs},
+                                {"cards", level.cards()},
+                                {"triangles", level.triangles},
+                                {"bytes", level.bytes},
+                                {"head_px", level.spec.headPx},
+                                {"distance_m", cards::distanceOf(level.spec.headPx)},
+                                {"coverage", off.coverage},
+                                {"flip", off.flip},
+                                {"flip_worst", off.worstFlip},
+                                {"flips", std::move(flips)},
+                                {"light", off.light},
+                                {"lights", std::move(lights)},
+                                {"silhouette_px", off.silhouettePx},
+                                {"ms_draw", level.drawMs},
+                                {"ms_move", level.moveMs}};
     if (!level.measures) return json;
     for (const cards::Measure& measure : cards::allMeasures()) {
         const std::optional<double>& value = *level.measures.*measure.value;

@@ -7,6 +7,8 @@
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace hairloom::editor {
 namespace {
@@ -157,12 +159,26 @@ void AccuracyPlot::drawAxes(QPainter& painter) const {
     painter.drawText(QRectF(0, height() - line, width() - 10, line), Qt::AlignRight, axis(cost_, costUnit_));
 }
 
+QColor AccuracyPlot::colourOf(const AccuracyPoint& point) const {
+    if (point.onFront) return palette().color(QPalette::Highlight);
+    return palette().color(lines_ ? QPalette::PlaceholderText : QPalette::Mid);
+}
+
+void AccuracyPlot::drawLine(QPainter& painter, std::vector<std::size_t> points) const {
+    std::ranges::sort(points, {}, [this](std::size_t p) { return points_[p].milliseconds; });
+    QPainterPath path;
+    for (const std::size_t p : points)
+        p == points.front() ? path.moveTo(place_px(p)) : path.lineTo(place_px(p));
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(colourOf(points_[points.front()]));
+    painter.drawPath(path);
+}
+
 void AccuracyPlot::drawPoint(QPainter& painter, std::size_t p) const {
     const AccuracyPoint& point = points_[p];
     const QPointF at = place_px(p);
     const QRectF plot = plot_px();
-    const QColor front = palette().color(QPalette::Highlight), others = palette().color(QPalette::Mid);
-    const QColor colour = point.onFront ? front : others;
+    const QColor colour = colourOf(point);
     painter.setPen(colour);
     if (point.q3 > point.q1 && point.q1 > 0) {
         const auto across = [&](double ms) {
@@ -187,16 +203,12 @@ void AccuracyPlot::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.setRenderHint(QPainter::Antialiasing);
     drawAxes(painter);
-    std::vector<std::size_t> front;
+    std::map<std::pair<bool, std::size_t>, std::vector<std::size_t>> lines;  // what stands out comes last
     for (std::size_t p = 0; p < points_.size(); ++p) {
-        if (points_[p].onFront && !points_[p].diverged) front.push_back(p);
+        const AccuracyPoint& point = points_[p];
+        if (!point.diverged && (lines_ || point.onFront)) lines[{point.onFront, point.line}].push_back(p);
     }
-    std::ranges::sort(front, {}, [this](std::size_t p) { return points_[p].milliseconds; });
-    QPainterPath path;
-    for (const std::size_t p : front)
-        p == front.front() ? path.moveTo(place_px(p)) : path.lineTo(place_px(p));
-    painter.setPen(palette().color(QPalette::Highlight));
-    painter.drawPath(path);
+    for (const auto& [line, points] : lines) drawLine(painter, points);
     for (std::size_t p = 0; p < points_.size(); ++p) drawPoint(painter, p);
 }
 

@@ -18,7 +18,9 @@
 namespace hairloom::editor {
 namespace {
 
-enum Column { kName, kCards, kTriangles, kBytes, kFrom, kCoverage, kLight, kFlip, kStep, kFails, kColumns };
+enum Column { kName, kTriangles, kFrom, kFlip, kColumns };
+
+constexpr int kFails = Qt::UserRole;  ///< of a row: labels of the measures that it fails
 
 /// All that a level is made from.
 constexpr editing::Part kShown = editing::kHairParts | editing::kScalpParts | editing::Part::Spheres |
@@ -62,6 +64,7 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
       viewport_(parts.viewport),
       words_(new QLabel),
       table_(new QTreeWidget),
+      detail_(new QLabel),
       plot_(new AccuracyPlot) {
     setObjectName("levels");
     auto* layout = new QVBoxLayout(this);
@@ -73,19 +76,29 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     layout->addWidget(makeBudget());
     table_->setObjectName("levelsTable");
     table_->setRootIsDecorated(false);
-    table_->setHeaderLabels({"Level", "Cards", "Tri.", "MB", "m", "Cov.", "Light", "FLIP", "Step", "Fails"});
+    table_->setHeaderLabels({"Level", "Triangles", "From", "FLIP"});
     table_->setToolTip(
-        "Cards, triangles and memory of each level, and the distance at which it starts. Compared with "
-        "all strands at that distance: coverage and light as a share, and FLIP, the visible difference, "
-        "where 0 is none. Step: the largest change in light, in %, when the level replaces the one before "
-        "it or on the way to the next. Fails: the measures that a level in red fails, from 24 directions and "
-        "while the head nods. Point at it for their values. Click a level to see it");
-    table_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+        "Triangles of each level, the distance in metres at which it starts, and FLIP, the visible "
+        "difference "
+        "from all strands at that distance, where 0 is none. A level in red fails a measure: point at it. "
+        "Click a level to see it, and more about it below");
+    table_->header()->setStretchLastSection(false);
     table_->header()->setMinimumSectionSize(24);
-    table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
+    table_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    table_->header()->setSectionResizeMode(kName, QHeaderView::Stretch);
+    table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     layout->addWidget(table_);
+    detail_->setObjectName("levelsDetail");
+    detail_->setWordWrap(true);
+    detail_->setToolTip(
+        "Coverage and light: as a share of those of all strands. Step: the largest change in light when the "
+        "level replaces the one before it or on the way to the next. Fails: measures from 24 directions and "
+        "while the head nods");
+    layout->addWidget(detail_);
     plot_->setObjectName("levelsPlot");
-    plot_->setAxes("triangles", {}, "FLIP vs. all strands");
+    plot_->setAccessibleName("FLIP of each level by distance");
+    plot_->setAxes("distance", "m", "FLIP vs. all strands");
+    plot_->setLines(true);
     layout->addWidget(plot_);
     layout->addWidget(makeLook(parts));
     connect(table_, &QTreeWidget::currentItemChanged, this, &LevelsPanel::showChosen);
@@ -296,27 +309,23 @@ void LevelsPanel::fillTable() {
     int firstCards = -1;
     for (const MadeLevel& made : made_->levels) {
         const cards::Level& level = made.level;
-        const cards::Difference& off = level.difference;
         auto* item = new QTreeWidgetItem(table_);
         item->setText(kName, QString::fromStdString(level.name));
-        if (level.cards() > 0) item->setText(kCards, QString::number(level.cards()));
         item->setText(kTriangles, QStringLiteral("%L1").arg(level.triangles));
-        item->setText(kBytes, QString::number(static_cast<double>(level.bytes) / 1e6, 'f', 2));
         item->setText(kFrom, QString::number(cards::distanceOf(level.spec.headPx), 'f', 2));
-        item->setText(kCoverage, QString::number(off.coverage, 'f', 3));
-        item->setText(kLight, QString::number(off.light, 'f', 3));
-        item->setText(kFlip, QString::number(off.flip, 'f', 3));
-        item->setText(kStep, QString::number(100 * made.lightStep, 'f', 1));
-        for (int c = kCards; c < kFails; ++c) item->setTextAlignment(c, Qt::AlignRight | Qt::AlignVCenter);
+        item->setText(kFlip, QString::number(level.difference.flip, 'f', 3));
+        for (int c = kTriangles; c < kColumns; ++c)
+            item->setTextAlignment(c, Qt::AlignRight | Qt::AlignVCenter);
         if (const QString fails = failedMeasures(level); !fails.isEmpty()) {
-            item->setText(kFails, fails);
-            item->setToolTip(kFails, QString::fromStdString(failureWords(level)));
+            item->setData(kName, kFails, fails);
+            for (int c = kName; c < kColumns; ++c)
+                item->setToolTip(c, QString::fromStdString(failureWords(level)));
         }
         if (firstCards < 0 && level.cards() > 0) firstCards = table_->topLevelItemCount() - 1;
     }
     colourTable();
     const int rows = table_->topLevelItemCount();
-    table_->setFixedHeight(table_->header()->sizeHint().height() + rows * table_->sizeHintForRow(0) + 22);
+    table_->setFixedHeight(table_->header()->sizeHint().height() + rows * table_->sizeHintForRow(0) + 4);
     table_->setCurrentItem(
         table_->topLevelItem(before >= 0 && before < rows ? before : std::max(0, firstCards)));
 }
@@ -325,7 +334,7 @@ void LevelsPanel::colourTable() {
     const QColor red = themeColours(preferences_.theme()).bad;
     for (int row = 0; row < table_->topLevelItemCount(); ++row) {
         QTreeWidgetItem* const item = table_->topLevelItem(row);
-        if (item->text(kFails).isEmpty()) continue;
+        if (item->data(kName, kFails).isNull()) continue;
         for (int c = kName; c < kColumns; ++c) item->setForeground(c, red);
     }
 }
@@ -333,15 +342,36 @@ void LevelsPanel::colourTable() {
 void LevelsPanel::showPlot() {
     std::vector<AccuracyPoint> points;
     plotted_.clear();
+    const int chosen = table_->indexOfTopLevelItem(table_->currentItem());
+    std::optional<std::size_t> start;
     for (int row = 0; row < table_->topLevelItemCount(); ++row) {
-        const MadeLevel& made = made_->levels[static_cast<std::size_t>(row)];
-        const auto triangles = static_cast<double>(made.level.triangles);
-        if (!(made.level.difference.flip > 0)) continue;  // all strands themselves
-        plotted_.push_back(row);
-        points.push_back({triangles, triangles, triangles, made.level.difference.flip, false, true,
-                          QString::fromStdString(made.level.name)});
+        const cards::Level& level = made_->levels[static_cast<std::size_t>(row)].level;
+        for (const cards::FlipAt& at : level.flips) {
+            if (!(at.flip > 0)) continue;  // all strands themselves
+            const double metres = cards::distanceOf(at.headPx);
+            if (row == chosen && at.headPx == level.spec.headPx) start = points.size();
+            plotted_.push_back(row);
+            points.push_back({metres, metres, metres, at.flip, false, row == chosen,
+                              QString::fromStdString(level.name), static_cast<std::size_t>(row)});
+        }
     }
     plot_->setPoints(std::move(points), {});
+    plot_->setMarked(start, {});
+}
+
+void LevelsPanel::showDetail(const MadeLevel& made) {
+    const cards::Level& level = made.level;
+    const cards::Difference& off = level.difference;
+    QString text = QString::fromStdString(level.name) + ": ";
+    if (level.cards() > 0) text += QString("%L1 cards, ").arg(level.cards());
+    text += QString("%1 MB, coverage %2, light %3, step %4 %.")
+                .arg(static_cast<double>(level.bytes) / 1e6, 0, 'f', 2)
+                .arg(off.coverage, 0, 'f', 3)
+                .arg(off.light, 0, 'f', 3)
+                .arg(100 * made.lightStep, 0, 'f', 1);
+    if (const std::string fails = failureWords(level); !fails.empty())
+        text += ' ' + QString("Fails: %1.").arg(QString::fromStdString(fails));
+    detail_->setText(text);
 }
 
 void LevelsPanel::showChosen() {
@@ -350,6 +380,8 @@ void LevelsPanel::showChosen() {
     card_->setLevel(hasCards ? made : nullptr, made_ ? &made_->roots_ws : nullptr);
     showCards();
     if (made == nullptr) return view_->show({}, {});
+    showDetail(*made);
+    showPlot();
     const std::size_t side = std::min(made->shots.size(), static_cast<std::size_t>(direction_->value())) - 1;
     view_->show(made->strands[side], made->shots[side]);
     viewWords_->setText(QString("Strands | %1, as seen from %2 m: a head of %3 pixels in 1080 lines")
@@ -385,9 +417,9 @@ void LevelsPanel::refresh() {
     make_->setEnabled(document_.groom().strandCount() > 0);
     const bool any = made_.has_value();
     export_->setEnabled(any);
-    for (QWidget* part : {static_cast<QWidget*>(table_), static_cast<QWidget*>(plot_), look_})
+    for (QWidget* part :
+         {static_cast<QWidget*>(table_), static_cast<QWidget*>(detail_), static_cast<QWidget*>(plot_), look_})
         part->setVisible(any);
-    if (any) showPlot();
     showChosen();
 }
 

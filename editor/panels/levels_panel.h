@@ -43,6 +43,7 @@ class LevelsPanel : public QWidget {
     void fillTable();
     void colourTable();
     void showPlot();
+    void showDetail(const MadeLevel& made);
     void showChosen();
     void showTexture();
     void showCards();
@@ -57,6 +58,7 @@ class LevelsPanel : public QWidget {
     QLabel* words_;
     QPushButton *make_ = nullptr, *export_ = nullptr;
     QTreeWidget* table_;
+    QLabel* detail_;
     AccuracyPlot* plot_;
     QWidget* look_ = nullptr;
     LevelView* view_ = nullptr;

@@ -45,6 +45,14 @@ TEST_F(LodJob, MakesAndMeasuresAChainThatIsTheSameForAnyThreads) {
                                 "holes",         "fails"})
             EXPECT_TRUE(level.contains(key)) << key;
         EXPECT_GT(level["triangles"], 0);
+        // At the distances of all levels, from its own on.
+        const std::size_t count = level["distance_m"] == report["levels"][0]["distance_m"] ? 2 : 1;
+        ASSERT_EQ(level["flips"].size(), count);
+        for (std::size_t i = 0; i < count; ++i)
+            EXPECT_EQ(level["flips"][i]["distance_m"],
+                      report["levels"][0]["flips"][2 - count + i]["distance_m"]);
+        EXPECT_EQ(level["flips"][0]["distance_m"], level["distance_m"]);
+        EXPECT_GT(level["flips"][0]["flip"], 0);
         EXPECT_NEAR(level["coverage"].get<double>(), 1, 0.05) << "thin hair as well";
     }
     // What one sees who walks away from level to level: of 400 hairs more than the 2 % of full heads.

@@ -3,14 +3,19 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFile>
+#include <QHeaderView>
 #include <QLabel>
 #include <QPushButton>
+#include <QScrollBar>
 #include <QTreeWidget>
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "core/documents/hair_import.h"
 #include "core/editing/selection_commands.h"
 #include "core/operations/script.h"
+#include "editor/panels/accuracy_plot.h"
 #include "editor/panels/levels_panel.h"
 #include "editor/style/theme.h"
 #include "tests/editor/window_fixture.h"
@@ -34,6 +39,7 @@ class LevelsTest : public WindowTest {
     QString words() { return find<QLabel>("levelsWords")->text(); }
     QTreeWidget& table() { return *find<QTreeWidget>("levelsTable"); }
     QString cell(int row, int column) { return table().topLevelItem(row)->text(column); }
+    QString failsOf(int row) { return table().topLevelItem(row)->data(0, Qt::UserRole).toString(); }
     LevelView& view() { return *find<LevelView>("levelView"); }
     void make() {
         find<QPushButton>("levelsMake")->click();
@@ -58,6 +64,26 @@ class LevelsTest : public WindowTest {
             }
         }
         return false;
+    }
+    /// The chart has every level but all strands at the distances of all, and a click on a point chooses it.
+    void expectEqualDistances() {
+        auto& plot = *find<AccuracyPlot>("levelsPlot");
+        std::map<std::size_t, std::set<double>> distances;
+        for (const AccuracyPoint& point : plot.points()) distances[point.line].insert(point.milliseconds);
+        ASSERT_EQ(distances.size(), 5u);
+        const std::set<double>& all = distances.begin()->second;
+        EXPECT_GE(all.size(), 4u);
+        for (const auto& [level, metres] : distances) {
+            const std::set<double> further(all.lower_bound(*metres.begin()), all.end());
+            EXPECT_EQ(metres, further) << level << ": from where it starts on, as the others";
+        }
+        table().setCurrentItem(table().topLevelItem(0));
+        const std::size_t last = plot.points().size() - 1;
+        QTest::mouseClick(&plot, Qt::LeftButton, {}, plot.place_px(last).toPoint());
+        EXPECT_GT(table().indexOfTopLevelItem(table().currentItem()), 0);
+        EXPECT_FALSE(table().horizontalScrollBar()->isVisible());
+        EXPECT_LE(table().header()->length(), table().viewport()->width()) << "no column is cut";
+        table().setCurrentItem(table().topLevelItem(2));
     }
     bool isPicked() { return find<QPushButton>("cardDelete")->isEnabled(); }
     void changeColour() {
@@ -97,10 +123,11 @@ TEST_F(LevelsTest, AChainIsMadeLookedAtMadeAnewAndExported) {
     ASSERT_TRUE(table().isVisibleTo(window.get())) << window->statusLine().message().toStdString();
     ASSERT_EQ(table().topLevelItemCount(), 6);
     EXPECT_EQ(cell(0, 0), "strands-100");
-    EXPECT_EQ(cell(0, 7), "0.000");
+    EXPECT_EQ(cell(0, 3), "0.000");
     EXPECT_EQ(cell(2, 0), "cards-24");
-    EXPECT_EQ(cell(2, 4), "5.80") << "from where the budget says";
-    EXPECT_GT(cell(2, 7).toDouble(), 0);
+    expectEqualDistances();
+    EXPECT_EQ(cell(2, 2), "5.80") << "from where the budget says";
+    EXPECT_GT(cell(2, 3).toDouble(), 0);
     // The nearest cards are shown first; their textures and the sides they are seen from can be leafed
     // through.
     EXPECT_EQ(table().indexOfTopLevelItem(table().currentItem()), 2);
@@ -145,14 +172,18 @@ TEST_F(LevelsTest, WhatFailsAMeasureIsRedAndSaysWhich) {
     make();
     ASSERT_GT(table().topLevelItemCount(), 2) << window->statusLine().message().toStdString();
     const QColor red = themeColours(parts().preferences.theme()).bad;
-    EXPECT_EQ(cell(0, 9), "") << "strands beside themselves";
+    EXPECT_EQ(failsOf(0), "") << "strands beside themselves";
     int failed = 0;
     for (int row = 0; row < table().topLevelItemCount(); ++row) {
         const QTreeWidgetItem& item = *table().topLevelItem(row);
-        const bool fails = !item.text(9).isEmpty();
+        const bool fails = !failsOf(row).isEmpty();
         failed += fails ? 1 : 0;
         EXPECT_EQ(item.foreground(0).color() == red, fails) << row;
-        EXPECT_TRUE(item.toolTip(9).contains(item.text(9).section(',', 0, 0))) << row;
+        EXPECT_TRUE(item.toolTip(0).contains(failsOf(row).section(',', 0, 0))) << row;
+        table().setCurrentItem(table().topLevelItem(row));
+        const QString detail = find<QLabel>("levelsDetail")->text();
+        EXPECT_TRUE(detail.startsWith(item.text(0))) << detail.toStdString();
+        EXPECT_EQ(detail.contains("Fails"), fails) << detail.toStdString();
     }
     EXPECT_GT(failed, 0) << "4 cards before the skin";
 }
