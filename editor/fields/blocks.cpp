@@ -5,6 +5,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -55,17 +56,32 @@ QVBoxLayout* exportLayout(QDialog& dialog, QFormLayout& rows) {
 namespace {
 
 /// Two columns of them leave room for the view in a window of 856 pixels.
-constexpr int kNarrowPanel_px = 252;
+constexpr int kNarrowPanel_px = 259;
+
+/// Scrolls up and down alone: it is as wide as what lies in it needs at the time, but in narrow windows.
+class PanelArea : public QScrollArea {
+  public:
+    explicit PanelArea(QWidget* content) {
+        setWidgetResizable(true);
+        setFrameShape(QFrame::NoFrame);
+        setWidget(content);
+    }
+    QSize minimumSizeHint() const override {
+        const int needed = widget()->minimumSizeHint().width() + verticalScrollBar()->sizeHint().width();
+        return {std::min(needed, kNarrowPanel_px), QScrollArea::minimumSizeHint().height()};
+    }
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (watched == widget() && event->type() == QEvent::LayoutRequest) updateGeometry();
+        return QScrollArea::eventFilter(watched, event);
+    }
+};
 
 }  // namespace
 
 QWidget* scrolled(QWidget* content) {
-    auto* area = new QScrollArea;
-    area->setWidgetResizable(true);
-    area->setFrameShape(QFrame::NoFrame);
-    area->setWidget(content);
-    area->setMinimumWidth(std::min(content->minimumSizeHint().width() + 12, kNarrowPanel_px));
-    return area;
+    return new PanelArea(content);
 }
 
 QWidget* stacked(std::initializer_list<QWidget*> rows) {
@@ -89,20 +105,29 @@ QWidget* column(std::initializer_list<QWidget*> rows) {
 
 namespace {
 
+constexpr int kAside_px = 12, kAbove_px = 8;  // that a cell has besides its words
+
+int wrappedHeight(const QTreeWidget& table, const QString& words, int width_px) {
+    const QRect room(0, 0, std::max(20, width_px - kAside_px), 4000);
+    return table.fontMetrics().boundingRect(room, Qt::TextWordWrap, words).height();
+}
+
+void setHeight(QTreeWidgetItem& item, int height_px) {
+    const QSize hint(0, height_px + kAbove_px);
+    if (item.sizeHint(0).height() != hint.height()) item.setSizeHint(0, hint);
+}
+
 void wrapNow(QTreeWidget& table) {
-    constexpr int kAside = 12, kAbove = 8;  // pixels that a cell has besides its words
     for (int row = 0; row < table.topLevelItemCount(); ++row) {
         QTreeWidgetItem* const item = table.topLevelItem(row);
         int height = table.fontMetrics().height();
-        for (int c = 0; c < table.columnCount(); ++c) {
-            const int width = std::max(20, table.columnWidth(c) - kAside);
-            height =
-                std::max(height, table.fontMetrics()
-                                     .boundingRect(QRect(0, 0, width, 4000), Qt::TextWordWrap, item->text(c))
-                                     .height());
-        }
-        const QSize hint(0, height + kAbove);
-        if (item->sizeHint(0).height() != hint.height()) item->setSizeHint(0, hint);
+        for (int c = 0; c < table.columnCount(); ++c)
+            height = std::max(height, wrappedHeight(table, item->text(c), table.columnWidth(c)));
+        setHeight(*item, height);
+        // What is below it has the whole width.
+        const int width = table.header()->length() - table.indentation();
+        for (int child = 0; child < item->childCount(); ++child)
+            setHeight(*item->child(child), wrappedHeight(table, item->child(child)->text(0), width));
     }
 }
 

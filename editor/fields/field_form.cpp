@@ -32,7 +32,7 @@ FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::
     grid_->setHorizontalSpacing(6);
     grid_->setVerticalSpacing(5);
     grid_->setColumnStretch(1, 3);
-    grid_->setColumnMinimumWidth(0, 80);
+    grid_->setColumnMinimumWidth(0, 70);
     grid_->setColumnStretch(0, 2);
     for (const Field& field : fields_) {
         shown_ = shown_ | field.part;

@@ -49,6 +49,11 @@ FormulaEdit::FormulaEdit(QtDocument& document, std::size_t index, const QString&
     layout->addWidget(edit_);
     layout->addWidget(problem_);
     connect(edit_, &QLineEdit::editingFinished, this, &FormulaEdit::store);
+    connect(edit_, &QLineEdit::returnPressed, this, [this] {
+        store();
+        // The keys of tools are theirs again, unless there is something to mend.
+        if (problem_->isHidden()) edit_->clearFocus();
+    });
     connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
         if (contains(parts, editing::Part::Operators)) refresh();
     });

@@ -10,6 +10,8 @@
 #include <QDialog>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QLineEdit>
+#include <QMainWindow>
 #include <QScrollBar>
 #include <QSlider>
 #include <QTextDocumentFragment>
@@ -47,6 +49,19 @@ QAbstractButton* pressedByReturn(QObject& object, const QKeyEvent& key) {
     auto* button = qobject_cast<QAbstractButton*>(&object);
     return button && !qobject_cast<QDialog*>(button->window()) ? button : nullptr;
 }
+
+/// One that people type words in beside the view, and no part of another control.
+QLineEdit* wordsBesideTheView(QObject& object) {
+    auto* edit = qobject_cast<QLineEdit*>(&object);
+    if (!edit || !qobject_cast<QMainWindow*>(edit->window())) return nullptr;
+    const QWidget* parent = edit->parentWidget();
+    const bool isPart = qobject_cast<const QAbstractSpinBox*>(parent) ||
+                        qobject_cast<const QComboBox*>(parent) ||
+                        qobject_cast<const QAbstractItemView*>(parent->parentWidget());
+    return isPart ? nullptr : edit;
+}
+
+constexpr const char* kWordsBefore = "wordsBefore";
 
 QString labelFor(const QWidget& control) {
     for (const QWidget* widget = &control; widget && !widget->isWindow(); widget = widget->parentWidget()) {
@@ -103,7 +118,17 @@ bool InputRules::eventFilter(QObject* object, QEvent* event) {
                 return true;
             }
             break;
+        case QEvent::FocusIn:
+            if (QLineEdit* edit = wordsBesideTheView(*object)) edit->setProperty(kWordsBefore, edit->text());
+            break;
         case QEvent::KeyPress:
+            // The keys of tools are theirs again once words are given up, as with numbers.
+            if (QLineEdit* edit = wordsBesideTheView(*object);
+                edit && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {
+                edit->setText(edit->property(kWordsBefore).toString());
+                edit->clearFocus();
+                return true;
+            }
             if (QAbstractButton* button = pressedByReturn(*object, *static_cast<QKeyEvent*>(event))) {
                 if (button->isEnabled()) button->click();
                 return true;

@@ -34,12 +34,15 @@ NumberBox::NumberBox(double min, double max, bool whole, QWidget* parent)
     auto* layout = new QHBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(6);
+    // The number has what it needs first, the slider what is left.
+    constexpr int kMuch = 100;
     layout->addWidget(slider_, 1);
-    layout->addWidget(spin_);
+    layout->addWidget(spin_, kMuch);
     slider_->setRange(0, kSteps);
-    slider_->setMinimumWidth(24);
+    slider_->setMinimumWidth(20);
     slider_->setFocusPolicy(Qt::ClickFocus);
-    spin_->setFixedWidth(86);
+    spin_->setMinimumWidth(70);
+    spin_->setMaximumWidth(86);
     spin_->setAlignment(Qt::AlignRight);
     setFocusProxy(spin_);
     spin_->installEventFilter(this);

@@ -31,7 +31,7 @@ constexpr std::size_t kMostStrands = 20'000;  ///< that run; times of more are i
 constexpr const char* kBudgetKey = "frameBudget";
 constexpr double kUsualBudget_ms = 4;
 
-enum Column { kName, kMs, kMb, kWhy, kColumns };
+enum Column { kName, kMs, kMb, kColumns };
 
 class EffectsPanel : public QWidget {
   public:
@@ -106,16 +106,19 @@ class EffectsPanel : public QWidget {
 
     void makeTable() {
         table_->setObjectName("effects");
-        table_->setHeaderLabels({"Effect", "ms", "MB", "Why"});
+        table_->setHeaderLabels({"Effect", "ms", "MB"});
         table_->setRootIsDecorated(false);
+        // Why an effect runs is below it, where it has the whole width.
+        table_->setItemsExpandable(false);
+        table_->setIndentation(14);
         table_->setWordWrap(true);
         table_->setSelectionMode(QAbstractItemView::NoSelection);
         table_->setMinimumHeight(340);
-        table_->header()->resizeSection(kName, 100);
-        table_->header()->resizeSection(kMs, 58);
-        table_->header()->resizeSection(kMb, 36);
+        table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        table_->header()->resizeSection(kMs, 70);
+        table_->header()->resizeSection(kMb, 40);
         table_->header()->setStretchLastSection(false);
-        table_->header()->setSectionResizeMode(kWhy, QHeaderView::Stretch);
+        table_->header()->setSectionResizeMode(kName, QHeaderView::Stretch);
         table_->setItemDelegateForColumn(kMs, bars_);
         table_->setToolTip(
             "Frame time of each effect, averaged over the last half second of playback, its memory in "
@@ -210,6 +213,21 @@ class EffectsPanel : public QWidget {
         }
     }
 
+    /// In a row of its own below it.
+    void sayWhy(QTreeWidgetItem& item, const QString& why) const {
+        if (item.childCount() == 0) {
+            auto* const row = new QTreeWidgetItem(&item);
+            row->setFlags(Qt::ItemIsEnabled);
+            row->setFirstColumnSpanned(true);
+            item.setExpanded(true);
+        }
+        QTreeWidgetItem& row = *item.child(0);
+        row.setText(kName, why);
+        row.setToolTip(kName, why);
+        row.setForeground(kName, palette().color(QPalette::PlaceholderText));
+        row.setHidden(why.isEmpty());
+    }
+
     /// The frame as a whole, against the budget.
     void showFrame(QTreeWidgetItem& item) const {
         const double ms = costs() ? costs()->milliseconds.median : live_.frame();
@@ -224,7 +242,7 @@ class EffectsPanel : public QWidget {
         item.setData(kMs, CostBars::kMilliseconds, ms > 0 ? QVariant(ms) : QVariant());
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
         const QString of = QString("%1 % of the budget").arg(100 * ms / budget_->value(), 0, 'f', 0);
-        item.setText(kWhy, ms > 0 ? (onGpu ? QString("%1, on the GPU").arg(of) : of) : QString());
+        sayWhy(item, ms > 0 ? (onGpu ? QString("%1, on the GPU").arg(of) : of) : QString());
         QFont bold = font();
         bold.setBold(true);
         for (int c = 0; c < kColumns; ++c) item.setFont(c, bold);
@@ -321,8 +339,7 @@ class EffectsPanel : public QWidget {
         showMilliseconds(item, effect, measured);
         item.setText(kMb,
                      effect.on ? QString::number(static_cast<double>(effect.bytes) / 1e6, 'f', 1) : none);
-        item.setText(kWhy, leftOut ? QString("disabled for preview") : QString::fromStdString(effect.why));
-        item.setToolTip(kWhy, item.text(kWhy));
+        sayWhy(item, leftOut ? QString("disabled for preview") : QString::fromStdString(effect.why));
         item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
         item.setTextAlignment(kMb, Qt::AlignRight | Qt::AlignVCenter);
         const QColor colour =

@@ -22,7 +22,7 @@ class ErrorBars : public QWidget {
     QString words() const;
 
     QSize sizeHint() const override;
-    QSize minimumSizeHint() const override { return sizeHint(); }
+    QSize minimumSizeHint() const override { return {180, sizeHint().height()}; }
 
   protected:
     void paintEvent(QPaintEvent*) override;

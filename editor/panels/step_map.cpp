@@ -98,10 +98,13 @@ void StepMap::paintEvent(QPaintEvent*) {
     }
     painter.setPen(colours.dimText);
     painter.drawText(QRect(0, top, names, rowHeight()), Qt::AlignLeft | Qt::AlignVCenter, "substep");
+    double free = map.left();
     for (const double tick : {1e-4, 1e-3, 1e-2}) {
         const QString label = milliseconds(tick);
         const double wide = fontMetrics().horizontalAdvance(label);
         const double x = std::clamp(across(tick) - wide / 2, map.left(), map.right() - wide);
+        if (x < free) continue;
+        free = x + wide + kGap_px;
         painter.drawText(QRectF(x, top, wide + 1, rowHeight()), Qt::AlignCenter, label);
     }
 }

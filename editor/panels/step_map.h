@@ -21,7 +21,7 @@ class StepMap : public QWidget {
     QString words() const;
 
     QSize sizeHint() const override;
-    QSize minimumSizeHint() const override { return sizeHint(); }
+    QSize minimumSizeHint() const override { return {180, sizeHint().height()}; }
 
   protected:
     void paintEvent(QPaintEvent*) override;

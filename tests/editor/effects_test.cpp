@@ -75,7 +75,7 @@ TEST_F(EffectsTest, PanelPreviewsThePlanBeforePlaying) {
     ASSERT_TRUE(waitForRow("wind"));
     EXPECT_FALSE(parts().player.frame());
     EXPECT_TRUE(becomes("wind", true));
-    EXPECT_FALSE(row("wind")->text(3).isEmpty());
+    EXPECT_FALSE(row("wind")->child(0)->text(0).isEmpty());
     Groom still = groom();
     still.simulation.windSpeed = 0;
     change("Wind", still);
@@ -133,8 +133,8 @@ TEST_F(EffectsTest, BarsShowWhatAFrameTakesAgainstTheBudget) {
     budget->spinBox().setValue(2);
     // Of the frames that were told of last.
     const double share = milliseconds("frame") / 2;
-    EXPECT_TRUE(row("frame")->text(3).startsWith(QString::number(100 * share, 'f', 0)))
-        << row("frame")->text(3).toStdString();
+    EXPECT_TRUE(row("frame")->child(0)->text(0).startsWith(QString::number(100 * share, 'f', 0)))
+        << row("frame")->child(0)->text(0).toStdString();
 }
 
 TEST_F(EffectsTest, EachIntegratorsFailingStepIsShownWithTheSettingAsADot) {

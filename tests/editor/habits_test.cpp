@@ -7,6 +7,7 @@
 #include <QFile>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QPushButton>
 #include <QRegularExpression>
@@ -14,6 +15,7 @@
 #include <QScrollBar>
 #include <QSlider>
 #include <QSpinBox>
+#include <QToolButton>
 #include <QTreeWidget>
 #include <cmath>
 #include <set>
@@ -307,6 +309,39 @@ TEST_F(HabitsTest, ManyGuidesForAGameWarnAndOfferFewer) {
     EXPECT_TRUE(dialog.findChild<QLabel*>("manyGuides")->text().contains("16,000"));
     cluster->click();
     EXPECT_EQ(dialog.result(), ExportDialog::kWantsClustering);
+}
+
+TEST_F(HabitsTest, KeysOfToolsAreBackOnceWordsAreTypedOrGivenUp) {
+    openSampleHair("short");
+    window->panel("operators")->raise();
+    window->panel("operators")->findChild<QListWidget*>("operators")->setCurrentRow(0);
+    auto* button = window->panel("operators")->findChild<QToolButton*>("lengthFormulaButton");
+    auto* formula = window->panel("operators")->findChild<QLineEdit*>("lengthFormula");
+    ASSERT_TRUE(button && formula);
+    QTest::mouseClick(button, Qt::LeftButton);
+    ASSERT_TRUE(formula->hasFocus());
+    QTest::keyClicks(formula, "0.05+0.01*random");
+    QTest::keyClick(formula, Qt::Key_Return);
+    EXPECT_FALSE(formula->hasFocus());
+    const auto typed = hash();
+    formula->setFocus();
+    formula->selectAll();
+    QTest::keyClicks(formula, "1/0");
+    QTest::keyClick(formula, Qt::Key_Return);
+    EXPECT_TRUE(formula->hasFocus()) << "there is something to mend";
+    QTest::keyClick(formula, Qt::Key_Escape);
+    EXPECT_FALSE(formula->hasFocus());
+    EXPECT_EQ(formula->text(), "0.05+0.01*random") << "the last good one";
+    EXPECT_FALSE(find<QLabel>("lengthFormulaProblem")->isVisible());
+    EXPECT_EQ(hash(), typed);
+    window->panel("scalp")->raise();
+    auto* expression = find<QLineEdit>("scalpExpression");
+    expression->setFocus();
+    QTest::keyClicks(expression, "above:0.9");
+    QTest::keyClick(expression, Qt::Key_Escape);
+    EXPECT_FALSE(expression->hasFocus());
+    EXPECT_EQ(expression->text(), "");
+    EXPECT_EQ(hash(), typed);
 }
 
 TEST_F(HabitsTest, NoPanelScrollsSideways) {
