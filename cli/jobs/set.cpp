@@ -18,6 +18,7 @@
 #include "core/documents/motions.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
+#include "core/operations/full_head.h"
 #include "hairloom/presets.h"
 
 namespace hairloom::cli {
@@ -35,6 +36,7 @@ struct SetOptions {
     std::string melaninAttribute;
     std::string character;
     std::string output;
+    bool fill = false;
     bool list = false;
 };
 
@@ -108,6 +110,12 @@ Result<Report> set(const SetOptions& options) {
         const nlohmann::ordered_json before = toJson(groom->material);
         applyLook(*look, *groom);
         changed += changedFields(before, toJson(groom->material));
+    }
+    if (options.fill) {
+        const nlohmann::ordered_json before = toJson(groom->interpolation);
+        if (auto status = fillHead(*groom); !status)
+            return tl::unexpected(inFile(status.error(), options.input));
+        changed += changedFields(before, toJson(groom->interpolation));
     }
     if (!options.from.empty()) {
         const auto text = readTextFile(options.from, kMaxJsonBytes);
@@ -196,6 +204,9 @@ JobRun declare(CLI::App& job) {
            "--look", options->look,
            "Look of the Look panel: colours, and of some the highlights. --from and fields override it")
         ->check(CLI::IsMember(lookNames()));
+    job.add_flag("--full-head", options->fill,
+                 "Follow hairs until the scalp is as dense as a person's: 160 hairs per cm², spread between "
+                 "the strands. --from and fields override it");
     auto* image = job.add_option("--dye-image", options->dyeImage,
                                  "PNG at the root UVs. White strands take the dye of the material");
     job.add_option("--dye-attribute", options->dyeAttribute,

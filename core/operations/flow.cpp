@@ -43,11 +43,18 @@ constexpr Field<S> kFields[] = {
 constexpr const char* kFormulaFields[] = {"whorlDegrees", "parting", "gravity", "fall",     "liftRoot",
                                           "liftTip",      "rise",    "bend",    "variation"};
 
-constexpr float kWhorlReach = 0.04f;    ///< metres from the crown at which the turn is down to 1/e
-constexpr float kCrownBlur = 0.004f;    ///< metres; at the crown itself the direction is random
-constexpr float kHugReach = 0.02f;      ///< metres above its lift over which hair lets go of the skin
+// Metres on a head of a person.
+constexpr float kWhorlReach = 0.04f;  ///< from the crown, at which the turn is down to 1/e
+constexpr float kCrownBlur = 0.004f;  ///< at the crown itself the direction is random
+constexpr float kHugReach = 0.02f;    ///< above its lift, over which hair lets go of the skin
+
 constexpr float kSteepestClimb = 0.7f;  ///< sine of the angle at which hair seeks its height
 constexpr float kSteepestSink = 0.4f;
+
+/// Settings of a strand, and the head's size.
+struct Laid : S {
+    float scale = 1;  ///< headScale()
+};
 
 /// What a strand draws once.
 struct Character {
@@ -57,12 +64,12 @@ struct Character {
     float parting;  ///< share of the parting at the root
 };
 
-Character characterOf(const StrandEdit& strand, const S& settings) {
+Character characterOf(const StrandEdit& strand, const Laid& settings) {
     Random random = strand.random(settings.seed);
     const float x = random.uniform(-1, 1);
     const float z = random.uniform(-1, 1);
     Character character;
-    character.blur = kCrownBlur * Vec3f(x, 0, z);
+    character.blur = settings.scale * kCrownBlur * Vec3f(x, 0, z);
     character.liftScale = 1 - settings.variation * random.uniform();
     const Vec3f fromParting = strand.points[0] - settings.partingPoint;
     character.side = fromParting.dot(settings.partingNormal) < 0 ? -1.0f : 1.0f;
@@ -72,9 +79,10 @@ Character characterOf(const StrandEdit& strand, const S& settings) {
 }
 
 /// The flow before gravity; not of unit length.
-Vec3f flowAt(const Vec3f& point, const Vec3f& outward, const Character& character, const S& settings) {
+Vec3f flowAt(const Vec3f& point, const Vec3f& outward, const Character& character, const Laid& settings) {
     const Vec3f offset = point - settings.crown + character.blur;
-    const float turn = radians(settings.whorlDegrees) * std::exp(-offset.norm() / kWhorlReach);
+    const float turn =
+        radians(settings.whorlDegrees) * std::exp(-offset.norm() / (settings.scale * kWhorlReach));
     const Vec3f fromCrown =
         Eigen::AngleAxisf(turn, outward) * unitOr(offset - outward * offset.dot(outward), Vec3f::UnitX());
     const Vec3f fromParting = unitOr(settings.partingNormal, Vec3f::Zero()) * character.side;
@@ -89,7 +97,7 @@ struct Step {
 
 /// Direction in which the next segment should lead.
 Vec3f nextDirection(const Vec3f& point, const Vec3f& before, const Skin::Sample& skin, const Step& step,
-                    const Character& character, const S& settings) {
+                    const Character& character, const Laid& settings) {
     const Vec3f& n = skin.outward;
     const float t = step.arc / step.total;
     const float lift = character.liftScale *
@@ -102,7 +110,8 @@ Vec3f nextDirection(const Vec3f& point, const Vec3f& before, const Skin::Sample&
 
     // Hair hugs the skin at its height; it lets go where it is far away or where the skin overhangs.
     const float overhang = smoothStep(0.0f, -0.4f, n.y());
-    const float hug = std::exp(-std::max(0.0f, skin.distance - lift) / kHugReach) * (1 - overhang);
+    const float hug =
+        std::exp(-std::max(0.0f, skin.distance - lift) / (settings.scale * kHugReach)) * (1 - overhang);
     const float climb = std::clamp((lift - skin.distance) / step.length, -kSteepestSink, kSteepestClimb);
     float along = wanted.dot(n);
     along += hug * (climb - along);
@@ -113,7 +122,7 @@ Vec3f nextDirection(const Vec3f& point, const Vec3f& before, const Skin::Sample&
     return unitOr(tangent * std::sqrt(1 - along * along) + n * along, before);
 }
 
-void layStrand(StrandEdit& strand, const S& settings) {
+void layStrand(StrandEdit& strand, const Laid& settings) {
     const Character character = characterOf(strand, settings);
     const Skin& skin = *strand.skin;
     Step step{0, strand.totalLength(), 0};
@@ -152,8 +161,9 @@ Result<std::size_t> flowVaried(Groom& groom, const Varied<S>& varied, const Regi
     const S& asked = varied.base();
     const Vec3f crown = asked.crown.isZero(0) ? crownOfHead(groom) : asked.crown;
     const Vec3f parting = asked.partingPoint.isZero(0) ? topOfHead(groom) : asked.partingPoint;
+    const float scale = headScale(groom);
     return editStrands(groom, region, {-1.0f, true}, [&](StrandEdit& strand) {
-        S settings = varied.at(strand.index);
+        Laid settings{varied.at(strand.index), scale};
         settings.crown = crown;
         settings.partingPoint = parting;
         layStrand(strand, settings);

@@ -2,12 +2,15 @@
 #include "core/operations/head_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace hairloom {
 namespace {
 
 constexpr float kBehindTop = 0.2f;  ///< of the depth of what hair grows on
+constexpr double kPersons = 0.28;   ///< metres, diagonal of a box around the scalp of a grown-up
+constexpr double kMost = 1000;      ///< times as large, and the inverse
 
 /// Vertices of the selected faces; all where none is selected.
 std::vector<Vec3f> whereHairGrows(const Groom& groom) {
@@ -42,6 +45,22 @@ Vec3f crownOfHead(const Groom& groom) {
 
 Vec3f placeFound(const Groom& groom, std::string_view setting) {
     return setting == "crown" ? crownOfHead(groom) : topOfHead(groom);
+}
+
+float headScale(const Groom& groom) {
+    if (!groom.scalp) return 1;
+    Box3f box;
+    for (const Vec3f& place : whereHairGrows(groom)) box.extend(place);
+    const double times = double{box.diagonal().norm()} / kPersons;
+    if (!(times > 0)) return 1;
+    // The nearest of 1, 2, 5 and 10 times a power of ten, by ratio.
+    const double decade = std::pow(10.0, std::floor(std::log10(std::clamp(times, 1 / kMost, kMost))));
+    const double within = std::clamp(times, 1 / kMost, kMost) / decade;
+    const double step = within < std::sqrt(2.0)    ? 1
+                        : within < std::sqrt(10.0) ? 2
+                        : within < std::sqrt(50.0) ? 5
+                                                   : 10;
+    return static_cast<float>(step * decade);
 }
 
 }  // namespace hairloom

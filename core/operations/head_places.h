@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Places that operators find on a head of any size where nobody has named one.
+// Places and sizes that operators find on a head of any size where nobody has named one.
 
+#include <algorithm>
 #include <string_view>
 
 #include "core/groom/groom.h"
+#include "hairloom/field.h"
 
 namespace hairloom {
 
@@ -14,5 +16,20 @@ Vec3f topOfHead(const Groom& groom);
 Vec3f crownOfHead(const Groom& groom);
 /// Where a point of that name lies that is zero: the crown of "crown", the top of the head for others.
 Vec3f placeFound(const Groom& groom, std::string_view setting);
+
+/// How much larger than a person's head the one is that hair grows on, as a round number: 1 from children to
+/// grown-ups, else 0.2, 0.5, 2, 5, 10 and so on, within 0.001 … 1000. By the scalp selection, or all of the
+/// mesh where none is selected. 1 without a scalp.
+float headScale(const Groom& groom);
+
+/// Brings a length, or a number for each metre, that nobody chose to that size, inside the range of its
+/// field. Others stay.
+template <class S>
+void fitToHead(S& settings, const runtime::Field<S>& field, float scale) {
+    const std::string_view unit = field.unit;
+    if (field.kind != runtime::FieldKind::Float || (unit != "m" && unit != "1/m")) return;
+    const double factor = unit == "m" ? double{scale} : 1 / double{scale};
+    field.set(settings, std::clamp(field.get(settings, 0) * factor, field.min, field.max), 0);
+}
 
 }  // namespace hairloom

@@ -10,6 +10,7 @@
 
 #include "core/groom/file/json_reader.h"
 #include "core/operations/drawn_curve.h"
+#include "core/operations/head_places.h"
 #include "core/operations/mask.h"
 #include "core/operations/strand_edit.h"
 #include "core/operations/varied.h"
@@ -19,14 +20,17 @@ namespace hairloom {
 /// Returns the number of strands touched; on error the groom may be half edited.
 using RunOperation = std::function<Result<std::size_t>(Groom&)>;
 
+using SettingsText = std::function<std::string(float scale)>;
+
 struct Operation {
     std::string_view name;     ///< in scripts
     std::string_view meaning;  ///< what it does, one sentence, in small letters
     int order;                 ///< in lists: as hairstyles are mostly made, from lengths on
     RunOperation (*read)(JsonReader&);
     std::vector<FieldRow> (*fields)();
-    /// All members that `read` takes, with those that are absent at their defaults, as a JSON object.
-    std::string (*settings)(JsonReader&);
+    /// Gives all members that `read` takes as a JSON object, with those that are absent at their defaults for
+    /// a head of that headScale().
+    SettingsText (*settings)(JsonReader&);
     bool stacks = true;     ///< moves points of strands and changes nothing else, so that a stack may hold it
     bool hasCurve = false;  ///< takes a "curve" (drawn_curve.h)
     /// Names of the fields that may be formulas, one value for each strand ("formulas").
@@ -58,18 +62,38 @@ S readSettings(JsonReader& reader) {
     return settings;
 }
 
+/// Fields that the object leaves at their defaults, which follow the size of the head.
+template <class S>
+std::vector<const Field<S>*> leftOut(JsonReader& reader, const S& settings) {
+    std::vector<const Field<S>*> fields;
+    for (const Field<S>& field : fieldsOf(settings)) {
+        if (!reader.has(field.name)) fields.push_back(&field);
+    }
+    return fields;
+}
+
+template <class S>
+S fitted(S settings, const std::vector<const Field<S>*>& fields, float scale) {
+    for (const Field<S>* field : fields) fitToHead(settings, *field, scale);
+    return settings;
+}
+
 template <class S, bool Masked>
-std::string settings(JsonReader& reader, std::span<const char* const> formulaFields) {
-    const S settings = readSettings<S>(reader);
-    nlohmann::ordered_json json = fieldsToJson(settings);
-    if constexpr (hasCurve<S>) json["curve"] = toJson(settings.curve);
+SettingsText settings(JsonReader& reader, std::span<const char* const> formulaFields) {
+    const S read = readSettings<S>(reader);
+    nlohmann::ordered_json rest = nlohmann::ordered_json::object();
+    if constexpr (hasCurve<S>) rest["curve"] = toJson(read.curve);
     if (!formulaFields.empty()) {
         const SettingFormulas formulas = readFormulas(reader, formulaFields);
-        if (!formulas.empty()) json["formulas"] = formulas;
+        if (!formulas.empty()) rest["formulas"] = formulas;
     }
-    if (reader.has("region")) json["region"] = fieldsToJson(readRegion(reader));
-    if (Masked && reader.has("mask")) json["mask"] = toJson(readMask(reader));
-    return json.dump();
+    if (reader.has("region")) rest["region"] = fieldsToJson(readRegion(reader));
+    if (Masked && reader.has("mask")) rest["mask"] = toJson(readMask(reader));
+    return [read, open = leftOut(reader, read), rest](float scale) {
+        nlohmann::ordered_json json = fieldsToJson(fitted(read, open, scale));
+        json.update(rest);
+        return json.dump();
+    };
 }
 
 template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&), bool Masked>
@@ -77,8 +101,9 @@ RunOperation read(JsonReader& reader) {
     const S settings = readSettings<S>(reader);
     const Region region = readRegion(reader);
     const Mask mask = Masked ? readMask(reader) : Mask{};
-    return [settings, region, mask](Groom& groom) {
-        return runMasked(groom, mask, [&](Groom& edited) { return Apply(edited, settings, region); });
+    return [settings, open = leftOut(reader, settings), region, mask](Groom& groom) {
+        const S own = fitted(settings, open, open.empty() ? 1 : headScale(groom));
+        return runMasked(groom, mask, [&](Groom& edited) { return Apply(edited, own, region); });
     };
 }
 
@@ -88,19 +113,21 @@ RunOperation readVaried(JsonReader& reader) {
     const SettingFormulas formulas = readFormulas(reader, Fields);
     const Region region = readRegion(reader);
     const Mask mask = readMask(reader);
-    return [settings, formulas, region, mask](Groom& groom) -> Result<std::size_t> {
-        const auto varied = Varied<S>::make(groom, settings, formulas, region);
+    return [settings, open = leftOut(reader, settings), formulas, region,
+            mask](Groom& groom) -> Result<std::size_t> {
+        const S own = fitted(settings, open, open.empty() ? 1 : headScale(groom));
+        const auto varied = Varied<S>::make(groom, own, formulas, region);
         if (!varied) return tl::unexpected(varied.error());
         return runMasked(groom, mask, [&](Groom& edited) { return Apply(edited, *varied, region); });
     };
 }
 
 template <class S, bool Masked>
-std::string plainSettings(JsonReader& reader) {
+SettingsText plainSettings(JsonReader& reader) {
     return settings<S, Masked>(reader, {});
 }
 template <class S, const auto& Fields>
-std::string variedSettings(JsonReader& reader) {
+SettingsText variedSettings(JsonReader& reader) {
     return settings<S, true>(reader, Fields);
 }
 

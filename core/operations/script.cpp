@@ -51,8 +51,9 @@ bool keepsSomeStrands(const Groom& groom) {
 }
 
 /// Where there are operators, which would make the points anew and drop what it did, it joins them.
-RunOperation onTopOfStack(Operator one, RunOperation run) {
-    return [one = std::move(one), run = std::move(run)](Groom& groom) -> Result<std::size_t> {
+RunOperation onTopOfStack(Operator one, SettingsText settings, RunOperation run) {
+    return [one = std::move(one), settings = std::move(settings),
+            run = std::move(run)](Groom& groom) -> Result<std::size_t> {
         if (groom.operators.empty()) return run(groom);
         // Operators act on all strands.
         if (keepsSomeStrands(groom))
@@ -62,7 +63,9 @@ RunOperation onTopOfStack(Operator one, RunOperation run) {
             return fail(fmt::format("{}: the hairstyle already has {} operators", one.op, kMaxOperators),
                         "bake some of them first (bake_operators)");
         auto touched = run(groom);
-        if (touched) groom.operators.push_back(one);
+        if (!touched) return touched;
+        groom.operators.push_back(one);
+        groom.operators.back().settings = settings(headScale(groom));
         return touched;
     };
 }
@@ -91,8 +94,7 @@ Result<Script> parseScript(const std::string& file, std::string_view text,
         if (chosen < own && operations()[chosen].stacks) {
             Operator one;
             one.op = names[chosen];
-            one.settings = operations()[chosen].settings(step);
-            run = onTopOfStack(std::move(one), std::move(run));
+            run = onTopOfStack(std::move(one), operations()[chosen].settings(step), std::move(run));
         }
         step.finish();
         script.steps.push_back({std::string(names[chosen]), std::move(run)});

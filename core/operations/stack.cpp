@@ -93,23 +93,31 @@ const StackOperator* findStackOperator(std::string_view name) {
     return found == stackOperators().end() ? nullptr : &*found;
 }
 
-Operator newOperator(std::string_view name) {
-    const nlohmann::json json{{"op", name}};
-    JsonReader reader(json, {});
-    return readOperator(reader);
-}
+namespace {
 
-Operator readOperator(JsonReader& reader) {
+Operator readOperatorFor(JsonReader& reader, float scale) {
     const auto names = stackNames();
     const std::string_view name = names[reader.choice("op", names)];
     Operator one = readOperatorHead(reader);
     if (name != kSculpt) {
-        one.settings = operationOf(name).settings(reader);
+        one.settings = operationOf(name).settings(reader)(scale);
     } else if (reader.has("mask")) {
         setMaskOf(one, readMask(reader));
     }
     reader.finish();
     return one;
+}
+
+}  // namespace
+
+Operator newOperator(std::string_view name, float scale) {
+    const nlohmann::json json{{"op", name}};
+    JsonReader reader(json, {});
+    return readOperatorFor(reader, scale);
+}
+
+Operator readOperator(JsonReader& reader) {
+    return readOperatorFor(reader, 1);
 }
 
 std::vector<Operator> readOperators(JsonReader& reader) {

@@ -28,8 +28,8 @@ const std::vector<StackOperator>& stackOperators();
 /// The one of that name, or null.
 const StackOperator* findStackOperator(std::string_view name);
 
-/// With its defaults. `name` is one of stackOperators().
-Operator newOperator(std::string_view name);
+/// With its defaults, for a head of that headScale(). `name` is one of stackOperators().
+Operator newOperator(std::string_view name, float scale = 1);
 
 /// An operator as scripts have it, with all settings and the region written out. Complaints are the reader's:
 /// an unknown name or member, a value out of range.

@@ -81,10 +81,10 @@ struct OperatorAt {
     }
 };
 
-std::vector<Field> settingsFields(const OperatorAt& at, const std::vector<FieldRow>& rows,
+std::vector<Field> settingsFields(const Groom& groom, const OperatorAt& at, const std::vector<FieldRow>& rows,
                                   SettingsPart part) {
     std::vector<Field> fields;
-    const Operator fresh = newOperator(at.op);
+    const Operator fresh = newOperator(at.op, headScale(groom));
     for (const FieldRow& row : rows) {
         if (row.info.components() == 0) continue;
         Field field = at.field(row.info);
@@ -107,7 +107,7 @@ std::vector<Field> settingsFields(const OperatorAt& at, const std::vector<FieldR
 std::vector<Field> operatorFields(const Groom& groom, std::size_t index, const SayError& failed) {
     const OperatorAt at{index, groom.operators[index].op, failed};
     const StackOperator* const known = findStackOperator(at.op);
-    std::vector<Field> fields = settingsFields(at, known->fields, SettingsPart::own);
+    std::vector<Field> fields = settingsFields(groom, at, known->fields, SettingsPart::own);
     Field weight = at.field(kWeight);
     weight.defaultValue[0] = 1;
     weight.value = [at](const Groom& now, std::uint32_t) {
@@ -125,12 +125,12 @@ std::vector<Field> operatorFields(const Groom& groom, std::size_t index, const S
 
 std::vector<Field> operatorRegionFields(const Groom& groom, std::size_t index, const SayError& failed) {
     const OperatorAt at{index, groom.operators[index].op, failed};
-    return settingsFields(at, scriptRegionFields(), SettingsPart::region);
+    return settingsFields(groom, at, scriptRegionFields(), SettingsPart::region);
 }
 
 std::vector<Field> operatorMaskFields(const Groom& groom, std::size_t index, const SayError& failed) {
     const OperatorAt at{index, groom.operators[index].op, failed};
-    return settingsFields(at, scriptMaskFields(), SettingsPart::mask);
+    return settingsFields(groom, at, scriptMaskFields(), SettingsPart::mask);
 }
 
 QStringList Field::choiceLabels() const {

@@ -121,7 +121,8 @@ class OperatorsPanel : public QWidget {
             action->setToolTip(sentence(known.meaning));
             connect(action, &QAction::triggered, this, [this, name] {
                 const std::size_t at = chosen() == kNone ? operators().size() : chosen() + 1;
-                perform(editing::addOperator(model(), at, newOperator(name)), at);
+                perform(editing::addOperator(model(), at, newOperator(name, headScale(document_.groom()))),
+                        at);
             });
         }
         add->setMenu(menu);

@@ -13,12 +13,15 @@
 #include "core/editing/document.h"
 #include "core/editing/place.h"
 #include "core/editing/selection_commands.h"
+#include "core/editing/settings_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/editing/surface_disc.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "core/operations/curl_class.h"
+#include "core/operations/full_head.h"
 #include "editor/document/words.h"
+#include "editor/fields/blocks.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/image_button.h"
 #include "editor/fields/number_box.h"
@@ -53,7 +56,10 @@ class ScalpPanel : public QWidget {
             "Select faces by expression, then press Enter: all, group:NAME, material:NAME, cap:DEGREES "
             "(faces that lean up to this angle from up), above:SHARE of the height, grow:N, shrink:N, "
             "invert, connected. A comma combines terms.");
-        connect(expression_, &QLineEdit::returnPressed, this, [this] { select(expression_->text()); });
+        connect(expression_, &QLineEdit::returnPressed, this, [this] {
+            select(expression_->text());
+            expression_->clearFocus();
+        });
         layout->addWidget(groups_);
         layout->addWidget(expression_);
         layout->addLayout(makeButtons());
@@ -201,6 +207,11 @@ class PlacePanel : public QWidget {
         count_->setWordWrap(true);
         count_->setProperty("role", "dim");
         layout->addWidget(count_);
+        fill_ = pushButton("fillHead", "Full head of hair",
+                           "Adds follow hairs until the scalp is as dense as a person's: 160 hairs per cm², "
+                           "spread between the strands. More hairs take longer to draw",
+                           [this] { fill(); });
+        layout->addWidget(fill_);
         layout->addWidget(imageButton(
             "densityImage", "Density from image…",
             "Reads the root density from a PNG at the UVs of the head's vertices. The next Place hair "
@@ -227,8 +238,8 @@ class PlacePanel : public QWidget {
         });
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
             if (contains(parts, editing::Part::Placement | editing::kScalpParts)) refresh();
-            if (contains(parts,
-                         editing::Part::Placement | editing::kScalpParts | editing::Part::Interpolation))
+            if (contains(parts, editing::Part::Placement | editing::kScalpParts |
+                                    editing::Part::Interpolation | editing::Part::Strands))
                 foretell();
         });
         foretell();
@@ -245,6 +256,7 @@ class PlacePanel : public QWidget {
     /// What the next *Place hair* makes, by area.
     void foretell() {
         const Groom& groom = document_.groom();
+        fill_->setEnabled(groom.strandCount() > 0);
         count_->clear();
         if (!groom.scalp || groom.scalpSelection.empty()) return;
         const double area_cm2 = 1e4 * maskedArea(*groom.scalp, groom.scalpSelection, groom.scalpDensity);
@@ -262,6 +274,14 @@ class PlacePanel : public QWidget {
                     .arg(whole(strands * (each + 1.0)))
                     .arg(numberLocale().toString(strands * (each + 1.0) / std::max(area_cm2, 1e-9), 'f', 0));
         count_->setText(text);
+    }
+
+    /// One step.
+    void fill() {
+        Groom full = document_.groom();
+        if (auto status = fillHead(full); !status) return messages_.warn(errorText(status.error()));
+        document_.perform(editing::setSettings(document_.editing().model(), full, "Full head of hair"));
+        messages_.say(QString("%L1 follow hairs per guide").arg(full.interpolation.followPerGuide));
     }
 
     void refresh() {
@@ -325,6 +345,7 @@ class PlacePanel : public QWidget {
     QComboBox* curl_;
     QLabel* count_;
     QLabel* note_;
+    QPushButton* fill_ = nullptr;
     Roots roots_;
     bool previewing_ = false;
 };

@@ -30,6 +30,26 @@ TEST_F(CliSettings, AStrokeOfDyeIsReplayed) {
     EXPECT_TRUE(runJson("validate dyed.hairloom")["valid"].get<bool>());
 }
 
+TEST_F(CliSettings, AFullHeadIsAsDenseAsAPersons) {
+    const double area = runJson(createArguments())["scalp_area_cm2"];
+    EXPECT_EQ(runJson("set hair.hairloom --full-head -o full.hairloom")["changed"], 2) << "hairs and blend";
+    const auto follow = [&](const std::string& file) {
+        std::map<std::string, double> values;
+        const auto report = runJson("info --diff hair.hairloom " + file);
+        for (const auto& row : report["differences"]) values[row["where"]] = row["after"].get<double>();
+        return values;
+    };
+    auto full = follow("full.hairloom");
+    EXPECT_NEAR(full["interpolation.followPerGuide"], 160 * area / 300, 1);
+    EXPECT_EQ(full["interpolation.blend"], 1);
+    runJson("set hair.hairloom --full-head interpolation.followPerGuide=5 -o few.hairloom");
+    EXPECT_EQ(follow("few.hairloom")["interpolation.followPerGuide"], 5);
+    std::ofstream(folder / "loose.obj") << "v 0 0 0\nv 0 1 0\nl 1 2\n";
+    const Outcome none = run("set loose.obj --full-head -o none.hairloom");
+    EXPECT_EQ(none.exitCode, 1);
+    EXPECT_THAT(none.errors, HasSubstr("no scalp is selected"));
+}
+
 TEST_F(CliSettings, AStackIsShownSetChangedAndBaked) {
     runJson(createArguments());
     EXPECT_TRUE(runJson("stack hair.hairloom")["operators"].empty());

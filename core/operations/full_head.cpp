@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/full_head.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "core/geometry/placement.h"
+#include "core/groom/file/fields.h"
+#include "core/operations/head_places.h"
+
+namespace hairloom {
+namespace {
+
+constexpr double kMostFollowHairs = 4096;  ///< for each guide, as the field has it
+
+std::size_t guidesOf(const Groom& groom) {
+    const auto flags = groom.strandAttributes.view<std::uint8_t>(attribute::kGuide);
+    if (flags.size() != groom.strandCount()) return groom.strandCount();
+    return flags.size() - static_cast<std::size_t>(std::ranges::count(flags, std::uint8_t{0}));
+}
+
+/// Where nobody chose another size.
+template <class S>
+void fitDefault(S& settings, std::string_view name, float scale) {
+    const auto fields = fieldsOf(settings);
+    const auto field = std::ranges::find(fields, name, [](const auto& one) { return one.name; });
+    if (field->get(settings, 0) == field->get(S{}, 0)) fitToHead(settings, *field, scale);
+}
+
+}  // namespace
+
+Status fillHead(Groom& groom) {
+    const std::size_t guides = guidesOf(groom);
+    if (guides == 0) return fail("there are no strands to fill between", "place hair first");
+    if (!groom.scalp || groom.scalpSelection.empty())
+        return fail("no scalp is selected, so nobody knows where hair grows", "select the scalp first");
+    const float scale = headScale(groom);
+    const double area_cm2 = 1e4 * maskedArea(*groom.scalp, groom.scalpSelection, groom.scalpDensity);
+    const double each =
+        kHairsPerCm2 * area_cm2 / (double{scale} * double{scale}) / static_cast<double>(guides);
+    InterpolationSettings& follow = groom.interpolation;
+    follow.followPerGuide = static_cast<std::uint32_t>(std::clamp(std::round(each), 1.0, kMostFollowHairs));
+    follow.blend = 1;
+    fitDefault(follow, "wispRadiusRoot", scale);
+    fitDefault(follow, "wispRadiusTip", scale);
+    fitDefault(groom.material, "rootRadius", scale);
+    return {};
+}
+
+}  // namespace hairloom

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// As much hair between the strands as a person has.
+
+#include "core/base/result.h"
+#include "core/groom/groom.h"
+
+namespace hairloom {
+
+/// Hairs on each cm² of a scalp: a usual value of grown-ups.
+inline constexpr double kHairsPerCm2 = 160;
+
+/// Sets the follow hairs of each guide so that the selected scalp, as dense as its density map is, has that
+/// many, and the blend to 1, so that they spread between the guides. On a head that is not of a person's size
+/// (headScale()) hairs and wisps are as much thicker and hairs as much sparser, where those sizes are the
+/// defaults. Errors: no strands, or no scalp where hair grows.
+Status fillHead(Groom& groom);
+
+}  // namespace hairloom
