@@ -10,6 +10,16 @@
 #include "importers/length_unit.h"
 
 namespace hairloom::editor {
+namespace {
+
+/// Three or four digits: "12.3 ms", "840 ms", "4.90 s".
+QString drawTimeText(double milliseconds) {
+    constexpr double kTenths_ms = 100, kSecond_ms = 1000;
+    if (milliseconds >= kSecond_ms) return QString("%1 s").arg(milliseconds / kSecond_ms, 0, 'f', 2);
+    return QString("%1 ms").arg(milliseconds, 0, 'f', milliseconds < kTenths_ms ? 1 : 0);
+}
+
+}  // namespace
 
 StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
                        Player& player, Viewport& viewport, QWidget* parent)
@@ -90,8 +100,8 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     connect(&viewport_, &Viewport::failed, this, [this](const QString& text) { say(text, true); });
     connect(&viewport_, &Viewport::drawn, this, [this](const PictureReport& report) {
         const auto& frame = player_.frame();
-        const QString picture = QString("%1 ms").arg(report.milliseconds, 0, 'f', 1);
-        frameTime_->setText(frame ? QString("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1)
+        const QString picture = drawTimeText(report.milliseconds);
+        frameTime_->setText(frame ? QString("%1 + %2").arg(picture, drawTimeText(frame->milliseconds))
                                   : picture);
     });
     connect(&viewport_, &Viewport::deviceReady, this, [this](const QString& name, const QString& note) {

@@ -11,6 +11,9 @@ Canvas::Canvas(QWidget* parent) : QWidget(parent) {
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setAcceptDrops(false);
+    constexpr int kTick_ms = 500;
+    tick_.setInterval(kTick_ms);
+    connect(&tick_, &QTimer::timeout, this, qOverload<>(&QWidget::update));
 }
 
 void Canvas::setPicture(const QImage& picture) {
@@ -33,6 +36,24 @@ void Canvas::setReference(const QImage& image, double opacity) {
     reference_ = image;
     referenceOpacity_ = opacity;
     update();
+}
+
+void Canvas::setWaiting(const QString& what) {
+    if (what == waiting_) return;
+    waiting_ = what;
+    if (what.isEmpty()) {
+        tick_.stop();
+    } else {
+        since_.start();
+        tick_.start();
+    }
+    update();
+}
+
+QString Canvas::waitingWords() const {
+    constexpr qint64 kSecond_ms = 1000;
+    const qint64 seconds = waiting_.isEmpty() ? 0 : since_.elapsed() / kSecond_ms;
+    return seconds > 0 ? QString("%1, %L2 s").arg(waiting_).arg(seconds) : QString();
 }
 
 void Canvas::setSplit(std::optional<float> split) {
@@ -58,6 +79,17 @@ void Canvas::paintEvent(QPaintEvent*) {
                           marks_.image);
     }
     if (split_) paintSplit(painter);
+    paintWaiting(painter);
+}
+
+void Canvas::paintWaiting(QPainter& painter) const {
+    const QString words = waitingWords();
+    if (words.isEmpty()) return;
+    constexpr int kMargin_px = 12;
+    const QRect room = rect().adjusted(kMargin_px, kMargin_px, -kMargin_px, -kMargin_px);
+    const int where = picture_.isNull() ? Qt::AlignCenter : Qt::AlignLeft | Qt::AlignBottom;
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.drawText(room, where, words);
 }
 
 void Canvas::paintReference(QPainter& painter) const {

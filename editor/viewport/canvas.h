@@ -3,7 +3,9 @@
 // Shows pictures that were read back, over a reference picture where there is one, with the line that parts
 // two looks.
 
+#include <QElapsedTimer>
 #include <QImage>
+#include <QTimer>
 #include <QWidget>
 #include <optional>
 
@@ -25,6 +27,12 @@ class Canvas : public QWidget {
     void setMarks(MarkSheet::Sheet marks);
     /// Behind the picture, as large as fits; null: none. `opacity` 0…1.
     void setReference(const QImage& image, double opacity);
+    /// What a picture is waited for, and since when, over what there is; "": nothing. It is said after a
+    /// second.
+    void setWaiting(const QString& what);
+    const QString& waiting() const { return waiting_; }
+    /// "Drawing the hair, 3 s", as it is shown now.
+    QString waitingWords() const;
     /// Draws the line between two looks at this part of the width; nothing: none.
     void setSplit(std::optional<float> split);
 
@@ -34,6 +42,7 @@ class Canvas : public QWidget {
   private:
     void paintReference(QPainter& painter) const;
     void paintSplit(QPainter& painter) const;
+    void paintWaiting(QPainter& painter) const;
 
     QImage picture_;
     MarkSheet::Sheet marks_;
@@ -41,6 +50,9 @@ class Canvas : public QWidget {
     double referenceOpacity_ = 1;
     QColor background_;
     std::optional<float> split_;
+    QString waiting_;
+    QElapsedTimer since_;
+    QTimer tick_;
 };
 
 }  // namespace hairloom::editor

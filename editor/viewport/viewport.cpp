@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/operations/head_places.h"
 #include "editor/fields/colour.h"
 #include "editor/style/theme.h"
 #include "editor/viewport/native_window.h"
@@ -14,6 +15,7 @@
 namespace hairloom::editor {
 namespace {
 
+constexpr const char* kFirstImage = "Drawing the first image";
 constexpr int kSettleMs = 220;
 constexpr float kTurntableDegrees = 0.6f;  // per tick
 constexpr int kTurntableMs = 25;
@@ -38,8 +40,8 @@ Box3f boundsToShow(const Groom& groom, const HairPose* pose) {
         }
     }
     // The face belongs to a hairstyle.
-    constexpr float kHeadHeight = 0.30f;
-    box.min().y() = std::min(box.min().y(), box.max().y() - kHeadHeight);
+    const float headHeight = 0.30f * headScale(groom);
+    box.min().y() = std::min(box.min().y(), box.max().y() - headHeight);
     return box;
 }
 
@@ -74,18 +76,21 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
                 chooseSurface();
                 Q_EMIT deviceReady(name, note);
             });
-    connect(&renderer_, &RenderThread::pictureReady, this,
-            [this](const QImage& picture, const PictureReport& report) {
-                if (report.document != documents_) return;
-                if (std::exchange(headFirst_, false)) redraw();
-                if (!report.presented) {
-                    picture_ = picture;
-                    pictureCamera_ = report.camera;
-                    if (canvas_) canvas_->setPicture(picture);
-                    layMarks();
-                }
-                Q_EMIT drawn(report);
-            });
+    connect(
+        &renderer_, &RenderThread::pictureReady, this,
+        [this](const QImage& picture, const PictureReport& report) {
+            if (report.document != documents_) return;
+            const bool isHead = std::exchange(headFirst_, false);
+            if (isHead) redraw();
+            if (!report.presented) {
+                picture_ = picture;
+                pictureCamera_ = report.camera;
+                if (canvas_) canvas_->setPicture(picture);
+                layMarks();
+            }
+            waitFor(isHead && document_.groom().strandCount() > 0 ? QString("Drawing the hair") : QString());
+            Q_EMIT drawn(report);
+        });
     connect(&renderer_, &RenderThread::windowRefused, this, [this](const QString& problem) {
         presentsByItself_ = false;
         chooseSurface();
@@ -94,6 +99,7 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
     });
     connect(&renderer_, &RenderThread::failed, this, [this](const QString& problem) {
         headFirst_ = false;
+        waitFor({});
         handOverAll();
         Q_EMIT failed(problem);
     });
@@ -113,6 +119,7 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
         picture_ = {};
         overlay_ = {};
         if (canvas_) canvas_->setPicture({});
+        waitFor(headFirst_ ? QString(kFirstImage) : QString());
         layMarks();
     });
     connect(&preferences_, &Preferences::changed, this, [this] {
@@ -125,6 +132,10 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
 Viewport::~Viewport() {
     if (window_) renderer_.setWindow(std::nullopt);
     if (apart_) delete window_;
+}
+
+void Viewport::waitFor(const QString& what) {
+    if (canvas_) canvas_->setWaiting(what);
 }
 
 void Viewport::chooseSurface() {
@@ -147,6 +158,7 @@ void Viewport::useCanvas() {
     layout()->addWidget(canvas_);
     shown_ = canvas_;
     showOnCanvas();
+    if (headFirst_) waitFor(kFirstImage);
     redraw();
 }
 

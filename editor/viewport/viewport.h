@@ -140,6 +140,7 @@ class Viewport : public QWidget {
     enum class Move { None, Turn, Pan, Zoom, Split };
 
     /// Pictures that are blended with others are read back.
+    void waitFor(const QString& what);
     void chooseSurface();
     void useWindow();
     /// The window system has made or is about to take away what the device draws to.
