@@ -76,7 +76,7 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     layout->addWidget(makeBudget());
     table_->setObjectName("levelsTable");
     table_->setRootIsDecorated(false);
-    table_->setHeaderLabels({"Level", "Triangles", "From", "FLIP"});
+    table_->setHeaderLabels({"Level", "Tri.", "From", "FLIP"});
     table_->setToolTip(
         "Triangles of each level, the distance in metres at which it starts, and FLIP, the visible "
         "difference "
@@ -311,7 +311,11 @@ void LevelsPanel::fillTable() {
         const cards::Level& level = made.level;
         auto* item = new QTreeWidgetItem(table_);
         item->setText(kName, QString::fromStdString(level.name));
-        item->setText(kTriangles, QStringLiteral("%L1").arg(level.triangles));
+        constexpr std::size_t kThousand = 1000, kMany = 10 * kThousand;
+        const auto thousands = static_cast<double>(level.triangles) / kThousand;
+        item->setText(kTriangles, level.triangles < kMany
+                                      ? QStringLiteral("%L1").arg(level.triangles)
+                                      : QStringLiteral("%L1 k").arg(thousands, 0, 'f', 0));
         item->setText(kFrom, QString::number(cards::distanceOf(level.spec.headPx), 'f', 2));
         item->setText(kFlip, QString::number(level.difference.flip, 'f', 3));
         for (int c = kTriangles; c < kColumns; ++c)
