@@ -131,7 +131,8 @@ endfunction()
 # Tests are compiled once and run for moments: what they include is precompiled, once for all or with PRECOMPILE's together for
 # this one, and they are optimised little. SLOW is a filter of GoogleTest for cases that take seconds: they have the label
 # NAME-slow, which ./dev test --quick leaves out, and begin before others, so that no core waits for the last. They have 300 s.
-# BY_SUITE: the entries are NAME.Suite, since cases of a suite share what takes longer than they do, as kernels of a device.
+# BY_SUITE: the entries are NAME.Suite, since cases of a suite share what takes longer than they do, as kernels of a device. A suite
+# of which one case is slow is slow, and all have TIMEOUT.
 function(hairloom_test name)
     cmake_parse_arguments(ARG "BY_SUITE" "TIMEOUT;SLOW" "SOURCES;LINK;PRECOMPILE" ${ARGN})
     if(NOT ARG_TIMEOUT)

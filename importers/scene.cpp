@@ -20,6 +20,7 @@
 #include "importers/raw_scene.h"
 #include "importers/raw_scene_stream.h"
 #include "importers/reader_limits.h"
+#include "importers/scene_parts.h"
 
 namespace hairloom {
 namespace {
@@ -147,7 +148,17 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
     scene.skeleton = std::move(*skeleton);
     scene.clips = std::move(raw.clips);
     scene.skin = followVertices(raw.skin, scene.mesh.sourceVertices());
-    scene.morphs = morphsOf(raw.morphs, scene.mesh.sourceVertices());
+    scene.morphs = morphsOf(raw.morphs, scene.mesh.sourceVertices(), kMostMorphed);
+    const auto isLost = [&](std::size_t t) {
+        return scene.morphs[t].vertices.empty() && !raw.morphs[t].vertices.empty();
+    };
+    std::size_t lost = 0;
+    for (std::size_t t = 0; t < scene.morphs.size(); ++t) lost += isLost(t) ? 1 : 0;
+    if (lost > 0)
+        raw.warnings.push_back(
+            fmt::format("{} morph targets move no vertex of the repaired mesh, or all targets "
+                        "more than {} of them: they stay at rest",
+                        lost, kMostMorphed));
     scene.warnings = std::move(raw.warnings);
     scene.format = name(format);
     return scene;

@@ -41,7 +41,7 @@ Status validate(std::span<const MorphTarget> targets, std::size_t vertexCount) {
 }
 
 std::vector<MorphTarget> morphsOf(std::span<const MorphTarget> targets,
-                                  std::span<const std::uint32_t> vertices) {
+                                  std::span<const std::uint32_t> vertices, std::size_t most) {
     std::vector<MorphTarget> some;
     if (targets.empty()) return some;
     // Where each vertex has gone, vertex after vertex.
@@ -54,15 +54,22 @@ std::vector<MorphTarget> morphsOf(std::span<const MorphTarget> targets,
     std::vector<std::size_t> next(first.begin(), first.end());
     for (std::uint32_t to = 0; to < vertices.size(); ++to) gone[next[vertices[to]]++] = to;
 
+    const auto copiesOf = [&](std::uint32_t from) {
+        return std::span(gone).subspan(from < count ? first[from] : 0,
+                                       from < count ? first[from + 1] - first[from] : 0);
+    };
+    std::size_t left = most;
     for (const MorphTarget& target : targets) {
         MorphTarget& moved = some.emplace_back();
         moved.name = target.name;
         moved.restWeight = target.restWeight;
+        std::size_t copies = 0;
+        for (const std::uint32_t from : target.vertices) copies += copiesOf(from).size();
+        if (copies > left) continue;
+        left -= copies;
         for (std::size_t i = 0; i < target.vertices.size(); ++i) {
-            const std::uint32_t from = target.vertices[i];
-            for (std::size_t at = from < count ? first[from] : 0, end = from < count ? first[from + 1] : 0;
-                 at < end; ++at) {
-                moved.vertices.push_back(gone[at]);
+            for (const std::uint32_t to : copiesOf(target.vertices[i])) {
+                moved.vertices.push_back(to);
                 moved.offsets.push_back(target.offsets[i]);
             }
         }

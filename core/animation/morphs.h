@@ -4,6 +4,7 @@
 // shapes (FBX) and shape keys.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,9 +24,10 @@ struct MorphTarget {
 Status validate(std::span<const MorphTarget> targets, std::size_t vertexCount);
 
 /// Of a mesh that consists of `vertices` of the one that the targets are of, in this order. A vertex may be
-/// there several times or not at all.
+/// there several times or not at all. Targets that would bring what all move above `most` move nothing.
 std::vector<MorphTarget> morphsOf(std::span<const MorphTarget> targets,
-                                  std::span<const std::uint32_t> vertices);
+                                  std::span<const std::uint32_t> vertices,
+                                  std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Weights `share` 0 … 1 of the way, one a target. Either may be empty, which stands for those of rest.
 std::vector<float> blended(std::span<const MorphTarget> targets, std::span<const float> from,

@@ -12,8 +12,6 @@
 namespace hairloom {
 namespace {
 
-constexpr double kMostFollowHairs = 4096;  ///< for each guide, as the field has it
-
 std::size_t guidesOf(const Groom& groom) {
     const auto flags = groom.strandAttributes.view<std::uint8_t>(attribute::kGuide);
     if (flags.size() != groom.strandCount()) return groom.strandCount();
@@ -39,8 +37,9 @@ Status fillHead(Groom& groom) {
     const double area_cm2 = 1e4 * maskedArea(*groom.scalp, groom.scalpSelection, groom.scalpDensity);
     const double each =
         kHairsPerCm2 * area_cm2 / (double{scale} * double{scale}) / static_cast<double>(guides);
+    const double most = runtime::findField<InterpolationSettings>("followPerGuide")->max;
     InterpolationSettings& follow = groom.interpolation;
-    follow.followPerGuide = static_cast<std::uint32_t>(std::clamp(std::round(each), 1.0, kMostFollowHairs));
+    follow.followPerGuide = static_cast<std::uint32_t>(std::clamp(std::round(each), 1.0, most));
     follow.blend = 1;
     fitDefault(follow, "wispRadiusRoot", scale);
     fitDefault(follow, "wispRadiusTip", scale);

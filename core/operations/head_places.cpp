@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kBehindTop = 0.2f;  ///< of the depth of what hair grows on
 constexpr double kPersons = 0.28;   ///< metres, diagonal of a box around the scalp of a grown-up
+constexpr double kSmallest = 0.7;   ///< of it, that whole head has which is a person's
 constexpr double kMost = 1000;      ///< times as large, and the inverse
 
 /// Vertices of the selected faces; all where none is selected.
@@ -49,10 +50,13 @@ Vec3f placeFound(const Groom& groom, std::string_view setting) {
 
 float headScale(const Groom& groom) {
     if (!groom.scalp) return 1;
-    Box3f box;
+    Box3f box, whole;
     for (const Vec3f& place : whereHairGrows(groom)) box.extend(place);
+    for (const Vec3f& place : groom.scalp->positions()) whole.extend(place);
     const double times = double{box.diagonal().norm()} / kPersons;
-    if (!(times > 0)) return 1;
+    // Brows and beards grow on little of a head that is none of a doll.
+    const bool isDoll = double{whole.diagonal().norm()} < kSmallest * kPersons;
+    if (!(times > 0) || (times < 1 && !isDoll)) return 1;
     // The nearest of 1, 2, 5 and 10 times a power of ten, by ratio.
     const double decade = std::pow(10.0, std::floor(std::log10(std::clamp(times, 1 / kMost, kMost))));
     const double within = std::clamp(times, 1 / kMost, kMost) / decade;

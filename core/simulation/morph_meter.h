@@ -2,6 +2,7 @@
 #pragma once
 // How far morph targets move the skin under hair, beside what moves its collider.
 
+#include <memory>
 #include <vector>
 
 #include "core/simulation/motion.h"

@@ -139,8 +139,8 @@ class Viewport : public QWidget {
   private:
     enum class Move { None, Turn, Pan, Zoom, Split };
 
-    /// Pictures that are blended with others are read back.
     void waitFor(const QString& what);
+    /// Pictures that are blended with others are read back.
     void chooseSurface();
     void useWindow();
     /// The window system has made or is about to take away what the device draws to.

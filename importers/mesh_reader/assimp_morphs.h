@@ -5,7 +5,6 @@
 #include <assimp/scene.h>
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <unordered_map>
 #include <vector>

@@ -163,7 +163,11 @@ Result<std::vector<Track<float>>> readWeights(const GltfFile& file, const tinygl
     std::vector<Track<float>> tracks(wanted.size());
     for (std::size_t target = 0; target < wanted.size(); ++target) {
         keys->first = target;
-        if (wanted[target]) tracks[target] = toTrack<float>(*keys);
+        if (!wanted[target]) continue;
+        tracks[target] = toTrack<float>(*keys);
+        // Between finite keys a cubic of huge tangents may not be finite.
+        if (!std::ranges::all_of(tracks[target].values, [](float value) { return std::isfinite(value); }))
+            return fail("weights between keys are not finite");
     }
     return tracks;
 }

@@ -104,7 +104,9 @@ void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Fra
     }
     const float slow = settings_.sleepSpeed * frame.context.h, delay = settings_.sleepDelay;
     rest.time = report.fastest < slow * slow ? rest.time + frame.input->dt : 0.0f;
-    rest.stayed = stays(blockView, settings_.sleepSpeed * delay, rest) ? rest.stayed + frame.input->dt : 0.0f;
+    const bool wakes = bodyMoves_ || isWindy();  // each frame anew
+    const bool stayed = !wakes && stays(blockView, settings_.sleepSpeed * delay, rest);
+    rest.stayed = stayed ? rest.stayed + frame.input->dt : 0.0f;
     const bool isSlow = rest.time > 0.0f && rest.time >= delay, trembles = rest.stayed > kLonger * delay;
     rest.asleep = isSlow || trembles;
     if (!rest.asleep) return;

@@ -341,8 +341,12 @@ bool Engine::Impl::sphereNear(std::size_t block) const {
     return false;
 }
 
+bool Engine::Impl::isWindy() const {
+    return length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
+}
+
 void Engine::Impl::wakeBlocks() {
-    const bool windy = length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
+    const bool windy = isWindy();
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         Rest& rest = state_.rests[b];
         if (rest.asleep &&

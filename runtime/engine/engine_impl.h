@@ -63,6 +63,7 @@ struct Engine::Impl : InMemory {
     void repairRoots(std::size_t block);
     std::uint32_t substepsOf(const FrameInput& input, std::uint32_t usual) const;
     void takeBody(const FrameInput& input);
+    bool isWindy() const;
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);

@@ -107,7 +107,7 @@ class SurprisesTest : public WindowTest {
             return table && table->header()->isVisible() &&
                    table->header()->length() > table->viewport()->width();
         };
-        EXPECT_TRUE(QTest::qWaitFor([&] { return !isCut(); }, 2000))
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !isCut(); }, 20'000))
             << name << ", " << area.objectName().toStdString() << " has " << area.viewport()->width();
     }
     void inEachPanel(const std::function<void(QDockWidget&, const QString&)>& look) {
