@@ -2,6 +2,7 @@
 #include "editor/fields/blocks.h"
 
 #include <QDialogButtonBox>
+#include <QEvent>
 #include <QHeaderView>
 #include <QLabel>
 #include <QScrollArea>

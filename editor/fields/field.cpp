@@ -81,10 +81,10 @@ struct OperatorAt {
     }
 };
 
-std::vector<Field> settingsFields(const Groom& groom, const OperatorAt& at, const std::vector<FieldRow>& rows,
-                                  SettingsPart part) {
+std::vector<Field> settingsFields(const Groom& onHead, const OperatorAt& at,
+                                  const std::vector<FieldRow>& rows, SettingsPart part) {
     std::vector<Field> fields;
-    const Operator fresh = newOperator(at.op, headScale(groom));
+    const Operator fresh = newOperator(at.op, headScale(onHead));
     for (const FieldRow& row : rows) {
         if (row.info.components() == 0) continue;
         Field field = at.field(row.info);
