@@ -129,6 +129,17 @@ class Rows {
     double seconds_;
 };
 
+Status measureSamples(Rows& rows, GpuBench& bench) {
+    const auto& hair = samples();
+    if (!hair) return tl::unexpected(hair.error());
+    for (const Sample& sample : *hair) {
+        auto row = rows.measure(sample);
+        if (!row) return tl::unexpected(row.error());
+        bench.samples.push_back(std::move(*row));
+    }
+    return {};
+}
+
 Status measureFigure(Rows& rows, const Extent& extent, GpuBench& bench) {
     std::vector<double> counts, gpu, one, all;
     for (const std::uint32_t strands : extent.strands) {
@@ -193,18 +204,11 @@ Result<GpuBench> measureGpu(const Options& options, bool figureAlone) {
     if (!bandwidth) return tl::unexpected(bandwidth.error());
     bench.copyBandwidth = *bandwidth;
     Rows rows(**device, extent.seconds);
-    if (figureAlone) {
-        if (auto status = measureFigure(rows, extent, bench); !status) return tl::unexpected(status.error());
-        return bench;
-    }
-    const auto& hair = samples();
-    if (!hair) return tl::unexpected(hair.error());
-    for (const Sample& sample : *hair) {
-        auto row = rows.measure(sample);
-        if (!row) return tl::unexpected(row.error());
-        bench.samples.push_back(std::move(*row));
+    if (!figureAlone) {
+        if (auto status = measureSamples(rows, bench); !status) return tl::unexpected(status.error());
     }
     if (auto status = measureFigure(rows, extent, bench); !status) return tl::unexpected(status.error());
+    if (figureAlone) return bench;
     if (auto status = measureDetails(rows, extent, bench); !status) return tl::unexpected(status.error());
     return bench;
 }

@@ -204,9 +204,11 @@ JobRun declare(CLI::App& job) {
            "--look", options->look,
            "Look of the Look panel: colours, and of some the highlights. --from and fields override it")
         ->check(CLI::IsMember(lookNames()));
-    job.add_flag("--full-head", options->fill,
-                 "Follow hairs until the scalp is as dense as a person's: 160 hairs per cm², spread between "
-                 "the strands. --from and fields override it");
+    job.add_flag(
+        "--full-head", options->fill,
+        fmt::format("Follow hairs until the scalp is as dense as a person's: {} hairs per cm², spread "
+                    "between the strands. --from and fields override it",
+                    kHairsPerCm2));
     auto* image = job.add_option("--dye-image", options->dyeImage,
                                  "PNG at the root UVs. White strands take the dye of the material");
     job.add_option("--dye-attribute", options->dyeAttribute,

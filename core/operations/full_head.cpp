@@ -12,12 +12,6 @@
 namespace hairloom {
 namespace {
 
-std::size_t guidesOf(const Groom& groom) {
-    const auto flags = groom.strandAttributes.view<std::uint8_t>(attribute::kGuide);
-    if (flags.size() != groom.strandCount()) return groom.strandCount();
-    return flags.size() - static_cast<std::size_t>(std::ranges::count(flags, std::uint8_t{0}));
-}
-
 /// Where nobody chose another size.
 template <class S>
 void fitDefault(S& settings, std::string_view name, float scale) {
@@ -29,7 +23,7 @@ void fitDefault(S& settings, std::string_view name, float scale) {
 }  // namespace
 
 Status fillHead(Groom& groom) {
-    const std::size_t guides = guidesOf(groom);
+    const std::size_t guides = groom.guideCount();
     if (guides == 0) return fail("there are no strands to fill between", "place hair first");
     if (!groom.scalp || groom.scalpSelection.empty())
         return fail("no scalp is selected, so nobody knows where hair grows", "select the scalp first");

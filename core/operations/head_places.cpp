@@ -50,16 +50,15 @@ Vec3f placeFound(const Groom& groom, std::string_view setting) {
 
 float headScale(const Groom& groom) {
     if (!groom.scalp) return 1;
-    Box3f box, whole;
+    Box3f box;
     for (const Vec3f& place : whereHairGrows(groom)) box.extend(place);
-    for (const Vec3f& place : groom.scalp->positions()) whole.extend(place);
-    const double times = double{box.diagonal().norm()} / kPersons;
+    const double found = double{box.diagonal().norm()} / kPersons;
     // Brows and beards grow on little of a head that is none of a doll.
-    const bool isDoll = double{whole.diagonal().norm()} < kSmallest * kPersons;
-    if (!(times > 0) || (times < 1 && !isDoll)) return 1;
+    const bool isDoll = double{groom.scalp->bounds().diagonal().norm()} < kSmallest * kPersons;
+    if (!(found > 0) || (found < 1 && !isDoll)) return 1;
     // The nearest of 1, 2, 5 and 10 times a power of ten, by ratio.
-    const double decade = std::pow(10.0, std::floor(std::log10(std::clamp(times, 1 / kMost, kMost))));
-    const double within = std::clamp(times, 1 / kMost, kMost) / decade;
+    const double times = std::clamp(found, 1 / kMost, kMost);
+    const double decade = std::pow(10.0, std::floor(std::log10(times))), within = times / decade;
     const double step = within < std::sqrt(2.0)    ? 1
                         : within < std::sqrt(10.0) ? 2
                         : within < std::sqrt(50.0) ? 5

@@ -19,7 +19,7 @@ Vec3f placeFound(const Groom& groom, std::string_view setting);
 
 /// How much larger than a person's head the one is that hair grows on, as a round number: 1 from children to
 /// grown-ups, else 0.2, 0.5, 2, 5, 10 and so on, within 0.001 … 1000. By the scalp selection, or all of the
-/// mesh where none is selected. 1 without a scalp.
+/// mesh where none is selected; below 1 where the whole mesh is that of a doll's head. 1 without a scalp.
 float headScale(const Groom& groom);
 
 /// Brings a length, or a number for each metre, that nobody chose to that size, inside the range of its

@@ -207,10 +207,12 @@ class PlacePanel : public QWidget {
         count_->setWordWrap(true);
         count_->setProperty("role", "dim");
         layout->addWidget(count_);
-        fill_ = pushButton("fillHead", "Full head of hair",
-                           "Adds follow hairs until the scalp is as dense as a person's: 160 hairs per cm², "
-                           "spread between the strands. More hairs take longer to draw",
-                           [this] { fill(); });
+        fill_ =
+            pushButton("fillHead", "Full head of hair",
+                       QString("Adds follow hairs until the scalp is as dense as a person's: %1 hairs per "
+                               "cm², spread between the strands. More hairs take longer to draw")
+                           .arg(kHairsPerCm2),
+                       [this] { fill(); });
         layout->addWidget(fill_);
         layout->addWidget(imageButton(
             "densityImage", "Density from image…",

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "importers/mesh_reader/tinygltf.h"
 
@@ -136,6 +137,10 @@ Result<Keys> keysOf(const GltfFile& file, const tinygltf::Animation& animation,
     return keys;
 }
 
+bool areFinite(std::span<const float> values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
 }  // namespace
 
 Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
@@ -157,8 +162,7 @@ Result<std::vector<Track<float>>> readWeights(const GltfFile& file, const tinygl
                                               const std::vector<bool>& wanted) {
     auto keys = keysOf(file, animation, source, wanted.size(), 1);
     if (!keys) return tl::unexpected(keys.error());
-    if (!std::ranges::all_of(keys->values, [](float value) { return std::isfinite(value); }))
-        return fail("weights of keys are not finite");
+    if (!areFinite(keys->values)) return fail("weights of keys are not finite");
     keys->components = 1;
     std::vector<Track<float>> tracks(wanted.size());
     for (std::size_t target = 0; target < wanted.size(); ++target) {
@@ -166,8 +170,7 @@ Result<std::vector<Track<float>>> readWeights(const GltfFile& file, const tinygl
         if (!wanted[target]) continue;
         tracks[target] = toTrack<float>(*keys);
         // Between finite keys a cubic of huge tangents may not be finite.
-        if (!std::ranges::all_of(tracks[target].values, [](float value) { return std::isfinite(value); }))
-            return fail("weights between keys are not finite");
+        if (!areFinite(tracks[target].values)) return fail("weights between keys are not finite");
     }
     return tracks;
 }

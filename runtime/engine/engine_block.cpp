@@ -13,31 +13,24 @@ namespace {
 /// Whether no strand has gone farther than `reach` metres from where the anchors have it. Else they are moved
 /// there.
 bool stays(const BlockView& blockView, float reach, Rest& rest) {
-    const auto placeOf = [&](std::uint32_t anchor, std::uint32_t lane) {
-        const std::uint32_t point = (blockView.points - 1) * (anchor + 1) / Rest::kAnchors;
-        const std::size_t i = std::size_t{point} * kBlockLanes + lane;
-        return Float3{blockView.position.x[i], blockView.position.y()[i], blockView.position.z()[i]};
-    };
+    decltype(rest.anchors) now;
     bool all = true;
-    for (std::uint32_t a = 0; a < Rest::kAnchors && all; ++a) {
-        const float* const at = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
+    for (std::uint32_t a = 0; a < Rest::kAnchors; ++a) {
+        const std::uint32_t point = (blockView.points - 1) * (a + 1) / Rest::kAnchors;
+        const float* const before = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
+        float* const at = now.data() + std::size_t{a} * 3 * kBlockLanes;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const Float3 away =
-                placeOf(a, lane) - Float3{at[lane], at[kBlockLanes + lane], at[2 * kBlockLanes + lane]};
+            const std::size_t i = std::size_t{point} * kBlockLanes + lane;
+            at[lane] = blockView.position.x[i];
+            at[kBlockLanes + lane] = blockView.position.y()[i];
+            at[2 * kBlockLanes + lane] = blockView.position.z()[i];
+            const Float3 away{at[lane] - before[lane], at[kBlockLanes + lane] - before[kBlockLanes + lane],
+                              at[2 * kBlockLanes + lane] - before[2 * kBlockLanes + lane]};
             all = all && dot(away, away) < reach * reach;
         }
     }
-    if (all) return true;
-    for (std::uint32_t a = 0; a < Rest::kAnchors; ++a) {
-        float* const at = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const Float3 place = placeOf(a, lane);
-            at[lane] = place.x;
-            at[kBlockLanes + lane] = place.y;
-            at[2 * kBlockLanes + lane] = place.z;
-        }
-    }
-    return false;
+    if (!all) rest.anchors = now;
+    return all;
 }
 
 }  // namespace

@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <QComboBox>
+#include <QFile>
 #include <QThread>
 #include <fstream>
 
+#include "core/animation/actor.h"
 #include "core/documents/keyed_motion.h"
 #include "core/groom/file/time_line_json.h"
 #include "core/groom/time_line.h"
 #include "editor/simulation/player.h"
 #include "tests/editor/window_fixture.h"
+#include "tests/support/talking_skin.h"
 
 namespace hairloom::editor {
 namespace {
@@ -120,6 +123,42 @@ TEST_F(TimeLineTest, WhatCannotPlayIsNotTaken) {
     EXPECT_FALSE(window->openTimeLine(inFolder("line.json")));
     EXPECT_FALSE(window->openTimeLine(inFolder("nothing.json")));
     EXPECT_EQ(timeLineOf(document().groom()), line()) << "nothing is lost";
+}
+
+TEST_F(TimeLineTest, AFaceTalksWhereverTheLineIsScrubbedAndAfterTheProjectIsOpenedAgain) {
+    const QString head = inFolder("talking.glb");
+    {
+        QFile file(head);
+        ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+        file.write(
+            QByteArray::fromStdString(test::talkingBust((samplesFolder() / "bust/bust.glb").string())));
+    }
+    window->open(head);
+    finishWork();
+    parts().keying.addClip("talk");
+    const auto expectTalking = [&](float time) {
+        player().scrub(time);
+        ASSERT_TRUE(player().pose());
+        const auto& posed = player().pose()->head.scalpPositions_ws;
+        ASSERT_EQ(posed.size(), groom().scalp->vertexCount());
+        double farthest = 0, off = 0;
+        for (std::size_t v = 0; v < posed.size(); ++v) {
+            const Vec3d rest = groom().scalp->positions()[v].cast<double>();
+            const double weight = test::weightOf(*player().actor(), v, "head");
+            const test::FaceAt now = test::talkAt(static_cast<double>(time));
+            off = std::max(off, (posed[v].cast<double>() - test::skinAt(rest, weight, now)).norm());
+            farthest = std::max(
+                farthest, (posed[v].cast<double>() - test::skinAt(rest, weight, {0, 0, now.radians})).norm());
+        }
+        EXPECT_LT(off, 2e-5) << time;
+        EXPECT_GT(farthest, 0.004) << time;
+    };
+    for (const float time : {0.75f, 0.25f, 0.5f}) expectTalking(time);
+    ASSERT_TRUE(window->saveTo(inFolder("talking.hairloom")));
+    trigger("file.new");
+    window->open(inFolder("talking.hairloom"));
+    finishWork();
+    expectTalking(0.25f);
 }
 
 }  // namespace
