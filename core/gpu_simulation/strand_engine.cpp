@@ -126,7 +126,7 @@ Status StrandEngine::Impl::allocate() {
         if (auto made = model->allocate(device, batch); !made) return made;
         const bool gathers = key.sleep && (sharesBlocks(key.shape.storage) || key.shape.members > 1);
         have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0);
-        have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0);
+        have(batch.rests, "rests", key.sleep ? batch.blocks.size() * runtime::kRestFloats : 0);
         const bool scratch = key.shape.storage == StrandStorage::buffers && !key.stages.empty();
         have(batch.scratch, "scratch", scratch ? plane * gpuModelOf(key.model).scratchPlanes(key) : 0);
         sleeps = sleeps || key.sleep;

@@ -137,7 +137,7 @@ void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
     if (!restsVoid) return;
     for (const StrandBatch& batch : batches) {
         if (batch.rests == nullptr) continue;
-        const std::vector<float> awake(batch.blocks.size() * 2, 0.0f);
+        const std::vector<float> awake(batch.blocks.size() * HAIRLOOM_REST_NUMBERS, 0.0f);
         list.updateBuffer(batch.rests, 0, bytesOfVector(awake));
     }
     restsVoid = false;

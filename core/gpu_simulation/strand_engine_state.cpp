@@ -74,13 +74,11 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
         batch.model.state.buffer != nullptr ? take(batch.model.state.buffer) : std::vector<float>();
     model->readOwn(*shape, batch, moving, own, state);
     if (batch.rests == nullptr) return;
-    const std::vector<float> rests = take(batch.rests);
-    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
-        const bool asleep = rests[2 * n + 1] != 0.0f;
-        state.rests[batch.blocks[n]] = {rests[2 * n], asleep};
-        if (!asleep) continue;
+    runtime::restsToBlocks(batch.inSlots(), take(batch.rests), state.rests);
+    for (const std::uint32_t b : batch.blocks) {
+        if (!state.rests[b].asleep) continue;
         // What sleeps has no speed; kernels of lanes take it away when they wake it.
-        const runtime::Block& block = shape->blocks[batch.blocks[n]];
+        const runtime::Block& block = shape->blocks[b];
         float* const planes = state.planes.data() + block.firstPlane * runtime::kStatePlanes;
         std::copy_n(planes, 3 * planeSize(block), planes + 3 * planeSize(block));
     }
@@ -135,14 +133,7 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     send(batch.state, moving);
     send(batch.roots, runtime::rowsOfSlots(batch.inSlots(), state.roots.data(), runtime::kRootRows));
     if (!own.empty()) send(batch.model.state.buffer, own);
-    if (batch.rests != nullptr) {
-        std::vector<float> rests;
-        for (const std::uint32_t block : batch.blocks) {
-            rests.push_back(state.rests[block].time);
-            rests.push_back(state.rests[block].asleep ? 1.0f : 0.0f);
-        }
-        send(batch.rests, rests);
-    }
+    if (batch.rests != nullptr) send(batch.rests, runtime::restsOfSlots(batch.inSlots(), state.rests));
     return {};
 }
 

@@ -10,26 +10,24 @@
 namespace hairloom::runtime {
 namespace {
 
-/// Whether no strand has gone farther than `reach` metres from where the anchors have it. Else they are moved
-/// there.
+/// Whether no point is farther than `reach` metres from its anchor. Anchors of those that are, are moved there.
 bool stays(const BlockView& blockView, float reach, Rest& rest) {
-    decltype(rest.anchors) now;
     bool all = true;
     for (std::uint32_t a = 0; a < Rest::kAnchors; ++a) {
         const std::uint32_t point = (blockView.points - 1) * (a + 1) / Rest::kAnchors;
-        const float* const before = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
-        float* const at = now.data() + std::size_t{a} * 3 * kBlockLanes;
+        float* const anchors = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            float* const anchor = anchors + lane;
             const std::size_t i = std::size_t{point} * kBlockLanes + lane;
-            at[lane] = blockView.position.x[i];
-            at[kBlockLanes + lane] = blockView.position.y()[i];
-            at[2 * kBlockLanes + lane] = blockView.position.z()[i];
-            const Float3 away{at[lane] - before[lane], at[kBlockLanes + lane] - before[kBlockLanes + lane],
-                              at[2 * kBlockLanes + lane] - before[2 * kBlockLanes + lane]};
-            all = all && dot(away, away) < reach * reach;
+            const Float3 at{blockView.position.x[i], blockView.position.y()[i], blockView.position.z()[i]};
+            const Float3 away = at - Float3{anchor[0], anchor[kBlockLanes], anchor[2 * kBlockLanes]};
+            if (dot(away, away) < reach * reach) continue;
+            anchor[0] = at.x;
+            anchor[kBlockLanes] = at.y;
+            anchor[2 * kBlockLanes] = at.z;
+            all = false;
         }
     }
-    if (!all) rest.anchors = now;
     return all;
 }
 
@@ -88,11 +86,11 @@ void Engine::Impl::restoreStrands(std::size_t block, const BlockView& blockView)
 /// trembles in its place, as hair does that lies on an edge of the skin: in five delays it goes no farther
 /// than slow hair may in one. That takes longer, since hair that swings turns round in its place, too.
 void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Frame& frame) {
-    constexpr float kLonger = 5.0f;
+    constexpr float kLonger = static_cast<float>(HAIRLOOM_STAY_DELAYS);
     Rest& rest = state_.rests[block];
     const BlockReport& report = blockReports_[block];
     if (report.rootsMoved || report.restored > 0) {
-        rest = {};
+        rest.time = rest.stayed = 0.0f;
         return;
     }
     const float slow = settings_.sleepSpeed * frame.context.h, delay = settings_.sleepDelay;

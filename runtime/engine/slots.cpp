@@ -69,6 +69,31 @@ Vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::size_t r
     return values;
 }
 
+Vector<float> restsOfSlots(const Slots& slots, std::span<const Rest> rests) {
+    Vector<float> values;
+    values.reserve(slots.blocks.size() * kRestFloats);
+    for (const std::uint32_t block : slots.blocks) {
+        const Rest& rest = rests[block];
+        for (const float number : {rest.time, rest.asleep ? 1.0f : 0.0f, rest.stayed, 0.0f})
+            values.push_back(number);
+    }
+    for (const std::uint32_t block : slots.blocks)
+        values.insert(values.end(), rests[block].anchors.begin(), rests[block].anchors.end());
+    return values;
+}
+
+void restsToBlocks(const Slots& slots, std::span<const float> values, std::span<Rest> rests) {
+    const float* number = values.data();
+    const float* anchors = number + slots.blocks.size() * HAIRLOOM_REST_NUMBERS;
+    for (const std::uint32_t block : slots.blocks) {
+        Rest& rest = rests[block];
+        rest = {number[0], number[1] != 0.0f, number[2]};
+        std::copy_n(anchors, rest.anchors.size(), rest.anchors.begin());
+        number += HAIRLOOM_REST_NUMBERS;
+        anchors += rest.anchors.size();
+    }
+}
+
 Vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
                                      std::size_t count, std::span<const std::size_t> which) {
     Vector<shaders::float4> values(slots.planeSize());

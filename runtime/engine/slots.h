@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 
 #include "engine/state.h"
 #include "hairloom/memory.h"
@@ -34,6 +35,12 @@ void planesOfBlocks(const RestShape& shape, const Slots& slots, std::span<const 
 void rowsToBlocks(const Slots& slots, std::span<const float> values, std::size_t rows, float* blocks);
 /// The reverse.
 Vector<float> rowsOfSlots(const Slots& slots, const float* blocks, std::size_t rows);
+/// How blocks rest, as HAIRLOOM_REST_NUMBERS has it: kRestFloats for each.
+Vector<float> restsOfSlots(const Slots& slots, std::span<const Rest> rests);
+/// The reverse.
+void restsToBlocks(const Slots& slots, std::span<const float> values, std::span<Rest> rests);
+inline constexpr std::size_t kRestFloats = HAIRLOOM_REST_NUMBERS + std::tuple_size_v<decltype(Rest::anchors)>;
+
 /// Up to four of the planes of each block, as the components of a float4 for each point.
 Vector<shaders::float4> quadsOfSlots(const RestShape& shape, const Slots& slots, const Floats& planes,
                                      std::size_t count, std::span<const std::size_t> which);

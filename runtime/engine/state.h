@@ -86,7 +86,7 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const
 /// How long a block has been at rest.
 struct Rest {
     /// Points of a strand that say whether it stays: at each quarter of them, the tip last.
-    static constexpr std::uint32_t kAnchors = 4;
+    static constexpr std::uint32_t kAnchors = HAIRLOOM_REST_ANCHORS;
 
     float time = 0.0f;  ///< seconds for which all points were slow
     bool asleep = false;

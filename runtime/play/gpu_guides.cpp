@@ -198,14 +198,8 @@ void GpuGuides::fill(std::uint32_t buffer, std::span<std::byte> out) const {
             return putGpu(out, rowsOfSlots(slots(), state_->roots.data(), kRootRows));
         case HL_GPU_BUFFER_ROD_STATE:
             return putGpu(out, rodStateOfSlots(*shape_, slots(), *state_));
-        case HL_GPU_BUFFER_RESTS: {
-            Vector<float> rests;
-            for (const Rest& block : state_->rests) {
-                rests.push_back(block.time);
-                rests.push_back(block.asleep ? 1.0f : 0.0f);
-            }
-            return putGpu(out, rests);
-        }
+        case HL_GPU_BUFFER_RESTS:
+            return putGpu(out, restsOfSlots(slots(), state_->rests));
         default:
             return putGpu(out, std::span<const std::byte>());  // REPORT
     }

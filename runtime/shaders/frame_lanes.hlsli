@@ -102,6 +102,15 @@ void finishStrand(uint strands) {
     const bool lost = gStrandLost[gStrand] != 0u;
     maximum = lost ? 0u : gStrandFastest[gStrand];
     if (lost) placeAtRest();
+#if HAIR_SLEEP
+    if (gFrame.wakeAll == 0u) {
+        ALL_POINTS(i) {
+            [unroll] for (uint a = 0; a < HAIRLOOM_REST_ANCHORS; ++a) {
+                if (pointOf(i) == anchorPoint(a, POINTS)) lookAtAnchor(a, gPosition[i]);
+            }
+        }
+    }
+#endif
     ONLY_POINT(0) {
         if (lost) {
             if (gSlot % HAIRLOOM_GROUP_STRANDS < strands) InterlockedAdd(gReport[REPORT_RESTORED], 1u);
@@ -133,7 +142,7 @@ void main(uint3 groupId : SV_GroupID, uint index : SV_GroupIndex) {
     const uint block = group * HAIR_STRANDS / HAIRLOOM_GROUP_STRANDS, strands = gBlocks[block].y;
     if (gThreadInGroup == 0) {
         gGroup = group;
-        gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+        gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = gGroupLeft = 0u;
 #if !HAIR_WAVE
         gLastAsked[0] = gLastAsked[1] = 0u;
 #endif
@@ -141,8 +150,7 @@ void main(uint3 groupId : SV_GroupID, uint index : SV_GroupIndex) {
     ONLY_POINT(0) gStrandFastest[gStrand] = gStrandLost[gStrand] = 0u;
     bool slept = false;
 #if HAIR_SLEEP
-    float rested = gRests[2 * block];
-    slept = gRests[2 * block + 1] != 0.0;
+    slept = gRests[restOf(block) + 1] != 0.0;
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
@@ -150,7 +158,7 @@ void main(uint3 groupId : SV_GroupID, uint index : SV_GroupIndex) {
         lookAtRoots(block, gThreadInGroup);
         lookForSpheres(block, gThreadInGroup);
         GroupMemoryBarrierWithGroupSync();
-        if (sleepsOn(block, gThreadInGroup, strands, rested)) return;
+        if (sleepsOn(block, gThreadInGroup, strands)) return;
     }
 #endif
     loadState();
@@ -175,7 +183,7 @@ void main(uint3 groupId : SV_GroupID, uint index : SV_GroupIndex) {
     if (gThreadInGroup == 0) {
         if (gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
 #if HAIR_SLEEP
-        judgeBlock(block, strands, rested);
+        judgeBlock(block, strands);
 #endif
     }
 }

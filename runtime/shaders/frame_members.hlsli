@@ -13,11 +13,10 @@ void main(uint3 groupId : SV_GroupID, uint thread : SV_GroupIndex) {
     gSlot = group * HAIR_STRANDS + thread % HAIR_STRANDS;
     const uint block = gSlot / HAIRLOOM_GROUP_STRANDS, strands = gBlocks[block].y;
     gPointCount = gBlocks[block].x;
-    if (thread == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+    if (thread == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = gGroupLeft = 0u;
     bool slept = false;
 #if HAIR_SLEEP
-    float rested = gRests[2 * block];
-    slept = gRests[2 * block + 1] != 0.0;
+    slept = gRests[restOf(block) + 1] != 0.0;
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
@@ -25,7 +24,7 @@ void main(uint3 groupId : SV_GroupID, uint thread : SV_GroupIndex) {
         lookAtRoots(block, thread);
         lookForSpheres(block, thread);
         GroupMemoryBarrierWithGroupSync();
-        if (sleepsOn(block, thread, strands, rested)) return;
+        if (sleepsOn(block, thread, strands)) return;
     }
     lookAtRoots(block, thread);
 #endif
@@ -42,6 +41,6 @@ void main(uint3 groupId : SV_GroupID, uint thread : SV_GroupIndex) {
     if (thread != 0) return;
     if (gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
 #if HAIR_SLEEP
-    judgeBlock(block, strands, rested);
+    judgeBlock(block, strands);
 #endif
 }

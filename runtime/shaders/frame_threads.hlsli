@@ -13,19 +13,20 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
 #if !HAIR_EXACT
     gPointCount = gBlocks[block].x;
 #endif
-    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = gGroupLeft = 0u;
     GroupMemoryBarrierWithGroupSync();
     if (rootMoves(gSlot)) InterlockedOr(gGroupMoved, 1u);
     bool runs = true;
 #if HAIR_SLEEP
     // Read by all before the last barrier, written by one after it.
-    float rested = gRests[2 * block];
-    bool asleep = gRests[2 * block + 1] != 0.0;
+    const uint rest = restOf(block);
+    float rested = gRests[rest], stayed = gRests[rest + 2];
+    bool asleep = gRests[rest + 1] != 0.0;
     if (asleep && sphereNear(gRootsTo[2 * gSlot].xyz)) InterlockedOr(gGroupNear, 1u);
     GroupMemoryBarrierWithGroupSync();
     if (asleep && (gGroupMoved != 0u || gGroupNear != 0u || gFrame.wakeAll != 0u)) {
         asleep = false;
-        rested = 0.0;
+        rested = stayed = 0.0;
     }
     runs = !asleep;
 #endif
@@ -40,8 +41,8 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
 #if HAIR_SLEEP
     if (runs) {
         const bool slow = gGroupMoved == 0u && gGroupRestored == 0u && asfloat(gGroupFastest) < gFrame.slowSquared;
-        rested = slow ? rested + gFrame.dt : 0.0;
-        asleep = slow && rested >= gFrame.sleepDelay;
+        const bool stays = gGroupMoved == 0u && gGroupRestored == 0u && gGroupLeft == 0u && gFrame.wakeAll == 0u;
+        asleep = fallsAsleep(slow, stays, rested, stayed);
         if (asleep) {
             EACH for (uint p = 0; p < POINTS; ++p) setPrevious(p, position(p));
         }
@@ -49,8 +50,9 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
         rested += gFrame.dt;
     }
     if (lane == 0) {
-        gRests[2 * block] = rested;
-        gRests[2 * block + 1] = asleep ? 1.0 : 0.0;
+        gRests[rest] = rested;
+        gRests[rest + 1] = asleep ? 1.0 : 0.0;
+        gRests[rest + 2] = stayed;
         if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], gBlocks[block].y);
     }
 #endif

@@ -14,20 +14,19 @@ void main(uint3 groupId : SV_GroupID, uint lane : SV_GroupIndex) {
 #if !HAIR_EXACT
     gPointCount = gBlocks[block].x;
 #endif
-    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = gGroupLeft = 0u;
     // All threads come to each barrier, also where a block sleeps: Microsoft's compiler takes none behind a branch on what a
     // buffer holds.
     bool runs = true, slept = false;
 #if HAIR_SLEEP
-    float rested = gRests[2 * block];
-    slept = gRests[2 * block + 1] != 0.0;
+    slept = gRests[restOf(block) + 1] != 0.0;
     GroupMemoryBarrierWithGroupSync();
     lookAtRoots(block, lane);
     if (slept) lookForSpheres(block, lane);
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
-    if (slept) runs = !sleepsOn(block, lane, strands, rested);
+    if (slept) runs = !sleepsOn(block, lane, strands);
 #endif
     if (runs && lane == 0) {
         loadState();
@@ -43,7 +42,7 @@ void main(uint3 groupId : SV_GroupID, uint lane : SV_GroupIndex) {
         leaveFrame();
         if (gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
 #if HAIR_SLEEP
-        judgeBlock(block, strands, rested);
+        judgeBlock(block, strands);
 #endif
     }
     GroupMemoryBarrierWithGroupSync();

@@ -76,4 +76,9 @@ void finishStrand(uint block, uint lane) {
         InterlockedOr(gGroupRestored, 1u);
     }
     InterlockedMax(gGroupFastest, asuint(maximum));
+#if HAIR_SLEEP
+    if (gFrame.wakeAll == 0u) {
+        [unroll] for (uint a = 0; a < HAIRLOOM_REST_ANCHORS; ++a) lookAtAnchor(a, position(anchorPoint(a, POINTS)));
+    }
+#endif
 }

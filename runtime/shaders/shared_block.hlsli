@@ -25,35 +25,42 @@ void lookForSpheres(uint block, uint lane) {
 }
 
 /// Whether a block that was asleep stays so in this frame, to which each of its work groups comes alike, after both looks and a
-/// barrier. `rested`: seconds for which it has been slow.
-bool sleepsOn(uint block, uint lane, uint strands, inout float rested) {
+/// barrier.
+bool sleepsOn(uint block, uint lane, uint strands) {
+    const uint rest = restOf(block);
     if (gGroupMoved != 0u || gGroupNear != 0u || gFrame.wakeAll != 0u) {
-        rested = 0.0;
+        if (lane == 0) gRests[rest] = gRests[rest + 2] = 0.0;
         return false;
     }
     // One work group of the block keeps the time.
     if (lane == 0 && gSlot == block * HAIRLOOM_GROUP_STRANDS) {
-        gRests[2 * block] = rested + gFrame.dt;
+        gRests[rest] += gFrame.dt;
         InterlockedAdd(gReport[REPORT_ASLEEP], strands);
     }
     return true;
 }
 
-// In what is gathered of a block: groups that are not slow count as so many.
-#define NOT_SLOW 0x10000u
+// In what is gathered of a block: what groups that are not slow count besides, and those whose strands do not stay.
+#define NOT_SLOW 0x100u
+#define NOT_STAYING 0x10000u
 
 /// What the first thread of each work group of a block leaves, and what the last of them makes of it.
-void judgeBlock(uint block, uint strands, float rested) {
-    const bool slowHere = gGroupMoved == 0u && gGroupRestored == 0u && asfloat(gGroupFastest) < gFrame.slowSquared;
-    uint before;
-    InterlockedAdd(gGathered[block], slowHere ? 1u : NOT_SLOW + 1u, before);
-    if ((before & (NOT_SLOW - 1u)) + 1u < HAIRLOOM_GROUP_STRANDS / HAIR_STRANDS) return;
+void judgeBlock(uint block, uint strands) {
+    const bool still = gGroupMoved == 0u && gGroupRestored == 0u;
+    const bool slow = still && asfloat(gGroupFastest) < gFrame.slowSquared;
+    const bool stays = still && gGroupLeft == 0u && gFrame.wakeAll == 0u;
+    uint gathered;
+    const uint own = 1u + (slow ? 0u : NOT_SLOW) + (stays ? 0u : NOT_STAYING);
+    InterlockedAdd(gGathered[block], own, gathered);
+    gathered += own;
+    if (gathered % NOT_SLOW < HAIRLOOM_GROUP_STRANDS / HAIR_STRANDS) return;
     gGathered[block] = 0u;
-    const bool slow = slowHere && before < NOT_SLOW;
-    rested = slow ? rested + gFrame.dt : 0.0;
-    const bool asleep = slow && rested >= gFrame.sleepDelay;
-    gRests[2 * block] = rested;
-    gRests[2 * block + 1] = asleep ? 1.0 : 0.0;
+    const uint rest = restOf(block);
+    float rested = gRests[rest], stayed = gRests[rest + 2];
+    const bool asleep = fallsAsleep(gathered % NOT_STAYING < NOT_SLOW, gathered < NOT_STAYING, rested, stayed);
+    gRests[rest] = rested;
+    gRests[rest + 1] = asleep ? 1.0 : 0.0;
+    gRests[rest + 2] = stayed;
     if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], strands);
 }
 #endif

@@ -5,6 +5,7 @@ groupshared uint gGroupMoved;
 groupshared uint gGroupFastest;
 groupshared uint gGroupRestored;
 groupshared uint gGroupNear;
+groupshared uint gGroupLeft;  // not 0: a point has left its anchor
 
 /// Whether the root of a slot moves in this frame.
 bool rootMoves(uint slot) { return gRootsTo[2 * slot].w != 0.0; }
@@ -20,5 +21,36 @@ bool sphereNear(float3 root) {
         near = near || dot(gap, gap) < gWaking[i].w * gWaking[i].w;
     }
     return near;
+}
+
+/// Where the numbers of a block are in gRests.
+uint restOf(uint block) { return HAIRLOOM_REST_NUMBERS * block; }
+
+/// The point of a strand whose anchor that is.
+uint anchorPoint(uint anchor, uint points) { return (points - 1) * (anchor + 1) / HAIRLOOM_REST_ANCHORS; }
+
+/// Looks whether a point of the strand is where its anchor says, and moves the anchor there where it is not.
+void lookAtAnchor(uint anchor, float3 at) {
+    const uint block = gSlot / HAIRLOOM_GROUP_STRANDS, blocks = gFrame.slots / HAIRLOOM_GROUP_STRANDS;
+    const uint x = HAIRLOOM_REST_NUMBERS * blocks + 3 * HAIRLOOM_GROUP_STRANDS * (HAIRLOOM_REST_ANCHORS * block + anchor) +
+                   gSlot % HAIRLOOM_GROUP_STRANDS;
+    const uint y = x + HAIRLOOM_GROUP_STRANDS, z = y + HAIRLOOM_GROUP_STRANDS;
+    const float3 away = at - float3(gRests[x], gRests[y], gRests[z]);
+    const float delays = gFrame.sleepDelay / gFrame.h;
+    if (dot(away, away) < gFrame.slowSquared * delays * delays) return;
+    gRests[x] = at.x;
+    gRests[y] = at.y;
+    gRests[z] = at.z;
+    InterlockedOr(gGroupLeft, 1u);
+}
+
+/// Whether a block falls asleep at the end of a frame in which it was slow, or all of its points stayed at their anchors.
+bool fallsAsleep(bool slow, bool stays, inout float rested, inout float stayed) {
+    rested = slow ? rested + gFrame.dt : 0.0;
+    stayed = stays ? stayed + gFrame.dt : 0.0;
+    if (slow && rested >= gFrame.sleepDelay) return true;
+    if (stayed <= HAIRLOOM_STAY_DELAYS * gFrame.sleepDelay) return false;
+    rested = stayed;
+    return true;
 }
 #endif

@@ -78,7 +78,7 @@ StructuredBuffer<float4> gFactors : register(t2);
 StructuredBuffer<float4> gTargets : register(t3);
 #endif
 #if HAIR_SLEEP
-RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
+RWStructuredBuffer<float> gRests : register(u2);     // see HAIRLOOM_REST_NUMBERS
 #endif
 #if HAIR_SLEEP && (HAIR_STORAGE >= 3 || HAIR_MEMBERS > 1)
 RWStructuredBuffer<uint> gGathered : register(HAIR_GATHERED_REGISTER);  // per block: of its work groups, see shared_block.hlsli

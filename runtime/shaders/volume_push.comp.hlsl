@@ -47,7 +47,7 @@ void main(uint3 thread : SV_DispatchThreadID) {
         gState[planeSlot(3 + axis, at)] = before[axis] - change[axis] * gVolume.h;
     if (gVolume.rods != 0u) pushRod(at, change);
     if (gVolume.sleeps != 0u) {
-        gRests[2 * (at.slot / 32)] = 0.0;
-        gRests[2 * (at.slot / 32) + 1] = 0.0;
+        const uint rest = HAIRLOOM_REST_NUMBERS * (at.slot / HAIRLOOM_GROUP_STRANDS);
+        [unroll] for (uint n = 0; n < HAIRLOOM_REST_NUMBERS; ++n) gRests[rest + n] = 0.0;
     }
 }
