@@ -10,7 +10,8 @@
 namespace hairloom::runtime {
 namespace {
 
-/// Whether no point is farther than `reach` metres from its anchor. Anchors of those that are, are moved there.
+/// Whether no point is farther than `reach` metres from its anchor. Anchors of those that are, are moved
+/// there.
 bool stays(const BlockView& blockView, float reach, Rest& rest) {
     bool all = true;
     for (std::uint32_t a = 0; a < Rest::kAnchors; ++a) {
