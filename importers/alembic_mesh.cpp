@@ -11,6 +11,7 @@
 
 #include "importers/alembic_shown.h"
 #include "importers/file_faces.h"
+#include "importers/point_cache.h"
 #include "importers/scene_parts.h"
 #include "importers/transform_keys.h"
 
@@ -42,6 +43,7 @@ class Reader {
                 leftOut_.empty() ? "has no meshes" : "has no mesh that can be read: " + firstOf(leftOut_),
                 "expected a visible head as polygons");
         if (!leftOut_.empty()) scene_.warnings.push_back(firstOf(leftOut_) + ": these meshes were left out");
+        if (auto status = cache_.finish(clip_); !status) return tl::unexpected(inFile(status.error(), file_));
         finish();
         return std::move(scene_);
     }
@@ -114,19 +116,15 @@ class Reader {
         }
         if (auto status = FaceCollector::fits(scene_.soup, pointCount, faces.corners.size()); !status)
             return status;
-        collector_.movesPoints = collector_.movesPoints || positions->moves();
         collector_.isCage = collector_.isCage || object.schema.starts_with("AbcGeom_SubD");
         const auto where = toFileAt(archive_, object.inherited.levels, start_);
         if (!where) return tl::unexpected(where.error());
         const auto carrier = carrierOf(object.inherited.levels);
         if (!carrier) return tl::unexpected(carrier.error());
         firstPoint_ = static_cast<std::uint32_t>(scene_.soup.positions.size());
-        for (std::size_t p = 0; p < pointCount; ++p) {
-            const Vec3d point(double{(*points)[3 * p]}, double{(*points)[3 * p + 1]},
-                              double{(*points)[3 * p + 2]});
-            scene_.soup.positions.emplace_back((*where * point).cast<float>());
-        }
+        std::ranges::copy(pointsIn(*points, *where), std::back_inserter(scene_.soup.positions));
         const bool isCarried = *carrier != kNoBone;
+        if (positions->moves()) addCache(object, *positions, *where, pointCount, isCarried);
         scene_.skin.bones.resize(scene_.soup.positions.size(), {isCarried ? *carrier : 0});
         scene_.skin.weights.resize(scene_.soup.positions.size(), {isCarried ? 1.0f : 0.0f});
         isHole.assign(faces.count(), 0);
@@ -135,6 +133,27 @@ class Reader {
                 isHole[static_cast<std::size_t>(hole)] = 1;
         }
         return addFaces(object, faces, {pointCount, corners.size(), faces.count()}, *where);
+    }
+
+    /// `positions` are those of the object.
+    void addCache(const AlembicShownObject& object, const AlembicProperty& positions,
+                  const Eigen::Affine3d& toFile, std::size_t pointCount, bool isCarried) {
+        const SampleTimes& times = archive_.times(positions.timeSampling);
+        if (!times.ascend(positions.samples)) {
+            scene_.warnings.push_back(object.path +
+                                      ": times of its points do not ascend; they stay as at first");
+            return;
+        }
+        PointCache::Mesh mesh{
+            leafOf(object.path), firstPoint_, static_cast<std::uint32_t>(pointCount), {}, {}, isCarried};
+        for (std::uint32_t s = 0; s < positions.samples; ++s)
+            mesh.seconds.push_back(static_cast<float>(times.at(s) - start_));
+        mesh.read = [this, &positions, toFile](std::size_t sample) -> Result<std::vector<Vec3f>> {
+            const auto numbers = archive_.floats(positions, static_cast<std::uint32_t>(sample));
+            if (!numbers) return tl::unexpected(numbers.error());
+            return pointsIn(*numbers, toFile);
+        };
+        cache_.add(std::move(mesh));
     }
 
     /// Faces go clockwise in Alembic, seen from outside.
@@ -271,7 +290,7 @@ class Reader {
         scene_.soup.materialNames = {"default"};
         collector_.finish(scene_, "sets");
         clip_.name = "animation";
-        if (!clip_.channels.empty()) scene_.clips.push_back(std::move(clip_));
+        if (!clip_.channels.empty() || !clip_.morphs.empty()) scene_.clips.push_back(std::move(clip_));
         if (scene_.bones.empty()) scene_.skin = {};
     }
 
@@ -285,6 +304,7 @@ class Reader {
     std::unordered_map<std::string, std::uint32_t> groups_;
     std::vector<std::string> leftOut_;
     FaceCollector collector_;
+    PointCache cache_{scene_};
 };
 
 }  // namespace

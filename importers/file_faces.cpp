@@ -21,6 +21,16 @@ Mat3f turnOfNormals(const Mat3f& linear, bool isMirrored) {
 
 }  // namespace
 
+std::vector<Vec3f> pointsIn(std::span<const float> numbers, const Eigen::Affine3d& toWorld) {
+    std::vector<Vec3f> points;
+    points.reserve(numbers.size() / 3);
+    for (std::size_t n = 0; n + 2 < numbers.size(); n += 3) {
+        const Vec3d point(double{numbers[n]}, double{numbers[n + 1]}, double{numbers[n + 2]});
+        points.push_back((toWorld * point).cast<float>());
+    }
+    return points;
+}
+
 Status FaceCollector::fits(const PolygonSoup& soup, std::size_t points, std::size_t corners) {
     if (soup.positions.size() + points <= kMaxPoints && soup.corners.size() + corners <= kMaxCorners)
         return {};
@@ -77,8 +87,6 @@ void FaceCollector::finish(RawScene& scene, const char* sets) const {
     if (!scene.soup.uvs.empty())
         tell(meshesWithoutUvs_, "meshes have no texture coordinates; those of their corners are (0, 0)");
     if (isCage) scene.warnings.emplace_back("subdivision surfaces are taken as the polygons of their cages");
-    if (movesPoints)
-        scene.warnings.emplace_back("points of meshes move in time; they stay as they are at first");
     if (isSheared) scene.warnings.emplace_back("transforms that shear in time were taken without shear");
     if (hasNormals_) tell(badNormals_, "normals are unusable, so all are computed from the faces");
     if (!hasNormals_ || badNormals_ > 0) scene.soup.normals.clear();

@@ -19,6 +19,9 @@ struct FileFaces {
     std::size_t count() const { return offsets.size() - 1; }
 };
 
+/// Points of a mesh, three numbers each, after a transform.
+std::vector<Vec3f> pointsIn(std::span<const float> numbers, const Eigen::Affine3d& toWorld);
+
 /// What one mesh's faces have, and where they go.
 struct FacesInScene {
     std::optional<CornerValues> uvs, normals;
@@ -40,9 +43,8 @@ class FaceCollector {
     /// Normals go unless every corner has a usable one.
     void finish(RawScene& scene, const char* sets) const;
 
-    bool isCage = false;       ///< a mesh is a subdivision surface
-    bool movesPoints = false;  ///< a mesh has points that move
-    bool isSheared = false;    ///< a transform shears in time
+    bool isCage = false;     ///< a mesh is a subdivision surface
+    bool isSheared = false;  ///< a transform shears in time
     std::size_t badSetFaces = 0;
 
   private:

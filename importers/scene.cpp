@@ -148,7 +148,7 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
     scene.skeleton = std::move(*skeleton);
     scene.clips = std::move(raw.clips);
     scene.skin = followVertices(raw.skin, scene.mesh.sourceVertices());
-    scene.morphs = morphsOf(raw.morphs, scene.mesh.sourceVertices(), kMostMorphed);
+    scene.morphs = morphsOf(raw.morphs, scene.mesh.sourceVertices(), kMostCached);
     const auto isLost = [&](std::size_t t) {
         return scene.morphs[t].vertices.empty() && !raw.morphs[t].vertices.empty();
     };
@@ -158,7 +158,7 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
         raw.warnings.push_back(
             fmt::format("{} morph targets move no vertex of the repaired mesh, or all targets "
                         "more than {} of them: they stay at rest",
-                        lost, kMostMorphed));
+                        lost, kMostCached));
     scene.warnings = std::move(raw.warnings);
     scene.format = name(format);
     return scene;

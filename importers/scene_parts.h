@@ -13,6 +13,8 @@ namespace hairloom {
 
 /// Vertices that all morph targets of a file together move, at most: 64 MiB. Targets beyond are left out.
 inline constexpr std::size_t kMostMorphed = std::size_t{1} << 22u;
+/// The same of meshes that a file has at many times: 256 MiB, ten seconds of 55,000 points 30 times a second.
+inline constexpr std::size_t kMostCached = std::size_t{1} << 24u;
 /// In a list of targets by their numbers in the file: one that is left out.
 inline constexpr std::uint32_t kNoMorph = 0xffffffffu;
 

@@ -66,7 +66,9 @@ void takeTimes(const UsdAttribute& attribute, double& first, double& last) {
 void takeTimes(const UsdPrim& prim, double& first, double& last) {
     const bool isAnimation = prim.type == "SkelAnimation";
     for (const UsdAttribute& attribute : prim.attributes) {
-        if (isAnimation || attribute.name.starts_with("xformOp:")) takeTimes(attribute, first, last);
+        const bool isOfMesh = prim.type == "Mesh" && attribute.name == "points";
+        if (isAnimation || isOfMesh || attribute.name.starts_with("xformOp:"))
+            takeTimes(attribute, first, last);
     }
     for (const UsdPrim& child : prim.children) takeTimes(child, first, last);
 }
@@ -354,8 +356,8 @@ Result<UsdBinding> UsdBones::bind(const UsdShownPrim& mesh, std::size_t points) 
     return binding;
 }
 
-Status UsdBones::addClips() {
-    return addUsdClips(stage_, range_, turn_, moving_, skeletons_, scene_);
+Status UsdBones::addClips(Clip clip) {
+    return addUsdClips(stage_, range_, turn_, moving_, skeletons_, std::move(clip), scene_);
 }
 
 }  // namespace hairloom

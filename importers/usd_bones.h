@@ -60,8 +60,9 @@ class UsdBones {
 
     /// How a mesh of so many points is bound. Errors: transforms that are none, more bones than are read.
     Result<UsdBinding> bind(const UsdShownPrim& mesh, std::size_t points);
-    /// Fills scene.clips from what was bound. Errors: as bind(), more keys than are read.
-    Status addClips();
+    /// Fills scene.clips from what was bound; `clip` is what else the stage's own plays. Errors: as bind(),
+    /// more keys than are read.
+    Status addClips(Clip clip);
 
   private:
     using Place = std::vector<std::pair<const UsdPrim*, std::size_t>>;
@@ -94,9 +95,10 @@ class UsdBones {
     std::vector<UsdSkeletonBones> skeletons_;
 };
 
-/// Fills clips from what bones there are. Errors: transforms that are none, more keys than are read.
+/// Fills clips from what bones there are, the stage's own beside what `clip` has. Errors: transforms that are
+/// none, more keys than are read.
 Status addUsdClips(const UsdStage& stage, const UsdRange& range, const Eigen::Affine3d& turn,
                    std::span<const UsdMovingPrim> moving, std::span<const UsdSkeletonBones> skeletons,
-                   RawScene& scene);
+                   Clip clip, RawScene& scene);
 
 }  // namespace hairloom

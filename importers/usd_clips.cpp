@@ -23,8 +23,8 @@ class Builder {
     Builder(const UsdStage& stage, const UsdRange& range, const Eigen::Affine3d& turn, RawScene& scene)
         : stage_(stage), range_(range), turn_(turn), scene_(scene) {}
 
-    Status run(std::span<const UsdMovingPrim> moving, std::span<const UsdSkeletonBones> skeletons) {
-        Clip clip;
+    Status run(std::span<const UsdMovingPrim> moving, std::span<const UsdSkeletonBones> skeletons,
+               Clip clip) {
         for (const UsdMovingPrim& prim : moving) {
             if (auto status = addMoving(prim, clip); !status) return status;
         }
@@ -54,8 +54,8 @@ class Builder {
 
   private:
     void finish(Clip&& clip, bool isAuthored) {
-        if (clip.channels.empty()) return;
-        std::size_t moving = 0;
+        if (clip.channels.empty() && clip.morphs.empty()) return;
+        std::size_t moving = clip.morphs.size();
         for (const Channel& channel : clip.channels) {
             clip.duration = std::max(clip.duration, lastTime(channel));
             moving += channel.translation.times.size() > 1 || channel.rotation.times.size() > 1 ||
@@ -220,8 +220,8 @@ class Builder {
 
 Status addUsdClips(const UsdStage& stage, const UsdRange& range, const Eigen::Affine3d& turn,
                    std::span<const UsdMovingPrim> moving, std::span<const UsdSkeletonBones> skeletons,
-                   RawScene& scene) {
-    return Builder(stage, range, turn, scene).run(moving, skeletons);
+                   Clip clip, RawScene& scene) {
+    return Builder(stage, range, turn, scene).run(moving, skeletons, std::move(clip));
 }
 
 }  // namespace hairloom

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "importers/file_faces.h"
+#include "importers/point_cache.h"
 #include "importers/scene_parts.h"
 #include "importers/usd_bones.h"
 #include "importers/usd_primvar.h"
@@ -51,7 +52,9 @@ class Reader {
         }
         if (scene_.soup.offsets.size() < 2) return noMesh();
         if (!leftOut_.empty()) scene_.warnings.push_back(firstOf(leftOut_) + ": these meshes were left out");
-        if (auto status = bones_.addClips(); !status) return tl::unexpected(status.error());
+        Clip points;
+        if (auto status = cache_.finish(points); !status) return tl::unexpected(status.error());
+        if (auto status = bones_.addClips(std::move(points)); !status) return tl::unexpected(status.error());
         finish();
         return std::move(scene_);
     }
@@ -136,7 +139,6 @@ class Reader {
         if (attribute == nullptr) return leave("has no points");
         UsdValue value = valueAt(*attribute, range_.start);
         if (value.numbers.empty() || value.components != 3) return leave("has no points");
-        collector_.movesPoints = collector_.movesPoints || attribute->samples.size() > 1;
         const std::vector<float> points = std::move(value.numbers).floats();
         const std::size_t count = points.size() / 3;
         const auto faces = facesOf(mesh, count);
@@ -147,10 +149,8 @@ class Reader {
         auto binding = bones_.bind(shown, count);
         if (!binding) return tl::unexpected(binding.error());
         const auto first = static_cast<std::uint32_t>(soup.positions.size());
-        for (std::size_t p = 0; p < count; ++p) {
-            const Vec3d point(double{points[3 * p]}, double{points[3 * p + 1]}, double{points[3 * p + 2]});
-            soup.positions.emplace_back((binding->toWorld * point).cast<float>());
-        }
+        std::ranges::copy(pointsIn(points, binding->toWorld), std::back_inserter(soup.positions));
+        if (attribute->samples.size() > 1) addCache(mesh, *attribute, first, count, *binding);
         SkinWeights& skin = scene_.skin;
         skin.bones.insert(skin.bones.end(), binding->skin.bones.begin(), binding->skin.bones.end());
         skin.weights.insert(skin.weights.end(), binding->skin.weights.begin(), binding->skin.weights.end());
@@ -158,6 +158,28 @@ class Reader {
         collector_.isCage = collector_.isCage || (!scheme.empty() && scheme != "none");
         addFaces(shown, *faces, {count, faces->corners.size(), faces->count()}, first, binding->toWorld);
         return {};
+    }
+
+    /// Points in the time of the stage's clip. `attribute` is of the stage.
+    void addCache(const UsdPrim& prim, const UsdAttribute& attribute, std::uint32_t first, std::size_t count,
+                  const UsdBinding& binding) {
+        std::vector<double> codes{range_.start};
+        for (const auto& [code, value] : attribute.samples) {
+            if (code > range_.start && code < range_.end) codes.push_back(code);
+        }
+        codes.push_back(range_.end);
+        PointCache::Mesh mesh{calledName(prim), first, static_cast<std::uint32_t>(count), {}, {},
+                              isMoved(binding)};
+        for (const double code : codes) mesh.seconds.push_back(range_.seconds(code));
+        mesh.read = [&attribute, codes,
+                     toWorld = binding.toWorld](std::size_t sample) -> Result<std::vector<Vec3f>> {
+            UsdValue value = valueAt(attribute, codes[sample]);
+            return pointsIn(std::move(value.numbers).floats(), toWorld);
+        };
+        cache_.add(std::move(mesh));
+    }
+    static bool isMoved(const UsdBinding& binding) {
+        return std::ranges::any_of(binding.skin.weights, [](const auto& weights) { return weights[0] > 0; });
     }
 
     void addFaces(const UsdShownPrim& shown, const FileFaces& faces, const MeshCounts& size,
@@ -270,6 +292,7 @@ class Reader {
     std::unordered_map<std::string, std::uint32_t> groups_, materials_;
     std::vector<std::string> leftOut_;
     FaceCollector collector_;
+    PointCache cache_{scene_};
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "core/animation/actor.h"
 #include "exporters/ogawa_builder.h"
+#include "importers/point_cache.h"
 #include "tests/importers/mesh_files.h"
 
 namespace hairloom::test {
@@ -144,14 +145,146 @@ TEST_F(AlembicHeads, FacesSetsTextureCoordinatesAndNormalsComeIn) {
     EXPECT_THAT(warningsOf(read(fileOf(head))), HasSubstr("polygons of their cages"));
 }
 
-TEST_F(AlembicHeads, PointsThatMoveStayAsTheyAreAtFirst) {
+/// A sheet of 5 × 5 points, 10 cm wide, in as many frames as there are motions; `jaw` moves its last row on
+/// top.
+HeadInFile sheet(const std::vector<Eigen::Affine3f>& motions, const std::vector<Vec3f>& jaw) {
     HeadInFile head;
-    head.points.push_back(head.points[0]);
-    for (float& number : head.points[1]) number += 3;
-    const ImportedScene scene = read(fileOf(head, {2, 1.0 / 24, {1.0}}));
-    EXPECT_FLOAT_EQ(scene.mesh.bounds().max().x(), 2);
-    EXPECT_TRUE(scene.clips.empty());
-    EXPECT_THAT(warningsOf(scene), HasSubstr("points of meshes move in time"));
+    head.counts.clear();
+    head.indices.clear();
+    head.points.clear();
+    for (std::int32_t row = 0; row < 4; ++row) {
+        for (std::int32_t column = 0; column < 4; ++column) {
+            const std::int32_t at = 5 * row + column;
+            head.counts.push_back(4);
+            head.indices.insert(head.indices.end(), {at, at + 5, at + 6, at + 1});
+        }
+    }
+    for (std::size_t frame = 0; frame < motions.size(); ++frame) {
+        std::vector<float>& points = head.points.emplace_back();
+        for (int p = 0; p < 25; ++p) {
+            const Vec3f rest(0.025f * static_cast<float>(p % 5), 0.02f * static_cast<float>(p / 5),
+                             0.001f * static_cast<float>(p % 3));
+            const Vec3f at = motions[frame] * Vec3f(rest + (p >= 20 ? jaw[frame] : Vec3f::Zero()));
+            points.insert(points.end(), {at.x(), at.y(), at.z()});
+        }
+    }
+    return head;
+}
+
+Eigen::Affine3f turned(float degrees, const Vec3f& along) {
+    return Eigen::Translation3f(along) *
+           Eigen::AngleAxisf(degrees * std::numbers::pi_v<float> / 180, Vec3f(0.6f, 0.8f, 0));
+}
+
+/// Millimetres between the farthest vertex of a pose and the point of the file's frames nearest to it.
+float farthestFrom(const std::vector<Vec3f>& positions_ws, const std::vector<float>& points) {
+    float farthest = 0;
+    for (const Vec3f& position : positions_ws) {
+        float nearest = 1e9f;
+        for (std::size_t p = 0; p < points.size(); p += 3)
+            nearest = std::min(nearest, (position - Vec3f(points[p], points[p + 1], points[p + 2])).norm());
+        farthest = std::max(farthest, nearest);
+    }
+    return 1e3f * farthest;
+}
+
+Actor actorOf(const ImportedScene& scene) {
+    auto actor = Actor::make(std::make_shared<const ScalpMesh>(scene.mesh), scene.skeleton, scene.clips,
+                             scene.skin, scene.morphs);
+    if (!actor) throw std::runtime_error(actor.error().message());
+    return std::move(*actor);
+}
+
+const AlembicTimes kThreeFrames{3, 0.1, {1.0}};
+
+TEST_F(AlembicHeads, PointsThatMovePlayAndWhatMovesAsAWholeIsABone) {
+    const std::vector<Eigen::Affine3f> motions{turned(0, {0, 0, 0}), turned(25, {0.1f, 0, 0}),
+                                               turned(-40, {0, 0.3f, 0.2f})};
+    const std::vector<Vec3f> jaw{{0, 0, 0}, {0, 0.02f, 0}, {0, 0.005f, 0.01f}};
+    const HeadInFile head = sheet(motions, jaw);
+    const ImportedScene scene = read(fileOf(head, kThreeFrames));
+    EXPECT_THAT(warningsOf(scene), testing::Not(HasSubstr("points")));
+    ASSERT_EQ(scene.clips.size(), 1u);
+    EXPECT_FLOAT_EQ(scene.clips[0].duration, 0.2f);
+    const Actor actor = actorOf(scene);
+    for (std::size_t frame = 0; frame < 3; ++frame) {
+        const ActorPose pose = actor.poseAt(0, 0.1f * static_cast<float>(frame), Wrap::Clamp);
+        EXPECT_LT(farthestFrom(pose.positions_ws, head.points[frame]), 1e-3f) << frame;
+        // The bone goes with the head, not with the jaw.
+        ASSERT_EQ(pose.boneMatrices_ws.size(), 1u);
+        EXPECT_LT((pose.boneMatrices_ws[0].matrix() - motions[frame].matrix()).norm(), 1e-4f) << frame;
+    }
+    EXPECT_EQ(scene.skeleton.bones()[0].name, "head");
+    // Between two times the head turns along the arc, and the jaw opens by half.
+    const ActorPose between = actor.poseAt(0, 0.05f, Wrap::Clamp);
+    std::vector<float> half = sheet({turned(12.5f, {0, 0, 0})}, {Vec3f(0, 0.01f, 0)}).points[0];
+    for (std::size_t n = 0; n < half.size(); n += 3) half[n] += 0.05f;
+    EXPECT_LT(farthestFrom(between.positions_ws, half), 1e-3f);
+}
+
+TEST_F(AlembicHeads, AFaceThatTalksHasNoBone) {
+    const std::vector<Eigen::Affine3f> still(3, Eigen::Affine3f::Identity());
+    const ImportedScene scene =
+        read(fileOf(sheet(still, {{0, 0, 0}, {0, 0.02f, 0}, {0, 0, 0}}), kThreeFrames));
+    EXPECT_TRUE(scene.skeleton.empty());
+    ASSERT_EQ(scene.morphs.size(), 1u) << "frames at rest need none";
+    EXPECT_EQ(scene.morphs[0].vertices.size(), 5u);
+    const Actor actor = actorOf(scene);
+    EXPECT_NEAR(actor.poseAt(0, 0.05f, Wrap::Clamp).positions_ws[24].y(), 0.09f, 1e-6f);
+    EXPECT_NEAR(actor.poseAt(0, 0.2f, Wrap::Clamp).positions_ws[24].y(), 0.08f, 1e-6f);
+    const ImportedScene same = read(fileOf(sheet(still, std::vector<Vec3f>(3, Vec3f::Zero())), kThreeFrames));
+    EXPECT_TRUE(same.morphs.empty() && same.skeleton.empty());
+}
+
+TEST_F(AlembicHeads, PointsMoveInsideTransformsThatMove) {
+    AlembicScene file;
+    const std::vector<Eigen::Affine3f> still(3, Eigen::Affine3f::Identity());
+    const HeadInFile head = sheet(still, {{0, 0, 0}, {0, 0.02f, 0}, {0, 0.01f, 0}});
+    const auto body =
+        file.below("body", kTranslate, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, file.mesh("head", head));
+    const ImportedScene scene = read(file.finish(body, kThreeFrames));
+    ASSERT_EQ(scene.skeleton.bones().size(), 1u);
+    std::vector<float> gone = head.points[2];
+    for (std::size_t n = 0; n < gone.size(); n += 3) gone[n] += 2;
+    EXPECT_LT(farthestFrom(actorOf(scene).poseAt(0, 0.2f, Wrap::Clamp).positions_ws, gone), 1e-3f);
+}
+
+TEST_F(AlembicHeads, PointsThatCannotPlayStayAndAreTold) {
+    const std::vector<Eigen::Affine3f> still(3, Eigen::Affine3f::Identity());
+    HeadInFile head = sheet(still, {{0, 0, 0}, {0, 0.02f, 0}, {0, 0.01f, 0}});
+    head.points[2].resize(72);
+    ImportedScene scene = read(fileOf(head, kThreeFrames));
+    EXPECT_TRUE(scene.morphs.empty() && scene.clips.empty());
+    EXPECT_THAT(warningsOf(scene), HasSubstr("head: at 0.2 s it has 24 points instead of 25"));
+    head = sheet(still, {{0, 0, 0}, {0, NAN, 0}, {0, 0.01f, 0}});
+    scene = read(fileOf(head, kThreeFrames));
+    EXPECT_TRUE(scene.morphs.empty() && scene.clips.empty());
+    EXPECT_THAT(warningsOf(scene), HasSubstr("head: at 0.1 s it has points that are no numbers"));
+}
+
+TEST(PointCaches, ReadAsManyTimesAsTheyMayAndTheLast) {
+    RawScene scene;
+    scene.soup.positions.assign(1u << 16u, Vec3f::Zero());
+    scene.soup.positions[1] = Vec3f(1, 1, 1);
+    PointCache cache(scene);
+    PointCache::Mesh mesh{"head", 0, 1u << 16u, {}, {}, true};
+    for (int s = 0; s < 300; ++s) mesh.seconds.push_back(static_cast<float>(s) / 30);
+    const std::vector<Vec3f> rest = scene.soup.positions;
+    mesh.read = [&](std::size_t sample) -> Result<std::vector<Vec3f>> {
+        std::vector<Vec3f> points = rest;
+        points[7].x() += static_cast<float>(sample);
+        return points;
+    };
+    cache.add(std::move(mesh));
+    Clip clip;
+    ASSERT_TRUE(cache.finish(clip));
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_THAT(scene.warnings[0], HasSubstr("19660800 points at all of their times"));
+    // Every other of 300, but for the first, at rest, and the last.
+    EXPECT_EQ(scene.morphs.size(), 150u);
+    EXPECT_EQ(clip.duration, 299.0f / 30);
+    const std::vector<float> weights = morphWeights(scene.morphs, clip, 4.5f / 30, Wrap::Clamp);
+    EXPECT_NEAR(morphedPositions(scene.soup.positions, scene.morphs, weights)[7].x(), 4.5f, 1e-4f);
 }
 
 TEST_F(AlembicHeads, InstancesStandInTheirPlacesAndTheHiddenAreLeftOut) {
