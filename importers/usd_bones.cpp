@@ -340,9 +340,6 @@ void UsdBones::readWeights(const UsdShownPrim& mesh, const UsdNumbers& indices, 
 }
 
 Result<UsdBinding> UsdBones::bind(const UsdShownPrim& mesh, std::size_t points) {
-    if (const UsdAttribute* const shapes = inheritedOf(mesh.levels, "skel:blendShapes");
-        shapes != nullptr && !shapes->value.texts.empty())
-        say("blend shapes stay at 0");
     UsdBinding binding;
     const auto isSkinned = skin(mesh, points, binding);
     if (!isSkinned) return tl::unexpected(isSkinned.error());
@@ -354,6 +351,38 @@ Result<UsdBinding> UsdBones::bind(const UsdShownPrim& mesh, std::size_t points) 
     binding.skin.bones.assign(points, {isCarried ? carried->bone : 0});
     binding.skin.weights.assign(points, {isCarried ? 1.0f : 0.0f});
     return binding;
+}
+
+Status UsdBones::addShapes(const UsdShownPrim& mesh, std::uint32_t first, std::size_t points,
+                           const Eigen::Affine3d& toWorld) {
+    const UsdAttribute* const names = inheritedOf(mesh.levels, "skel:blendShapes");
+    if (names == nullptr || names->value.texts.empty()) return {};
+    const UsdAttribute* const targets = mesh.prim->find("skel:blendShapeTargets");
+    const std::size_t count = targets == nullptr ? 0 : targets->value.texts.size();
+    if (count != names->value.texts.size()) {
+        say(fmt::format("{} has {} blend shapes and {} targets of them: they stay at 0", mesh.path,
+                        names->value.texts.size(), count));
+        return {};
+    }
+    const auto path = targetOf(mesh.levels, "skel:skeleton");
+    const auto number = path ? skeletonAt(*path, mesh) : Result<std::size_t>(SIZE_MAX);
+    if (!number) return tl::unexpected(number.error());
+    if (*number == SIZE_MAX) {
+        say(fmt::format("{} has blend shapes and no skeleton whose animation moves them: they stay at 0",
+                        mesh.path));
+        return {};
+    }
+    for (std::size_t s = 0; s < count; ++s) {
+        const std::vector<const UsdPrim*> prims = primsTo(stage_.root, targets->value.texts[s]);
+        const std::string& name = names->value.texts[s];
+        if (prims.empty() || prims.back()->type != "BlendShape") {
+            say(fmt::format("{} has the blend shape {}, which there is not: it stays at 0", mesh.path, name));
+            continue;
+        }
+        skeletons_[*number].shapes.push_back(
+            {name, prims.back(), mesh.path, first, static_cast<std::uint32_t>(points), toWorld});
+    }
+    return {};
 }
 
 Status UsdBones::addClips(Clip clip) {

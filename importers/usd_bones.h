@@ -31,6 +31,15 @@ struct UsdMovingPrim {
     bool isTop = false;            ///< no bone is above it
 };
 
+/// A blend shape of a mesh whose points are those of the soup from `first` on.
+struct UsdBlendShape {
+    std::string name;  ///< by which animations know it
+    const UsdPrim* prim = nullptr;
+    std::string mesh;  ///< for messages
+    std::uint32_t first = 0, points = 0;
+    Eigen::Affine3d toWorld = Eigen::Affine3d::Identity();  ///< from the mesh's points
+};
+
 /// A skeleton as its meshes see it.
 struct UsdSkeletonBones {
     const UsdPrim* prim = nullptr;
@@ -44,6 +53,7 @@ struct UsdSkeletonBones {
     /// From the space that meshes were bound in to the world at rest.
     Eigen::Affine3d carried = Eigen::Affine3d::Identity();
     std::uint32_t space = kNoBone;  ///< a bone for what no joint moves, once it is needed
+    std::vector<UsdBlendShape> shapes;   ///< of its meshes
 };
 
 /// Where a mesh rests, and what moves it.
@@ -60,6 +70,10 @@ class UsdBones {
 
     /// How a mesh of so many points is bound. Errors: transforms that are none, more bones than are read.
     Result<UsdBinding> bind(const UsdShownPrim& mesh, std::size_t points);
+    /// Takes the blend shapes of a mesh that was bound, whose points are those of the soup from `first` on.
+    /// Errors: as bind().
+    Status addShapes(const UsdShownPrim& mesh, std::uint32_t first, std::size_t points,
+                     const Eigen::Affine3d& toWorld);
     /// Fills scene.clips from what was bound; `clip` is what else the stage's own plays. Errors: as bind(),
     /// more keys than are read.
     Status addClips(Clip clip);

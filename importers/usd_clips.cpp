@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -48,7 +49,11 @@ class Builder {
                 lost_));
         if (isSheared_)
             scene_.warnings.emplace_back("transforms that shear in time were taken without shear");
-        if (hasShapes_) scene_.warnings.emplace_back("clips animate blend shapes, which stay at 0");
+        if (!lostShapes_.empty())
+            scene_.warnings.push_back("blend shapes stay at 0: " + firstOf(lostShapes_));
+        if (inBetweens_ > 0)
+            scene_.warnings.push_back(
+                fmt::format("in-between shapes of {} blend shapes were left out", inBetweens_));
         return {};
     }
 
@@ -80,7 +85,7 @@ class Builder {
             clip.name = prim.name;
             UsdRange range = range_;
             double first = std::numeric_limits<double>::infinity();
-            for (const char* name : {"translations", "rotations", "scales"}) {
+            for (const char* name : {"translations", "rotations", "scales", "blendShapeWeights"}) {
                 const UsdAttribute* const values = prim.find(name);
                 if (values == nullptr || values->samples.empty()) continue;
                 first = std::min(first, values->samples.begin()->first);
@@ -144,10 +149,9 @@ class Builder {
 
     void addAnimation(const UsdPrim& animation, const UsdSkeletonBones& skeleton, const UsdRange& range,
                       Clip& clip) {
+        addShapes(animation, skeleton, range, clip);
         const UsdAttribute* const names = animation.find("joints");
         if (names == nullptr) return;
-        const UsdAttribute* const shapes = animation.find("blendShapes");
-        hasShapes_ = hasShapes_ || (shapes != nullptr && !shapes->value.texts.empty());
         const std::size_t count = names->value.texts.size();
         const std::vector<std::size_t> joints = jointsNamed(skeleton.joints, names->value.texts);
         std::vector<bool> isDone(skeleton.joints.size(), false);
@@ -167,6 +171,70 @@ class Builder {
             if (skeleton.joints[joint].parent == kNoJoint) put(channel, TransformParts::of(skeleton.base));
             clip.channels.push_back(std::move(channel));
         }
+    }
+
+    void addShapes(const UsdPrim& animation, const UsdSkeletonBones& skeleton, const UsdRange& range,
+                   Clip& clip) {
+        const UsdAttribute* const names = animation.find("blendShapes");
+        if (names == nullptr) return;
+        const std::vector<std::string>& all = names->value.texts;
+        for (const UsdBlendShape& shape : skeleton.shapes) {
+            const auto found = std::ranges::find(all, shape.name);
+            if (found == all.end() || keys_ > kMaxKeys) continue;
+            MorphChannel channel;
+            addTrack(animation, "blendShapeWeights", static_cast<std::size_t>(found - all.begin()),
+                     all.size(), 1, range, channel.weight, [](const std::array<double, 4>& numbers) {
+                         const auto weight = static_cast<float>(numbers[0]);
+                         return std::isfinite(weight) ? std::optional(weight) : std::nullopt;
+                     });
+            if (channel.weight.times.empty()) continue;
+            const auto [known, isNew] = targets_.try_emplace(&shape, kNoMorph);
+            if (isNew) known->second = morphOf(shape);
+            if (known->second == kNoMorph) continue;
+            channel.target = known->second;
+            clip.duration = std::max(clip.duration, channel.weight.times.back());
+            clip.morphs.push_back(std::move(channel));
+        }
+    }
+
+    /// The shape among the scene's morph targets; kNoMorph where it moves nothing, or not this mesh.
+    std::uint32_t morphOf(const UsdBlendShape& shape) {
+        const auto leave = [&](const std::string& why) {
+            lostShapes_.push_back(fmt::format("{} of {} ({})", shape.name, shape.mesh, why));
+            return kNoMorph;
+        };
+        const auto numbersOf = [&](const char* name) {
+            const UsdAttribute* const attribute = shape.prim->find(name);
+            return attribute == nullptr ? UsdValue() : valueAt(*attribute, range_.start);
+        };
+        UsdValue offsets = numbersOf("offsets");
+        const UsdValue indices = numbersOf("pointIndices");
+        const auto isInBetween = [](const UsdAttribute& a) { return a.name.starts_with("inbetweens:"); };
+        inBetweens_ += std::ranges::any_of(shape.prim->attributes, isInBetween);
+        const std::size_t count = indices.numbers.empty() ? shape.points : indices.numbers.size();
+        if (offsets.numbers.size() != 3 * count)
+            return leave(fmt::format("{} offsets for {} points", offsets.numbers.size() / 3, count));
+        MorphTarget target;
+        target.name = shape.name;
+        const std::vector<float> numbers = std::move(offsets.numbers).floats();
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::int64_t point =
+                indices.numbers.empty() ? static_cast<std::int64_t>(i) : indices.numbers.whole(i);
+            if (point < 0 || point >= shape.points)
+                return leave(fmt::format("moves point {} of {}", point, shape.points));
+            const Vec3d offset(double{numbers[3 * i]}, double{numbers[3 * i + 1]},
+                               double{numbers[3 * i + 2]});
+            if (offset.isZero(0)) continue;
+            target.vertices.push_back(shape.first + static_cast<std::uint32_t>(point));
+            target.offsets.push_back((shape.toWorld.linear() * offset).cast<float>());
+            if (!target.offsets.back().allFinite()) return leave("numbers that are not finite");
+        }
+        moved_ += target.vertices.size();
+        if (moved_ > kMostMorphed)
+            return leave(fmt::format("all shapes move more than {} points", kMostMorphed));
+        if (target.vertices.empty()) return kNoMorph;
+        scene_.morphs.push_back(std::move(target));
+        return static_cast<std::uint32_t>(scene_.morphs.size() - 1);
     }
 
     static std::optional<Vec3f> vectorOf(const std::array<double, 4>& numbers) {
@@ -213,7 +281,10 @@ class Builder {
     const Eigen::Affine3d& turn_;
     RawScene& scene_;
     std::size_t keys_ = 0, lost_ = 0;
-    bool isSheared_ = false, hasShapes_ = false;
+    bool isSheared_ = false;
+    std::map<const UsdBlendShape*, std::uint32_t> targets_;  ///< of the scene
+    std::vector<std::string> lostShapes_;
+    std::size_t inBetweens_ = 0, moved_ = 0;
 };
 
 }  // namespace

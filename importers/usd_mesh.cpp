@@ -150,6 +150,7 @@ class Reader {
         if (!binding) return tl::unexpected(binding.error());
         const auto first = static_cast<std::uint32_t>(soup.positions.size());
         std::ranges::copy(pointsIn(points, binding->toWorld), std::back_inserter(soup.positions));
+        if (auto status = bones_.addShapes(shown, first, count, binding->toWorld); !status) return status;
         if (attribute->samples.size() > 1) addCache(mesh, *attribute, first, count, *binding);
         SkinWeights& skin = scene_.skin;
         skin.bones.insert(skin.bones.end(), binding->skin.bones.begin(), binding->skin.bones.end());

@@ -97,8 +97,62 @@ def add_animation(stage, skeleton, joints, local, size):
     skeleton.CreateAnimationSourceRel().SetTargets(["/Char/walk"])
 
 
+def add_shapes(stage, path, names, size, count):
+    """Two shapes, the second of some points alone."""
+    binding = UsdSkel.BindingAPI(stage.GetPrimAtPath(path))
+    for name, points in zip(names, (range(count), (1, 4, 7))):
+        shape = UsdSkel.BlendShape.Define(stage, f"{path}/{name}")
+        shape.CreateOffsetsAttr(Vt.Vec3fArray([Gf.Vec3f(*(0.03 * size * chance.uniform(-1, 1) for _ in range(3)))
+                                               for _ in points]))
+        if len(points) < count:
+            shape.CreatePointIndicesAttr(Vt.IntArray(list(points)))
+    binding.CreateBlendShapesAttr(names)
+    binding.CreateBlendShapeTargetsRel().SetTargets([f"{path}/{name}" for name in names])
+    animation = UsdSkel.Animation(stage.GetPrimAtPath("/Char/walk"))
+    animation.CreateBlendShapesAttr(["nobody", *names[::-1]])
+    for time in (1, 13, 25):
+        animation.CreateBlendShapeWeightsAttr().Set(
+            Vt.FloatArray([1, *(chance.uniform(0, 1.2) for _ in names)]), time)
+
+
+def add_points_stage(folder, name, up="Y", unit=0.01, moves=False, start=1, suffix="usda"):
+    """A cache of points as of any rig: a ball that turns and goes, and whose last row goes elsewhere."""
+    stage = Usd.Stage.CreateNew(str(folder / f"{name}.{suffix}"))
+    UsdGeom.SetStageUpAxis(stage, up)
+    UsdGeom.SetStageMetersPerUnit(stage, unit)
+    stage.SetTimeCodesPerSecond(24)
+    stage.SetStartTimeCode(start)
+    stage.SetEndTimeCode(25)
+    size = 1 / unit
+    root = UsdGeom.Xform.Define(stage, "/Char")
+    stage.SetDefaultPrim(root.GetPrim())
+    if moves:
+        place = UsdGeom.Xformable(root).AddTranslateOp()
+        for time in (1, 25):
+            place.Set(Gf.Vec3d(0.2 * size * (time - 1) / 24, 0, 0), time)
+    mesh = UsdGeom.Mesh.Define(stage, "/Char/Head")
+    points, counts, indices, _ = ball(size, 0)
+    if up == "Z":
+        points = [(x, -z, y) for x, y, z in points]
+    mesh.CreateFaceVertexCountsAttr(counts)
+    mesh.CreateFaceVertexIndicesAttr(indices)
+    mesh.CreateSubdivisionSchemeAttr("none")
+    for time in range(1, 26):
+        motion = turned((0.2, 1, 0.3), 4.0 * time) * moved(0.01 * size * time, 0, 0.002 * size * time)
+        jaw = Gf.Vec3d(0, 0.03 * size * math.sin(time), 0)
+        mesh.CreatePointsAttr().Set([Gf.Vec3f(motion.Transform(Gf.Vec3d(*p) + (jaw if i >= 9 else Gf.Vec3d(0))))
+                                     for i, p in enumerate(points)], time)
+    stage.Save()
+    frames = []
+    for time in (start, 7, 13, 22):  # of samples
+        world = UsdGeom.Xformable(mesh).ComputeLocalToWorldTransform(time)
+        frames.append({"t": (time - start) / 24,
+                       "p": in_metres([world.Transform(Gf.Vec3d(p)) for p in mesh.GetPointsAttr().Get(time)], unit, up)})
+    (folder / f"{name}.json").write_text(json.dumps({"file": f"{name}.{suffix}", "skins": False, "frames": frames}))
+
+
 def add_stage(folder, name, suffix="usda", up="Y", unit=0.01, above=None, bound_above=True, mesh_transform=None,
-              is_animated=True, rests_elsewhere=False, moves=False, rate=24, remapped=False, rigid=False):
+              is_animated=True, rests_elsewhere=False, moves=False, rate=24, remapped=False, rigid=False, shapes=()):
     stage = Usd.Stage.CreateNew(str(folder / f"{name}.{suffix}"))
     UsdGeom.SetStageUpAxis(stage, up)
     UsdGeom.SetStageMetersPerUnit(stage, unit)
@@ -138,6 +192,8 @@ def add_stage(folder, name, suffix="usda", up="Y", unit=0.01, above=None, bound_
     binding = UsdSkel.BindingAPI.Apply(skeleton.GetPrim())
     if is_animated:
         add_animation(stage, binding, JOINTS, local, size)
+    for path in ("/Char/Head", "/Char/Body") if shapes else ():
+        add_shapes(stage, path, list(shapes), size, 12)
     stage.Save()
     frames = [{"t": (time - 1) / rate, "p": posed(stage, root, time, unit, up)} for time in TIMES]
     (folder / f"{name}.json").write_text(json.dumps({"file": f"{name}.{suffix}", "frames": frames}))
@@ -153,15 +209,30 @@ def posed(stage, root, time, unit, up):
         world = UsdGeom.Xformable(binding.GetSkeleton()).ComputeLocalToWorldTransform(time)
         for query in binding.GetSkinningTargets():
             rest = Vt.Vec3fArray(UsdGeom.Mesh(query.GetPrim()).GetPointsAttr().Get(time))
+            if query.HasBlendShapes():
+                rest = morphed(query, cache.GetSkelQuery(binding.GetSkeleton()).GetAnimQuery(), rest, time)
             if query.IsRigidlyDeformed():
                 carried = query.ComputeSkinnedTransform(transforms, time)
                 skinned = [carried.Transform(Gf.Vec3d(point)) for point in rest]
             else:
                 assert query.ComputeSkinnedPoints(transforms, rest, time)
                 skinned = [Gf.Vec3d(point) for point in rest]
-            for x, y, z in (world.Transform(point) * unit for point in skinned):
-                points.append([round(c, 6) for c in ((x, z, -y) if up == "Z" else (x, y, z))])
+            points += in_metres([world.Transform(point) for point in skinned], unit, up)
     return points
+
+
+def in_metres(points, unit, up):
+    """Y up."""
+    return [[round(unit * c, 6) for c in ((x, z, -y) if up == "Z" else (x, y, z))] for x, y, z in points]
+
+
+def morphed(query, animation, rest, time):
+    shapes = UsdSkel.BlendShapeQuery(UsdSkel.BindingAPI(query.GetPrim()))
+    weights = query.GetBlendShapeMapper().Remap(animation.ComputeBlendShapeWeights(time))
+    some, of_shapes, parts = shapes.ComputeSubShapeWeights(weights)
+    assert shapes.ComputeDeformedPoints(some, of_shapes, parts, shapes.ComputeBlendShapePointIndices(),
+                                        shapes.ComputeSubShapePointOffsets(), rest)
+    return rest
 
 
 def main():
@@ -181,6 +252,11 @@ def main():
     add_stage(folder, "mesh_transform", mesh_transform=moved(500, 0, 0))
     add_stage(folder, "own_joints", remapped=True)
     add_stage(folder, "rigid", suffix="usdc", rigid=True)
+    add_stage(folder, "blend_shapes", shapes=("smile", "blink"))
+    add_stage(folder, "blend_shapes_z_up", suffix="usdc", up="Z", unit=1.0, shapes=("brow",), moves=True)
+    add_points_stage(folder, "points")
+    add_points_stage(folder, "points_z_up", up="Z", unit=1.0, moves=True, suffix="usdc")
+    add_points_stage(folder, "points_later", start=7)
 
 
 if __name__ == "__main__":
