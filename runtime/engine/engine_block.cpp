@@ -10,25 +10,26 @@
 namespace hairloom::runtime {
 namespace {
 
-/// Whether no point is farther than `reach` metres from its anchor. Anchors of those that are, are moved
-/// there.
+/// Whether no point is farther than `reach` metres from its anchor. Else all anchors are moved to their
+/// points: points that slip slowly would leave theirs one after the other.
 bool stays(const BlockView& blockView, float reach, Rest& rest) {
+    decltype(rest.anchors) now;
     bool all = true;
     for (std::uint32_t a = 0; a < Rest::kAnchors; ++a) {
         const std::uint32_t point = (blockView.points - 1) * (a + 1) / Rest::kAnchors;
-        float* const anchors = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
+        const float* const before = rest.anchors.data() + std::size_t{a} * 3 * kBlockLanes;
+        float* const at = now.data() + std::size_t{a} * 3 * kBlockLanes;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            float* const anchor = anchors + lane;
             const std::size_t i = std::size_t{point} * kBlockLanes + lane;
-            const Float3 at{blockView.position.x[i], blockView.position.y()[i], blockView.position.z()[i]};
-            const Float3 away = at - Float3{anchor[0], anchor[kBlockLanes], anchor[2 * kBlockLanes]};
-            if (dot(away, away) < reach * reach) continue;
-            anchor[0] = at.x;
-            anchor[kBlockLanes] = at.y;
-            anchor[2 * kBlockLanes] = at.z;
-            all = false;
+            at[lane] = blockView.position.x[i];
+            at[kBlockLanes + lane] = blockView.position.y()[i];
+            at[2 * kBlockLanes + lane] = blockView.position.z()[i];
+            const Float3 away{at[lane] - before[lane], at[kBlockLanes + lane] - before[kBlockLanes + lane],
+                              at[2 * kBlockLanes + lane] - before[2 * kBlockLanes + lane]};
+            all = all && dot(away, away) < reach * reach;
         }
     }
+    if (!all) rest.anchors = now;
     return all;
 }
 

@@ -74,7 +74,8 @@ Vector<float> restsOfSlots(const Slots& slots, std::span<const Rest> rests) {
     values.reserve(slots.blocks.size() * kRestFloats);
     for (const std::uint32_t block : slots.blocks) {
         const Rest& rest = rests[block];
-        for (const float number : {rest.time, rest.asleep ? 1.0f : 0.0f, rest.stayed, 0.0f})
+        for (const float number :
+             {rest.time, rest.asleep ? 1.0f : 0.0f, rest.stayed, rest.stayed > 0.0f ? 0.0f : 1.0f})
             values.push_back(number);
     }
     for (const std::uint32_t block : slots.blocks)

@@ -53,6 +53,7 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
         gRests[rest] = rested;
         gRests[rest + 1] = asleep ? 1.0 : 0.0;
         gRests[rest + 2] = stayed;
+        gRests[rest + 3] = stayed > 0.0 ? 0.0 : 1.0;
         if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], gBlocks[block].y);
     }
 #endif

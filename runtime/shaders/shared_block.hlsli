@@ -61,6 +61,7 @@ void judgeBlock(uint block, uint strands) {
     gRests[rest] = rested;
     gRests[rest + 1] = asleep ? 1.0 : 0.0;
     gRests[rest + 2] = stayed;
+    gRests[rest + 3] = stayed > 0.0 ? 0.0 : 1.0;
     if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], strands);
 }
 #endif

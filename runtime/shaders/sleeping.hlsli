@@ -29,22 +29,24 @@ uint restOf(uint block) { return HAIRLOOM_REST_NUMBERS * block; }
 /// The point of a strand whose anchor that is.
 uint anchorPoint(uint anchor, uint points) { return (points - 1) * (anchor + 1) / HAIRLOOM_REST_ANCHORS; }
 
-/// Looks whether a point of the strand is where its anchor says, and moves the anchor there where it is not.
+/// Looks whether a point of the strand is where its anchor says, or moves the anchor there.
 void lookAtAnchor(uint anchor, float3 at) {
     const uint block = gSlot / HAIRLOOM_GROUP_STRANDS, blocks = gFrame.slots / HAIRLOOM_GROUP_STRANDS;
     const uint x = HAIRLOOM_REST_NUMBERS * blocks + 3 * HAIRLOOM_GROUP_STRANDS * (HAIRLOOM_REST_ANCHORS * block + anchor) +
                    gSlot % HAIRLOOM_GROUP_STRANDS;
     const uint y = x + HAIRLOOM_GROUP_STRANDS, z = y + HAIRLOOM_GROUP_STRANDS;
+    if (gRests[restOf(block) + 3] != 0.0) {
+        gRests[x] = at.x;
+        gRests[y] = at.y;
+        gRests[z] = at.z;
+        return;
+    }
     const float3 away = at - float3(gRests[x], gRests[y], gRests[z]);
     const float delays = gFrame.sleepDelay / gFrame.h;
-    if (dot(away, away) < gFrame.slowSquared * delays * delays) return;
-    gRests[x] = at.x;
-    gRests[y] = at.y;
-    gRests[z] = at.z;
-    InterlockedOr(gGroupLeft, 1u);
+    if (!(dot(away, away) < gFrame.slowSquared * delays * delays)) InterlockedOr(gGroupLeft, 1u);
 }
 
-/// Whether a block falls asleep at the end of a frame in which it was slow, or all of its points stayed at their anchors.
+/// Whether a block falls asleep at the end of a frame in which it was slow, or in which all of its points stayed at their anchors.
 bool fallsAsleep(bool slow, bool stays, inout float rested, inout float stayed) {
     rested = slow ? rested + gFrame.dt : 0.0;
     stayed = stays ? stayed + gFrame.dt : 0.0;
