@@ -139,14 +139,19 @@ class Reader {
     void addCache(const AlembicShownObject& object, const AlembicProperty& positions,
                   const Eigen::Affine3d& toFile, std::size_t pointCount, bool isCarried) {
         const SampleTimes& times = archive_.times(positions.timeSampling);
-        if (!times.ascend(positions.samples)) {
-            scene_.warnings.push_back(object.path +
-                                      ": times of its points do not ascend; they stay as at first");
-            return;
-        }
+        // Later ones are the last that changed.
+        const std::uint32_t samples = std::min(positions.lastChanged, positions.samples - 1) + 1;
+        const auto stay = [&](const std::string& why) {
+            scene_.warnings.push_back(
+                fmt::format("{}: {}; its points stay as they are at first", object.path, why));
+        };
+        if (samples > kMaxRecordFrames)
+            return stay(
+                fmt::format("has points at {} times, of which {} are read", samples, kMaxRecordFrames));
+        if (!times.ascend(samples)) return stay("times of its points do not ascend");
         PointCache::Mesh mesh{
             leafOf(object.path), firstPoint_, static_cast<std::uint32_t>(pointCount), {}, {}, isCarried};
-        for (std::uint32_t s = 0; s < positions.samples; ++s)
+        for (std::uint32_t s = 0; s < samples; ++s)
             mesh.seconds.push_back(static_cast<float>(times.at(s) - start_));
         mesh.read = [this, &positions, toFile](std::size_t sample) -> Result<std::vector<Vec3f>> {
             const auto numbers = archive_.floats(positions, static_cast<std::uint32_t>(sample));
