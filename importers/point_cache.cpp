@@ -156,13 +156,14 @@ Status PointCache::play(const Mesh& mesh, std::size_t every, Clip& clip) {
     clip.duration = std::max(clip.duration, times.back());
     if (!isMoved) return {};
     whole.translation.times = whole.rotation.times = times;
-    whole.bone = static_cast<std::uint32_t>(scene_.bones.size());
+    const auto own = static_cast<std::uint32_t>(scene_.bones.size());
+    whole.bone = own;
     Bone bone;
     bone.name = mesh.name;
     scene_.bones.push_back(std::move(bone));
     clip.channels.push_back(std::move(whole));
     for (std::uint32_t p = mesh.first; p < mesh.first + mesh.points; ++p) {
-        scene_.skin.bones[p] = {whole.bone};
+        scene_.skin.bones[p] = {own};
         scene_.skin.weights[p] = {1.0f};
     }
     return {};
