@@ -105,9 +105,10 @@ class Collector {
         record.position = {position.x(), position.y(), position.z()};
         record.source = groom_.scalp->sourceVertices()[vertex];
         if (scene_ && vertex < scene_->skin.vertexCount()) {
+            const FourWeights skin = strongestFour(scene_->skin, vertex);
             for (std::size_t i = 0; i < 4; ++i) {
-                record.weights[i] = toShare(scene_->skin.weights[vertex][i]);
-                if (record.weights[i] > 0) record.bones[i] = boneOf(scene_->skin.bones[vertex][i]);
+                record.weights[i] = toShare(skin.weights[i]);
+                if (record.weights[i] > 0) record.bones[i] = boneOf(skin.bones[i]);
             }
         }
         result_.vertices.push_back(record);

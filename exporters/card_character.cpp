@@ -14,7 +14,8 @@
 namespace hairloom {
 namespace {
 
-/// What the skin is moved by at the place on it that is nearest to each root; none where nothing moves it.
+/// What the skin is moved by at the place on it that is nearest to each root, four bones at most; none where
+/// nothing moves it.
 SkinWeights skinOfRoots(const Groom& groom, const ImportedScene& scene, std::span<const Vec3f> roots_ws) {
     SkinWeights skin;
     if (scene.skin.vertexCount() != scene.mesh.vertexCount()) return skin;
@@ -26,13 +27,13 @@ SkinWeights skinOfRoots(const Groom& groom, const ImportedScene& scene, std::spa
             std::map<std::uint32_t, float> shares;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 const std::uint32_t vertex = scene.mesh.triangles()[at.triangle][corner];
-                for (std::size_t k = 0; k < 4; ++k) {
+                for (std::size_t k = 0; k < kBonesOfVertex; ++k) {
                     const float share =
                         at.barycentric[static_cast<int>(corner)] * scene.skin.weights[vertex][k];
                     if (share > 0) shares[scene.skin.bones[vertex][k]] += share;
                 }
             }
-            setStrongest(skin, r, {shares.begin(), shares.end()});
+            setStrongest(skin, r, {shares.begin(), shares.end()}, 4);
         }
     });
     return skin;

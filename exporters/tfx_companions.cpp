@@ -43,7 +43,7 @@ class BoneNumbers {
 void add(NamedWeights& weights, const Influences& influences) {
     weights.skin.bones.emplace_back();
     weights.skin.weights.emplace_back();
-    setStrongest(weights.skin, weights.skin.vertexCount() - 1, influences);
+    setStrongest(weights.skin, weights.skin.vertexCount() - 1, influences, 4);
 }
 
 /// Those of a root are its triangle's, by its place on it.
@@ -56,7 +56,7 @@ NamedWeights rootWeights(const Groom& groom, const PreparedStrands& strands, con
         std::map<std::uint32_t, float> sums;
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::uint32_t vertex = scene.mesh.triangles()[root.triangle][corner];
-            for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t i = 0; i < kBonesOfVertex; ++i) {
                 const float weight =
                     scene.skin.weights[vertex][i] * root.barycentric[static_cast<Eigen::Index>(corner)];
                 if (weight > 0) sums[numbers.of(scene.skin.bones[vertex][i], result.bones)] += weight;
@@ -96,8 +96,8 @@ std::string refusal(const NamedWeights& weights) {
             return fmt::format("the name of bone '{}' has {} bytes, and TressFX takes 1 to {}",
                                name.substr(0, 40), name.size(), kMaxNameBytes - 1);
     }
-    const auto none = std::ranges::find_if(weights.skin.weights,
-                                           [](const std::array<float, 4>& own) { return !(own[0] > 0); });
+    const auto none =
+        std::ranges::find_if(weights.skin.weights, [](const auto& own) { return !(own[0] > 0); });
     if (none == weights.skin.weights.end()) return {};
     return fmt::format("no bone moves the root of strand {}", none - weights.skin.weights.begin());
 }
@@ -136,9 +136,8 @@ std::string meshFile(const ImportedScene& scene, const StrandExportOptions& opti
     for (std::size_t v = 0; v < scene.mesh.vertexCount(); ++v) {
         const Vec3f p = toFile(scene.mesh.positions()[v], options);
         const Vec3f n = toFile(scene.mesh.normals()[v], turned);
-        std::array<float, 4> weights = scene.skin.weights[v];
-        const auto& bones = scene.skin.bones[v];
-        if (!(weights[0] + weights[1] + weights[2] + weights[3] > 0)) weights = {1, 0, 0, 0};
+        auto [bones, weights] = strongestFour(scene.skin, v);
+        if (!(weights[0] > 0)) weights = {1, 0, 0, 0};
         fmt::format_to(out, "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {}\n", v, p.x(), p.y(), p.z(), n.x(),
                        n.y(), n.z(), bones[0], bones[1], bones[2], bones[3], weights[0], weights[1],
                        weights[2], weights[3]);

@@ -26,6 +26,7 @@ template <class T>
 inline constexpr bool kIsPlainValue =
     (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) ||
     std::is_same_v<T, std::array<std::uint32_t, 4>> || std::is_same_v<T, std::array<float, 4>> ||
+    std::is_same_v<T, std::array<std::uint32_t, 8>> || std::is_same_v<T, std::array<float, 8>> ||
     std::is_same_v<T, Vec2f> || std::is_same_v<T, Vec3f> || std::is_same_v<T, Quatf>;
 static_assert(sizeof(Vec2f) == 2 * sizeof(float) && sizeof(Vec3f) == 3 * sizeof(float) &&
               sizeof(Quatf) == 4 * sizeof(float));

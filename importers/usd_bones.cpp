@@ -322,7 +322,7 @@ void UsdBones::readWeights(const UsdShownPrim& mesh, const UsdNumbers& indices, 
         influences.clear();
         for (std::size_t i = owner * each; i < (owner + 1) * each; ++i) add(i);
         mergeRepeated(influences);
-        tooMany += influences.size() > 4;
+        tooMany += influences.size() > kBonesOfVertex;
         unmoved += influences.empty();
         if (influences.empty() && skeleton.above != kNoBone) {
             if (const std::uint32_t bone = spaceOf(skeleton); bone != kNoBone)
@@ -335,7 +335,7 @@ void UsdBones::readWeights(const UsdShownPrim& mesh, const UsdNumbers& indices, 
     };
     tell(beyond, "weights name joints that there are not; they were left out");
     tell(bad, "weights are negative or no numbers; they were left out");
-    tell(tooMany, "points have more than four joints; the strongest four were taken");
+    tell(tooMany, "points have more than eight joints; the strongest eight were taken");
     tell(unmoved, "points have no weights; they stay where they rest");
 }
 

@@ -19,7 +19,7 @@ using Blend = Eigen::Matrix<float, 3, 4>;
 Blend blendAt(const SkinWeights& skin, std::size_t vertex, std::span<const Eigen::Affine3f> matrices) {
     Blend blend = Blend::Zero();
     float sum = 0;
-    for (std::size_t slot = 0; slot < 4; ++slot) {
+    for (std::size_t slot = 0; slot < kBonesOfVertex; ++slot) {
         const float weight = skin.weights[vertex][slot];
         if (weight == 0) continue;
         blend += weight * matrices[skin.bones[vertex][slot]].matrix().topRows<3>();
@@ -47,7 +47,7 @@ Status validate(const SkinWeights& skin, std::size_t boneCount) {
     }
     for (std::size_t vertex = 0; vertex < skin.vertexCount(); ++vertex) {
         float sum = 0;
-        for (std::size_t slot = 0; slot < 4; ++slot) {
+        for (std::size_t slot = 0; slot < kBonesOfVertex; ++slot) {
             const float weight = skin.weights[vertex][slot];
             if (!std::isfinite(weight) || weight < 0) {
                 return fail(fmt::format("vertex {} has the skin weight {}", vertex, weight),
@@ -67,9 +67,10 @@ Status validate(const SkinWeights& skin, std::size_t boneCount) {
 }
 
 void setStrongest(SkinWeights& skin, std::size_t vertex,
-                  std::vector<std::pair<std::uint32_t, float>> influences) {
+                  std::vector<std::pair<std::uint32_t, float>> influences, std::size_t most) {
+    assert(most <= kBonesOfVertex);
     std::ranges::stable_sort(influences, [](const auto& a, const auto& b) { return a.second > b.second; });
-    if (influences.size() > 4) influences.resize(4);
+    if (influences.size() > most) influences.resize(most);
     float sum = 0;
     for (const auto& influence : influences) sum += influence.second;
     skin.bones[vertex] = {};
@@ -79,6 +80,20 @@ void setStrongest(SkinWeights& skin, std::size_t vertex,
         skin.bones[vertex][slot] = influences[slot].first;
         skin.weights[vertex][slot] = influences[slot].second / sum;
     }
+}
+
+FourWeights strongestFour(const SkinWeights& skin, std::size_t vertex) {
+    std::vector<std::pair<std::uint32_t, float>> influences;
+    for (std::size_t slot = 0; slot < kBonesOfVertex; ++slot) {
+        if (skin.weights[vertex][slot] > 0)
+            influences.emplace_back(skin.bones[vertex][slot], skin.weights[vertex][slot]);
+    }
+    SkinWeights one{{{}}, {{}}};
+    setStrongest(one, 0, std::move(influences), 4);
+    FourWeights four;
+    std::copy_n(one.bones[0].begin(), 4, four.bones.begin());
+    std::copy_n(one.weights[0].begin(), 4, four.weights.begin());
+    return four;
 }
 
 void skinPositions(std::span<const Vec3f> rest, const SkinWeights& skin,

@@ -13,11 +13,13 @@
 
 namespace hairloom {
 
-/// Up to four bones per vertex. Weights are ≥ 0 and add up to 1, or are all 0 for a vertex that nothing
-/// moves.
+/// Bones that move a vertex, at most.
+inline constexpr std::size_t kBonesOfVertex = 8;
+
+/// Weights are ≥ 0 and add up to 1, or are all 0 for a vertex that nothing moves.
 struct SkinWeights {
-    std::vector<std::array<std::uint32_t, 4>> bones;
-    std::vector<std::array<float, 4>> weights;
+    std::vector<std::array<std::uint32_t, kBonesOfVertex>> bones;
+    std::vector<std::array<float, kBonesOfVertex>> weights;
 
     std::size_t vertexCount() const { return weights.size(); }
 };
@@ -26,9 +28,16 @@ struct SkinWeights {
 /// sum is neither 0 nor 1 within 1e-3.
 Status validate(const SkinWeights& skin, std::size_t boneCount);
 
-/// The strongest four of any number of influences, scaled to add up to 1.
+/// The strongest of any number of influences, strongest first and scaled to add up to 1; `most` of them.
 void setStrongest(SkinWeights& skin, std::size_t vertex,
-                  std::vector<std::pair<std::uint32_t, float>> influences);
+                  std::vector<std::pair<std::uint32_t, float>> influences, std::size_t most = kBonesOfVertex);
+
+/// Of a vertex, for formats that have four. Weights add up to 1, or are all 0.
+struct FourWeights {
+    std::array<std::uint32_t, 4> bones{};
+    std::array<float, 4> weights{};
+};
+FourWeights strongestFour(const SkinWeights& skin, std::size_t vertex);
 
 /// Posed positions, metres. All arrays have one entry per vertex; `matrices` one per bone, from
 /// skinMatrices().

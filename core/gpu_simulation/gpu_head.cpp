@@ -89,8 +89,9 @@ Status GpuHead::makeBuffers(gpu::Device& device, const HeadAtRest& head) {
         if (status && made) buffer = std::move(*made);
         if (status && !made) status = tl::unexpected(made.error());
     };
-    std::vector<shaders::uint4> boneOf(1);
-    std::vector<shaders::float4> weights(1);
+    static_assert(kBonesOfVertex == 8);  // as head_vertices.comp.hlsl reads them
+    std::vector<shaders::uint4> boneOf(2);
+    std::vector<shaders::float4> weights(2);
     if (skinned_) {
         boneOf.clear();
         weights.clear();
@@ -98,10 +99,12 @@ Status GpuHead::makeBuffers(gpu::Device& device, const HeadAtRest& head) {
             const auto& bones = head.skin->bones[v];
             const auto& w = head.skin->weights[v];
             // What no bone moves is on one that stays.
-            const bool moves = w[0] + w[1] + w[2] + w[3] > 0;
+            const bool moves = std::ranges::any_of(w, [](float weight) { return weight > 0; });
             boneOf.push_back(moves ? shaders::uint4{bones[0], bones[1], bones[2], bones[3]}
                                    : shaders::uint4{boneCount_, boneCount_, boneCount_, boneCount_});
             weights.push_back(moves ? shaders::float4{w[0], w[1], w[2], w[3]} : shaders::float4{1, 0, 0, 0});
+            boneOf.push_back({bones[4], bones[5], bones[6], bones[7]});
+            weights.push_back({w[4], w[5], w[6], w[7]});
         }
     }
     std::vector<shaders::HeadRoot> roots;

@@ -216,7 +216,7 @@ class SkinTable {
         const Triangle& triangle = mesh_.triangles()[hit->triangle];
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::uint32_t v = triangle[corner];
-            for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t i = 0; i < kBonesOfVertex; ++i) {
                 const double weight = hit->barycentric[static_cast<Eigen::Index>(corner)] *
                                       static_cast<double>(skin_.weights[v][i]);
                 if (weight > 0) sums[skin_.bones[v][i]] += weight;

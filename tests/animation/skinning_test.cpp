@@ -79,19 +79,29 @@ TEST(Skinning, TheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one, many);
 }
 
-TEST(SkinWeights, KeepsTheFourStrongestAndScalesThemToOne) {
+TEST(SkinWeights, KeepsTheStrongestAndScalesThemToOne) {
     SkinWeights skin{{{}}, {{}}};
-    setStrongest(skin, 0, {{1, 0.1f}, {2, 0.4f}, {3, 0.05f}, {4, 0.2f}, {5, 0.3f}});
-    EXPECT_EQ(skin.bones[0], (std::array<std::uint32_t, 4>{2, 5, 4, 1}));
-    EXPECT_NEAR(skin.weights[0][0], 0.4f, 1e-6f);
+    std::vector<std::pair<std::uint32_t, float>> influences;
+    for (std::uint32_t bone = 0; bone < 10; ++bone)
+        influences.emplace_back(bone, 0.01f * static_cast<float>(1 + 7 * bone % 10));
+    setStrongest(skin, 0, influences);
+    EXPECT_EQ(skin.bones[0], (std::array<std::uint32_t, kBonesOfVertex>{7, 4, 1, 8, 5, 2, 9, 6}));
+    EXPECT_NEAR(skin.weights[0][0], 10.0f / 52, 1e-6f);
     float sum = 0;
     for (const float weight : skin.weights[0]) sum += weight;
     EXPECT_NEAR(sum, 1.0f, 1e-6f);
-    EXPECT_TRUE(validate(skin, 6));
-    EXPECT_FALSE(validate(skin, 5)) << "bone 5 does not exist";
+    EXPECT_TRUE(validate(skin, 10));
+    EXPECT_FALSE(validate(skin, 9)) << "bone 9 does not exist";
+    const FourWeights four = strongestFour(skin, 0);
+    EXPECT_EQ(four.bones, (std::array<std::uint32_t, 4>{7, 4, 1, 8}));
+    EXPECT_NEAR(four.weights[3], 7.0f / 34, 1e-6f);
+    setStrongest(skin, 0, {{1, 0.1f}, {2, 0.4f}, {3, 0.05f}, {4, 0.2f}, {5, 0.3f}}, 4);
+    EXPECT_EQ(skin.bones[0], (std::array<std::uint32_t, kBonesOfVertex>{2, 5, 4, 1}));
+    EXPECT_NEAR(skin.weights[0][0], 0.4f, 1e-6f);
     setStrongest(skin, 0, {});
-    EXPECT_EQ(skin.weights[0], (std::array<float, 4>{}));
+    EXPECT_EQ(skin.weights[0], (std::array<float, kBonesOfVertex>{}));
     EXPECT_TRUE(validate(skin, 0));
+    EXPECT_EQ(strongestFour(skin, 0).weights, (std::array<float, 4>{}));
 }
 
 TEST(SkinWeights, ValidationRefusesWhatIsNoWeight) {

@@ -34,7 +34,7 @@ std::map<std::string, float> skinAt(const Character& made, std::size_t strand) {
     std::map<std::string, float> sums;
     for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::uint32_t vertex = made.actor->mesh().triangles()[root.triangle][corner];
-        for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t i = 0; i < kBonesOfVertex; ++i) {
             const auto bone = made.actor->skin().bones[vertex][i];
             const float weight =
                 made.actor->skin().weights[vertex][i] * root.barycentric[static_cast<int>(corner)];

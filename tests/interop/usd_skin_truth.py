@@ -42,7 +42,7 @@ def ball(size, aside):
     return points, counts, indices, uvs
 
 
-def add_mesh(stage, path, aside, size, up, joints, remapped, rigid, transform, bound_in):
+def add_mesh(stage, path, aside, size, up, joints, remapped, rigid, transform, bound_in, of_point=3):
     mesh = UsdGeom.Mesh.Define(stage, path)
     points, counts, indices, uvs = ball(size, aside)
     if up == "Z":
@@ -70,12 +70,12 @@ def add_mesh(stage, path, aside, size, up, joints, remapped, rigid, transform, b
         return
     numbers, weights = [], []
     for _ in points:
-        some = chance.sample(range(len(own)), 3)
+        some = chance.sample(range(len(own)), of_point)
         shares = [chance.random() for _ in some]
         numbers += some + [0]
         weights += [share / sum(shares) for share in shares] + [0]
-    binding.CreateJointIndicesPrimvar(False, 4).Set(Vt.IntArray(numbers))
-    binding.CreateJointWeightsPrimvar(False, 4).Set(Vt.FloatArray(weights))
+    binding.CreateJointIndicesPrimvar(False, of_point + 1).Set(Vt.IntArray(numbers))
+    binding.CreateJointWeightsPrimvar(False, of_point + 1).Set(Vt.FloatArray(weights))
 
 
 def add_animation(stage, skeleton, joints, local, size):
@@ -152,7 +152,7 @@ def add_points_stage(folder, name, up="Y", unit=0.01, moves=False, start=1, suff
 
 
 def add_stage(folder, name, suffix="usda", up="Y", unit=0.01, above=None, bound_above=True, mesh_transform=None,
-              is_animated=True, rests_elsewhere=False, moves=False, rate=24, remapped=False, rigid=False, shapes=()):
+              is_animated=True, rests_elsewhere=False, moves=False, rate=24, remapped=False, rigid=False, shapes=(), of_point=3):
     stage = Usd.Stage.CreateNew(str(folder / f"{name}.{suffix}"))
     UsdGeom.SetStageUpAxis(stage, up)
     UsdGeom.SetStageMetersPerUnit(stage, unit)
@@ -188,7 +188,7 @@ def add_stage(folder, name, suffix="usda", up="Y", unit=0.01, above=None, bound_
         bind.append(transform * (bind[-1] if bind else Gf.Matrix4d(1)))
     skeleton.CreateBindTransformsAttr([transform * bound_in for transform in bind])
     for path, aside, is_rigid in (("/Char/Head", 0, rigid), ("/Char/Body", 1, False)):
-        add_mesh(stage, path, aside, size, up, JOINTS, remapped, is_rigid, mesh_transform, bound_in)
+        add_mesh(stage, path, aside, size, up, JOINTS, remapped, is_rigid, mesh_transform, bound_in, of_point)
     binding = UsdSkel.BindingAPI.Apply(skeleton.GetPrim())
     if is_animated:
         add_animation(stage, binding, JOINTS, local, size)
@@ -254,6 +254,7 @@ def main():
     add_stage(folder, "rigid", suffix="usdc", rigid=True)
     add_stage(folder, "blend_shapes", shapes=("smile", "blink"))
     add_stage(folder, "blend_shapes_z_up", suffix="usdc", up="Z", unit=1.0, shapes=("brow",), moves=True)
+    add_stage(folder, "five_joints", of_point=5)
     add_points_stage(folder, "points")
     add_points_stage(folder, "points_z_up", up="Z", unit=1.0, moves=True, suffix="usdc")
     add_points_stage(folder, "points_later", start=7)

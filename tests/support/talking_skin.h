@@ -11,7 +11,7 @@ namespace hairloom::test {
 /// How far a vertex follows the bone of a name.
 inline double weightOf(const Actor& actor, std::size_t vertex, const char* bone) {
     double weight = 0;
-    for (std::size_t slot = 0; slot < 4; ++slot) {
+    for (std::size_t slot = 0; slot < kBonesOfVertex; ++slot) {
         const float share = actor.skin().weights[vertex][slot];
         if (share > 0 && actor.skeleton().bones()[actor.skin().bones[vertex][slot]].name == bone)
             weight += static_cast<double>(share);
