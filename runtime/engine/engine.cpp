@@ -59,6 +59,20 @@ std::string Engine::setBody(std::shared_ptr<const BodyField> body) {
     return {};
 }
 
+std::string Engine::setPoses(std::span<const PoseView> poses) {
+    return impl_->setPoses(poses);
+}
+
+bool Engine::setPoseAmounts(std::span<const float> amounts) {
+    if (amounts.size() != impl_->poseAmounts_.size()) return false;
+    impl_->setPoseAmounts(amounts);
+    return true;
+}
+
+std::span<const float> Engine::poseAmounts() const {
+    return impl_->poseAmounts_;
+}
+
 void Engine::setSkinSpheres(std::span<const std::uint8_t> ofSkin) {
     if (std::equal(ofSkin.begin(), ofSkin.end(), impl_->skinSpheres_.begin(), impl_->skinSpheres_.end()))
         return;

@@ -146,6 +146,7 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (other || before.substeps != settings.substeps) allocateForBody();
     strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_, host_);
     strands_->takeState(*shape_, settings_, state_);
+    if (poses_) followPoses(true);
     if (asksForOtherHairGrid(before, settings_)) hairGrid_.take(*shape_, settings_, host_);
     scratch_ = {};
     wind_ = {makeWind(settings), false};
@@ -181,6 +182,7 @@ void Engine::Impl::plan(std::span<const Sphere> spheres, std::span<const Float3>
                              rootsMin_ws,           rootsMax_ws,
                              rootMotion_,           state_.fastest};
     planInput.hairCell = hairGrid_.cell();
+    planInput.poseAmounts = poseAmounts_;
     planInput.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         if (state_.rests[b].asleep) planInput.asleep += shape_->blocks[b].strands;
@@ -418,6 +420,7 @@ void Engine::Impl::stepStraight(const FrameInput& input, std::uint32_t substeps)
     report_.rejectedWinds = takeWind(settings_, input, wind_);
     report_.substeps = substeps_ = substepsOf(input, substeps);
     takeBody(input);
+    setPoseAmounts(input.poseAmounts);
     if (!movingBody_.empty() && skinSpheres_.size() == spheres_.given)
         spheres_.ofSkin.assign(skinSpheres_.begin(), skinSpheres_.end());
     wakeBlocks();

@@ -37,6 +37,9 @@ struct Engine::Impl : InMemory {
                    const Float3* velocities_ws);
     std::string setSettings(const SimulationSettings& settings);
     void setBody(std::shared_ptr<const BodyField> body);
+    std::string setPoses(std::span<const PoseView> poses);
+    void setPoseAmounts(std::span<const float> amounts);
+    void followPoses(bool others);
     bool setState(const State& state);
     void step(const FrameInput& input);
     /// A frame without poses inside, in so many substeps or more.
@@ -95,6 +98,8 @@ struct Engine::Impl : InMemory {
     Vector<std::uint32_t> bodyCarriers_;  // carriersOf()
     OwnedStrands strands_;                // as their model has them
     HairGrid hairGrid_;
+    std::shared_ptr<const PoseSet> poses_;  // null: none
+    Vector<float> poseAmounts_;
     EffectPlan plan_;
     FrameWind wind_;
     State state_;

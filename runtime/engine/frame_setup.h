@@ -66,12 +66,13 @@ struct FramePlanInput {
     std::uint32_t longestPointCount = 0;
     float longestStrand = 0.0f;  ///< metres
     bool straight = true;
-    Float3 rootsMin_ws, rootsMax_ws;  ///< box of all roots over the frame
-    float rootMotion = 0.0f;          ///< metres, the longest way of a root
-    float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
-    std::uint32_t asleep = 0;         ///< strands
-    float restTime = 0.0f;            ///< seconds
-    float hairCell = 0.0f;            ///< metres
+    Float3 rootsMin_ws, rootsMax_ws;       ///< box of all roots over the frame
+    float rootMotion = 0.0f;               ///< metres, the longest way of a root
+    float fastest = 0.0f;                  ///< m/s, greatest speed of a point at the end of the last frame
+    std::uint32_t asleep = 0;              ///< strands
+    float restTime = 0.0f;                 ///< seconds
+    float hairCell = 0.0f;                 ///< metres
+    std::span<const float> poseAmounts{};  ///< of each pose
 };
 /// The plan of a frame of `frameTime` seconds.
 EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& planInput,

@@ -16,6 +16,7 @@
 
 #include "engine/kernels.h"
 #include "engine/plan_builder.h"
+#include "engine/poses.h"
 #include "engine/state.h"
 #include "hairloom/host.h"
 
@@ -75,6 +76,11 @@ class ModelStrands : public InMemory {
     /// meets.
     virtual void allocate(const RestShape& shape, const SimulationSettings& settings, const EffectPlan& plan,
                           bool body, State& state) = 0;
+    /// Follows poses by their amounts, in place of those before; after takeSettings() and takeState(), on the
+    /// host's threads. `others`: poses or settings have changed, not amounts alone. It has memory for them
+    /// only while an amount is above 0.
+    virtual void takePoses(const RestShape&, const SimulationSettings&, const PoseSet&,
+                           std::span<const float>, bool, State&, const Host&) {}
     /// There is another body, or none: what the state knows of it is void.
     virtual void forgetBody(State&) const {}
 

@@ -46,4 +46,10 @@
 /// contacts with shapes that rest are not looked at for energy that they add; of a point's approach.
 #define HAIRLOOM_ROD_CONTACT_SPEED 5e-3
 
+/// How fast hair follows a pose (docs/engine.md, "Poses"), 1/s: at most, and at an amount of a half. Metres
+/// per second at which a far pose draws it.
+#define HAIRLOOM_POSE_RATE 600.0
+#define HAIRLOOM_POSE_HALF_RATE 10.0
+#define HAIRLOOM_POSE_SPEED 2.5
+
 #endif

@@ -22,8 +22,9 @@ enum class Effect : std::uint32_t {
     continuousCollision,  ///< collisions between the positions of two substeps
     hairHair,             ///< pressure and friction of the hair around
     sleep,                ///< strands at rest are left out
+    pose,                 ///< strands follow poses
 };
-inline constexpr std::uint32_t kEffectCount = static_cast<std::uint32_t>(Effect::sleep) + 1;
+inline constexpr std::uint32_t kEffectCount = static_cast<std::uint32_t>(Effect::pose) + 1;
 
 struct EffectInfo {
     const char* name;
@@ -45,6 +46,7 @@ inline constexpr std::array<EffectInfo, kEffectCount> kEffects{{
     {"continuousCollision"},
     {"hairHair", "cells of # mm", {"hairHair"}},
     {"sleep", "", {"sleepSpeed"}},
+    {"pose", "amount #"},
 }};
 const char* effectName(Effect effect);
 
@@ -180,8 +182,11 @@ enum class Reason : std::uint32_t {
     allAwake,
     someAsleep,
     allAsleep,
+    noPose,
+    zeroAmount,
+    noPoseOfSprings,
 };
-inline constexpr std::uint32_t kReasonCount = static_cast<std::uint32_t>(Reason::allAsleep) + 1;
+inline constexpr std::uint32_t kReasonCount = static_cast<std::uint32_t>(Reason::noPoseOfSprings) + 1;
 /// In words, # for the number.
 inline constexpr std::array<const char*, kReasonCount> kReasons{
     "",  // what EffectInfo::amount says
@@ -216,6 +221,9 @@ inline constexpr std::array<const char*, kReasonCount> kReasons{
     "all strands move",
     "# strand(s) at rest",
     "all strands at rest since # s",
+    "no pose",
+    "zero amount",
+    "springs follow no pose",
 };
 
 }  // namespace hairloom::runtime

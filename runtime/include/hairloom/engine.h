@@ -102,6 +102,15 @@ class Engine {
     /// in frames with another number of spheres: none does.
     void setSkinSpheres(std::span<const std::uint8_t> ofSkin);
 
+    /// Poses in place of those before, which rods follow by their amounts, 0 at first
+    /// (FrameInput::poseAmounts); none: empty. Springs follow none. Empty, or why they are refused: more than
+    /// kMaxPoses, another number of points or weights than the strands', a position that is no number within
+    /// 1e6 m, a weight outside 0 … 1.
+    std::string setPoses(std::span<const PoseView> poses);
+    /// As FrameInput::poseAmounts sets them, at once; false for another number than there are poses.
+    bool setPoseAmounts(std::span<const float> amounts);
+    std::span<const float> poseAmounts() const;
+
     /// Memory that the body and what is known of it take; 0 where there is none, or springs pass through it.
     std::size_t bodyBytes() const;
 

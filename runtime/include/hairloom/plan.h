@@ -30,6 +30,8 @@ struct PlanInput {
     std::uint32_t asleep = 0;  ///< strands at rest
     float restTime = 0.0f;     ///< seconds for which all strands have been at rest
     float hairCell = 0.0f;     ///< metres, of the cells of hair-hair collision; 0 without
+    std::uint32_t poses = 0;   ///< that strands can follow
+    float poseAmount = 0.0f;   ///< the greatest of theirs
 };
 
 struct Decision {

@@ -32,6 +32,16 @@ struct StrandsView {
     std::span<const float> masses{};
 };
 
+/// Another shape of the strands, for them to follow (Engine::setPoses()).
+struct PoseView {
+    /// Of each point; metres, in the scalp's rest space, as StrandsView::restPositions_ss. Only the
+    /// directions of segments count: a pose has the roots and the lengths of the strands.
+    std::span<const Float3> positions_ss;
+    /// Of each point, 0 … 1: its share of the amount. Empty: 1 everywhere.
+    std::span<const float> weights{};
+};
+inline constexpr std::size_t kMaxPoses = 16;
+
 inline constexpr std::uint32_t kMaxPoints = 512;
 inline constexpr std::size_t kMaxCapsules = 256;
 inline constexpr std::size_t kMaxInnerPoses = 15;
@@ -85,6 +95,10 @@ struct FrameInput {
     /// substeps where a part of the frame is fast. Not seen by alternatives/, nor by an engine on a GPU whose
     /// roots are found there.
     std::span<const InnerPose> inner = {};
+    /// Of each of the engine's poses from this frame on, 0 … 1: how far strands follow it. At 0 they are
+    /// simulated alone, at 1 they stand in the pose but for what they collide with. Empty or of another size:
+    /// they stay; so does one that is not finite, and others are cut to the range.
+    std::span<const float> poseAmounts = {};
     /// The frame does not continue from the one before: roots, spheres and body jump to its first pose, or to
     /// that at the first substep's end if it is later, however near, and take the hair along rigidly with its
     /// velocities turned. Engine::reset() instead puts hair at rest.

@@ -136,6 +136,18 @@ class RodStrip {
         dampingShare_ = (damped_ - all(1.0f)) / damped_;
         rootDisplacement_ = load3(lanes_.rootDisplacement, lane_);
         takeRoot();
+        if (rod_.poseRate) rotationBefore_ = rotationAt(context_.index);
+    }
+
+    /// Of the root, when so many substeps of the frame are through: as the stage `roots` has it.
+    V4 rotationAt(std::uint32_t substep) const {
+        const V4 from = load4(lanes_.rotationFrom, lane_), to = load4(lanes_.rotationTo, lane_);
+        const V t = all(static_cast<float>(substep) / static_cast<float>(context_.count));
+        const V4 mixed{lerp(from.x, to.x, t), lerp(from.y, to.y, t), lerp(from.z, to.z, t),
+                       lerp(from.w, to.w, t)};
+        const V inverse = all(1.0f) / hn::Sqrt(mixed.x * mixed.x + mixed.y * mixed.y + mixed.z * mixed.z +
+                                               mixed.w * mixed.w);
+        return {mixed.x * inverse, mixed.y * inverse, mixed.z * inverse, mixed.w * inverse};
     }
 
     /// Turns the clamped segment with its root, or, where only the root is held, the frame that stands for
@@ -259,11 +271,13 @@ class RodStrip {
         return section;
     }
 
-    /// Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to
-    /// none.
+    /// Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to that
+    /// of a pose, and to none without.
     V3 blendStrain(V3 strain, std::size_t i) const {
         const V3 extrapolated = mad3(strain - load3(rod_.strainBefore, i), blend_, strain);
-        return extrapolated * dampingShare_;
+        V3 wanted = extrapolated * dampingShare_;
+        if (rod_.poseRate) wanted = wanted + load3(rod_.poseStrain, i) * (all(1.0f) - dampingShare_);
+        return wanted;
     }
 
     /// Where inertia, gravity and air take a node, which the prediction has at `position`.
@@ -293,9 +307,41 @@ class RodStrip {
             rate = rate + hn::Load(D(), block_.hairRate + node);
             change = mad3(load3(block_.hairPush, node), step_, change);
         }
+        V3 pose = zero3();  // relative to the root at the end
+        if (rod_.poseRate) {
+            // Moves as the pose does with the root, but for what brings it there.
+            const V3 rest = load3(rod_.pose, node);
+            pose = rodRotate(inner_, rest);
+            const V3 along = pose - rodRotate(rotationBefore_, rest) + rootDisplacement_;
+            const V slow = poseRateOf(node) * all(2.0f);
+            rate = rate + slow;
+            change = mad3(along, slow * all(1.0f / context_.h) * step_, change);
+        }
         const V slowed = mad(rate, step_, all(1.0f));
         point.target = mad3(load3(rod_.displacement, node), blend_, change * (step_ / slowed));
         point.weight = hn::Load(D(), rod_.mass + node) * inverseStep_ * inverseStep_ * slowed;
+        if (rod_.poseRate) {
+            const V3 way = pose - position;
+            const V pull = posePull(node, way), both = point.weight + pull;
+            point.target = mad3(point.displacement + way - point.target, pull / both, point.target);
+            point.weight = both;
+        }
+    }
+    /// How fast node `node` comes to its pose, 1/s.
+    V poseRateOf(std::size_t node) const { return hn::Load(D(), rod_.poseRate + node); }
+    /// Stiffness of the pull of a pose, m/s², where it is that far: no farther than a speed takes hair at its
+    /// rate it is a spring, and a steady pull beyond.
+    V posePull(std::size_t node, V3 way) const {
+        const V rate = poseRateOf(node), far = hn::Sqrt(dot(way, way));
+        const V most = all(2.0f * static_cast<float>(HAIRLOOM_POSE_SPEED)) / hn::Max(far, all(1e-9f));
+        return hn::Load(D(), rod_.mass + node) * rate * hn::Min(rate, most);
+    }
+    /// Twice the energy of that pull.
+    V poseTwiceEnergy(std::size_t node, V3 way) const {
+        const V rate = poseRateOf(node), squared = dot(way, way), far = hn::Sqrt(squared);
+        const V speed = all(2.0f * static_cast<float>(HAIRLOOM_POSE_SPEED));
+        const V spring = rate * rate * squared, steady = speed * (rate * far * all(2.0f) - speed);
+        return hn::Load(D(), rod_.mass + node) * hn::IfThenElse(rate * far > speed, steady, spring);
     }
     V3 rootPosition() const {
         return mad3(rootDisplacement_, all(static_cast<float>(context_.index + 1)),
@@ -447,7 +493,8 @@ class RodStrip {
     V velocityAhead_;          ///< share of the last change of velocity that is expected again
     V damped_, dampingShare_;  ///< 1 + τ/h, and the part of it that is damping
     V3 rootDisplacement_, inDisplacement_;
-    V4 inner_;  ///< rotation of the segment before the first free one
+    V4 inner_;           ///< rotation of the segment before the first free one
+    V4 rotationBefore_;  ///< of the root, at the start of the substep; where there are poses
     hn::Mask<D> kept_, still_;
     V objective_, startObjective_, stiffnessSum_;
     V touched_;         ///< most of RodContact::touching

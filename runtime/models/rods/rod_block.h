@@ -20,8 +20,11 @@ struct RodView {
     const float* restRotation =
         nullptr;                ///< x, y, z, w of a segment: from the shape without load to the authored one
     float* rotation = nullptr;  ///< x, y, z, w: from the shape without load to the world
-    Planes increment;           ///< rotation of each segment in the last substep
-    Planes displacement;        ///< of each point in the last substep, metres
+    ConstPlanes pose;           ///< where nodes are drawn to, in the root's frame; null without poses
+    const float* poseRate = nullptr;  ///< how fast, 1/s
+    ConstPlanes poseStrain;           ///< that vertices rest at
+    Planes increment;                 ///< rotation of each segment in the last substep
+    Planes displacement;              ///< of each point in the last substep, metres
     Planes velocity, velocityBefore;  ///< m/s, at the end of the last substep and of the one before
     Planes strain, strainBefore;      ///< likewise
     float* load = nullptr;  ///< force of each point's contacts in the last substep, m²/s²; negative: it slid

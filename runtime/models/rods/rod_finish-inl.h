@@ -61,7 +61,12 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
             store3(strain, rod_.strain, i);
             const V bend = hn::Load(D(), rod_.bend + i);
             stiffness = stiffness + bend;
-            elastic = rodTwiceEnergy(strain, bend, sectionOf(i, bend)) * all(0.5f);
+            const V3 off = rod_.poseRate ? strain - load3(rod_.poseStrain, i) : strain;
+            elastic = rodTwiceEnergy(off, bend, sectionOf(i, bend)) * all(0.5f);
+        }
+        if (rod_.poseRate) {
+            const V3 way = rodRotate(inner_, load3(rod_.pose, node)) - position;
+            elastic = mad(poseTwiceEnergy(node, way), all(0.5f), elastic);
         }
         const V weight = mass * dot(all3(context_.gravity), position);
         energy = energy + (elastic - weight);

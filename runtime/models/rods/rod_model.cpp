@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/moving_body.h"
+#include "models/rods/rod_poses.h"
 #include "models/rods/rods.h"
 
 namespace hairloom::runtime {
@@ -32,6 +33,12 @@ Decision rodHairHair(const PlanBuilder& plan) {
     return {on, on ? Reason::authored : Reason::notAuthored, 1000.0f * plan.scene.hairCell};
 }
 
+Decision rodPose(const PlanBuilder& plan) {
+    if (plan.scene.poses == 0) return {false, Reason::noPose, 0.0f};
+    const float amount = plan.scene.poseAmount;
+    return {amount > 0.0f, amount > 0.0f ? Reason::authored : Reason::zeroAmount, amount};
+}
+
 constexpr EffectRow kRodRows[] = {
     {Effect::damping, decideDamping},
     {Effect::gravity, decideGravity},
@@ -44,6 +51,7 @@ constexpr EffectRow kRodRows[] = {
     {Effect::collisionRadius, decideCollisionRadius},
     {Effect::continuousCollision, decideContinuousCollision},
     {Effect::hairHair, rodHairHair},
+    {Effect::pose, rodPose},
 };
 
 void listRodStages(PlanBuilder& plan) {
@@ -96,6 +104,12 @@ class RodStrands final : public ModelStrands {
                   State& state) override {
         allocateRods(shape, rest_.parts, {plan.on(Effect::collision) || body, body}, state);
     }
+    void takePoses(const RestShape& shape, const SimulationSettings& settings, const PoseSet& poses,
+                   std::span<const float> amounts, bool others, State& state, const Host& host) override {
+        const bool followed = poses_.isOn();
+        poses_.take(shape, settings, rest_, poses, amounts, others, host);
+        if (followed || poses_.isOn()) forgetRodEnergy(shape, state);
+    }
     void forgetBody(State& state) const override {
         std::fill(state.own[kOwnFolds].begin(), state.own[kOwnFolds].end(), 0.0f);
     }
@@ -114,6 +128,7 @@ class RodStrands final : public ModelStrands {
         auto& block = room.make<RodBlock>();
         fillView(shape, state, index, clampedPoints, block);
         block.rod = rodViewOf(shape, rest_, state, index);
+        poses_.show(shape.blocks[index], block.rod);
         return block;
     }
 
@@ -160,6 +175,8 @@ class RodStrands final : public ModelStrands {
                 return planesBetween(RodParts::bending, RodParts::section) + rest_.curved.size();
             case Effect::collision:
                 return bytesOf(state.own[kOwnLoads]);
+            case Effect::pose:
+                return poses_.bytes();
             default:
                 return 0;  // has no memory of its own
         }
@@ -181,6 +198,7 @@ class RodStrands final : public ModelStrands {
     }
 
     RodRest rest_;
+    RodPoses poses_;
 };
 
 }  // namespace

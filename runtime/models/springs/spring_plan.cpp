@@ -103,6 +103,10 @@ constexpr EffectRow kSpringRows[] = {
      [](const PlanBuilder&) {
          return Decision{false, Reason::ofRodsAlone, 0.0f};
      }},
+    {Effect::pose,
+     [](const PlanBuilder&) {
+         return Decision{false, Reason::noPoseOfSprings, 0.0f};
+     }},
 };
 
 }  // namespace
