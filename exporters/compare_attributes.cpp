@@ -41,9 +41,9 @@ std::optional<double> largestDifference(const AttributeData& authored, const Att
 
 /// What a person authored, as against a tool's state and what follows from other things.
 bool isAuthored(std::string_view name) {
-    return name != attribute::kPosition && !isOperatorAttribute(name) && name != attribute::kLayer &&
-           name != attribute::kSelected && name != attribute::kHidden && name != attribute::kRootTriangle &&
-           name != attribute::kRootBarycentric;
+    return name != attribute::kPosition && !isOperatorAttribute(name) && !name.starts_with(kPosePrefix) &&
+           name != attribute::kLayer && name != attribute::kSelected && name != attribute::kHidden &&
+           name != attribute::kRootTriangle && name != attribute::kRootBarycentric;
 }
 
 /// Alembic and USD hold attributes of any name: what is missing there was left out for a reason, which is a
@@ -137,6 +137,9 @@ void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportR
     if (groom.interpolation.followPerGuide > 0 && !(carried && same(groom.interpolation, read.interpolation)))
         leave(fmt::format("{} follow hairs per strand", groom.interpolation.followPerGuide),
               "export the hairs instead of the guides, or interpolate in the other program");
+    if (!groom.poses.empty() && read.poses != groom.poses)
+        leave(fmt::format("{} poses that hair follows", groom.poses.size()),
+              "export a take of the hair that follows them, or keep the project");
     if (!groom.spheres.empty() && !(carried && read.spheres.size() == groom.spheres.size()))
         leave(fmt::format("{} collision spheres", groom.spheres.size()),
               "place colliders in the other program");

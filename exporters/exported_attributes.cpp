@@ -33,7 +33,8 @@ std::int32_t groupNumber(const Groom& groom, std::uint32_t group) {
 bool isCarriedOtherwise(std::string_view name, bool perPoint) {
     if (perPoint)
         return name == attribute::kPosition || isOperatorAttribute(name) || name == attribute::kRadius ||
-               name == attribute::kWidthChange || name == attribute::kPointColour;
+               name == attribute::kWidthChange || name == attribute::kPointColour ||
+               name.starts_with(kPosePrefix);
     return name == attribute::kStrandId || name == attribute::kGroup || name == attribute::kGuide ||
            name == attribute::kRootUv || name == attribute::kRootTriangle ||
            name == attribute::kRootBarycentric || name == attribute::kSelected ||

@@ -11,6 +11,7 @@
 #include "core/editing/records.h"
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/layers_json.h"
+#include "core/groom/file/poses_json.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/file/time_line_json.h"
 #include "core/groom/groom_hash.h"
@@ -82,7 +83,7 @@ Part differenceOf(const Groom& a, const Groom& b) {
         {Part::Density, a.scalpDensity != b.scalpDensity},
         {Part::Placement, differs(a.placement, b.placement)},
         {Part::Spheres, differs(a.spheres, b.spheres) || a.body != b.body},
-        {Part::Physics, differs(a.simulation, b.simulation)},
+        {Part::Physics, differs(a.simulation, b.simulation) || a.poses != b.poses},
         {Part::Material, differs(a.material, b.material)},
         {Part::Shadows, differs(a.shadows, b.shadows)},
         {Part::Interpolation, differs(a.interpolation, b.interpolation)},
@@ -239,6 +240,23 @@ Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<Ca
         std::move(edits), std::move(record), bytes);
 }
 
+Result<std::unique_ptr<Command>> setPoses(const Model& model, std::vector<GroomPose> poses,
+                                          std::string name) {
+    const std::vector<GroomPose>& now = model.groom.poses;
+    if (!std::ranges::equal(now, poses, {}, &GroomPose::name, &GroomPose::name))
+        return fail("these are settings of other poses", "expected the names of those that there are");
+    for (const GroomPose& pose : poses) {
+        if (const auto problems = fieldsOutOfRange(pose); !problems.empty())
+            return fail(fmt::format("pose '{}': {}", pose.name, problems[0]), "a value within its range");
+    }
+    if (now == poses) return nullptr;
+    std::string record = recordOf("poses", {{"poses", hairloom::toJson(poses)}});
+    const std::size_t bytes = poses.size() * sizeof(GroomPose);
+    return valueCommand<std::vector<GroomPose>>(
+        std::move(name), Part::Physics, [](Model& m) -> std::vector<GroomPose>& { return m.groom.poses; },
+        std::move(poses), std::move(record), bytes);
+}
+
 Result<std::unique_ptr<Command>> setTimeLine(const Model& model, TimeLine line, std::string name) {
     using Held = std::shared_ptr<const TimeLine>;
     if (const auto problems = problemsOf(line); !problems.empty())
@@ -314,6 +332,11 @@ MakeCommand readCards(JsonReader& reader) {
     };
 }
 
+MakeCommand readPoseList(JsonReader& reader) {
+    return
+        [poses = readPoses(reader)](const Document& document) { return setPoses(document.model(), poses); };
+}
+
 MakeCommand readTimeLineStep(JsonReader& reader) {
     return [line = readTimeLine(reader)](const Document& document) {
         return setTimeLine(document.model(), line, "Time line");
@@ -341,6 +364,7 @@ constexpr RecordedOperation kSettingsCommandsRecords[] = {
     {"spheres", readSpheres},
     {"layers", readLayerList},
     {"card_edits", readCards},
+    {"poses", readPoseList},
     {"time_line", readTimeLineStep},
     {"triangulate", readTriangulate},
 };

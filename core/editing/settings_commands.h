@@ -34,6 +34,10 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
 Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<CardEdit> edits,
                                               std::string name);
 
+/// The settings of the poses that there are, in their order. Errors: other names, a value out of its range.
+Result<std::unique_ptr<Command>> setPoses(const Model& model, std::vector<GroomPose> poses,
+                                          std::string name = "Pose");
+
 /// Errors: what problemsOf() finds, the first one.
 Result<std::unique_ptr<Command>> setTimeLine(const Model& model, TimeLine line, std::string name);
 

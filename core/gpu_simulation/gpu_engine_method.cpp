@@ -92,9 +92,11 @@ MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels
     return [&device, kernels = std::move(kernels)](
                const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume)
                -> Result<std::unique_ptr<StrandMethod>> {
+        if (const std::string why = kernelError(scene.groom()); !why.empty()) return fail(why);
         EngineOptions options;
         options.layout = layoutFor(device.info().type);
         options.hairVolume = hairVolume;
+        if (const std::string why = kernelError(scene.groom()); !why.empty()) return fail(why);
         auto engine = StrandEngine::make(device, kernels, scene.strands(), scene.groom().simulation, options);
         if (!engine) return tl::unexpected(engine.error());
         return std::make_unique<GpuEngineMethod>(std::move(*engine));

@@ -43,4 +43,8 @@ Version versionOf(const AttributeData& data) {
     return std::visit([](const auto& array) { return array.version(); }, data);
 }
 
+std::string maskAttribute(std::uint32_t number) {
+    return fmt::format("mask.{}", number);
+}
+
 }  // namespace hairloom

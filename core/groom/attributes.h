@@ -50,6 +50,10 @@ inline constexpr std::string_view kBoneWeightPrefix = "bone_weight_";
 inline constexpr std::string_view kStrandId = "id";  ///< uint32, kept while strands come and go
 }  // namespace attribute
 
+inline constexpr std::uint32_t kPaintedMasks = 4;
+/// "mask.1": float per strand in [0, 1]; 0 where nothing was painted. `number` counts from 1.
+std::string maskAttribute(std::uint32_t number);
+
 /// Attributes of one domain; every array has the domain's element count (validate() checks).
 class AttributeSet {
   public:

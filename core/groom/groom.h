@@ -16,6 +16,7 @@
 #include "core/groom/card_edits.h"
 #include "core/groom/material.h"
 #include "core/groom/operator_stack.h"
+#include "core/groom/poses.h"
 #include "core/groom/shadow_settings.h"
 #include "hairloom/settings.h"
 
@@ -94,6 +95,8 @@ struct Groom {
     InterpolationSettings interpolation;
     PlacementSettings placement;
     std::vector<CardEdit> cardEdits;  ///< of levels of detail
+    /// Their shapes are point attributes, poseAttribute().
+    std::vector<GroomPose> poses;
     /// What moves and changes when (core/groom/time_line.h); null: nothing. Shared and immutable.
     std::shared_ptr<const TimeLine> timeLine;
 

@@ -8,6 +8,7 @@
 #include "core/base/hash.h"
 #include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/fields.h"
+#include "core/groom/file/poses_json.h"
 #include "core/groom/file/time_line_json.h"
 #include "hairloom/body_field.h"
 
@@ -88,6 +89,7 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     hasher.number(groom.cardEdits.size());
     if (groom.body) hasher.array(std::span<const std::uint8_t>(groom.body->toBytes()));
     for (const CardEdit& edit : groom.cardEdits) hasher.text(toJson(edit).dump());
+    if (!groom.poses.empty()) hasher.text(toJson(groom.poses).dump());
     if (groom.timeLine) hasher.text(toJson(*groom.timeLine).dump());
     hashFields(hasher, groom.material);
     hashFields(hasher, groom.shadows);

@@ -181,6 +181,8 @@ const FieldInfo* findKeyable(std::string_view name) {
         field = runtime::findField<SimulationSettings>(name.substr(kSimulation.size()));
     else if (name.starts_with(kMaterial))
         field = runtime::findField<HairMaterial>(name.substr(kMaterial.size()));
+    else if (name.starts_with(kPosePrefix) && checkPoseName(name.substr(kPosePrefix.size())))
+        field = runtime::findField<GroomPose>("amount");
     // These choose the engine, or have it count all of the hair anew. Of the material they choose what draws
     // it, or which strands look otherwise.
     constexpr std::array<std::string_view, 17> kChosenBefore{"simulation.strandModel",
@@ -215,6 +217,16 @@ std::vector<std::string> keyableNames() {
     };
     add(kSimulation, fieldsOf(SimulationSettings()));
     add(kMaterial, fieldsOf(HairMaterial()));
+    return names;
+}
+
+std::vector<std::string> keyableNames(const Groom& groom) {
+    std::vector<std::string> names = keyableNames();
+    const auto behind =
+        std::ranges::find_if(names, [](const std::string& name) { return !name.starts_with(kSimulation); });
+    std::vector<std::string> poses;
+    for (const GroomPose& pose : groom.poses) poses.push_back(poseAttribute(pose.name));
+    names.insert(behind, poses.begin(), poses.end());
     return names;
 }
 
@@ -256,6 +268,11 @@ Vec3d valueOf(const S& settings, std::string_view name) {
     return value;
 }
 
+Vec3d amountOf(const Groom& groom, std::string_view pose) {
+    const auto found = findPose(groom, pose);
+    return {found ? static_cast<double>(groom.poses[*found].amount) : 0, 0, 0};
+}
+
 }  // namespace
 
 SimulationSettings settingsAt(const TimeLine& line, float time, const SimulationSettings& authored) {
@@ -268,6 +285,20 @@ HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& au
     HairMaterial material = authored;
     takeKeys(line, kMaterial, time, material);
     return material;
+}
+
+std::vector<float> poseAmountsAt(const TimeLine& line, float time, std::span<const GroomPose> authored) {
+    std::vector<float> amounts;
+    for (const GroomPose& pose : authored) {
+        const auto track = std::ranges::find(line.settings, poseAttribute(pose.name), &SettingTrack::name);
+        const bool isKeyed = track != line.settings.end() && !track->keys.empty();
+        amounts.push_back(isKeyed ? static_cast<float>(valueAt(*track, time)[0]) : pose.amount);
+    }
+    return amounts;
+}
+
+bool keysPoses(const TimeLine& line) {
+    return std::ranges::any_of(line.settings, isOf(kPosePrefix));
 }
 
 bool keysSimulation(const TimeLine& line) {
@@ -286,6 +317,7 @@ bool movesAlike(const TimeLine& one, const TimeLine& other) {
 
 Vec3d authoredValue(const Groom& groom, std::string_view name) {
     return name.starts_with(kMaterial)     ? valueOf(groom.material, name.substr(kMaterial.size()))
+           : name.starts_with(kPosePrefix) ? amountOf(groom, name.substr(kPosePrefix.size()))
            : name.starts_with(kSimulation) ? valueOf(groom.simulation, name.substr(kSimulation.size()))
                                            : Vec3d(Vec3d::Zero());
 }

@@ -13,6 +13,7 @@
 #include "core/base/math.h"
 #include "core/base/smooth_step.h"
 #include "core/groom/material.h"
+#include "core/groom/poses.h"
 #include "hairloom/field.h"
 #include "hairloom/settings.h"
 
@@ -56,7 +57,7 @@ struct SettingKey {
 };
 /// Keys of one described setting.
 struct SettingTrack {
-    std::string name;              ///< "simulation.windSpeed" or "material.rootColour", see findKeyable()
+    std::string name;  ///< "simulation.windSpeed", "pose.NAME" or "material.rootColour", see findKeyable()
     std::vector<SettingKey> keys;  ///< at least one
 
     friend bool operator==(const SettingTrack&, const SettingTrack&) = default;
@@ -107,12 +108,15 @@ inline constexpr std::size_t kMaxKeys = 200'000;  ///< of a time line, clips amo
 /// The groom's, or one with nothing on it.
 const TimeLine& timeLineOf(const Groom& groom);
 
-/// The field of a name such as "simulation.gravity" or "material.rootColour"; null where there is none that
-/// can be keyed: curves and seeds cannot, a strand model cannot change while hair moves, and a material
-/// neither its shading model nor which strands are in streaks, white and dyed.
+/// The field of a name such as "simulation.gravity" or "material.rootColour", and of a pose, "pose.NAME",
+/// that of its amount, whether a groom has it or not; null where there is none that can be keyed: curves and
+/// seeds cannot, a strand model cannot change while hair moves, and a material neither its shading model nor
+/// which strands are in streaks, white and dyed.
 const runtime::FieldInfo* findKeyable(std::string_view name);
 /// The names of all that can be keyed, in order of their description, those of the material last.
 std::vector<std::string> keyableNames();
+/// Likewise, and of the groom's poses behind those of the simulation.
+std::vector<std::string> keyableNames(const Groom& groom);
 /// What the groom has of a field that findKeyable() finds; components that the field lacks are 0.
 Vec3d authoredValue(const Groom& groom, std::string_view name);
 
@@ -122,6 +126,9 @@ runtime::SimulationSettings settingsAt(const TimeLine& line, float time,
                                        const runtime::SimulationSettings& authored);
 /// The hairstyle's material, likewise. Those of layers have no keys.
 HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& authored);
+/// The amounts of poses, likewise.
+std::vector<float> poseAmountsAt(const TimeLine& line, float time, std::span<const GroomPose> authored);
+bool keysPoses(const TimeLine& line);
 /// Whether settingsAt() and materialAt() may give something else than what is authored.
 bool keysSimulation(const TimeLine& line);
 bool keysMaterial(const TimeLine& line);

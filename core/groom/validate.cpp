@@ -81,6 +81,12 @@ void findTimeLine(const Groom& groom, std::vector<Finding>& findings) {
         findings.push_back({Severity::Error, problem.what, "time_line/" + problem.where, problem.expected});
 }
 
+void findPoses(const Groom& groom, std::vector<Finding>& findings) {
+    for (PoseProblem& problem : poseProblems(groom))
+        findings.push_back({problem.isHarmless ? Severity::Warning : Severity::Error, std::move(problem.what),
+                            std::move(problem.where), std::move(problem.fix)});
+}
+
 }  // namespace
 
 std::string_view severityName(Severity severity) {
@@ -102,6 +108,7 @@ std::vector<Finding> validateSettings(const Groom& groom) {
     findWeights(groom, findings);
     findSettings(groom, findings);
     findTimeLine(groom, findings);
+    findPoses(groom, findings);
     return findings;
 }
 

@@ -81,6 +81,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
     const Groom& groom = scene.rest();
     auto input = SceneInput::make(groom);
     if (!input) return tl::unexpected(input.error());
+    if (const std::string why = gpu_simulation::kernelError(groom); !why.empty()) return fail(why);
     gpu_simulation::EngineOptions options;
     options.layout = gpu_simulation::layoutFor(device.info().type);
     options.velocities = true;

@@ -97,7 +97,7 @@ std::string obstacle(gpu::Device* device, const Groom& groom) {
     if (groom.body && groom.simulation.strandModel == runtime::StrandModel::rods)
         return "the GPU does not keep hair out of the skin of a body, which the CPU does. Remove the body to "
                "use the GPU: spheres alone then hold the hair";
-    return gpu_simulation::kernelError(groom.simulation);
+    return gpu_simulation::kernelError(groom);
 }
 
 }  // namespace

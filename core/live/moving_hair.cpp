@@ -68,6 +68,12 @@ Status MovingHair::setStyle(std::span<const Vec3f> restPositions) {
     return fail("strands on a GPU take no style while they run", "expected the method 'projective'");
 }
 
+Status MovingHair::setPoseAmounts(std::span<const float> amounts) {
+    if (auto* const cpu = std::get_if<Simulation>(&hair_)) return cpu->setPoseAmounts(amounts);
+    if (std::ranges::none_of(amounts, [](float amount) { return amount > 0; })) return {};
+    return fail("strands on a GPU follow no pose", "expected the engine on the CPU, or amounts of 0");
+}
+
 void MovingHair::setColliders(std::vector<CollisionSphere> spheres) {
     std::visit([&](auto& hair) { hair.setSpheres(std::move(spheres)); }, hair_);
 }

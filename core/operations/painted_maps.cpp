@@ -15,10 +15,6 @@ std::uint32_t numberOf(MaskMap map) {
 
 }  // namespace
 
-std::string maskAttribute(std::uint32_t number) {
-    return fmt::format("mask.{}", number);
-}
-
 std::vector<float> paintedValues(const Groom& groom, MaskMap map) {
     if (map == MaskMap::dye) return pointDyes(groom);
     std::vector<float> values(groom.pointCount(), map == MaskMap::none ? 1.0f : 0.0f);

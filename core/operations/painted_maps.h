@@ -10,10 +10,6 @@
 namespace hairloom {
 
 enum class MaskMap : std::uint32_t { none, density, dye, mask1, mask2, mask3, mask4 };
-inline constexpr std::uint32_t kPaintedMasks = 4;
-
-/// "mask.1": float per strand in [0, 1]; 0 where nothing was painted. `number` counts from 1.
-std::string maskAttribute(std::uint32_t number);
 
 /// One value for each point, 0 … 1. `none` is 1 everywhere; density is 0 where hair is bound to no scalp.
 std::vector<float> paintedValues(const Groom& groom, MaskMap map);

@@ -31,7 +31,8 @@ std::string turnEffectOff(runtime::SimulationSettings& settings, std::string_vie
 }
 
 bool canTurnOff(runtime::SimulationSettings settings, std::string_view effect) {
-    return effect == kCollisionEffect || effect == kBodyEffect || !turnEffectOff(settings, effect).empty();
+    return effect == kCollisionEffect || effect == kBodyEffect || effect == kPoseEffect ||
+           !turnEffectOff(settings, effect).empty();
 }
 
 }  // namespace hairloom

@@ -71,6 +71,12 @@ class EngineMethod : public StrandMethod {
         return {};
     }
 
+    Status setPoseAmounts(std::span<const float> amounts) override {
+        if (engine_.setPoseAmounts(amounts)) return {};
+        return fail(fmt::format("there are {} amounts", amounts.size()),
+                    fmt::format("expected one for each pose, {}", engine_.poseAmounts().size()));
+    }
+
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         engine_.readPositions(positions_ws);
     }
@@ -119,6 +125,22 @@ class EngineMethod : public StrandMethod {
     std::array<double, runtime::kEffectCount> effectMilliseconds_{};
 };
 
+/// With their authored amounts.
+Status givePoses(const Groom& groom, runtime::Engine& engine) {
+    std::vector<std::vector<float>> weights;
+    for (const GroomPose& pose : groom.poses) weights.push_back(poseWeights(groom, pose));
+    std::vector<runtime::PoseView> poses;
+    for (std::size_t k = 0; k < groom.poses.size(); ++k) {
+        auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute(groom.poses[k].name));
+        if (shape.empty()) shape = groom.positions();  // nothing follows it
+        poses.push_back({{reinterpret_cast<const runtime::Float3*>(shape.data()), shape.size()}, weights[k]});
+    }
+    if (const std::string problem = engine.setPoses(poses); !problem.empty())
+        return tl::unexpected(errorOfWords(problem));
+    engine.setPoseAmounts(poseAmounts(groom));
+    return {};
+}
+
 Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene,
                                                  const runtime::SimulationSettings& settings,
                                                  std::optional<Between> between) {
@@ -133,6 +155,7 @@ Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene,
         if (const std::string problem = made.engine->setBody(body); !problem.empty())
             return tl::unexpected(errorOfWords(problem));
     }
+    if (auto given = givePoses(scene.groom(), *made.engine); !given) return tl::unexpected(given.error());
     return std::make_unique<EngineMethod>(std::move(*made.engine), std::move(between));
 }
 
@@ -148,6 +171,11 @@ Result<std::unique_ptr<StrandMethod>> makeContinuum(const SceneInput& scene, Bet
 constexpr float kStiffest = 2.0f, kFastestSpreading = 4.0f;
 
 }  // namespace
+
+Status StrandMethod::setPoseAmounts(std::span<const float> amounts) {
+    if (std::ranges::none_of(amounts, [](float amount) { return amount > 0; })) return {};
+    return fail("this method follows no pose", "expected the strand engine on the CPU, or amounts of 0");
+}
 
 std::string reasonAlone(const std::string& why) {
     const std::size_t colon = why.find(": ");

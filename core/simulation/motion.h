@@ -31,6 +31,8 @@ struct HeadPose {
     /// Per bone of the groom's body, likewise; empty: the body moves with head_ws.
     std::vector<Eigen::Affine3f> body_ws;
     std::optional<Vec3f> wind_ws;  ///< m/s, in place of the groom's mean wind
+    /// Of each of the groom's poses from here on, 0 … 1; empty: they stay as they are.
+    std::vector<float> poseAmounts{};
 };
 
 /// The same measured from the origin of the world.

@@ -20,6 +20,7 @@ Groom inStillAir(const Groom& groom) {
     Groom still = groom;
     still.simulation.windSpeed = 0;
     still.simulation.sleepSpeed = 0;
+    for (GroomPose& pose : still.poses) pose.amount = 0;
     return still;
 }
 

@@ -93,6 +93,10 @@ Status Simulation::setSettings(const runtime::SimulationSettings& settings) {
     return {};
 }
 
+Status Simulation::setPoseAmounts(std::span<const float> amounts) {
+    return impl_->method->setPoseAmounts(amounts);
+}
+
 Status Simulation::setStyle(std::span<const Vec3f> restPositions) {
     return impl_->method->setStyle(
         {reinterpret_cast<const runtime::Float3*>(restPositions.data()), restPositions.size()});
@@ -140,6 +144,7 @@ void Simulation::step(float dt, const HeadPose& given, std::span<const HeadPose>
     input.origin_ws = {pose.origin_ws.x(), pose.origin_ws.y(), pose.origin_ws.z()};
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
+    input.poseAmounts = pose.poseAmounts;
     const auto body = bodyAt(impl_->scene.groom(), pose);
     input.body_ws = body;
     std::vector<WithinFrame> onTheWay;

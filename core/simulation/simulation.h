@@ -84,6 +84,10 @@ class Simulation {
     /// Other settings from the next step on, without a jump; wind is one of them. Errors, which leave all as
     /// it was: settings out of range, a method other than the strand engine on the CPU.
     Status setSettings(const runtime::SimulationSettings& settings);
+    /// How far strands follow each of the groom's poses from the next step on, in place of the authored
+    /// amounts; a pose of the head that has amounts comes before. Errors, which leave all as it was: another
+    /// number than there are poses, a method that follows none.
+    Status setPoseAmounts(std::span<const float> amounts);
     /// The shape that strands turn to from the next step on, in place of the authored one: of the same
     /// strands on the same roots, in the order of the groom's points; metres, at rest. Errors, which leave
     /// all as it was: another number of points, other roots or lengths, a method that has no angles to aim

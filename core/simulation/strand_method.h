@@ -53,6 +53,8 @@ class StrandMethod {
     virtual Status setStyle(std::span<const runtime::Float3>) {
         return fail("this method takes no style while it runs", "expected the method 'projective'");
     }
+    /// Of the groom's poses, from the next step on. An error leaves all as it was.
+    virtual Status setPoseAmounts(std::span<const float> amounts);
     /// All that changes from step to step, for another engine to go on from (runtime::Engine::state()); null
     /// where it cannot be had.
     virtual std::shared_ptr<const runtime::State> state() const { return nullptr; }

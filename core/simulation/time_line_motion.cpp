@@ -65,8 +65,12 @@ struct PlayedClip {
 
 class TimeLineMotion : public HeadMotion {
   public:
-    TimeLineMotion(TimeLine line, std::vector<PlayedClip> clips, std::optional<CharacterPoser> character)
-        : line_(std::move(line)), clips_(std::move(clips)), character_(std::move(character)) {}
+    TimeLineMotion(TimeLine line, std::vector<PlayedClip> clips, std::optional<CharacterPoser> character,
+                   std::vector<GroomPose> poses)
+        : line_(std::move(line)),
+          clips_(std::move(clips)),
+          character_(std::move(character)),
+          poses_(std::move(poses)) {}
 
     HeadPose poseAt(float seconds) const override {
         const float time = line_.timeAt(seconds);
@@ -83,6 +87,7 @@ class TimeLineMotion : public HeadMotion {
             pose.wind_ws = line_.wind[w].velocity;
             if (share > 0) *pose.wind_ws += (line_.wind[w + 1].velocity - line_.wind[w].velocity) * share;
         }
+        if (!poses_.empty()) pose.poseAmounts = poseAmountsAt(line_, time, poses_);
         return pose;
     }
     std::optional<runtime::SimulationSettings> settingsAt(
@@ -112,6 +117,7 @@ class TimeLineMotion : public HeadMotion {
     TimeLine line_;
     std::vector<PlayedClip> clips_;
     std::optional<CharacterPoser> character_;
+    std::vector<GroomPose> poses_;  ///< empty where none is keyed
 };
 
 Result<PlayedClip> playedClip(const ClipStrip& strip, const Actor& actor, const std::string& place) {
@@ -163,7 +169,10 @@ Result<std::unique_ptr<HeadMotion>> makeTimeLineMotion(TimeLine line, std::share
             clips.push_back(std::move(*played));
         }
     }
-    return std::make_unique<TimeLineMotion>(std::move(line), std::move(clips), std::move(character));
+    std::vector<GroomPose> poses;
+    if (keysPoses(line)) poses = groom.poses;
+    return std::make_unique<TimeLineMotion>(std::move(line), std::move(clips), std::move(character),
+                                            std::move(poses));
 }
 
 }  // namespace hairloom

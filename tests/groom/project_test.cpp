@@ -74,7 +74,8 @@ class OlderProject {
         now_ = ArchiveReader::open("a", readFile(path_).value(), section::kKind, kProjectVersion);
         EXPECT_TRUE(now_);
         head = now_->head();
-        for (const char* member : {"kind", "version", "arrays", "operators", "card_edits", "time_line"})
+        for (const char* member :
+             {"kind", "version", "arrays", "operators", "card_edits", "poses", "time_line"})
             head.erase(member);
     }
     Result<Groom> load(std::uint32_t version, std::string_view without = {}) {
@@ -284,7 +285,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = kProjectVersion + 2;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 13, but this program reads versions up to 11"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 14, but this program reads versions up to 12"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
@@ -333,6 +334,23 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h.erase("placement"); }, "/placement is missing"},
         {[](Json& h) { h["placement"]["points"] = 1; }, "/placement/points is 1"},
         {[](Json& h) { h.erase("card_edits"); }, "/card_edits is missing"},
+        {[](Json& h) { h.erase("poses"); }, "/poses is missing"},
+        {[](Json& h) {
+             h["poses"] = {{{"name", "a/b"}}};
+         },
+         "/poses/0/name 'a/b' is no name of a pose"},
+        {[](Json& h) {
+             h["poses"] = {{{"name", "Wet"}}, {{"name", "Wet"}}};
+         },
+         "/poses/1/name is \"Wet\" again"},
+        {[](Json& h) {
+             h["poses"] = {{{"name", "Wet"}, {"amount", 1.5}}};
+         },
+         "/poses/0/amount is 1.5"},
+        {[](Json& h) {
+             h["poses"] = {{{"name", "Wet"}, {"weight", 1}}};
+         },
+         "/poses/0/weight is not known"},
         {[](Json& h) { h.erase("time_line"); }, "/time_line is missing"},
         {[](Json& h) { h["time_line"]["clips"][1]["blend"] = 7e6; }, "/time_line/clips/1/blend is 7000000"},
         {[](Json& h) { h["time_line"]["head"][1]["t"] = 0; }, "/time_line/head/1/t is 0 s, not later"},

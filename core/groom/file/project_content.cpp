@@ -10,6 +10,7 @@
 #include "core/groom/file/json_reader.h"
 #include "core/groom/file/layers_json.h"
 #include "core/groom/file/operators_json.h"
+#include "core/groom/file/poses_json.h"
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/file/time_line_json.h"
@@ -64,6 +65,7 @@ Json projectHead(const Groom& groom, const std::filesystem::path& path) {
     head["interpolation"] = toJson(groom.interpolation);
     head["placement"] = toJson(groom.placement);
     head["card_edits"] = toJson(groom.cardEdits);
+    head["poses"] = toJson(groom.poses);
     head["time_line"] = toJson(timeLineOf(groom));
     head["character_file"] = characterNameFor(groom.characterFile, path);
     head["character_metres_per_unit"] = readableDecimal(groom.characterMetresPerUnit);

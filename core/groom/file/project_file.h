@@ -9,7 +9,7 @@
 
 namespace hairloom {
 
-inline constexpr std::uint32_t kProjectVersion = 11;
+inline constexpr std::uint32_t kProjectVersion = 12;
 
 /// Whether the file starts as a project does; false for one that cannot be read.
 bool looksLikeProject(const std::filesystem::path& path);

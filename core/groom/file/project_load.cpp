@@ -11,6 +11,7 @@
 #include "core/groom/file/json_reader.h"
 #include "core/groom/file/layers_json.h"
 #include "core/groom/file/operators_json.h"
+#include "core/groom/file/poses_json.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
@@ -26,6 +27,7 @@ constexpr std::uint64_t kFirstWithOperators = 6;
 constexpr std::uint64_t kFirstWithCardEdits = 9;
 constexpr std::uint64_t kFirstWithBody = 10;
 constexpr std::uint64_t kFirstWithTimeLine = 11;
+constexpr std::uint64_t kFirstWithPoses = 12;
 
 struct Counts {
     std::uint64_t version;
@@ -50,6 +52,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     readSettings(head.object("interpolation"), groom.interpolation);
     if (version >= kFirstWithPlacement) readSettings(head.object("placement"), groom.placement);
     if (version >= kFirstWithCardEdits) groom.cardEdits = readCardEdits(head);
+    if (version >= kFirstWithPoses) groom.poses = readPoses(head);
     if (version >= kFirstWithTimeLine) {
         if (TimeLine line = readTimeLine(head); line != TimeLine())
             groom.timeLine = std::make_shared<const TimeLine>(std::move(line));
