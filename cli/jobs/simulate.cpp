@@ -44,6 +44,28 @@ SimulationOptions methodOf(const SimulateOptions& options) {
     return result;
 }
 
+/// NAME=AMOUNT. Keys of its amount, which come before it, go.
+Status setPose(Groom& groom, const std::string& assignment) {
+    const std::size_t equals = assignment.rfind('=');
+    const std::string name = assignment.substr(0, equals);
+    const std::string text = equals == std::string::npos ? "" : assignment.substr(equals + 1);
+    const nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+    const double amount = value.is_number() ? value.get<double>() : -1;
+    if (!(amount >= 0 && amount <= 1))
+        throw WrongUsage(fmt::format("--pose {}", assignment),
+                         "expected NAME=AMOUNT with an amount of 0 to 1");
+    const auto found = findPose(groom, name);
+    if (!found) return removePose(groom, name);  // the same words
+    groom.poses[*found].amount = static_cast<float>(amount);
+    if (groom.timeLine) {
+        TimeLine line = *groom.timeLine;
+        std::erase_if(line.settings,
+                      [&](const SettingTrack& track) { return track.name == poseAttribute(name); });
+        groom.timeLine = std::make_shared<const TimeLine>(std::move(line));
+    }
+    return {};
+}
+
 /// The settings of the groom with what the command line says instead.
 Status overrideSettings(Groom& groom, const SimulateOptions& options) {
     const runtime::StrandModel own = groom.simulation.strandModel;
@@ -58,6 +80,9 @@ Status overrideSettings(Groom& groom, const SimulateOptions& options) {
         groom.simulation.substeps = std::max(groom.simulation.substeps, runtime::kSpringSubsteps);
     groom.simulation.hairHair = groom.simulation.hairHair || options.hairHair;
     if (options.substeps > 0) groom.simulation.substeps = options.substeps;
+    for (const std::string& pose : options.poses) {
+        if (auto set = setPose(groom, pose); !set) return set;
+    }
     return setWind(groom, options.wind);
 }
 
@@ -421,6 +446,10 @@ std::vector<CLI::Option*> addSimulationOptions(CLI::App& job, SimulateOptions& o
         ->check(CLI::IsMember({"strands", "projective", "chain", "lattice", "particles", "hybrid"}));
     job.add_flag("--hair-hair", options.hairHair,
                  "Turns on simulation.hairHair, hair-hair collision of rods and projective equations");
+    job.add_option("--pose", options.poses,
+                   "How far hair follows a pose of the groom, as NAME=AMOUNT of 0 to 1, instead of the "
+                   "groom's own. Of the strand engine on the CPU")
+        ->delimiter(',');
     job.add_option(
         "--style", options.style,
         "Groom of the same strands, whose shape they turn to from the first frame on. Of projective "

@@ -30,6 +30,7 @@ struct SimulateOptions {
     std::string character;
     std::string method = "strands";
     bool hairHair = false;
+    std::vector<std::string> poses;  ///< NAME=AMOUNT
     std::string style;
     bool sag = false;
     bool take = false;

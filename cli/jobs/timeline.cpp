@@ -70,7 +70,7 @@ Result<Report> timeline(const TimelineOptions& options) {
     Report report{{"time_line", toJson(*line)},
                   {"frames", line->frameCount()},
                   {"clips", clipsOf(options, *groom)},
-                  {"keyable", keyableNames()}};
+                  {"keyable", keyableNames(*groom)}};
     if (!options.keep.empty()) {
         if (auto kept = writeFileAtomically(options.keep, timeLineText(*line)); !kept)
             return tl::unexpected(kept.error());

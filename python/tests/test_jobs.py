@@ -48,6 +48,7 @@ CALLS: dict[str, tuple[Callable[[], hairloom.Report], str]] = {
     "info": (lambda: hairloom.info(hair), "strands"),
     "layers": (lambda: hairloom.layers(hair), "layers"),
     "lod": (lambda: hairloom.lod(hair, output="levels", levels="strands,cards:8", atlas=64, directions=2), "levels"),
+    "pose": (lambda: hairloom.pose(hair, name="Rest", make=True, output="posed.hairloom"), "poses"),
     "reference": (lambda: hairloom.reference(output="reference.md"), "bytes"),
     "render": (lambda: hairloom.render(hair, output="hair.png", size="64x64", passes=1), "device"),
     "set": (lambda: hairloom.set(hair, ["simulation.windSpeed=4"], output="set.hairloom"), "changed"),

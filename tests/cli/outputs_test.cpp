@@ -45,6 +45,7 @@ constexpr Writes kWrites[] = {
     {"import", "--output", "a.hair -o OUT"},
     {"import", "--record", "a.hair -o h.hairloom --record OUT"},
     {"lod", "--output", "g.hairloom -o OUT", true},
+    {"pose", "--output", "g.hairloom --name A --make -o OUT"},
     {"reference", "--output", "-o OUT"},
     {"reference", "--man", "--man OUT", true},
     {"reference", "--jobs", "--jobs OUT"},
