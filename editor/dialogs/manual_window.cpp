@@ -53,6 +53,7 @@ QString manualSection(const QString& panel) {
                                                      {"motion", "6-simulate"},
                                                      {"operators", "operators"},
                                                      {"physics", "6-simulate"},
+                                                     {"poses", "poses"},
                                                      {"scalp", "2-select-the-scalp"},
                                                      {"spheres", "5-fit-colliders"},
                                                      {"tool", "4-groom"},

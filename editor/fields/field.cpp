@@ -199,6 +199,29 @@ std::vector<Field> layerMaterialFields(std::size_t index) {
     return fields;
 }
 
+std::vector<Field> poseFields(std::size_t index) {
+    std::vector<Field> fields = fieldsIn<GroomPose>(
+        [index](const Groom& groom) -> const GroomPose& {
+            static const GroomPose kNone;
+            return index < groom.poses.size() ? groom.poses[index] : kNone;
+        },
+        [index](Groom& groom) { return index < groom.poses.size() ? &groom.poses[index] : nullptr; },
+        editing::Part::Physics);
+    // Names that stand beside those of operators and of other panels.
+    constexpr std::pair<std::string_view, const char*> kNames[] = {
+        {"amount", "poseAmount"}, {"mask", "poseMask"}, {"invert", "poseInvert"}};
+    for (Field& field : fields) {
+        for (const auto& [name, shown] : kNames) {
+            if (field.name == name) field.name = shown;
+        }
+        field.step = [name = field.label.toStdString()](const editing::Model& model, const Groom& groom) {
+            return editing::setPoses(model, groom.poses, "Pose: " + name)
+                .value_or(std::unique_ptr<editing::Command>());
+        };
+    }
+    return fields;
+}
+
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names) {
     std::vector<Field> picked;
     for (const QString& name : names) {

@@ -45,6 +45,8 @@ std::vector<Field> placementFields();
 /// The density of the layer at `index`, or the material that it has of its own.
 Field layerDensityField(std::size_t index);
 std::vector<Field> layerMaterialFields(std::size_t index);
+/// Of the pose at `index`, but its ramp.
+std::vector<Field> poseFields(std::size_t index);
 /// Weight and settings of the operator at `index`, or those of its region, or of its mask but the ramp. A
 /// complaint of an operator goes to `failed`.
 using SayError = std::function<void(const QString&)>;

@@ -53,12 +53,17 @@ class KeyMenu : public QObject {
 }  // namespace
 
 KeyThis::KeyThis(Keying& keying, const char* section, QObject* parent)
-    : FieldKeys(parent), keying_(keying), section_(section) {
+    : KeyThis(
+          keying, [prefix = std::string(section) + '.'](const char* setting) { return prefix + setting; },
+          parent) {}
+
+KeyThis::KeyThis(Keying& keying, std::function<std::string(const char*)> nameOf, QObject* parent)
+    : FieldKeys(parent), keying_(keying), nameOf_(std::move(nameOf)) {
     connect(&keying_, &Keying::changed, this, &FieldKeys::changed);
 }
 
 KeyTrack KeyThis::trackOf(const char* setting) const {
-    return {KeyTrack::Of::setting, section_ + '.' + setting};
+    return {KeyTrack::Of::setting, nameOf_(setting)};
 }
 
 void KeyThis::offer(const char* setting, std::initializer_list<QWidget*> places) {

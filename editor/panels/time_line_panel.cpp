@@ -232,7 +232,7 @@ class TimeLinePanel : public QWidget {
     /// By their labels.
     void fillSettings(QMenu& menu, std::string_view section) {
         std::map<QString, std::string> byLabel;
-        for (const std::string& name : keyableNames()) {
+        for (const std::string& name : keying_.keyable()) {
             if (name.starts_with(section)) byLabel[labelOf(KeyTrack{KeyTrack::Of::setting, name})] = name;
         }
         for (const auto& [label, name] : byLabel)
@@ -245,6 +245,9 @@ class TimeLinePanel : public QWidget {
         menu.addAction("Wind, as Physics has it", this, [this] { keying_.keyWind(); });
         fillSettings(*menu.addMenu("Setting of Physics"), "simulation.");
         fillSettings(*menu.addMenu("Setting of Look"), "material.");
+        QMenu* poses = menu.addMenu("Amount of a pose");
+        fillSettings(*poses, kPosePrefix);
+        poses->setEnabled(!poses->isEmpty());
         QMenu* clips = menu.addMenu("Add clip");
         if (player_.actor()) {
             for (const Clip& clip : player_.actor()->clips()) {

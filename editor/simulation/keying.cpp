@@ -70,6 +70,9 @@ QString labelOf(const KeyTrack& track) {
         case Of::setting:
             break;
     }
+    // A pose is called as its artist calls it.
+    if (track.name.starts_with(kPosePrefix))
+        return QString::fromStdString(track.name.substr(kPosePrefix.size()));
     return labelOf(QString::fromStdString(track.name).section('.', 1));
 }
 

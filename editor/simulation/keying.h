@@ -28,6 +28,8 @@ class Keying : public QObject {
 
     // At the play head.
 
+    /// Names of what keySetting() takes.
+    std::vector<std::string> keyable() const { return keyableNames(document_.groom()); }
     /// The value that the document has.
     void keySetting(const std::string& name);
     void removeSetting(const std::string& name);

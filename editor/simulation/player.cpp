@@ -354,7 +354,10 @@ void Player::documentChanged(editing::Part parts) {
     // Follow hairs matter where they move with the strands, which is on the device.
     const bool followsOther =
         contains(parts, editing::Part::Interpolation) && engine_ && engine_->kind == EngineKind::gpu;
-    const bool changed = contains(parts, editing::Part::Physics | editing::Part::Spheres);
+    const bool isMasked =
+        contains(parts, editing::Part::Masks) &&
+        std::ranges::any_of(groom.poses, [](const GroomPose& pose) { return pose.mask > 0; });
+    const bool changed = isMasked || contains(parts, editing::Part::Physics | editing::Part::Spheres);
     if (!captured_ || (!followsOther && !changed)) return;
     std::shared_ptr<HeadMotion> motion;
     if (contains(parts, editing::Part::Spheres)) {
@@ -365,12 +368,17 @@ void Player::documentChanged(editing::Part parts) {
         // Engines are made with the body.
         const bool sameBody = !requests.groom || requests.groom->body == groom.body;
         // Some effects run on the CPU alone.
-        const auto runsOnGpu = [](const Groom& which) {
-            return gpu_simulation::kernelError(which.simulation).empty();
-        };
+        const auto runsOnGpu = [](const Groom& which) { return gpu_simulation::kernelError(which).empty(); };
         const bool sameEngines = !requests.groom || runsOnGpu(*requests.groom) == runsOnGpu(groom);
-        if (!sameBody || !sameEngines || followsOther || isMadeWithSettings(method_))
+        // So are they with poses, whose amounts alone they take while they run.
+        const bool samePoses = !requests.groom || std::ranges::equal(requests.groom->poses, groom.poses,
+                                                                     [](GroomPose before, GroomPose now) {
+                                                                         before.amount = now.amount;
+                                                                         return before == now;
+                                                                     });
+        if (!sameBody || !sameEngines || !samePoses || followsOther || isMadeWithSettings(method_))
             requests.regroomed = true;
+        requests.regroomed = requests.regroomed || isMasked;
         requests.changed = requests.changed || changed;
         requests.groom = std::make_shared<const Groom>(groom);
         if (motion) requests.motion = motion;

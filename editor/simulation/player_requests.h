@@ -16,6 +16,10 @@ inline bool leavesBodyOut(const QStringList& leftOut) {
     return leftOut.contains(QLatin1String(kBodyEffect.data(), kBodyEffect.size()));
 }
 
+inline bool leavesPosesOut(const QStringList& leftOut) {
+    return leftOut.contains(QLatin1String(kPoseEffect.data(), kPoseEffect.size()));
+}
+
 /// What the interface has asked of the thread and it has not taken up yet.
 struct Player::WorkerRequests {
     bool stop = false;

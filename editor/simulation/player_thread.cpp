@@ -40,6 +40,9 @@ Groom without(Groom groom, const runtime::SimulationSettings& settings, const QS
     groom.simulation = without(settings, leftOut);
     groom.spheres = without(std::move(groom.spheres), leftOut);
     if (leavesBodyOut(leftOut)) groom.body.reset();
+    if (leavesPosesOut(leftOut)) {
+        for (GroomPose& pose : groom.poses) pose.amount = 0;
+    }
     return groom;
 }
 
@@ -98,6 +101,7 @@ struct Player::Playing {
     static HeadPose placed(HeadPose pose, const WorkerRequests& taken, const Eigen::Isometry3f& dragged) {
         moveBy(dragged, pose);
         if (taken.leftOut.contains("wind")) pose.wind_ws.reset();
+        if (leavesPosesOut(taken.leftOut)) pose.poseAmounts.clear();
         return pose;
     }
 

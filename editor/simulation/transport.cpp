@@ -13,7 +13,8 @@ bool isDone(const std::future<Value>& value) {
 
 Status take(MovingHair& hair, const Groom& changed) {
     hair.setColliders(changed.spheres);
-    return hair.setSettings(changed.simulation);
+    if (auto set = hair.setSettings(changed.simulation); !set) return set;
+    return hair.setPoseAmounts(poseAmounts(changed));
 }
 
 }  // namespace
