@@ -92,7 +92,7 @@ render::Image sheetOf(const std::vector<render::Image>& images, std::size_t colu
     return sheet;
 }
 
-Report reportOf(const render::Picture& picture, const RenderJobOptions& options) {
+Report pictureReport(const render::Picture& picture, const RenderJobOptions& options) {
     Report passes = Report::array();
     for (const gpu::PassTime& pass : picture.passes) {
         passes.push_back(Report{{"name", pass.name}, {"ms", pass.milliseconds}});
@@ -332,7 +332,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     for (std::size_t i = 0; i < shots->size(); ++i) {
         auto picture = photographer.take((*shots)[i]);
         if (!picture) return tl::unexpected(picture.error());
-        if (i == 0) report = reportOf(*picture, options);
+        if (i == 0) report = pictureReport(*picture, options);
         if (i == 0 && *colours) report["color"] = colourReport(**colours);
         if (i == 0) reportEngine(options, *device, *playing, report);
         if (auto status = burnIn.draw((*shots)[i], i, picture->image); !status)
