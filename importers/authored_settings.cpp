@@ -8,15 +8,17 @@
 #include "core/groom/file/layers_json.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/settings_json.h"
+#include "core/groom/mask_names.h"
 
 namespace hairloom {
 
 std::string settingsText(const Groom& groom) {
-    const nlohmann::ordered_json json{
+    nlohmann::ordered_json json{
         {"simulation", toJson(groom.simulation)}, {"material", toJson(groom.material)},
         {"shadows", toJson(groom.shadows)},       {"interpolation", toJson(groom.interpolation)},
         {"placement", toJson(groom.placement)},   {"spheres", toJson(groom.spheres)},
         {"layers", toJson(groom.layers)},         {"operators", toJson(groom.operators)}};
+    if (!groom.maskNames.empty()) json["masks"] = maskNamesToJson(groom.maskNames);
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -33,6 +35,7 @@ Result<std::shared_ptr<const Groom>> readSettingsText(const std::string& file, c
     authored->spheres = readSphereList(reader);
     authored->layers = readLayers(reader);
     authored->operators = readOperatorList(reader, readOperatorShape);
+    if (reader.has("masks")) readMaskNames(reader.object("masks"), authored->maskNames);
     if (auto status = reader.status(); !status) {
         // There is no byte of the file to point at.
         return failIn(file, {}, "its settings: " + status.error().problem, status.error().expected);

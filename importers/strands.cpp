@@ -358,6 +358,7 @@ void takeSettings(const RawStrands& raw, ImportedStrands& result) {
     result.groom.interpolation = authored.interpolation;
     result.groom.placement = authored.placement;
     result.groom.spheres = authored.spheres;
+    result.groom.maskNames = authored.maskNames;
     takeLayers(authored, result.groom, !raw.parts.empty());
     takeOperators(authored, raw.authoredShape, result);
 }

@@ -195,7 +195,8 @@ JobRun declare(CLI::App& job) {
     job.add_option(
         "fields", options->assignments,
         "SECTION.FIELD=VALUE. Sections: simulation, material, shadows, interpolation. For a layer: "
-        "layers.NAME.density=VALUE, layers.NAME.material.FIELD=VALUE, layers.NAME.material=null");
+        "layers.NAME.density=VALUE, layers.NAME.material.FIELD=VALUE, layers.NAME.material=null. Names of "
+        "painted masks: masks.1=NAME to masks.4=NAME");
     job.add_option("--preset", options->preset,
                    "Preset of measured hair for stiffness, cross-section, thickness and colour. --from and "
                    "fields override it")

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -18,6 +19,7 @@
 #include "core/editing/stack_commands.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
+#include "core/groom/mask_names.h"
 #include "core/operations/curl_class.h"
 #include "core/operations/mask.h"
 #include "core/operations/stack_file.h"
@@ -34,11 +36,32 @@ struct StackOptions {
     std::string layer;  ///< name; empty: all
     std::string maskImage;
     std::string regionsImage;
-    std::optional<std::uint32_t> mask;
+    std::string mask;  ///< name or number; empty: one that is free
     std::string output;
     std::optional<std::size_t> at, solo, duplicate, remove, only;
     bool bake = false;
 };
+
+/// The mask that --mask names; nothing where it does not.
+Result<std::optional<std::uint32_t>> askedMask(const StackOptions& options, const Groom& groom) {
+    if (options.mask.empty()) return std::optional<std::uint32_t>();
+    const auto number = findMask(groom, options.mask);
+    if (!number) return tl::unexpected(inFile(number.error(), options.input));
+    return std::optional<std::uint32_t>(*number);
+}
+
+/// Masks that have a name or paint.
+Report maskRows(const Groom& groom) {
+    Report rows = Report::array();
+    for (std::uint32_t number = 1; number <= kPaintedMasks; ++number) {
+        const auto painted = groom.strandAttributes.view<float>(maskAttribute(number));
+        const auto strands = std::ranges::count_if(painted, [](float share) { return share > 0; });
+        const bool isNamed = number <= groom.maskNames.size() && !groom.maskNames[number - 1].empty();
+        if (strands == 0 && !isNamed) continue;
+        rows.push_back(Report{{"mask", number}, {"name", maskName(groom, number)}, {"strands", strands}});
+    }
+    return rows;
+}
 
 /// A mask for each colour of the image, and what is in which.
 Result<Report> fillRegions(const StackOptions& options, editing::Document& document) {
@@ -47,7 +70,9 @@ Result<Report> fillRegions(const StackOptions& options, editing::Document& docum
     if (!image) return tl::unexpected(image.error());
     const auto regions = regionsAtRoots(*image, model.groom);
     if (!regions) return tl::unexpected(inFile(regions.error(), options.regionsImage));
-    const auto numbers = editing::masksFor(model.groom, regions->size(), options.mask.value_or(0));
+    const auto first = askedMask(options, model.groom);
+    if (!first) return tl::unexpected(first.error());
+    const auto numbers = editing::masksFor(model.groom, regions->size(), first->value_or(0));
     if (!numbers) return tl::unexpected(inFile(numbers.error(), options.regionsImage));
     std::vector<std::vector<float>> values;
     Report filled = Report::array();
@@ -59,7 +84,8 @@ Result<Report> fillRegions(const StackOptions& options, editing::Document& docum
                                 {"strands", region.strands}});
         values.push_back(region.shares);
     }
-    document.perform(editing::fillMasks(model, "Regions from image", *numbers, values));
+    document.perform(editing::fillMasks(model, "Regions from image", *numbers, values,
+                                        namesOfRegions(model.groom, *numbers, *regions)));
     return filled;
 }
 
@@ -82,8 +108,9 @@ Status perform(const StackOptions& options, editing::Document& document, Filled&
         if (!image) return tl::unexpected(image.error());
         const auto values = valuesAtRoots(*image, model.groom);
         if (!values) return tl::unexpected(inFile(values.error(), options.input));
-        const auto number =
-            options.mask ? Result<std::uint32_t>(*options.mask) : editing::freeMask(model.groom);
+        const auto asked = askedMask(options, model.groom);
+        if (!asked) return tl::unexpected(asked.error());
+        const auto number = *asked ? Result<std::uint32_t>(**asked) : editing::freeMask(model.groom);
         if (!number) return tl::unexpected(inFile(number.error(), options.input));
         document.perform(editing::setMask(model, *number, *values));
         filled.mask = *number;
@@ -134,7 +161,7 @@ Result<Report> edit(const StackOptions& options, Groom groom) {
     if (auto done = perform(options, document, filled); !done) return tl::unexpected(done.error());
     if (auto saved = saveProject(document.groom(), options.output); !saved)
         return tl::unexpected(saved.error());
-    Report report{{"operators", toJson(document.groom().operators)}};
+    Report report{{"operators", toJson(document.groom().operators)}, {"masks", maskRows(document.groom())}};
     if (filled.mask) report["mask"] = *filled.mask;
     if (filled.regions) report["regions"] = std::move(*filled.regions);
     report["seconds"] = watch.seconds();
@@ -162,7 +189,7 @@ Result<Report> run(const StackOptions& options) {
                           fmt::format("there are {} operators", shown.size()));
         shown = {shown[*options.only]};
     }
-    Report report{{"operators", toJson(shown)}};
+    Report report{{"operators", toJson(shown)}, {"masks", maskRows(*groom)}};
     if (!options.keep.empty()) {
         if (auto kept = saveOperators(options.keep, shown); !kept) return tl::unexpected(kept.error());
         report["kept"] = options.keep;
@@ -209,11 +236,15 @@ JobRun declare(CLI::App& job) {
     regions->needs(output)->excludes(image);
     auto* number =
         job.add_option("--mask", options->mask,
-                       "Number of that mask, or of the mask of the first region (default: unused ones)")
-            ->check(CLI::Range(1u, kPaintedMasks));
-    job.final_callback([number, image, regions] {
+                       "Name or number of that mask, or of the mask of the first region (default: unused "
+                       "ones). Names: set masks.1=NAME");
+    job.final_callback([number, image, regions, options] {
         if (number->count() > 0 && image->count() + regions->count() == 0)
             throw CLI::RequiresError("--mask", "--mask-image or --regions-image");
+        const bool isNumber =
+            std::ranges::all_of(options->mask, [](unsigned char c) { return std::isdigit(c); });
+        if (const auto found = findMask(Groom(), options->mask); number->count() > 0 && isNumber && !found)
+            throw CLI::ValidationError("--mask", found.error().problem + "; " + found.error().expected);
     });
     from->needs(output);
     bake->needs(output);

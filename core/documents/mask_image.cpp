@@ -125,6 +125,21 @@ Result<std::vector<ColourRegion>> regionsAtRoots(const MaskImage& image, const G
     return regions;
 }
 
+std::vector<std::string> namesOfRegions(const Groom& groom, std::span<const std::uint32_t> masks,
+                                        std::span<const ColourRegion> regions) {
+    const auto isColour = [](const std::string& name) {
+        return name.starts_with('#') ||
+               std::ranges::any_of(kColourNames, [&](const auto& known) { return name == known.second; });
+    };
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        const auto& given = groom.maskNames;
+        const std::string now = masks[i] <= given.size() ? given[masks[i] - 1] : std::string();
+        names.push_back(now.empty() || isColour(now) ? regions[i].name : std::string());
+    }
+    return names;
+}
+
 Result<std::vector<float>> valuesAtRoots(const MaskImage& image, const Groom& groom) {
     const auto uvs = groom.strandAttributes.view<Vec2f>(attribute::kRootUv);
     if (uvs.size() != groom.strandCount())

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,10 @@ std::string colourName(std::uint32_t rgb);
 /// which may be black, and then to none. Errors: those of flatColours() and valuesAtRoots(), and an image
 /// without regions.
 Result<std::vector<ColourRegion>> regionsAtRoots(const MaskImage& image, const Groom& groom);
+/// Names for the masks that the regions fill, one for each: that of its colour, where the mask has none or
+/// that of another colour; empty where somebody called it otherwise.
+std::vector<std::string> namesOfRegions(const Groom& groom, std::span<const std::uint32_t> masks,
+                                        std::span<const ColourRegion> regions);
 /// One value for each vertex, the mean of those that its corners have. Errors: a mesh without UVs.
 Result<std::vector<float>> valuesAtVertices(const MaskImage& image, const ScalpMesh& mesh);
 

@@ -11,6 +11,7 @@
 #include "core/base/log.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
+#include "core/groom/mask_names.h"
 #include "core/operations/stack.h"
 #include "importers/length_unit.h"
 #include "importers/mesh_format.h"
@@ -195,6 +196,7 @@ Status applySettings(const nlohmann::json& document, const std::string& source, 
     if (reader.has("shadows")) readSettings(reader.object("shadows"), groom.shadows);
     if (reader.has("interpolation")) readSettings(reader.object("interpolation"), groom.interpolation);
     if (reader.has("layers")) readLayerSettings(reader.object("layers"), document.at("layers"), groom);
+    if (reader.has("masks")) readMaskNames(reader.object("masks"), groom.maskNames);
     reader.finish();
     return reader.status();
 }

@@ -41,10 +41,10 @@ Result<Opened> openAny(const std::string& path, const std::string& unit);
 /// From a JSON list of {"name", "centre": [x, y, z], "radius", "bone"}; metres, radius > 0.
 Result<std::vector<CollisionSphere>> readSpheres(const std::string& path);
 
-/// What a JSON object says of "simulation", "material", "shadows", "interpolation" and "layers"; what it
-/// leaves out keeps its value. Layers stand by their names and have "density" and "material", which begins as
-/// the hairstyle's and is none as null. Errors: unknown names and values out of range. `source` is named in
-/// errors.
+/// What a JSON object says of "simulation", "material", "shadows", "interpolation", "layers" and "masks";
+/// what it leaves out keeps its value. Layers stand by their names and have "density" and "material", which
+/// begins as the hairstyle's and is none as null. Masks stand by their numbers and have names. Errors:
+/// unknown names and values out of range. `source` is named in errors.
 Status applySettings(const nlohmann::json& document, const std::string& source, Groom& groom);
 
 /// Says findings on standard error, as warnings about `path`.

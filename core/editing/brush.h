@@ -32,6 +32,9 @@ constexpr BrushParameter boolParameter(const char* name, bool defaultValue, cons
     return {{name, "", 0, 1, meaning, FieldKind::Bool}, defaultValue ? 1.0f : 0.0f};
 }
 
+/// The parameter that is the number of a painted mask, from 1.
+inline constexpr const char* kMaskParameter = "mask";
+
 struct BrushInfo {
     std::string_view name;          ///< in records: "comb"
     std::string_view label;         ///< for people: "Comb"

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "core/editing/selection_commands.h"
+#include "core/editing/settings_commands.h"
+#include "core/groom/mask_names.h"
 #include "core/operations/mask.h"
 #include "core/operations/stack.h"
 
@@ -52,9 +54,19 @@ Result<std::vector<std::uint32_t>> masksFor(const Groom& groom, std::size_t coun
 
 std::unique_ptr<Command> fillMasks(const Model& model, std::string name,
                                    std::span<const std::uint32_t> numbers,
-                                   std::span<const std::vector<float>> values) {
+                                   std::span<const std::vector<float>> values,
+                                   std::span<const std::string> called) {
     std::vector<std::unique_ptr<Command>> steps;
     for (std::size_t i = 0; i < numbers.size(); ++i) steps.push_back(setMask(model, numbers[i], values[i]));
+    std::vector<std::string> names = model.groom.maskNames;
+    const auto rename = [&](std::size_t i, const std::string& to) {
+        if (called[i].empty()) return;
+        if (auto renamed = maskNamesWith(names, numbers[i], to)) names = std::move(*renamed);
+    };
+    // First away with those that go, which others may take.
+    for (std::size_t i = 0; i < called.size(); ++i) rename(i, {});
+    for (std::size_t i = 0; i < called.size(); ++i) rename(i, called[i]);
+    if (auto step = setMaskNames(model, std::move(names))) steps.push_back(std::move(*step));
     return together(std::move(name), std::move(steps));
 }
 

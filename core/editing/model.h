@@ -40,6 +40,7 @@ enum class Part : std::uint32_t {
     Widths = 1u << 18u,         ///< of hair, as they were painted
     Shadows = 1u << 19u,        ///< settings of them
     TimeLine = 1u << 20u,       ///< clips, keys and range
+    MaskNames = 1u << 21u,      ///< of painted masks
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {

@@ -15,6 +15,7 @@
 #include "core/groom/file/settings_json.h"
 #include "core/groom/file/time_line_json.h"
 #include "core/groom/groom_hash.h"
+#include "core/groom/mask_names.h"
 #include "hairloom/body_field.h"
 
 namespace hairloom::editing {
@@ -91,6 +92,7 @@ Part differenceOf(const Groom& a, const Groom& b) {
         {Part::TimeLine, timeLineOf(a) != timeLineOf(b)},
         {Part::Operators, a.operators != b.operators || !a.operators.empty()},
         {Part::Layers, differs(a.layers, b.layers) || a.groupNames != b.groupNames},
+        {Part::MaskNames, a.maskNames != b.maskNames},
         {Part::Triangulation, !sameTriangles(a, b)},
     };
     Part parts = Part::None;
@@ -222,6 +224,17 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
         std::move(record), bytes);
 }
 
+Result<std::unique_ptr<Command>> setMaskNames(const Model& model, std::vector<std::string> names) {
+    if (auto status = checkMaskNames(names); !status) return tl::unexpected(status.error());
+    if (model.groom.maskNames == names) return nullptr;
+    const std::size_t bytes = names.size() * (sizeof(std::string) + kLongestMaskName);
+    std::string record = recordOf("mask_names", {{"names", maskNamesToJson(names)}});
+    return valueCommand<std::vector<std::string>>(
+        "Rename mask", Part::MaskNames,
+        [](Model& m) -> std::vector<std::string>& { return m.groom.maskNames; }, std::move(names),
+        std::move(record), bytes);
+}
+
 Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<CardEdit> edits,
                                               std::string name) {
     std::size_t roots = 0, bytes = 0;
@@ -326,6 +339,12 @@ MakeCommand readSpheres(JsonReader& reader) {
     };
 }
 
+MakeCommand readMaskNamesStep(JsonReader& reader) {
+    std::vector<std::string> names;
+    readMaskNames(reader.object("names"), names);
+    return [names](const Document& document) { return setMaskNames(document.model(), names); };
+}
+
 MakeCommand readCards(JsonReader& reader) {
     return [edits = readCardEdits(reader)](const Document& document) {
         return setCardEdits(document.model(), edits, "Cards");
@@ -363,6 +382,7 @@ constexpr RecordedOperation kSettingsCommandsRecords[] = {
     {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
     {"spheres", readSpheres},
     {"layers", readLayerList},
+    {"mask_names", readMaskNamesStep},
     {"card_edits", readCards},
     {"poses", readPoseList},
     {"time_line", readTimeLineStep},

@@ -27,6 +27,8 @@ std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSph
 /// The skin that hair collides with, baked from the groom's own head; null: none.
 std::unique_ptr<Command> setBody(const Model& model, std::shared_ptr<const runtime::BodyField> body,
                                  std::string name);
+/// What the painted masks are called, as Groom::maskNames has it. Errors: those of checkMaskNames().
+Result<std::unique_ptr<Command>> setMaskNames(const Model& model, std::vector<std::string> names);
 /// As many layers as there are or more, for strands name them by index.
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers);
 

@@ -47,6 +47,10 @@ struct Layer {
 };
 inline constexpr float kMaxLayerDensity = 4;
 
+inline constexpr std::uint32_t kPaintedMasks =
+    4;  ///< of operators; core/operations/painted_maps.h reads them
+inline constexpr std::size_t kLongestMaskName = 64;  ///< bytes
+
 /// How follow hairs come from guides (thesis §4.2). fieldsOf() describes the members.
 struct InterpolationSettings {
     std::uint32_t followPerGuide = 0;
@@ -85,6 +89,8 @@ struct Groom {
 
     std::vector<Layer> layers{Layer{}};
     std::vector<std::string> groupNames;
+    /// Of painted masks, from mask 1 on, at most kPaintedMasks. Those that are empty or missing have none.
+    std::vector<std::string> maskNames;
     std::vector<CollisionSphere> spheres;
     /// What rods collide with beside spheres: the skin of `scalp`, baked (hairloom/body_field.h), with the
     /// names of the bones that move it; null: none. Shared and immutable. Goes with its scalp.

@@ -77,6 +77,8 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
         hasher.number(one.number);
     }
     hasher.texts(groom.groupNames);
+    // None hashes as before masks had names.
+    if (!groom.maskNames.empty()) hasher.texts(groom.maskNames);
     hasher.number(groom.spheres.size());
     for (const CollisionSphere& sphere : groom.spheres) {
         hasher.text(sphere.name);

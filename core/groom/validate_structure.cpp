@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/groom/findings.h"
+#include "core/groom/mask_names.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 
@@ -115,6 +116,11 @@ void findDensity(const Groom& groom, std::vector<Finding>& findings) {
          "density", "paint the density again"});
 }
 
+void findMaskNames(const Groom& groom, std::vector<Finding>& findings) {
+    const auto status = checkMaskNames(groom.maskNames);
+    if (!status) findings.push_back({Severity::Error, status.error().problem, "masks", "rename the mask"});
+}
+
 void findTriangulation(const Groom& groom, std::vector<Finding>& findings) {
     Places places;
     const std::size_t strands = groom.strandCount();
@@ -180,6 +186,7 @@ bool findStructure(const Groom& groom, std::vector<Finding>& findings) {
     }
     findSelection(groom, findings);
     findDensity(groom, findings);
+    findMaskNames(groom, findings);
     findTriangulation(groom, findings);
     return findings.size() == before;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/bun.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,9 +27,8 @@ struct BunSettings {
 using S = BunSettings;
 
 constexpr Field<S> kFields[] = {
-    field<&S::centre>(
-        "centre", "m", -kAnywhere, kAnywhere,
-        "centre of the bun, near the skin. If centre and axis are zero, the bun is high at the back"),
+    field<&S::centre>("centre", "m", -kAnywhere, kAnywhere,
+                      "centre of the bun, near the skin. Zero is high at the back of the head"),
     field<&S::axis>("axis", "", -kAnywhere, kAnywhere,
                     "axis of the winding. Zero points straight out of the skin"),
     field<&S::radius>("radius", "m", 0.005, 0.3, "distance from the axis to the middle of the roll"),
@@ -47,18 +48,8 @@ struct Frame {
     Vec3f centre, axis, first, second;  ///< the roll lies in the plane of the last two
 };
 
-Frame frameOf(const S& settings, const Skin& skin) {
-    Frame frame;
-    Vec3f near = settings.centre;
-    if (near.isZero(0.0f) && settings.axis.isZero(0.0f)) {
-        const Box3f box = skin.mesh().bounds();
-        near = Vec3f(box.center().x(), box.max().y(), box.min().z());
-    }
-    const auto sample = skin.at(near);
-    frame.axis = unitOr(settings.axis, sample.outward);
-    const Vec3f ground = near - sample.distance * sample.outward;
-    const bool isFound = settings.centre.isZero(0.0f) && settings.axis.isZero(0.0f);
-    frame.centre = (isFound ? ground : near) + frame.axis * (isFound ? settings.thickness : 0.0f);
+Frame frameOf(const BunPlace& place) {
+    Frame frame{place.centre, place.axis, {}, {}};
     frame.first = unitOr(frame.axis.cross(Vec3f::UnitX()), frame.axis.unitOrthogonal());
     frame.second = frame.axis.cross(frame.first);
     return frame;
@@ -92,8 +83,7 @@ std::vector<Vec3f> around(const Frame& frame, const S& settings, const Vec3f& ro
 Result<std::size_t> bun(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("bun", settings); !status) return tl::unexpected(status.error());
     if (!groom.scalp) return fail("bun: the groom has no scalp", "bind it to one first");
-    const auto skin = sharedSkin(groom.scalp);
-    const Frame frame = frameOf(settings, skin->skin());
+    const Frame frame = frameOf(bunPlace(groom, settings.centre, settings.axis, settings.thickness));
     return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
         const Vec3f root = strand.points[0];
         if (settings.reach > 0 && (root - frame.centre).norm() > settings.reach) return;
@@ -106,6 +96,17 @@ Result<std::size_t> bun(Groom& groom, const S& settings, const Region& region) {
 }
 
 }  // namespace
+
+BunPlace bunPlace(const Groom& groom, const Vec3f& centre, const Vec3f& axis, float thickness) {
+    const auto skin = sharedSkin(groom.scalp);
+    const Box3f box = groom.scalp->bounds();
+    const bool isFound = centre.isZero(0.0f);
+    const Vec3f near = isFound ? Vec3f(box.center().x(), box.max().y(), box.min().z()) : centre;
+    const auto sample = skin->skin().at(near);
+    const Vec3f out = unitOr(axis, sample.outward);
+    if (!isFound) return {centre, out};
+    return {near - sample.distance * sample.outward + thickness * out, out};
+}
 
 Operation bunOperation() {
     return operation<S, bun>("bun", 74, "gathers hair and winds it into a bun");

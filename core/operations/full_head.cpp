@@ -28,17 +28,29 @@ Status fillHead(Groom& groom) {
     if (!groom.scalp || groom.scalpSelection.empty())
         return fail("no scalp is selected, so nobody knows where hair grows", "select the scalp first");
     const float scale = headScale(groom);
-    const double area_cm2 = 1e4 * maskedArea(*groom.scalp, groom.scalpSelection, groom.scalpDensity);
-    const double each =
-        kHairsPerCm2 * area_cm2 / (double{scale} * double{scale}) / static_cast<double>(guides);
-    const double most = runtime::findField<InterpolationSettings>("followPerGuide")->max;
     InterpolationSettings& follow = groom.interpolation;
-    follow.followPerGuide = static_cast<std::uint32_t>(std::clamp(std::round(each), 1.0, most));
+    follow.followPerGuide = followHairsToFill(groom, guides);
     follow.blend = 1;
     fitDefault(follow, "wispRadiusRoot", scale);
     fitDefault(follow, "wispRadiusTip", scale);
     fitDefault(groom.material, "rootRadius", scale);
     return {};
+}
+
+std::uint32_t followHairsToFill(const Groom& groom, std::size_t guides) {
+    const double scale{headScale(groom)};
+    const double area_cm2 = 1e4 * maskedArea(*groom.scalp, groom.scalpSelection, groom.scalpDensity);
+    const double each = kHairsPerCm2 * area_cm2 / (scale * scale) / static_cast<double>(guides);
+    const double most = runtime::findField<InterpolationSettings>("followPerGuide")->max;
+    return static_cast<std::uint32_t>(std::clamp(std::round(each), 1.0, most));
+}
+
+bool isFilledByItself(const Groom& groom) {
+    const InterpolationSettings& now = groom.interpolation;
+    if (groom.strandCount() == 0) return now.followPerGuide == InterpolationSettings().followPerGuide;
+    Groom full = groom;
+    return fillHead(full) && full.interpolation.followPerGuide == now.followPerGuide &&
+           full.interpolation.blend == now.blend;
 }
 
 }  // namespace hairloom

@@ -16,4 +16,11 @@ inline constexpr double kHairsPerCm2 = 160;
 /// defaults. Errors: no strands, or no scalp where hair grows.
 Status fillHead(Groom& groom);
 
+/// Follow hairs of each of so many guides, ≥ 1, with which the groom's scalp has that many hairs. The groom
+/// has a scalp, and `guides` is not 0.
+std::uint32_t followHairsToFill(const Groom& groom, std::size_t guides);
+/// Whether nobody has chosen other follow hairs: there is no hair yet and they are as in a new groom, or they
+/// are what fillHead() makes. Hair that is placed then fills the head by itself.
+bool isFilledByItself(const Groom& groom);
+
 }  // namespace hairloom

@@ -44,10 +44,6 @@ Vec3f crownOfHead(const Groom& groom) {
     return onSkinBelow(groom, kBehindTop);
 }
 
-Vec3f placeFound(const Groom& groom, std::string_view setting) {
-    return setting == "crown" ? crownOfHead(groom) : topOfHead(groom);
-}
-
 float headScale(const Groom& groom) {
     if (!groom.scalp) return 1;
     Box3f box;

@@ -14,9 +14,6 @@ namespace hairloom {
 Vec3f topOfHead(const Groom& groom);
 /// The same for where hair whorls: as far behind the top as a fifth of what hair grows on is deep.
 Vec3f crownOfHead(const Groom& groom);
-/// Where a point of that name lies that is zero: the crown of "crown", the top of the head for others.
-Vec3f placeFound(const Groom& groom, std::string_view setting);
-
 /// How much larger than a person's head the one is that hair grows on, as a round number: 1 from children to
 /// grown-ups, else 0.2, 0.5, 2, 5, 10 and so on, within 0.001 … 1000. By the scalp selection, or all of the
 /// mesh where none is selected; below 1 where the whole mesh is that of a doll's head. 1 without a scalp.

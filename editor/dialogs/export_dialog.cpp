@@ -261,7 +261,7 @@ void ExportDialog::showWhatWillBeWritten() {
     many_->setVisible(isAsset && guides > kManyGuides);
     cluster_->setVisible(isAsset && guides > kManyGuides);
     many_->setText(
-        QString("A game would simulate all %L1 guides, which is slow. Fewer guides with follow hairs "
+        QString("A game would simulate all %L1 guides, which is slow. Fewer guides with interpolated hairs "
                 "look the same and cost a tenth.")
             .arg(guides));
     if (choice.writer->holdsCards()) {

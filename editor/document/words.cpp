@@ -38,6 +38,11 @@ QString labelOf(const QString& name) {
     return label;
 }
 
+QString asSentence(QString text) {
+    if (!text.isEmpty()) text[0] = text[0].toUpper();
+    return text;
+}
+
 QString errorText(const Error& error) {
     Error told = error;
     const std::size_t end = told.problem.find(' ');

@@ -10,6 +10,7 @@
 #include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <QWidgetAction>
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -21,6 +22,18 @@ QWidget* heading(const QString& text) {
     label->setProperty("role", "heading");
     label->setIndent(0);
     return label;
+}
+
+void addCaption(QMenu& menu, const QString& text) {
+    if (!menu.isEmpty()) menu.addSeparator();
+    auto* label = new QLabel(text);
+    label->setProperty("role", "caption");
+    auto* caption = new QWidgetAction(&menu);
+    caption->setText(text);
+    caption->setDefaultWidget(label);
+    // Keys step over it.
+    caption->setEnabled(false);
+    menu.addAction(caption);
 }
 
 QPushButton* pushButton(const char* name, const QString& text, const QString& tip,

@@ -5,6 +5,7 @@
 #include <QDialog>
 #include <QFormLayout>
 #include <QLayout>
+#include <QMenu>
 #include <QPushButton>
 #include <QTreeWidget>
 #include <QWidget>
@@ -32,6 +33,8 @@ void wrapRows(QTreeWidget& table);
 /// Does `act` five times a second at most, the last call in any case: for numbers that change with each
 /// frame, which nobody reads faster. To be called while `owner` lives.
 std::function<void()> paced(QObject& owner, std::function<void()> act);
+/// A caption above the actions of `menu` that are added next. The style draws no words on separators.
+void addCaption(QMenu& menu, const QString& text);
 /// Folds away under its heading; `open` at first.
 QWidget* collapsible(const QString& title, QWidget* content, bool open = true);
 

@@ -8,9 +8,11 @@
 
 #include "core/editing/settings_commands.h"
 #include "core/editing/stack_commands.h"
+#include "core/operations/found_vectors.h"
 #include "core/operations/script.h"
 #include "core/operations/stack.h"
 #include "editor/document/words.h"
+#include "editor/fields/mask_name_edit.h"
 #include "editor/fields/number_spin.h"
 
 namespace hairloom::editor {
@@ -44,7 +46,7 @@ std::vector<Field> fieldsIn(S Groom::*section, editing::Part part) {
 }
 
 constexpr FieldInfo kDensity{
-    "layerDensity",   "", 0, kMaxLayerDensity, "multiplies the follow hairs per guide on this layer",
+    "layerDensity",   "", 0, kMaxLayerDensity, "multiplies the interpolated hairs per guide on this layer",
     FieldKind::Float, {}};
 
 std::unique_ptr<editing::Command> setLayersOf(const editing::Model& model, const Groom& groom) {
@@ -97,6 +99,12 @@ std::vector<Field> settingsFields(const Groom& onHead, const OperatorAt& at,
         field.set = [at, info = row.info, part](Groom& groom, double value, std::uint32_t component) {
             return at.in(groom) && setSettingOf(groom.operators[at.index], info, value, component, part);
         };
+        if (field.kind == FieldKind::Vector) {
+            field.found = [at, info = row.info, part](const Groom& groom) -> std::optional<Vec3f> {
+                const Operator* one = at.in(groom);
+                return one ? vectorFound(groom, *one, info, part) : std::nullopt;
+            };
+        }
         fields.push_back(std::move(field));
     }
     return fields;
@@ -130,7 +138,16 @@ std::vector<Field> operatorRegionFields(const Groom& groom, std::size_t index, c
 
 std::vector<Field> operatorMaskFields(const Groom& groom, std::size_t index, const SayError& failed) {
     const OperatorAt at{index, groom.operators[index].op, failed};
-    return settingsFields(groom, at, scriptMaskFields(), SettingsPart::mask);
+    std::vector<Field> fields = settingsFields(groom, at, scriptMaskFields(), SettingsPart::mask);
+    for (Field& field : fields) {
+        if (field.name != std::string_view("map")) continue;
+        field.part = field.part | editing::Part::MaskNames;
+        // Those of the groom are the last.
+        field.choicesIn = [labels = field.choiceLabels()](const Groom& now) {
+            return labels.first(labels.size() - static_cast<qsizetype>(kPaintedMasks)) + maskLabels(now);
+        };
+    }
+    return fields;
 }
 
 QStringList Field::choiceLabels() const {
@@ -236,7 +253,7 @@ std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names)
 Shown shownAs(const QString& unit, double min, double max, DisplayUnit lengths) {
     Shown shown{1, unit, 2};
     if (unit == "m") {
-        if (max <= 0.006) return {1e6, QStringLiteral("µm"), 1};
+        if (max <= 0.006 || (min > 0 && min < 1e-4)) return {1e6, QStringLiteral("µm"), 1};
         // Of what is small a tenth of a millimetre is to be seen.
         const int finer = max <= 0.11 ? 1 : 0;
         switch (lengths) {
@@ -262,10 +279,7 @@ Shown shownAs(const QString& unit, double min, double max, DisplayUnit lengths) 
 }
 
 QString tooltipOf(const Field& field, DisplayUnit lengths) {
-    const auto sentence = [](QString text) {
-        if (!text.isEmpty()) text[0] = text[0].toUpper();
-        return text.toHtmlEscaped();
-    };
+    const auto sentence = [](const QString& text) { return asSentence(text).toHtmlEscaped(); };
     QString text = QStringLiteral("<p><b>%1</b></p><p>%2</p>")
                        .arg(field.label, sentence(QString::fromUtf8(field.meaning)));
     if (field.kind == FieldKind::Choice) {

@@ -6,6 +6,7 @@
 #include <QStringList>
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/groom/file/fields.h"
@@ -32,6 +33,13 @@ struct Field : FieldInfo {
 
     /// Makes the control of its formula; empty where it takes none.
     std::function<FormulaEdit*()> formula{};
+
+    /// What the vector stands for where it is zero and the operator finds a place or direction itself;
+    /// nothing where zero is meant. Empty: zero is always meant.
+    std::function<std::optional<Vec3f>(const Groom&)> found{};
+
+    /// What its choices are called in a groom that names some of them itself; empty: choiceLabels().
+    std::function<QStringList(const Groom&)> choicesIn{};
 
     QStringList choiceLabels() const;
 };

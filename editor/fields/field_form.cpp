@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QSignalBlocker>
+#include <QStyle>
 #include <QToolButton>
 
 #include "core/editing/settings_commands.h"
@@ -36,6 +37,7 @@ FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::
     grid_->setColumnStretch(0, 2);
     for (const Field& field : fields_) {
         shown_ = shown_ | field.part;
+        if (field.found) shown_ = shown_ | editing::kScalpParts;  // it is found on the head
         addRow(field);
     }
     connect(&document_, &QtDocument::changed, this, &FieldForm::refresh);
@@ -102,6 +104,7 @@ void FieldForm::addRow(const Field& field) {
         const QString unit = shownOf(field).unit;
         if (field.kind == FieldKind::Vector && !unit.isEmpty())
             text = QStringLiteral("%1 (%2)").arg(text, unit);
+        if (field.found && field.found(document_.groom())) text = QString("%1, found").arg(text);
         if (label->text() != text) label->setText(text);
         label->setToolTip(tip);
         control->setToolTip(tip);
@@ -199,6 +202,10 @@ QWidget* FieldForm::makeChoice(const Field& field) {
     });
     refreshers_.push_back([this, &field, box] {
         const QSignalBlocker quiet(box);
+        if (field.choicesIn) {
+            const QStringList choices = field.choicesIn(document_.groom());
+            for (int i = 0; i < box->count(); ++i) box->setItemText(i, choices.value(i));
+        }
         box->setCurrentIndex(static_cast<int>(field.value(document_.groom(), 0)));
     });
     return box;
@@ -228,7 +235,14 @@ QWidget* FieldForm::makeVector(const Field& field) {
             box->setRange(field.min * shown.factor, field.max * shown.factor);
             box->setSingleStep(isPlace ? 0.005 * shown.factor
                                        : std::min(0.05, (field.max - field.min) / 200));
-            box->setValue(field.value(document_.groom(), c) * shown.factor);
+            const auto found = field.found ? field.found(document_.groom()) : std::nullopt;
+            const double value = found ? static_cast<double>((*found)[c]) : field.value(document_.groom(), c);
+            box->setValue(value * shown.factor);
+            if (box->property("found").toBool() == found.has_value()) return;
+            box->setProperty("found", found.has_value());
+            // The style looks its rules up again.
+            box->style()->unpolish(box);
+            box->style()->polish(box);
         });
     }
     return widget;
@@ -267,6 +281,11 @@ void FieldForm::begin() {
 void FieldForm::store(const Field& field, double value, std::uint32_t component) {
     if (field.value(document_.groom(), component) == value) return;
     Groom groom = document_.groom();
+    // Who changes one number of what was found keeps the others.
+    if (const auto found = field.found ? field.found(groom) : std::nullopt) {
+        for (std::uint32_t c = 0; c < field.components(); ++c)
+            if (!field.set(groom, static_cast<double>((*found)[c]), c)) return;
+    }
     if (!field.set(groom, value, component)) return;
     document_.performMerged(interaction_, [&](const editing::Model& model) {
         if (field.step) return field.step(model, groom);

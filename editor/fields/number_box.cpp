@@ -19,7 +19,9 @@ double floorOf(double min, double max) {
 }
 
 bool isLogarithmic(double min, double max) {
-    return min >= 0 && max / std::max(min, max / 1e9) > kLogarithmicSpan && max > 20;
+    const bool isWide = min >= 0 && max / std::max(min, max / 1e9) > kLogarithmicSpan;
+    // Those that begin at 0 do so for small numbers, which a logarithm would crowd out.
+    return isWide && (min > 0 || max > 20);
 }
 
 }  // namespace
@@ -90,6 +92,9 @@ void NumberBox::setShown(double factor, const QString& unit, int decimals) {
     spin_->setRange(min_ * factor, max_ * factor);
     spin_->setSuffix(unit.isEmpty() ? QString() : QStringLiteral(" ") + unit);
     spin_->setSingleStep(whole_ ? 1 : std::max(std::pow(10.0, -decimals), (max_ - min_) * factor / 100));
+    // What spans thousands has no step that fits all of it.
+    spin_->setStepType(isLogarithmic(min_, max_) && !whole_ ? QAbstractSpinBox::AdaptiveDecimalStepType
+                                                            : QAbstractSpinBox::DefaultStepType);
     showValue();
 }
 

@@ -51,12 +51,23 @@ void OptionForm::addBool(const QString& name, const QString& label, const QStrin
 void OptionForm::addChoice(const QString& name, const QString& label, const QString& tip,
                            const QStringList& choices, std::function<int()> get,
                            std::function<void(int)> set) {
+    addChoice(
+        name, label, tip, [choices] { return choices; }, std::move(get), std::move(set));
+}
+
+void OptionForm::addChoice(const QString& name, const QString& label, const QString& tip,
+                           std::function<QStringList()> choices, std::function<int()> get,
+                           std::function<void(int)> set) {
     auto* box = new QComboBox;
     box->setObjectName(name);
     box->setToolTip(tip);
-    box->addItems(choices);
+    box->addItems(choices());
     connect(box, &QComboBox::activated, this, [set = std::move(set)](int index) { set(index); });
-    refreshers_.push_back([box, get = std::move(get)] { box->setCurrentIndex(get()); });
+    refreshers_.push_back([box, choices = std::move(choices), get = std::move(get)] {
+        const QStringList now = choices();
+        for (int i = 0; i < box->count(); ++i) box->setItemText(i, now.value(i));
+        box->setCurrentIndex(get());
+    });
     refreshers_.back()();
     addPriced(name, label, box);
 }

@@ -27,6 +27,10 @@ class OptionForm : public QWidget {
                  std::function<void(bool)> set);
     void addChoice(const QString& name, const QString& label, const QString& tip, const QStringList& choices,
                    std::function<int()> get, std::function<void(int)> set);
+    /// The same, of choices that are asked for again at refresh(). Their number stays.
+    void addChoice(const QString& name, const QString& label, const QString& tip,
+                   std::function<QStringList()> choices, std::function<int()> get,
+                   std::function<void(int)> set);
     void addWidget(const QString& label, QWidget* widget);
 
     void refresh();

@@ -28,6 +28,7 @@ struct OverlayMode {
     void (*draw)(const OverlayView& view, Marks& marks);
     int order = 100;                  ///< in the menu
     std::vector<QString> tools = {};  ///< ids of those that it comes with
+    bool onBareHeads = false;         ///< it is there until hair grows
 };
 
 /// In order of file name (hairloom_registry).

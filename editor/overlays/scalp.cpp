@@ -20,7 +20,8 @@ void drawScalp(const OverlayView& view, Marks& marks) {
 
 OverlayMode scalpOverlay() {
     return {"scalp",   "Scalp", "Tints the faces where hair grows",
-            drawScalp, 10,      {"scalp_paint", "scalp_box", "scalp_lasso"}};
+            drawScalp, 10,      {"scalp_paint", "scalp_box", "scalp_lasso"},
+            true};
 }
 
 }  // namespace hairloom::editor

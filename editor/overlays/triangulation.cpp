@@ -21,8 +21,7 @@ void drawTriangulation(const OverlayView& view, Marks& marks) {
 
 OverlayMode triangulationOverlay() {
     return {"triangulation", "Root triangles",
-            "Shows the triangles between roots in which follow hairs are interpolated", drawTriangulation,
-            40};
+            "Shows the triangles between roots in which hairs are interpolated", drawTriangulation, 40};
 }
 
 }  // namespace hairloom::editor

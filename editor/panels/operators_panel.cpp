@@ -24,6 +24,7 @@
 #include "editor/fields/field_form.h"
 #include "editor/fields/formula_edit.h"
 #include "editor/fields/image_button.h"
+#include "editor/fields/mask_name_edit.h"
 #include "editor/fields/mask_ramp.h"
 #include "editor/panels/operator_kinds.h"
 #include "editor/panels/panel.h"
@@ -102,9 +103,7 @@ class OperatorsPanel : public QWidget {
         return hairloom::editor::labelOf(QString::fromStdString(one.op).replace('_', ' '));
     }
     static QString sentence(std::string_view words) {
-        QString text = QString::fromUtf8(words.data(), static_cast<qsizetype>(words.size()));
-        if (!text.isEmpty()) text[0] = text[0].toUpper();
-        return text;
+        return asSentence(QString::fromUtf8(words.data(), static_cast<qsizetype>(words.size())));
     }
 
     QWidget* makeAddButton() {
@@ -116,7 +115,7 @@ class OperatorsPanel : public QWidget {
         QString last;
         for (const StackOperator& known : operatorsByKind()) {
             const std::string name(known.name);
-            if (const QString kind = operatorKind(name); kind != last) menu->addSection(last = kind);
+            if (const QString kind = operatorKind(name); kind != last) addCaption(*menu, last = kind);
             QAction* action = menu->addAction(operatorIcon(name), labelOf(newOperator(name)));
             action->setToolTip(sentence(known.meaning));
             connect(action, &QAction::triggered, this, [this, name] {
@@ -408,6 +407,12 @@ class OperatorsPanel : public QWidget {
         rows->setContentsMargins(0, 0, 0, 0);
         rows->addWidget(
             new FieldForm(document_, preferences_, operatorMaskFields(document_.groom(), index, failed)));
+        rows->addWidget(new MaskNameEdit(document_, [this, index]() -> std::uint32_t {
+            if (index >= operators().size()) return 0;
+            const MaskMap map = maskOf(operators()[index]).map;
+            if (map < MaskMap::mask1) return 0;
+            return static_cast<std::uint32_t>(map) - static_cast<std::uint32_t>(MaskMap::mask1) + 1;
+        }));
         rows->addWidget(imageButton(
             "maskImage", "Mask from image…",
             "Fills the painted mask of the operator with the values of a PNG at the root UVs. If the "
@@ -448,7 +453,8 @@ class OperatorsPanel : public QWidget {
                         .arg(QString::fromStdString(region.name))
                         .arg(region.strands);
         }
-        document_.perform(editing::fillMasks(model(), "Regions from image", *numbers, values));
+        document_.perform(editing::fillMasks(model(), "Regions from image", *numbers, values,
+                                             namesOfRegions(document_.groom(), *numbers, *regions)));
         messages_.say(QString("Regions from image: %1").arg(told.join(QStringLiteral(", "))));
         return {};
     }

@@ -127,10 +127,11 @@ class ScalpPanel : public QWidget {
             return;
         }
         const FaceSet& faces = groom().scalpSelection;
-        area_->setText(faces.empty() ? QString("No faces selected: paint them (P) or choose a group.")
-                                     : QString("%L1 faces, %2 cm²")
-                                           .arg(faces.size())
-                                           .arg(selectionArea(mesh(), faces) * 1e4, 0, 'f', 0));
+        area_->setText(faces.empty()
+                           ? QString("No faces selected: paint them (P) or choose a group.")
+                           : QString("%L1 faces, %2\u00a0cm²")
+                                 .arg(faces.size())
+                                 .arg(numberLocale().toString(selectionArea(mesh(), faces) * 1e4, 'f', 0)));
         if (shownHead_ == groom().scalp) return;
         shownHead_ = groom().scalp;
         groups_->clear();
@@ -186,7 +187,11 @@ class PlacePanel : public QWidget {
         preview->setToolTip("Shows where roots will be placed and updates as you change settings");
         auto* place = new QPushButton("Place hair");
         place->setObjectName("place");
-        place->setToolTip("Grows strands on the whole scalp and replaces the existing ones");
+        place->setToolTip(
+            "Grows strands on the whole scalp and replaces the existing ones. New hair gets interpolated "
+            "hairs "
+            "until "
+            "it covers the scalp. Once you set their number yourself, it stays");
         auto* row = new QHBoxLayout;
         row->addWidget(preview);
         row->addWidget(place);
@@ -196,7 +201,8 @@ class PlacePanel : public QWidget {
         density->setShown(1, QStringLiteral("%"), 0);
         density->setValue(100);
         density->setToolTip(
-            "Share of the follow hairs that the viewport draws, to work faster. Renders and exports have "
+            "Share of the interpolated hairs that the viewport draws, to work faster. Renders and exports "
+            "have "
             "all hairs");
         connect(density, &NumberBox::edited, this,
                 [this](double percent) { viewport_.setPreviewDensity(static_cast<float>(0.01 * percent)); });
@@ -207,12 +213,12 @@ class PlacePanel : public QWidget {
         count_->setWordWrap(true);
         count_->setProperty("role", "dim");
         layout->addWidget(count_);
-        fill_ =
-            pushButton("fillHead", "Full head of hair",
-                       QString("Adds follow hairs until the scalp is as dense as a person's: %1 hairs per "
-                               "cm², spread between the strands. More hairs take longer to draw")
-                           .arg(kHairsPerCm2),
-                       [this] { fill(); });
+        fill_ = pushButton(
+            "fillHead", "Full head of hair",
+            QString("Adds interpolated hairs until the scalp is as dense as a person's: %1 hairs per "
+                    "cm², spread between the strands. More hairs take longer to draw")
+                .arg(kHairsPerCm2),
+            [this] { fill(); });
         layout->addWidget(fill_);
         layout->addWidget(imageButton(
             "densityImage", "Density from image…",
@@ -266,12 +272,16 @@ class PlacePanel : public QWidget {
         const double strands = density > 0 ? density * area_cm2 : groom.placement.count;
         const auto whole = [](double number) { return static_cast<qlonglong>(std::llround(number)); };
         QString text =
-            QString("Places about %L1 strands on %L2 cm²").arg(whole(strands)).arg(whole(area_cm2));
+            QString("Places about %L1 strands on %L2\u00a0cm²").arg(whole(strands)).arg(whole(area_cm2));
         if (area_cm2 > 0)
-            text += QString(", %1 per cm²").arg(numberLocale().toString(strands / area_cm2, 'f', 1));
-        if (const std::uint32_t each = groom.interpolation.followPerGuide; each > 0)
             text +=
-                QString(". With %L1 follow hairs each: %L2 hairs, %3 per cm²")
+                QString(", %1\u00a0per\u00a0cm²").arg(numberLocale().toString(strands / area_cm2, 'f', 1));
+        const auto guides = static_cast<std::size_t>(std::max(1.0, strands));
+        const std::uint32_t each =
+            isFilledByItself(groom) ? followHairsToFill(groom, guides) : groom.interpolation.followPerGuide;
+        if (each > 0)
+            text +=
+                QString(". With %L1 interpolated hairs each: %L2 hairs, %3\u00a0per\u00a0cm²")
                     .arg(each)
                     .arg(whole(strands * (each + 1.0)))
                     .arg(numberLocale().toString(strands * (each + 1.0) / std::max(area_cm2, 1e-9), 'f', 0));
@@ -283,7 +293,7 @@ class PlacePanel : public QWidget {
         Groom full = document_.groom();
         if (auto status = fillHead(full); !status) return messages_.warn(errorText(status.error()));
         document_.perform(editing::setSettings(document_.editing().model(), full, "Full head of hair"));
-        messages_.say(QString("%L1 follow hairs per guide").arg(full.interpolation.followPerGuide));
+        messages_.say(QString("%L1 interpolated hairs per guide").arg(full.interpolation.followPerGuide));
     }
 
     void refresh() {
@@ -308,6 +318,7 @@ class PlacePanel : public QWidget {
             [groom = document_.groom()](TaskControl&) -> Result<Command> {
                 auto command = editing::place(groom, {}, {});
                 if (!command) return tl::unexpected(command.error());
+                if (*command && isFilledByItself(groom)) *command = filled(groom, std::move(*command));
                 return std::make_shared<std::unique_ptr<editing::Command>>(std::move(*command));
             },
             [this, strandsBefore = document_.groom().offsets.version(),
@@ -321,6 +332,21 @@ class PlacePanel : public QWidget {
                 messages_.say(QString("%L1 strands placed").arg(document_.groom().strandCount()));
                 curl();
             });
+    }
+
+    /// What places hair, and interpolated hairs between it, as one step.
+    static std::unique_ptr<editing::Command> filled(const Groom& groom,
+                                                    std::unique_ptr<editing::Command> place) {
+        editing::Model after{groom, {}};
+        place->exchange(after);
+        Groom full = after.groom;
+        auto fill = fillHead(full) ? editing::setSettings(after, full, "Full head of hair") : nullptr;
+        place->exchange(after);
+        const std::string name = place->name();
+        std::vector<std::unique_ptr<editing::Command>> steps;
+        steps.push_back(std::move(place));
+        steps.push_back(std::move(fill));
+        return editing::together(name, std::move(steps));
     }
 
     /// Another step: the operators of the class that is chosen.

@@ -98,7 +98,7 @@ void DocumentFiles::show(Opened opened, const QString& path, const QString& name
     const QString what = groom.strandCount() > 0 ? QString("%L1 strands").arg(groom.strandCount())
                                                  : QString("a head. Next, paint its scalp");
     messages_.say(opened.note.isEmpty() ? QString("%1: %2").arg(name, what)
-                                        : QString("%1: %2. %3").arg(name, what, opened.note));
+                                        : QString("%1: %2. %3").arg(name, what, asSentence(opened.note)));
     if (!opened.missing.isEmpty()) return;
     // A clip on the time line that the head no longer has.
     if (const auto motion = player_.makeMotion(player_.motion()); !motion)

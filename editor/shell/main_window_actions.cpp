@@ -275,7 +275,8 @@ void MainWindow::drawOverlays(Marks& marks) const {
     const Tool* const tool = tools_.active();
     for (const OverlayMode& mode : overlayModes()) {
         const bool comes = tool && std::ranges::find(mode.tools, tool->info().id) != mode.tools.end();
-        if (comes || actions_->get(QString("overlay.") + mode.id).isChecked())
+        const bool isBare = mode.onBareHeads && document_.groom().strandCount() == 0;
+        if (comes || isBare || actions_->get(QString("overlay.") + mode.id).isChecked())
             mode.draw({document_.groom(), *viewport_, player_}, marks);
     }
 }

@@ -134,8 +134,7 @@ void MainWindow::addSelectActions() {
         {"select.guides",
          QString("&Cluster guides…"),
          "",
-         QString(
-             "Reduces many strands to a few guides by clustering, and interpolates follow hairs from them"),
+         QString("Reduces many strands to a few guides by clustering, and interpolates hairs from them"),
          {}},
         [this] { chooseGuidesByClustering(); }));
     add(

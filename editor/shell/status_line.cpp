@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/shell/status_line.h"
 
+#include <QRegularExpression>
 #include <algorithm>
 
 #include "core/editing/selection_commands.h"
+#include "editor/document/words.h"
 #include "editor/fields/length_text.h"
 #include "editor/style/icons.h"
 #include "editor/style/theme.h"
@@ -122,8 +124,11 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
 
 void StatusLine::say(const QString& text, bool isWarning) {
     warning_ = isWarning;
-    message_->setText(text);
-    message_->setToolTip(text);
+    // Names of files stay as they are written.
+    const bool isWord = text.left(text.indexOf(' ')).indexOf(QRegularExpression("[^a-z]")) < 0;
+    const QString shown = isWord ? asSentence(text) : text;
+    message_->setText(shown);
+    message_->setToolTip(shown);
     const ThemeColours colours = themeColours(preferences_.theme());
     message_->setStyleSheet(isWarning ? QStringLiteral("QLabel { color: %1; }").arg(colours.bad.name())
                                       : QString());

@@ -8,6 +8,7 @@
 #include "core/editing/document.h"
 #include "editor/document/words.h"
 #include "editor/fields/field.h"
+#include "editor/fields/mask_name_edit.h"
 #include "editor/style/icons.h"
 
 namespace hairloom::editor {
@@ -346,11 +347,33 @@ OptionForm* BrushTool::makeBasicOptions() {
     return form;
 }
 
+void BrushTool::addMask(OptionForm& form, const editing::BrushParameter& parameter) {
+    const auto number = [this, name = std::string(parameter.name)] {
+        return static_cast<std::uint32_t>(std::lround(settings_.parameters[name]));
+    };
+    auto* edit = new MaskNameEdit(document_, number);
+    form.addChoice(
+        "brush:" + text(parameter.name), labelOf(text(parameter.name)), text(parameter.meaning),
+        [this] { return maskLabels(document_.groom()); }, [number] { return static_cast<int>(number()) - 1; },
+        [this, name = std::string(parameter.name), edit](int index) {
+            settings_.parameters[name] = static_cast<float>(index + 1);
+            edit->refresh();
+        });
+    form.addWidget({}, edit);
+    connect(&document_, &QtDocument::changed, &form, [&form](editing::Part parts) {
+        if (contains(parts, editing::Part::MaskNames)) form.refresh();
+    });
+}
+
 QWidget* BrushTool::makeOptions() {
     OptionForm* const form = makeBasicOptions();
     for (const editing::BrushParameter& parameter : brush_.parameters) {
         const std::string name(parameter.name);
         const QString label = labelOf(text(parameter.name));
+        if (parameter.name == std::string_view(editing::kMaskParameter)) {
+            addMask(*form, parameter);
+            continue;
+        }
         if (parameter.kind == FieldKind::Bool) {
             form->addBool(
                 "brush:" + text(name), label, text(parameter.meaning),

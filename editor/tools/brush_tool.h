@@ -56,6 +56,7 @@ class BrushTool : public Tool {
     float depthAt(const BrushPlace& place) const;
     void handChanged();
     OptionForm* makeBasicOptions();
+    void addMask(OptionForm& form, const editing::BrushParameter& parameter);
 
     QtDocument& document_;
     const Preferences& preferences_;

@@ -6,6 +6,7 @@
 
 #include "core/editing/document.h"
 #include "core/editing/stack_commands.h"
+#include "core/operations/found_vectors.h"
 #include "core/operations/head_places.h"
 #include "core/operations/script.h"
 #include "editor/document/words.h"
@@ -112,7 +113,8 @@ Vec3f HandleTool::value(const Handle& handle) const {
     Vec3f value = Vec3f::Zero();
     for (std::uint32_t c = 0; one && c < 3; ++c)
         value[c] = static_cast<float>(settingOf(*one, handle.field, c, handle.part));
-    return value;
+    // What nobody has placed yet is shown where the operator finds it.
+    return one ? vectorFound(document_.groom(), *one, handle.field, handle.part).value_or(value) : value;
 }
 
 Vec3f HandleTool::anchor_ss(const Handle& handle) const {
@@ -128,8 +130,7 @@ float HandleTool::arrow() const {
 
 Vec3f HandleTool::place_ss(const Handle& handle) const {
     const Vec3f now = value(handle);
-    // What nobody has placed yet is shown where the operator finds it.
-    if (handle.isPoint) return now.isZero(0) ? placeFound(document_.groom(), handle.field.name) : now;
+    if (handle.isPoint) return now;
     const bool weighs = handle.field.max < 100;  // its length counts
     const Vec3f from = anchor_ss(handle);
     if (now.isZero(0)) return from + Vec3f(0, 0, kShortest);

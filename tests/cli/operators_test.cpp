@@ -75,6 +75,28 @@ TEST_F(OperatorsCli, AnImageBecomesAMaskAndADensity) {
     EXPECT_EQ(runJson("stack filled.hairloom --mask 3" + fill)["mask"], 3);
 }
 
+TEST_F(OperatorsCli, MasksHaveNames) {
+    EXPECT_TRUE(runJson("stack hair.hairloom")["masks"].empty()) << "nothing is painted or named";
+    EXPECT_EQ(runJson("set hair.hairloom masks.1=Fringe -o named.hairloom")["changed"], 1);
+    const auto masks = runJson("stack named.hairloom")["masks"];
+    ASSERT_EQ(masks.size(), 1u);
+    EXPECT_EQ(masks[0]["mask"], 1);
+    EXPECT_EQ(masks[0]["name"], "Fringe");
+    EXPECT_EQ(masks[0]["strands"], 0);
+    EXPECT_EQ(runJson("info --diff hair.hairloom named.hairloom")["differences"][0]["where"], "masks");
+    runJson("set named.hairloom masks.1= -o unnamed.hairloom");
+    EXPECT_TRUE(runJson("info --diff hair.hairloom unnamed.hairloom")["differences"].empty());
+    // A name that no groom could have is wrong usage, one that another mask of this one has is an error.
+    EXPECT_EQ(run("set hair.hairloom masks.5=Nape -o bad.hairloom").exitCode, 2);
+    EXPECT_EQ(run("set hair.hairloom masks.2=7 -o bad.hairloom").exitCode, 2);
+    const Outcome twice = run("set named.hairloom masks.2=fringe -o bad.hairloom");
+    EXPECT_EQ(twice.exitCode, 1);
+    EXPECT_THAT(twice.errors, HasSubstr("masks 1 and 2 are both called 'fringe'"));
+    const std::string fill = " --mask-image none.png -o bad.hairloom";
+    EXPECT_EQ(run("stack hair.hairloom --mask 9" + fill).exitCode, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder / "bad.hairloom"));
+}
+
 TEST_F(OperatorsCli, EachColourOfAnImageBecomesAMask) {
     // Stripes of four colours, the last of them black; each fourth pixel of the red ones is a shade of it.
     const std::uint8_t stripes[4][3] = {{255, 0, 0}, {0, 0, 255}, {0x12, 0x80, 0x40}, {0, 0, 0}};
@@ -112,6 +134,18 @@ TEST_F(OperatorsCli, EachColourOfAnImageBecomesAMask) {
         EXPECT_EQ(std::ranges::count(mask, 1.0f), filled[number - 1]["strands"].get<int>());
     }
     EXPECT_EQ(std::ranges::max(in), 1) << "no strand is in two regions";
+
+    const auto masks = runJson("stack regions.hairloom")["masks"];
+    ASSERT_EQ(masks.size(), 3u) << masks;
+    EXPECT_EQ(masks[1]["name"], "#128040") << "that of its colour";
+    EXPECT_EQ(masks[1]["strands"], filled[1]["strands"]);
+    runJson("set regions.hairloom 'masks.2=Nape, left' masks.4=Beard -o named.hairloom");
+    const auto again =
+        runJson("stack named.hairloom --mask 'nape, LEFT' --regions-image regions.png -o again.hairloom");
+    EXPECT_EQ(again["regions"][0]["mask"], 2);
+    const char* const refilled[] = {"red", "Nape, left", "#128040", "Beard"};
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_EQ(again["masks"][i]["name"], refilled[i]) << "what somebody has called it stays";
 
     EXPECT_THAT(run("stack regions.hairloom" + fill).errors,
                 HasSubstr("regions.png: 3 regions need a mask each, and 1 of 4 are free"));

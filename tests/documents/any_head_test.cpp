@@ -13,6 +13,7 @@
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "core/interpolation/follow_hairs.h"
+#include "core/operations/found_vectors.h"
 #include "core/operations/full_head.h"
 #include "core/operations/head_places.h"
 #include "core/operations/script.h"
@@ -199,6 +200,92 @@ TEST(HeadScale, FitsLengthsThatNobodyNamed) {
     EXPECT_NEAR(valueOf(scripted.operators[2], "start"), 10 * valueOf(person, "start"), 1e-6);
     EXPECT_NEAR(valueOf(scripted.operators[2], "frequency"), valueOf(person, "frequency") / 10, 1e-6);
     EXPECT_EQ(newOperator("curl", 1).settings, person.settings);
+}
+
+/// Farthest that a point lies elsewhere, metres.
+float farthest(const Groom& a, const Groom& b) {
+    float most = a.pointCount() == b.pointCount() ? 0 : 1;
+    for (std::size_t i = 0; most < 1 && i < a.pointCount(); ++i)
+        most = std::max(most, (a.positions()[i] - b.positions()[i]).norm());
+    return most;
+}
+
+Groom withOperator(Groom groom, const Operator& one) {
+    const auto text = nlohmann::json::parse(one.settings);
+    auto operation = text;
+    operation["op"] = one.op;
+    return shaped(std::move(groom), operation.dump());
+}
+
+TEST(FoundVectors, CanBeNamedWithoutAChangeToTheHair) {
+    const Groom bare = shaped(bareHead(1), R"({"op": "flow", "sweep": [0.3, 0, 0]})");
+    constexpr float kAlike = 1e-4f;  // metres: rounding of places that were named
+    std::vector<std::string> named;
+    for (const StackOperator& known : stackOperators()) {
+        if (known.name == kSculpt) continue;
+        Operator open = newOperator(known.name);
+        // Partings, planes and gradients that do something.
+        for (const FieldRow& row : known.fields) {
+            const std::string_view name = row.info.name;
+            if (name == "parting") setSettingOf(open, row.info, 0.8, 0);
+            if (name == "planeNormal" && open.op == "trim") setSettingOf(open, row.info, -1, 1);
+            if (name == "gradientDistance") setSettingOf(open, row.info, 0.2, 0);
+        }
+        Operator placed = open;
+        for (const FieldRow& row : known.fields) {
+            const auto found = vectorFound(bare, open, row.info);
+            if (!found) continue;
+            named.push_back(open.op + "." + row.info.name);
+            for (std::uint32_t c = 0; c < 3; ++c)
+                ASSERT_TRUE(setSettingOf(placed, row.info, double{(*found)[c]}, c)) << named.back();
+            EXPECT_FALSE(vectorFound(bare, placed, row.info)) << named.back();
+        }
+        for (const FieldRow& row : scriptRegionFields()) {
+            if (!known.hasRegion || std::string_view(row.info.name) != "point") continue;
+            EXPECT_FALSE(vectorFound(bare, open, row.info, SettingsPart::region)) << "it has no plane";
+        }
+        if (placed == open) continue;
+        EXPECT_LT(farthest(withOperator(bare, open), withOperator(bare, placed)), kAlike) << open.op;
+    }
+    EXPECT_THAT(named, testing::UnorderedElementsAre("flow.crown", "flow.partingPoint", "trim.planePoint",
+                                                     "set_length.gradientPoint", "mirror.planePoint",
+                                                     "bun.centre", "bun.axis"));
+}
+
+TEST(FoundVectors, APlaneOfARegionIsShownAtTheHead) {
+    const Groom bare = bareHead(1);
+    Operator one = newOperator("curl");
+    const auto& fields = scriptRegionFields();
+    const auto field = [&](std::string_view name) {
+        return std::ranges::find(fields, name, [](const FieldRow& row) { return row.info.name; })->info;
+    };
+    setSettingOf(one, field("normal"), 2, 0, SettingsPart::region);
+    const auto found = vectorFound(bare, one, field("point"), SettingsPart::region);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->x(), 0) << "on the plane through the origin";
+    EXPECT_NEAR(found->y(), topOfHead(bare).y(), 0.001f);
+    EXPECT_FALSE(vectorFound(bare, one, field("normal"), SettingsPart::region));
+    Groom headless = bare;
+    headless.scalp = nullptr;
+    EXPECT_FALSE(vectorFound(headless, one, field("point"), SettingsPart::region));
+}
+
+TEST(FullHead, NewHairFillsItUntilSomebodySaysOtherwise) {
+    Groom groom = bareHead(1);
+    EXPECT_FALSE(isFilledByItself(groom)) << "a project with strands and no follow hairs keeps them so";
+    Groom none = groom;
+    none.offsets = {};
+    none.strandAttributes = {}, none.pointAttributes = {};
+    ASSERT_EQ(none.strandCount(), 0u);
+    EXPECT_TRUE(isFilledByItself(none));
+    none.interpolation.followPerGuide = 12;
+    EXPECT_FALSE(isFilledByItself(none));
+    ASSERT_TRUE(fillHead(groom));
+    EXPECT_EQ(groom.interpolation.followPerGuide, followHairsToFill(groom, 400));
+    EXPECT_EQ(followHairsToFill(groom, 800), (groom.interpolation.followPerGuide + 1) / 2);
+    EXPECT_TRUE(isFilledByItself(groom)) << "placed again with other strands it is filled again";
+    groom.interpolation.followPerGuide += 1;
+    EXPECT_FALSE(isFilledByItself(groom));
 }
 
 TEST(FullHead, SaysWhatIsMissing) {

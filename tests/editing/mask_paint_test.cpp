@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 
 #include "core/editing/mask_commands.h"
+#include "core/editing/replay.h"
 #include "core/editing/selection_commands.h"
+#include "core/editing/settings_commands.h"
 #include "core/groom/groom_hash.h"
+#include "core/groom/mask_names.h"
 #include "core/operations/stack.h"
 #include "tests/editing/editing_samples.h"
 
@@ -40,6 +43,38 @@ TEST(MaskPaint, PaintsOneValueAStrandAndIsUndone) {
     while (top.document.redo()) {
     }
     EXPECT_EQ(valueOf(top, "mask.3"), 0);
+}
+
+TEST(MaskPaint, AMaskIsNamedInAStepThatScriptsHave) {
+    TopStrand top;
+    Document& document = top.document;
+    const auto before = contentHash(document.groom());
+    auto step = setMaskNames(document.model(), {"", "Fringe"});
+    ASSERT_TRUE(step) << step.error().message();
+    document.perform(std::move(*step));
+    EXPECT_EQ(maskName(document.groom(), 2), "Fringe");
+    EXPECT_TRUE(*setMaskNames(document.model(), {"", "Fringe"}) == nullptr) << "no step that changes nothing";
+    EXPECT_FALSE(setMaskNames(document.model(), {"Fringe", "Fringe"}));
+    const auto named = contentHash(document.groom());
+    // Regions take the names of their colours, and one that another mask has leaves none.
+    const std::vector<std::uint32_t> numbers{2, 3};
+    const std::vector<std::vector<float>> values(2, std::vector<float>(document.groom().strandCount(), 1));
+    const std::vector<std::string> called{"red", "red"};
+    document.perform(fillMasks(document.model(), "Regions", numbers, values, called));
+    EXPECT_THAT(document.groom().maskNames, testing::ElementsAre("", "red"));
+    const auto filled = contentHash(document.groom());
+    const auto script = document.script();
+    ASSERT_TRUE(script) << script.error().message();
+    ASSERT_TRUE(document.undo());
+    EXPECT_EQ(contentHash(document.groom()), named) << "fill and names are one step";
+    ASSERT_TRUE(document.undo());
+    EXPECT_EQ(contentHash(document.groom()), before);
+    Groom again = document.groom();
+    const auto parsed = parseScript("s.json", *script, scriptExtensions());
+    ASSERT_TRUE(parsed) << parsed.error().message();
+    const auto report = runScript(*parsed, again);
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(contentHash(again), filled);
 }
 
 TEST(MaskPaint, TakesStrandsByTheirRootsWhereAsked) {

@@ -8,6 +8,7 @@
 #include "core/base/file.h"
 #include "core/documents/hair_import.h"
 #include "core/geometry/curve.h"
+#include "core/operations/full_head.h"
 #include "core/operations/stack.h"
 #include "importers/strands.h"
 #include "tests/editor/mouse_fixture.h"
@@ -74,13 +75,11 @@ class StyleWalkTest : public MouseTest {
         click("place");
         finishWork();
         ASSERT_GT(groom().strandCount(), 0u) << window->statusLine().message().toStdString();
+        EXPECT_EQ(groom().interpolation.followPerGuide, followHairsToFill(groom(), groom().strandCount()))
+            << "new hair covers the scalp by itself";
     }
-    /// Follow hairs, then out to the program of that name: the file can be read and has all guides.
+    /// Out to the program of that name: the file can be read and has all guides.
     void finish(const QString& style, const QString& program) {
-        open("look");
-        unfold("look", "Interpolated hairs");
-        type("followPerGuide", "40");
-        EXPECT_EQ(groom().interpolation.followPerGuide, 40u);
         expectSound();
         ++keys;  // Ctrl+E
         onceAsked<ExportDialog>([&](ExportDialog& dialog) {

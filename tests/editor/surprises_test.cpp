@@ -231,6 +231,18 @@ TEST_F(SurprisesTest, SpacePressesButtonsAndReturnChoosesOnLists) {
     EXPECT_TRUE(groom().operators.empty());
 }
 
+TEST_F(SurprisesTest, MessagesBeginWithACapitalAndNamesOfFilesStay) {
+    const auto shown = [&](const QString& text) {
+        parts().messages.say(text);
+        return window->statusLine().message();
+    };
+    EXPECT_EQ(shown("no scalp is selected; select it first"), "No scalp is selected; select it first");
+    EXPECT_EQ(shown("bust.obj: a head"), "bust.obj: a head");
+    EXPECT_EQ(shown("v_002: saved"), "v_002: saved");
+    EXPECT_EQ(shown("Saved"), "Saved");
+    EXPECT_EQ(shown(""), "");
+}
+
 TEST_F(SurprisesTest, ACancelledImportLeavesEverything) {
     openSampleHair("short");
     ExportDialog exports(document(), parts().preferences, parts().tasks, parts().messages, parts().player);

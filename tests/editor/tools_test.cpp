@@ -345,7 +345,8 @@ TEST_F(ToolsTest, RootsArePreviewedAndFollowTheSettings) {
     Groom many = groom();
     many.interpolation.followPerGuide = 9;
     change("Follow hairs", many);
-    EXPECT_TRUE(noted("With 9 follow hairs each: 7")) << find<QLabel>("placeCount")->text().toStdString();
+    EXPECT_TRUE(noted("With 9 interpolated hairs each: 7"))
+        << find<QLabel>("placeCount")->text().toStdString();
     trigger("edit.undo");
     preview->click();
     EXPECT_FALSE(noted("777 roots"));

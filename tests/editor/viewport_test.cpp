@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The camera, the pictures, the live simulation.
 #include <QCheckBox>
+#include <QComboBox>
 #include <QDir>
 #include <QScreen>
 #include <array>
@@ -300,6 +301,30 @@ TEST_F(PictureTest, OverlaysAreDrawn) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openGuides();
     expectDrawn({"scalp", "roots", "guides", "triangulation", "spheres", "wireframe", "density", "wind"});
+}
+
+TEST_F(PictureTest, TheScalpIsTintedUntilHairGrows) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openBust();
+    const auto shown = [&] {
+        EXPECT_TRUE(viewport().waitForPicture(60'000));
+        return viewport().grab().toImage();
+    };
+    const QImage bare = shown();
+    auto& groups = *find<QComboBox>("scalpGroup");
+    groups.setCurrentIndex(groups.findData("material:scalp"));
+    Q_EMIT groups.activated(groups.currentIndex());
+    ASSERT_FALSE(groom().scalpSelection.empty());
+    const QImage tinted = shown();
+    EXPECT_NE(tinted, bare) << "what was chosen is seen without a tool in hand";
+    // It is laid over the picture and goes with the first strand.
+    trigger("edit.undo");
+    EXPECT_EQ(shown(), bare);
+    openGuides();
+    const QImage hair = shown();
+    trigger("overlay.scalp");
+    EXPECT_NE(shown(), hair);
+    trigger("overlay.scalp");
 }
 
 TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {

@@ -9,7 +9,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    parameter("mask", "", 1, kPaintedMasks, 1, "number of the mask to paint"),
+    parameter(kMaskParameter, "", 1, kPaintedMasks, 1, "number of the mask to paint"),
     parameter("value", "", 0, 1, 1, "mask value to paint: strength of the operators that use this mask"),
     boolParameter("roots", false, "affects strands only by their roots, like a map of the scalp"),
 };
@@ -35,7 +35,7 @@ class MaskPaint final : public StrandBrush {
         const Reached reached = reach(target, dab);
         target.touched = reached.strands;
         if (reached.strands.empty()) return {};
-        const auto number = static_cast<std::uint32_t>(target.parameter(kInfo, "mask") + 0.5f);
+        const auto number = static_cast<std::uint32_t>(target.parameter(kInfo, kMaskParameter) + 0.5f);
         target.changes.mask.keep(target.groom(), maskAttribute(number), reached.strands);
         std::vector<float>& mask = target.groom().strandAttributes.edit<float>(maskAttribute(number));
         const float wanted = dab.sign > 0 ? target.parameter(kInfo, "value") : 0.0f;

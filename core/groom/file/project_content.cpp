@@ -14,6 +14,7 @@
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/file/time_line_json.h"
+#include "core/groom/mask_names.h"
 
 namespace hairloom {
 namespace {
@@ -58,6 +59,7 @@ Json projectHead(const Groom& groom, const std::filesystem::path& path) {
     head["layers"] = toJson(groom.layers);
     head["operators"] = toJson(groom.operators);
     head["groups"] = groom.groupNames;
+    if (!groom.maskNames.empty()) head["masks"] = maskNamesToJson(groom.maskNames);
     head["spheres"] = toJson(groom.spheres);
     head["material"] = toJson(groom.material);
     head["shadows"] = toJson(groom.shadows);

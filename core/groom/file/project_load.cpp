@@ -16,6 +16,7 @@
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/file/time_line_json.h"
+#include "core/groom/mask_names.h"
 #include "core/groom/validate.h"
 #include "hairloom/body_field.h"
 
@@ -45,6 +46,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     if (groom.layers.empty()) head.complain("layers", "is empty", "expected at least one layer");
     if (version >= kFirstWithOperators) groom.operators = readOperatorList(head, readOperatorShape);
     groom.groupNames = head.strings("groups");
+    if (head.has("masks")) readMaskNames(head.object("masks"), groom.maskNames);
     groom.spheres = readSphereList(head);
     readSettings(head.object("material"), groom.material);
     if (head.has("shadows")) readSettings(head.object("shadows"), groom.shadows);
