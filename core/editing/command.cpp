@@ -40,7 +40,10 @@ std::unique_ptr<Command> together(std::string name, std::vector<std::unique_ptr<
     if (commands.empty()) return nullptr;
     std::string record;
     for (const auto& command : commands) {
-        record += (record.empty() ? '[' : ',') + command->record();
+        std::string one = command->record();
+        // Those of a group are operations of this one.
+        if (one.starts_with('[')) one = one.substr(1, one.size() - 2);
+        record += (record.empty() ? '[' : ',') + one;
     }
     const bool all = std::ranges::none_of(commands, [](const auto& c) { return c->record().empty(); });
     auto group = std::make_unique<CommandGroup>(std::move(name), std::move(commands), false);

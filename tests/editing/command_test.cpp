@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every command does, undoes and does again; and any mixture of them leaves a document that is in order.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -12,6 +13,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
 #include "core/geometry/selection.h"
+#include "core/groom/mask_names.h"
 #include "core/groom/time_line.h"
 #include "tests/editing/editing_samples.h"
 
@@ -124,6 +126,16 @@ std::vector<Action> actions() {
                  edits.push_back(anyCardEdit(r));
                  if (edits.size() > 3) edits.erase(edits.begin());
                  auto made = setCardEdits(m, std::move(edits), "Cards");
+                 EXPECT_TRUE(made);
+                 return std::move(*made);
+             }},
+            {"SetMaskNames",
+             [](const Model& m, Random& r) {
+                 const auto number = static_cast<std::uint32_t>(1 + r.below(4));
+                 const auto names =
+                     maskNamesWith(m.groom.maskNames, number, fmt::format("m{}", r.below(1u << 30u)));
+                 EXPECT_TRUE(names);
+                 auto made = setMaskNames(m, *names);
                  EXPECT_TRUE(made);
                  return std::move(*made);
              }},
@@ -334,6 +346,20 @@ TEST(Records, NameWhatIsWrong) {
     EXPECT_THAT(problem(R"({"op": "layers", "layers": []})"), HasSubstr("0 layers"));
     EXPECT_THAT(problem(R"({"op": "material", "settings": {"specular": 9}})"),
                 HasSubstr("/operations/0/settings/specular is 9"));
+}
+
+TEST(Records, OfGroupsWithinGroupsAreOneListOfOperations) {
+    Document document(hairOnHead());
+    const Strands some{1, 2, 5};
+    std::vector<std::unique_ptr<Command>> inner, outer;
+    inner.push_back(hideStrands(document.model(), some));
+    inner.push_back(freezeStrands(document.model(), some, true));
+    outer.push_back(together("Inner", std::move(inner)));
+    outer.push_back(selectStrands(document.model(), some, Choice::Replace));
+    document.perform(together("Outer", std::move(outer)));
+    EXPECT_EQ(strandsWithFlag(document.groom(), attribute::kFrozen), some);
+    EXPECT_EQ(strandsWithFlag(document.groom(), attribute::kSelected), some);
+    expectScriptMakesTheSame(document);
 }
 
 TEST(Commands, NoChangeMakesNoCommand) {
