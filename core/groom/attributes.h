@@ -50,7 +50,7 @@ inline constexpr std::string_view kBoneWeightPrefix = "bone_weight_";
 inline constexpr std::string_view kStrandId = "id";  ///< uint32, kept while strands come and go
 }  // namespace attribute
 
-inline constexpr std::uint32_t kPaintedMasks = 4;
+inline constexpr std::uint32_t kPaintedMasks = 4;  ///< of operators and poses
 /// "mask.1": float per strand in [0, 1]; 0 where nothing was painted. `number` counts from 1.
 std::string maskAttribute(std::uint32_t number);
 

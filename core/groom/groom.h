@@ -47,8 +47,6 @@ struct Layer {
 };
 inline constexpr float kMaxLayerDensity = 4;
 
-inline constexpr std::uint32_t kPaintedMasks =
-    4;  ///< of operators; core/operations/painted_maps.h reads them
 inline constexpr std::size_t kLongestMaskName = 64;  ///< bytes
 
 /// How follow hairs come from guides (thesis §4.2). fieldsOf() describes the members.
