@@ -78,6 +78,23 @@ TEST_F(FieldsTest, LengthsAreShownInTheUnitOfThePreferences) {
     EXPECT_EQ(document().stepCount(), 0) << "showing is no change";
 }
 
+TEST_F(FieldsTest, WhatSpansThousandsHasAUnitASliderAndStepsThatFit) {
+    auto* radius = window->panel("look")->findChild<NumberBox*>("rootRadius");
+    ASSERT_TRUE(radius);
+    EXPECT_EQ(radius->spinBox().suffix(), QStringLiteral(" µm"));
+    EXPECT_NEAR(radius->spinBox().value(), 1e6 * static_cast<double>(groom().material.rootRadius), 0.051);
+    EXPECT_GT(radius->slider().value(), 100) << "hair of people lies within the slider";
+    const double before = radius->spinBox().value();
+    radius->spinBox().stepUp();
+    EXPECT_GT(radius->spinBox().value(), before);
+    EXPECT_LE(radius->spinBox().value(), 1.2 * before) << "one step";
+    auto* length = window->panel("scalp")->findChild<NumberBox*>("length");
+    ASSERT_TRUE(length);
+    EXPECT_NEAR(length->value(), 0.07, 1e-6);
+    EXPECT_GT(length->slider().value(), 200) << "7 cm of 5 m";
+    EXPECT_LT(length->slider().value(), 800);
+}
+
 TEST_F(FieldsTest, ChoicesAndDefaults) {
     auto* integrator = find<QComboBox>("integrator");
     Q_EMIT integrator->activated(5);

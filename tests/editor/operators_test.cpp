@@ -22,67 +22,10 @@
 #include "editor/fields/ramp_edit.h"
 #include "editor/tools/brush_tool.h"
 #include "editor/tools/curve_tool.h"
-#include "tests/editor/window_fixture.h"
+#include "tests/editor/operators_fixture.h"
 
 namespace hairloom::editor {
 namespace {
-
-/// Of the sample that each test opens.
-QStringList sampleStack() {
-    return {"Set length", "Flow",  "Flow",  "Set length", "Set length", "Set length",
-            "Clump",      "Clump", "Noise", "Flyaways",   "Collide"};
-}
-constexpr int kClump = 7;
-
-/// The stack with a row more.
-QStringList stackWith(const QString& name, qsizetype row) {
-    QStringList rows = sampleStack();
-    rows.insert(row, name);
-    return rows;
-}
-
-class OperatorsTest : public WindowTest {
-  protected:
-    void SetUp() override {
-        WindowTest::SetUp();
-        openSampleHair("short");
-        window->panel("operators")->raise();
-        QCoreApplication::processEvents();
-    }
-    QListWidget& list() { return *find<QListWidget>("operators"); }
-    QStringList rows() {
-        QStringList names;
-        for (int i = 0; i < list().count(); ++i) names += list().item(i)->text();
-        return names;
-    }
-    void choose(int row) {
-        list().setCurrentRow(row);
-        QCoreApplication::processEvents();
-    }
-    void click(const char* button) { find<QPushButton>(button)->click(); }
-    void add(const QString& name) {
-        for (QAction* action : find<QPushButton>("operatorAdd")->menu()->actions()) {
-            if (action->text() == name) return action->trigger();
-        }
-        ADD_FAILURE() << "no operator " << name.toStdString();
-    }
-    NumberBox* number(const char* field) {
-        auto* box = window->panel("operators")->findChild<NumberBox*>(field);
-        EXPECT_TRUE(box) << field;
-        return box;
-    }
-    /// The hair is what its operators make of its base shape.
-    void expectEvaluated() {
-        StackCache cache;
-        const auto shape = evaluateStack(groom(), cache);
-        ASSERT_TRUE(shape) << shape.error().message();
-        EXPECT_TRUE(std::ranges::equal(std::get<CowArray<Vec3f>>(*shape).view(), groom().positions()));
-        expectSound();
-    }
-    void undoAll() {
-        while (document().editing().canUndo()) trigger("edit.undo");
-    }
-};
 
 TEST_F(OperatorsTest, ASampleOpensWithItsStack) {
     EXPECT_EQ(rows(), sampleStack());
@@ -389,6 +332,7 @@ TEST_F(OperatorsTest, EachColourOfAnImageBecomesAMaskInOneStep) {
     EXPECT_TRUE(window->statusLine().message().contains("mask 3: orange ("))
         << window->statusLine().message().toStdString();
     EXPECT_TRUE(window->statusLine().message().contains("mask 4: blue (")) << "the sample uses two";
+    EXPECT_EQ(groom().maskNames, (std::vector<std::string>{"", "", "orange", "blue"}));
     const auto orange = groom().strandAttributes.view<float>("mask.3");
     const auto blue = groom().strandAttributes.view<float>("mask.4");
     ASSERT_EQ(orange.size(), groom().strandCount());
