@@ -44,11 +44,15 @@ double extentOf(std::span<const Vec3f> points) {
     return box.isEmpty() ? 0 : static_cast<double>(box.sizes().maxCoeff());
 }
 
-/// The samples that are read, `every` so many, and the last.
+/// The samples that are read, `every` so many, and the last. Times that are one in single precision are one.
 std::vector<std::size_t> samplesOf(const PointCache::Mesh& mesh, std::size_t every) {
     std::vector<std::size_t> samples;
-    for (std::size_t s = 0; s < mesh.seconds.size(); s += every) samples.push_back(s);
-    if (samples.back() + 1 != mesh.seconds.size()) samples.push_back(mesh.seconds.size() - 1);
+    const auto take = [&](std::size_t s) {
+        const bool isLater = samples.empty() || mesh.seconds[s] > mesh.seconds[samples.back()];
+        if (isLater && std::isfinite(mesh.seconds[s])) samples.push_back(s);
+    };
+    for (std::size_t s = 0; s < mesh.seconds.size(); s += every) take(s);
+    take(mesh.seconds.size() - 1);
     return samples;
 }
 
@@ -105,6 +109,7 @@ Status PointCache::finish(Clip& clip) {
 
 Status PointCache::play(const Mesh& mesh, std::size_t every, Clip& clip) {
     const std::vector<std::size_t> samples = samplesOf(mesh, every);
+    if (samples.size() < 2) return {};
     const auto rest = std::span<const Vec3f>(scene_.soup.positions).subspan(mesh.first, mesh.points);
     const double still = kStill * extentOf(rest);
     std::vector<float> times;
@@ -141,7 +146,9 @@ Status PointCache::play(const Mesh& mesh, std::size_t every, Clip& clip) {
             target.vertices.push_back(mesh.first + p);
             target.offsets.push_back(offset.cast<float>());
         }
-        isMoved = isMoved || (motion.matrix() - Eigen::Matrix4d::Identity()).norm() > still;
+        isMoved = isMoved || std::ranges::any_of(rest, [&](const Vec3f& p) {
+                      return (motion * p.cast<double>() - p.cast<double>()).norm() > still;
+                  });
         if (target.vertices.empty()) continue;
         moved += target.vertices.size();
         if (moved > kMostCached)

@@ -69,8 +69,13 @@ Report posesReport(const Groom& groom) {
         const auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute(pose.name));
         const auto positions = groom.positions();
         float farthest = 0;
-        for (std::size_t p = 0; p < shape.size(); ++p)
-            farthest = std::max(farthest, (shape[p] - positions[p]).norm());
+        for (std::size_t s = 0; s < groom.strandCount() && !shape.empty(); ++s) {
+            const auto known = shape.subspan(groom.offsets[s], groom.offsets[s + 1] - groom.offsets[s]);
+            // All points of a strand that it does not know are one.
+            if (std::ranges::all_of(known, [&](const Vec3f& p) { return p == known[0]; })) continue;
+            for (std::size_t p = 0; p < known.size(); ++p)
+                farthest = std::max(farthest, (known[p] - positions[groom.offsets[s] + p]).norm());
+        }
         std::size_t keys = 0;
         for (const SettingTrack& track : timeLineOf(groom).settings) {
             if (track.name == poseAttribute(pose.name)) keys = track.keys.size();

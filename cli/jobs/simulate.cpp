@@ -308,6 +308,8 @@ Result<Report> simulate(const SimulateOptions& options) {
     std::vector<std::string> notes =
         bodyNotes(*groom, pose,
                   options.method == "strands" || options.method == "particles" || options.method == "hybrid");
+    if (methodOptions.method != SimulationMethod::strands && followsPoses(*groom))
+        notes.push_back(fmt::format("the method '{}' follows no pose: use --method strands", options.method));
     std::optional<RecordComparison> comparison;
     if (!options.against.empty()) comparison.emplace(options.against);
 

@@ -133,6 +133,18 @@ SceneHair resampledHair(const SceneHair& hair, std::uint32_t points) {
     result.groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
     result.groom.pointAttributes = AttributeSet();
     result.groom.operators.clear();  // their base shape has other points
+    for (const GroomPose& pose : hair.groom.poses) {
+        const auto shape = hair.groom.pointAttributes.view<Vec3f>(poseAttribute(pose.name));
+        if (shape.size() != hair.groom.pointCount()) continue;
+        std::vector<Vec3f> posed;
+        for (std::size_t s = 0; s < hair.groom.strandCount(); ++s) {
+            const std::size_t first = hair.groom.offsets[s];
+            const std::vector<Vec3f> even =
+                resampleEvenly(shape.subspan(first, hair.groom.offsets[s + 1] - first), points);
+            posed.insert(posed.end(), even.begin(), even.end());
+        }
+        result.groom.pointAttributes.set(poseAttribute(pose.name), std::move(posed));
+    }
     result.groom.pointAttributes.set(attribute::kPosition, std::move(positions));
     return result;
 }

@@ -14,8 +14,9 @@ std::optional<WithoutEffect> withoutEffect(const SceneHair& hair, std::string_vi
         if (hair.groom.body) result.how = "no body";
         result.hair.groom.body.reset();
     } else if (effect == kPoseEffect) {
-        if (!hair.groom.poses.empty()) result.how = "amounts of poses of 0";
-        for (GroomPose& pose : result.hair.groom.poses) pose.amount = 0;
+        // Of what keys them, too.
+        if (!hair.groom.poses.empty()) result.how = "no poses";
+        result.hair.groom.poses.clear();
     } else {
         result.how = turnEffectOff(result.hair.groom.simulation, effect);
     }

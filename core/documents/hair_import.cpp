@@ -120,6 +120,7 @@ void replaceHair(Groom& groom, const Groom& hair) {
     groom.operators = hair.operators;
     groom.groupNames = hair.groupNames;
     groom.maskNames = hair.maskNames;
+    groom.poses = hair.poses;
     // The parts that the hair comes in are the layers of its strands.
     if (hair.strandAttributes.has(attribute::kLayer)) groom.layers = hair.layers;
     groom.triangulation = {};

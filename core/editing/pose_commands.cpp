@@ -98,7 +98,7 @@ MakeCommand readPutPose(JsonReader& reader) {
     const std::string name = reader.string("name");
     if (!reader.has("positions"))
         return [name](const Document& document) { return poseOfShape(document.model(), name); };
-    const auto numbers = reader.numbers("positions", -kFarthestPosed, kFarthestPosed, kMaxNumbers, "m");
+    const auto numbers = reader.numbers("positions", -kFarthestPosed, kFarthestPosed, 3 * kMaxNumbers, "m");
     if (numbers.size() % 3 != 0)
         reader.complain("positions", fmt::format("has {} numbers", numbers.size()),
                         "expected three for each point");

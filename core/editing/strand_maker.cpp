@@ -123,7 +123,9 @@ AttributeSet inheritedPointData(const Groom& groom, const Plan& plan) {
         std::visit(
             [&, &attributeName = name]<class T>(const CowArray<T>& values) {
                 std::vector<T> inherited(plan.pointCount(), zero<T>());
-                for (std::size_t k = 0; k < plan.count(); ++k) {
+                // Poses of before do not know them.
+                const bool isPose = attributeName.starts_with(kPosePrefix);
+                for (std::size_t k = 0; k < plan.count() && !isPose; ++k) {
                     if (plan.neighbours[k].empty()) continue;
                     const auto from = values.view().subspan(groom.offsets[plan.neighbours[k][0].strand],
                                                             plan.offsets[k + 1] - plan.offsets[k]);

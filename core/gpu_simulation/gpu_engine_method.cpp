@@ -96,7 +96,6 @@ MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels
         EngineOptions options;
         options.layout = layoutFor(device.info().type);
         options.hairVolume = hairVolume;
-        if (const std::string why = kernelError(scene.groom()); !why.empty()) return fail(why);
         auto engine = StrandEngine::make(device, kernels, scene.strands(), scene.groom().simulation, options);
         if (!engine) return tl::unexpected(engine.error());
         return std::make_unique<GpuEngineMethod>(std::move(*engine));

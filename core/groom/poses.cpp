@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "core/base/utf8.h"
 #include "core/groom/file/fields.h"
 #include "core/groom/groom.h"
 #include "core/groom/strand_pairs.h"
@@ -27,11 +28,14 @@ Status checkShape(std::span<const Vec3f> positions, std::size_t points) {
     if (positions.size() != points)
         return fail(fmt::format("the pose has {} points", positions.size()),
                     fmt::format("expected those of the groom, {}", points));
-    const auto broken =
-        std::ranges::find_if(positions, [](const Vec3f& position) { return !position.allFinite(); });
+    constexpr float kFarthest = 1e6f;  // metres, as validate() has it of positions
+    const auto broken = std::ranges::find_if(positions, [](const Vec3f& position) {
+        return !(position.cwiseAbs().maxCoeff() <= kFarthest) || !position.allFinite();
+    });
     if (broken == positions.end()) return {};
-    return fail(fmt::format("point {} of the pose is not finite", broken - positions.begin()),
-                "expected a position in metres");
+    const std::string point = fmt::format("point {} of the pose", broken - positions.begin());
+    if (!broken->allFinite()) return fail(point + " is not finite", "expected a position in metres");
+    return fail(point + " is far away", fmt::format("expected at most {} m from the origin", kFarthest));
 }
 
 /// Metres from root to tip along the strand.
@@ -65,11 +69,14 @@ std::string freshPoseName(const Groom& groom) {
 }
 
 Status checkPoseName(std::string_view name) {
-    const bool isPlain =
-        std::ranges::none_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '/'; });
-    if (!name.empty() && name.size() <= kMaxPoseName && isPlain) return {};
-    return fail(fmt::format("'{}' is no name of a pose", name),
-                fmt::format("expected 1 to {} bytes without / and control characters", kMaxPoseName));
+    const bool isPlain = std::ranges::none_of(name, [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || c == '/' || c == ',' || c == '=';
+    });
+    const bool isText = cleanUtf8(std::string(name)) == name;
+    if (!name.empty() && name.size() <= kMaxPoseName && isPlain && isText) return {};
+    return fail(
+        fmt::format("'{}' is no name of a pose", cleanUtf8(std::string(name))),
+        fmt::format("expected 1 to {} bytes of UTF-8 without / , = and control characters", kMaxPoseName));
 }
 
 Status putPose(Groom& groom, const std::string& name, std::span<const Vec3f> positions) {
@@ -176,9 +183,11 @@ std::vector<float> poseAmounts(const Groom& groom) {
 }
 
 bool followsPoses(const Groom& groom) {
-    if (groom.poses.empty()) return false;
-    return std::ranges::any_of(groom.poses, [](const GroomPose& pose) { return pose.amount > 0; }) ||
-           keysPoses(timeLineOf(groom));
+    const std::vector<SettingTrack>& tracks = timeLineOf(groom).settings;
+    return std::ranges::any_of(groom.poses, [&](const GroomPose& pose) {
+        return pose.amount > 0 ||
+               std::ranges::find(tracks, poseAttribute(pose.name), &SettingTrack::name) != tracks.end();
+    });
 }
 
 std::vector<PoseProblem> poseProblems(const Groom& groom) {

@@ -172,6 +172,14 @@ Result<Transfer> transferTo(Groom& target, std::shared_ptr<const ScalpMesh> head
     for (const SurfacePoint& root : to) selection.push_back(root.triangle);
     std::ranges::sort(selection);
     selection.erase(std::unique(selection.begin(), selection.end()), selection.end());
+    for (const GroomPose& pose : groom.poses) {
+        const auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute(pose.name));
+        if (shape.size() != groom.pointCount()) continue;
+        Groom posed = groom;
+        posed.pointAttributes.set(attribute::kPosition, std::vector<Vec3f>(shape.begin(), shape.end()));
+        groom.pointAttributes.set(poseAttribute(pose.name),
+                                  movedPoints(posed, transfer.fit, *head, from, to));
+    }
     groom.pointAttributes.set(attribute::kPosition, movedPoints(groom, transfer.fit, *head, from, to));
     groom.strandAttributes.set(attribute::kRootUv, std::move(uvs));
     for (CollisionSphere& sphere : groom.spheres) {

@@ -117,7 +117,7 @@ class TimeLineMotion : public HeadMotion {
     TimeLine line_;
     std::vector<PlayedClip> clips_;
     std::optional<CharacterPoser> character_;
-    std::vector<GroomPose> poses_;  ///< empty where none is keyed
+    std::vector<GroomPose> poses_;  ///< of the groom, whose amounts hold where none is keyed
 };
 
 Result<PlayedClip> playedClip(const ClipStrip& strip, const Actor& actor, const std::string& place) {
@@ -169,10 +169,8 @@ Result<std::unique_ptr<HeadMotion>> makeTimeLineMotion(TimeLine line, std::share
             clips.push_back(std::move(*played));
         }
     }
-    std::vector<GroomPose> poses;
-    if (keysPoses(line)) poses = groom.poses;
     return std::make_unique<TimeLineMotion>(std::move(line), std::move(clips), std::move(character),
-                                            std::move(poses));
+                                            groom.poses);
 }
 
 }  // namespace hairloom

@@ -8,6 +8,8 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "core/documents/open.h"
 #include "core/editing/document.h"
@@ -170,7 +172,8 @@ class PosesPanel : public QWidget {
 
     void rename(QTreeWidgetItem* item, int column) {
         const auto index = static_cast<std::size_t>(list_->indexOfTopLevelItem(item));
-        if (column != kName || index >= poses().size()) return;
+        if (index >= poses().size()) return;
+        if (column != kName) return refresh();  // the slider below sets it
         const std::string to = item->text(kName).trimmed().toStdString();
         if (!to.empty()) perform(editing::renamePose(model(), poses()[index].name, to));
         refresh();  // a name that is refused goes back
@@ -181,9 +184,9 @@ class PosesPanel : public QWidget {
         const GroomPose* pose = shown();
         ramp_->setVisible(pose != nullptr);
         if (pose) ramp_->setRamp(pose->ramp);
-        const std::optional<std::string> name = pose ? std::optional(pose->name) : std::nullopt;
-        if (name == shown_) return;
-        shown_ = name;
+        const auto now = pose ? std::optional(std::pair(chosen(), pose->name)) : std::nullopt;
+        if (now == shown_) return;
+        shown_ = now;
         while (QLayoutItem* item = settings_->takeAt(0)) {
             if (QWidget* form = item->widget()) {
                 form->setParent(nullptr);  // gone at once; one of its controls may be what is talking
@@ -231,8 +234,8 @@ class PosesPanel : public QWidget {
     QLabel* none_;
     RampEdit* ramp_;
     QVBoxLayout* settings_ = nullptr;
-    std::optional<std::string> shown_;  ///< pose whose settings are shown
-    quint64 interaction_ = 0;           ///< one drag is one step of the history
+    std::optional<std::pair<std::size_t, std::string>> shown_;  ///< pose whose settings are shown
+    quint64 interaction_ = 0;                                   ///< one drag is one step of the history
 };
 
 }  // namespace

@@ -297,6 +297,12 @@ void Player::setMethod(const PlayedMethod& method) {
     Q_EMIT planPreviewChanged();
 }
 
+std::shared_ptr<HeadMotion> Player::motionOfPoses() {
+    if (motion_ != kTimeLine) return nullptr;
+    auto made = makeMotion(motion_);
+    return made ? std::shared_ptr<HeadMotion>(std::move(*made)) : nullptr;
+}
+
 void Player::setRecorder(std::shared_ptr<TakeRecorder> recorder) {
     request([&](WorkerRequests& requests) { requests.recorder = std::move(recorder); });
 }
@@ -323,8 +329,10 @@ void Player::documentChanged(editing::Part parts) {
         takenLine_.reset();
         const bool sameStrands = std::ranges::equal(groom.offsets.view(), capturedOffsets_);
         if (playing_ && sameStrands && !contains(parts, editing::kScalpParts)) {
+            std::shared_ptr<HeadMotion> motion = motionOfPoses();
             request([&](WorkerRequests& requests) {
                 requests.groom = std::make_shared<const Groom>(groom);
+                if (motion) requests.motion = motion;
                 // The method may turn where hair goes; any other change makes it anew.
                 const bool pointsAlone =
                     !contains(editing::without(parts, editing::Part::Points), editing::kHairParts);
@@ -357,9 +365,12 @@ void Player::documentChanged(editing::Part parts) {
     const bool isMasked =
         contains(parts, editing::Part::Masks) &&
         std::ranges::any_of(groom.poses, [](const GroomPose& pose) { return pose.mask > 0; });
-    const bool changed = isMasked || contains(parts, editing::Part::Physics | editing::Part::Spheres);
+    // Keys of poses may ask for another engine.
+    const bool keysPoses = contains(parts, editing::Part::TimeLine) && !groom.poses.empty();
+    const bool changed =
+        isMasked || keysPoses || contains(parts, editing::Part::Physics | editing::Part::Spheres);
     if (!captured_ || (!followsOther && !changed)) return;
-    std::shared_ptr<HeadMotion> motion;
+    std::shared_ptr<HeadMotion> motion = motionOfPoses();
     if (contains(parts, editing::Part::Spheres)) {
         // Clips carry spheres along by their bones.
         if (auto made = makeMotion(motion_)) motion = std::move(*made);

@@ -145,6 +145,8 @@ class Player : public QObject {
     void failed(const QString& problem);
 
   private:
+    /// That of the time line anew, with the groom's poses as they are now; null where another motion plays.
+    std::shared_ptr<HeadMotion> motionOfPoses();
     struct WorkerRequests;
     struct Playing;
     void run();

@@ -97,6 +97,24 @@ TEST(PoseCommands, StrandsThatGoTakeTheirPosesAlong) {
             << tool;
         for (const Finding& finding : validate(document.groom()))
             EXPECT_NE(finding.severity, Severity::Error) << tool << ": " << finding.what;
+        if (std::string_view(tool) == "comb") continue;  // moves hair, and no pose
+        const Groom& groom = document.groom();
+        const auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute("Swept"));
+        std::size_t unknown = 0;
+        for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+            const std::uint32_t first = groom.offsets[s];
+            if (shape[first] == shape[first + 1]) {
+                ++unknown;
+                continue;
+            }
+            for (std::size_t p = 0; p < groom.strand(s).size(); ++p) {
+                Vec3f expected = groom.strand(s)[p];
+                expected.x() += 0.3f * (expected.y() - 1.6f);
+                EXPECT_LT((shape[first + p] - expected).norm(), 1e-5f) << tool << ": strand " << s;
+            }
+        }
+        // A pose does not know what came later.
+        EXPECT_EQ(unknown > 0, std::string_view(tool) == "add") << tool;
     }
 }
 
