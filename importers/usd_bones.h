@@ -52,8 +52,8 @@ struct UsdSkeletonBones {
     std::uint32_t above = kNoBone;  ///< the bone that topmost joints hang on
     /// From the space that meshes were bound in to the world at rest.
     Eigen::Affine3d carried = Eigen::Affine3d::Identity();
-    std::uint32_t space = kNoBone;  ///< a bone for what no joint moves, once it is needed
-    std::vector<UsdBlendShape> shapes;   ///< of its meshes
+    std::uint32_t space = kNoBone;      ///< a bone for what no joint moves, once it is needed
+    std::vector<UsdBlendShape> shapes;  ///< of its meshes
 };
 
 /// Where a mesh rests, and what moves it.
