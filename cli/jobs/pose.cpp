@@ -142,7 +142,7 @@ JobRun declare(CLI::App& job) {
 
 Job poseJob() {
     return {"pose", "List, make or change poses that simulated hair follows",
-            "hair.hairloom --name Windswept --from combed.hairloom --amount 0.6 -o posed.hairloom", declare};
+            "hair.hairloom --name Swept --from combed.hairloom --amount 0.6 -o posed.hairloom", declare};
 }
 
 }  // namespace hairloom::cli

@@ -21,7 +21,7 @@ class CliPose : public CommandLineTest {
         CommandLineTest::SetUp();
         runJson(createArguments());
         std::ofstream(folder / "lean.json")
-            << R"({"hairloom_script": 1, "operations": [{"op": "bend", "angleDegrees": 60}]})";
+            << R"({"hairloom_script": 1, "operations": [{"op": "bend", "sidewaysDegrees": 60}]})";
         runJson("groom hair.hairloom --script lean.json -o bent.hairloom");
         runJson("pose hair.hairloom --name Bent --from bent.hairloom --amount 1 -o posed.hairloom");
     }
@@ -71,8 +71,18 @@ TEST_F(CliPose, TheTimeLineKeysTheirAmounts) {
     EXPECT_NE(std::find(keyable.begin(), keyable.end(), "pose.Bent"), keyable.end());
     const std::string keyed = hashOf("moving.hairloom --motion timeline");
     EXPECT_NE(keyed, hashOf("posed.hairloom --motion timeline --frames 30"));
-    // At its first frame as without.
-    EXPECT_EQ(hashOf("moving.hairloom --motion timeline --frames 1"), hashOf("hair.hairloom --frames 1"));
+    // Keys that hold it at 0 are as no pose.
+    const Json zero{{"name", "pose.Bent"}, {"keys", {{{"t", 0}, {"value", 0}}, {{"t", 0.25}, {"value", 0}}}}};
+    const Json head{{"t", 0}};
+    std::ofstream(folder / "zero.json")
+        << Json{{"time_line",
+                 {{"end", 0.5}, {"head", Json::array({head})}, {"settings", Json::array({zero})}}}}
+               .dump();
+    std::ofstream(folder / "end.json")
+        << Json{{"time_line", {{"end", 0.5}, {"head", Json::array({head})}}}}.dump();
+    runJson("timeline posed.hairloom --from zero.json -o still.hairloom");
+    runJson("timeline hair.hairloom --from end.json -o plain.hairloom");
+    EXPECT_EQ(hashOf("still.hairloom --motion timeline"), hashOf("plain.hairloom --motion timeline"));
 }
 
 TEST_F(CliPose, MistakesAreNamed) {
