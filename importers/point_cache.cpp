@@ -67,8 +67,8 @@ Track<float> tentAt(const std::vector<float>& times, std::size_t at) {
     return track;
 }
 
-}  // namespace
-
+/// The rigid motion that brings most of `from` nearest to `to`, which are equally many: points that go
+/// elsewhere, as a jaw's, count for less (iteratively reweighted least squares after Kabsch 1976).
 Eigen::Isometry3d motionOfMost(std::span<const Vec3f> from, std::span<const Vec3f> to) {
     constexpr int kTurns = 10;
     std::vector<double> weights(from.size(), 1.0), away(from.size()), sorted;
@@ -87,6 +87,8 @@ Eigen::Isometry3d motionOfMost(std::span<const Vec3f> from, std::span<const Vec3
     }
     return motion;
 }
+
+}  // namespace
 
 void PointCache::add(Mesh mesh) {
     if (mesh.seconds.size() > 1 && mesh.points > 0) meshes_.push_back(std::move(mesh));

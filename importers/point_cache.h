@@ -39,8 +39,4 @@ class PointCache {
     std::size_t moved_ = 0;  ///< vertices, by all targets
 };
 
-/// The rigid motion that brings most of `from` nearest to `to`, which are equally many: points that go
-/// elsewhere, as a jaw's, count for less (iteratively reweighted least squares after Kabsch 1976).
-Eigen::Isometry3d motionOfMost(std::span<const Vec3f> from, std::span<const Vec3f> to);
-
 }  // namespace hairloom

@@ -50,10 +50,7 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
         rested += gFrame.dt;
     }
     if (lane == 0) {
-        gRests[rest] = rested;
-        gRests[rest + 1] = asleep ? 1.0 : 0.0;
-        gRests[rest + 2] = stayed;
-        gRests[rest + 3] = stayed > 0.0 ? 0.0 : 1.0;
+        keepRest(block, rested, asleep, stayed);
         if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], gBlocks[block].y);
     }
 #endif

@@ -58,10 +58,7 @@ void judgeBlock(uint block, uint strands) {
     const uint rest = restOf(block);
     float rested = gRests[rest], stayed = gRests[rest + 2];
     const bool asleep = fallsAsleep(gathered % NOT_STAYING < NOT_SLOW, gathered < NOT_STAYING, rested, stayed);
-    gRests[rest] = rested;
-    gRests[rest + 1] = asleep ? 1.0 : 0.0;
-    gRests[rest + 2] = stayed;
-    gRests[rest + 3] = stayed > 0.0 ? 0.0 : 1.0;
+    keepRest(block, rested, asleep, stayed);
     if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], strands);
 }
 #endif

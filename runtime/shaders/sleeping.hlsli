@@ -26,6 +26,15 @@ bool sphereNear(float3 root) {
 /// Where the numbers of a block are in gRests.
 uint restOf(uint block) { return HAIRLOOM_REST_NUMBERS * block; }
 
+/// Leaves how a block rests to the next frame.
+void keepRest(uint block, float rested, bool asleep, float stayed) {
+    const uint rest = restOf(block);
+    gRests[rest] = rested;
+    gRests[rest + 1] = asleep ? 1.0 : 0.0;
+    gRests[rest + 2] = stayed;
+    gRests[rest + 3] = stayed > 0.0 ? 0.0 : 1.0;
+}
+
 /// The point of a strand whose anchor that is.
 uint anchorPoint(uint anchor, uint points) { return (points - 1) * (anchor + 1) / HAIRLOOM_REST_ANCHORS; }
 
