@@ -2,6 +2,7 @@
 #include "core/gpu_simulation/gpu_engine_method.h"
 
 #include "core/gpu_simulation/strand_engine.h"
+#include "core/simulation/effect_switch.h"
 #include "core/simulation/strand_method.h"
 
 namespace hairloom::gpu_simulation {
@@ -15,7 +16,8 @@ class GpuEngineMethod final : public StrandMethod {
         keep(engine_.reset(scene.rootsAt(pose)));
     }
 
-    void step(const SceneInput&, const HeadPose&, const runtime::FrameInput& input) override {
+    void step(const SceneInput& scene, const HeadPose&, const runtime::FrameInput& input) override {
+        engine_.setSkinSpheres(scene.skinSpheres());
         const std::uint64_t begin = host_.nanoseconds();
         keep(engine_.step(input));
         const auto report = engine_.report();
@@ -83,6 +85,9 @@ std::vector<EffectReport> effectReports(const StrandEngine& engine) {
         effects.push_back({runtime::effectName(effect), on, reasonAlone(engine.plan().why(effect)),
                            on ? std::nullopt : std::optional(0.0), engine.effectBytes(effect)});
     }
+    if (engine.body() != nullptr)
+        effects.push_back(
+            {std::string(kBodyEffect), true, "on, the skin of the head", std::nullopt, engine.bodyBytes()});
     if (engine.volumeBytes() > 0)
         effects.push_back({"hair-hair", true, "on, asked for", std::nullopt, engine.volumeBytes()});
     return effects;
@@ -96,6 +101,7 @@ MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels
         EngineOptions options;
         options.layout = layoutFor(device.info().type);
         options.hairVolume = hairVolume;
+        options.body = scene.groom().body;
         auto engine = StrandEngine::make(device, kernels, scene.strands(), scene.groom().simulation, options);
         if (!engine) return tl::unexpected(engine.error());
         return std::make_unique<GpuEngineMethod>(std::move(*engine));

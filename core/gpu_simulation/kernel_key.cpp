@@ -46,13 +46,14 @@ std::string KernelKey::defines() const {
 }
 
 KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings,
-                 const BatchShape& shape, std::size_t spheres, bool velocities) {
+                 const BatchShape& shape, std::size_t spheres, bool velocities, bool body) {
     KernelKey key;
     key.model = settings.strandModel;
     key.shape = shape;
     key.clampedPoints = settings.clampedPoints;
     key.sleep = settings.sleepSpeed > 0.0f;
     key.velocities = velocities;
+    key.body = body;
     key.spheres = sourceFor(plan, spheres);
     key.wind = plan.on(Effect::wind);
     key.stages = callsOf(plan);

@@ -50,6 +50,7 @@ struct KernelKey {
     bool wind = false;
     bool sleep = false;
     bool velocities = false;  ///< are written as well as positions
+    bool body = false;        ///< the skin of a body is met
     std::string stages;       ///< of a substep, as calls
     runtime::StrandModel model = runtime::StrandModel::springs;
     std::array<std::uint32_t, 4> own{};  ///< what else the model's kernel is made for, as it numbers them
@@ -62,9 +63,10 @@ struct KernelKey {
     friend bool operator==(const KernelKey&, const KernelKey&) = default;
 };
 
-/// The kernel of a plan made from these settings. `spheres` in the frame.
+/// The kernel of a plan made from these settings. `spheres` in the frame; `body`: there is one that the model
+/// meets.
 KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings,
-                 const BatchShape& shape, std::size_t spheres, bool velocities);
+                 const BatchShape& shape, std::size_t spheres, bool velocities, bool body = false);
 
 /// "stageAngularSmallAngle();"
 std::string callOf(runtime::StageId stage);

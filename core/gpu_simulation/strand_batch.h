@@ -59,6 +59,8 @@ struct StrandBatch {
     gpu::BufferPtr strandOfSlot;  ///< once the device finds roots itself
     // Null while what needs them is off.
     gpu::BufferPtr rests, gathered, scratch;
+    /// Metres from the body at rest of each point; null without one. Rods keep more of their state then.
+    gpu::BufferPtr clearances;
     ModelBuffers model;
     KernelKey key;
     gpu::ComputePipelinePtr kernel;

@@ -42,6 +42,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
     impl->placed.roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
+    if (auto made = impl->makeBody(); !made) return tl::unexpected(made.error());
     if (auto taken = impl->takeModel(settings); !taken) return tl::unexpected(taken.error());
     if (options.hairVolume) {
         auto volume = GpuHairVolume::make(device, *options.hairVolume);
@@ -65,6 +66,25 @@ std::string StrandEngine::Impl::velocityError() const {
         batches, [](const StrandBatch& batch) { return batch.shape.storage == StrandStorage::buffers; });
     if (!options.velocities || !inBuffers || device.info().backend != gpu::Backend::Direct3D11) return {};
     return "Direct3D 11 lets a kernel write to eight buffers, too few for velocities of strands this long";
+}
+
+/// What of the body the model needs.
+Status StrandEngine::Impl::makeBody() {
+    if (options.body == nullptr || !runtime::modelOf(wanted.strandModel).meetsBody) return {};
+    if (device.info().backend == gpu::Backend::Direct3D11)
+        return fail("Direct3D 11 has no kernels that keep hair out of the skin of a body",
+                    "expected hair without a skin collider, or the CPU");
+    auto made = DeviceBody::make(device, options.body, *shape);
+    if (!made) return tl::unexpected(made.error());
+    body.emplace(std::move(*made));
+    const runtime::Floats clearances = runtime::bodyClearances(*shape, *options.body);
+    for (StrandBatch& batch : batches) {
+        const runtime::Vector<float> own = runtime::planesOfSlots(*shape, batch.inSlots(), clearances, 1);
+        auto buffer = makeBuffer<float>(device, "clearances", Usage::ShaderRead, own.size(), own);
+        if (!buffer) return tl::unexpected(buffer.error());
+        batch.clearances = std::move(*buffer);
+    }
+    return {};
 }
 
 /// Those that exist whatever the plan.
@@ -162,9 +182,9 @@ Result<bool> StrandEngine::Impl::kernelsFor(const Run& next, bool wait) {
     std::vector<std::pair<KernelKey, gpu::ComputePipelinePtr>> found;
     bool ready = true;
     for (const StrandBatch& batch : batches) {
-        KernelKey key =
-            keyFor(next.plan, next.settings, batch.shape,
-                   runtime::sphereConstantsOf(frameSpheres, next.settings.strandModel), options.velocities);
+        KernelKey key = keyFor(next.plan, next.settings, batch.shape,
+                               runtime::sphereConstantsOf(frameSpheres, next.settings.strandModel),
+                               options.velocities, meetsBody());
         if (batch.kernel != nullptr && key == batch.key) {
             found.emplace_back(std::move(key), batch.kernel);
             continue;
@@ -236,6 +256,12 @@ Status StrandEngine::record(gpu::CommandList& list, const runtime::FrameInput& i
     return impl_->record(list, input, &roots, continues);
 }
 
+void StrandEngine::setSkinSpheres(std::span<const std::uint8_t> ofSkin) {
+    if (std::ranges::equal(ofSkin, impl_->skinSpheres)) return;
+    impl_->skinSpheres.assign(ofSkin.begin(), ofSkin.end());
+    impl_->wakeAll = true;
+}
+
 const runtime::SimulationSettings& StrandEngine::settings() const {
     return impl_->adopted ? impl_->run.settings : impl_->wanted;
 }
@@ -289,6 +315,19 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
 
 std::size_t StrandEngine::volumeBytes() const {
     return impl_->volume ? impl_->volume->bytes() : 0;
+}
+
+std::size_t StrandEngine::bodyBytes() const {
+    if (!impl_->body) return 0;
+    std::size_t bytes = impl_->body->bytes();
+    for (const StrandBatch& batch : impl_->batches) {
+        bytes += static_cast<std::size_t>(batch.clearances->desc().size);
+        bytes += sizeof(float) * runtime::kFoldPlanes * batch.inSlots().planeSize();
+    }
+    return bytes;
+}
+const DeviceBody* StrandEngine::body() const {
+    return impl_->meetsBody() ? &*impl_->body : nullptr;
 }
 
 std::size_t StrandEngine::frameBytes() const {

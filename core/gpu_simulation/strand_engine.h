@@ -6,7 +6,8 @@
 //
 // Differs from runtime::Engine: the results agree within rounding, not in bits; the test for continuous
 // collision runs wherever points collide and leaves slow ones out itself, so that the plan needs nothing from
-// the device; sleeping strands are known to the device only. Does not do: backward Euler.
+// the device; sleeping strands are known to the device only; beside a body, more substeps are taken for roots
+// that are or just were fast, not for fast hair. Does not do: backward Euler.
 
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/gpu_simulation/device_body.h"
 #include "core/gpu_simulation/gpu_hair_volume.h"
 #include "core/gpu_simulation/kernel_library.h"
 #include "core/gpu_simulation/strand_batch.h"
@@ -30,6 +32,8 @@ struct EngineOptions {
     bool waitForKernels = true;
     /// Hair against hair between frames.
     std::optional<runtime::HairVolumeSettings> hairVolume = {};
+    /// That rods meet, as Engine::setBody() has it; springs pass through it. Not on Direct3D 11.
+    std::shared_ptr<const runtime::BodyField> body = {};
 };
 
 /// What the last frame took and met.
@@ -70,6 +74,8 @@ class StrandEngine {
     Status reset(std::span<const runtime::RootFrame> roots_ws);
     /// Takes other settings from the next frame on, or from when their kernel is ready.
     Status setSettings(const runtime::SimulationSettings& settings);
+    /// As runtime::Engine::setSkinSpheres().
+    void setSkinSpheres(std::span<const std::uint8_t> ofSkin);
     /// Those of the last frame.
     const runtime::SimulationSettings& settings() const;
 
@@ -104,8 +110,11 @@ class StrandEngine {
     const runtime::EffectPlan& plan() const;
     /// Bytes of buffers that exist because of this effect.
     std::size_t effectBytes(runtime::Effect effect) const;
-    /// Of hair against hair.
+    /// Of hair against hair, and of the body and what is known of it.
     std::size_t volumeBytes() const;
+    std::size_t bodyBytes() const;
+    /// That the strands meet, in the pose of the last recorded frame; null: none.
+    const DeviceBody* body() const;
     /// Bytes of particles and roots that a substep reads or writes, of all strands, where they are
     /// not kept in threads: each frame's is shared by its substeps.
     std::size_t frameBytes() const;

@@ -87,6 +87,7 @@ void StrandEngine::Impl::moveOrigin(std::array<double, 3> next_ws) {
     origin_ws = next_ws;
     if (originShift == Float3{}) return;
     for (RootFrame& root : placed.roots) root.position = root.position + originShift;
+    if (body) body->moveOrigin(originShift);
     for (runtime::Sphere& sphere : spheresBefore) sphere.center_ws = sphere.center_ws + originShift;
     placed.min_ws = placed.min_ws + originShift;
     placed.max_ws = placed.max_ws + originShift;
@@ -123,7 +124,7 @@ void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
     }
     if (many) {
         runtime::Vector<shaders::SphereConstants> all;
-        runtime::putSphereConstants(movingSpheres, movingCapsules, all);
+        runtime::putSphereConstants(pressingSpheres(), movingCapsules, all);
         upload(spheres, "spheres", all);
     }
     if (!sleeps) return;
@@ -146,8 +147,8 @@ void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
 shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::SubstepContext& context,
                                                            const runtime::FrameInput& input,
                                                            const StrandBatch& batch) const {
-    const runtime::GpuFrame frame{run.settings, run.wind.wind, movingSpheres, frameSpheres.waking.size(),
-                                  substep,      wakeAll,       *origin_ws,    originShift};
+    const runtime::GpuFrame frame{run.settings, run.wind.wind, pressingSpheres(), frameSpheres.waking.size(),
+                                  substep,      wakeAll,       *origin_ws,        originShift};
     auto c = runtime::frameConstants(frame, context, input, batch.inSlots(), batch.key.shape.strands);
     if (batch.key.spheres == SphereSource::constants)
         c.sphereCount = std::min<std::uint32_t>(c.sphereCount, HAIRLOOM_CONSTANT_SPHERES);
@@ -180,15 +181,20 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(4, positions);
     write(batch.model.state.slot, batch.model.state.buffer);
     write(7, batch.scratch);
+    if (batch.key.body) {
+        body->bind(bindings);
+        read(12, batch.clearances);
+    }
     const GpuModel& ofModel = gpuModelOf(batch.key.model);
     write(ofModel.gatheredSlot, batch.gathered);
     write(ofModel.velocitySlot(batch.key), velocities);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
     model->setConstants(list, context, run.wind.wind, substep, batch);
+    if (batch.key.body) body->setConstants(list);
     if (batch.key.spheres == SphereSource::constants) {
         runtime::Vector<shaders::SphereConstants> all;
-        runtime::putSphereConstants(movingSpheres, movingCapsules, all);
+        runtime::putSphereConstants(pressingSpheres(), movingCapsules, all);
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
         list.setConstants(1, bytesOfVector(all));
     }
@@ -236,6 +242,18 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
     const runtime::Vector<runtime::Capsule> capsulesBefore = frameSpheres.capsules;
     runtime::takeSpheres(wanted, shape->longestStrand, {spheresBefore, capsulesBefore, input.cut},
                          input.spheres, input.capsules, frameSpheres);
+    std::uint32_t substeps = runtime::substepsIn(wanted, input.dt);
+    bool bodyMoves = false;
+    if (body) {
+        // Hair is as fast as its roots were, and slows in a tenth of a second. How fast it is the device
+        // knows.
+        constexpr float kSlowing = 10.0f;  // 1/s
+        fastRoots = std::max(placed.motion / input.dt, fastRoots * std::exp(-kSlowing * input.dt));
+        substeps = runtime::substepsBesideBody(fastRoots * input.dt, substeps);
+        bodyMoves = body->takeFrame(input, runtime::teleportDistanceOf(wanted, input), substeps);
+        wakeAll = wakeAll || bodyMoves;
+        if (body->hasPose() && skinSpheres.size() == frameSpheres.given) frameSpheres.ofSkin = skinSpheres;
+    }
     const Float3 low{std::min(placed.min_ws.x, lowBefore.x), std::min(placed.min_ws.y, lowBefore.y),
                      std::min(placed.min_ws.z, lowBefore.z)};
     const Float3 high{std::max(placed.max_ws.x, highBefore.x), std::max(placed.max_ws.y, highBefore.y),
@@ -243,16 +261,24 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
     if (auto chosen = choose(input, low, high); !chosen) return chosen;
     movingSpheres.clear();
     movingCapsules.clear();
-    const std::uint32_t substeps = runtime::substepsIn(run.settings, input.dt);
+    pressing = 0;
+    // While kernels of other settings are made; a body is posed for those that are wanted.
+    if (!body) substeps = runtime::substepsIn(run.settings, input.dt);
     if (run.plan.on(Effect::collision)) {
         if (runtime::modelOf(run.settings.strandModel).listsSpheres) {
-            moveCapsules(frameSpheres, substeps, movingSpheres, movingCapsules);
+            pressing = moveCapsules(frameSpheres, substeps, movingSpheres, movingCapsules);
         } else {
             moveSpheres(frameSpheres, substeps, movingSpheres);
+            pressing = movingSpheres.size();
         }
     }
-    const runtime::SubstepContext context =
-        runtime::substepContext(run.settings, run.plan, input.dt, substeps, movingSpheres, movingCapsules);
+    runtime::SubstepContext context = runtime::substepContext(run.settings, run.plan, input.dt, substeps,
+                                                              pressingSpheres(), movingCapsules);
+    if (meetsBody()) {
+        context.spheresRest = context.spheresRest && !bodyMoves;
+        context.collisionRadiusAtRoot = run.settings.collisionRadiusRoot;
+        context.collisionRadiusAtTip = run.settings.collisionRadiusTip;
+    }
 
     // Roots that rest are there already, once the device knows that they do.
     if (substep == 0.0f || moves || rootsMoved) {
@@ -262,6 +288,9 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
     rootsMoved = moves;
     uploadChanges(list);
     uploadSpheres(list);
+    if (meetsBody()) {
+        if (auto sent = body->upload(list); !sent) return sent;
+    }
     model->upload(list, *shape, run.plan, run.settings, context.h, batches);
     gpu::PassDesc pass;
     pass.name = "strands";

@@ -29,6 +29,10 @@ struct StrandEngine::Impl {
     std::unique_ptr<DeviceStrands> model;  ///< of run.settings.strandModel
     std::vector<StrandBatch> batches;
     std::optional<GpuHairVolume> volume;
+    std::optional<DeviceBody> body;  ///< that the model meets
+    runtime::Vector<std::uint8_t> skinSpheres;
+    float fastRoots = 0.0f;    ///< m/s, of roots, and of what they set going not long ago
+    std::size_t pressing = 0;  ///< of movingSpheres: those behind it stand for the body's skin
     gpu::BufferPtr reportBuffer, positions, velocities;
     gpu::BufferPtr waking, spheres;  // null while sleep, or many spheres, are off
 
@@ -65,6 +69,7 @@ struct StrandEngine::Impl {
 
     // strand_engine.cpp
     std::string velocityError() const;
+    Status makeBody();
     Status makeBuffers();
     Status takeModel(const runtime::SimulationSettings& settings);
     Status allocate();
@@ -84,6 +89,10 @@ struct StrandEngine::Impl {
     bool takeRoots(const DeviceRoots& given);
     Status gatherRoots(gpu::CommandList& list, const DeviceRoots& given);
     void moveOrigin(std::array<double, 3> next_ws);
+    bool meetsBody() const { return body && body->hasPose(); }
+    std::span<const runtime::MovingSphere> pressingSpheres() const {
+        return std::span(movingSpheres).first(pressing);
+    }
     void uploadRoots(gpu::CommandList& list, const runtime::Vector<bool>& moved) const;
     void uploadSpheres(gpu::CommandList& list);
     void uploadChanges(gpu::CommandList& list);

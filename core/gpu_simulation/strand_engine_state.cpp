@@ -117,6 +117,7 @@ Result<runtime::State> StrandEngine::Impl::readState() {
     state.rootsMax_ws = placed.max_ws;
     state.substep = substep;
     state.origin_ws = origin_ws;
+    if (body) state.body = body->pose();
     known = state;
     return state;
 }
@@ -169,6 +170,7 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
     frameSpheres.capsules = state.capsules;
     substep = state.substep;
     origin_ws = state.origin_ws;
+    if (body) body->setPose(state.body);
     runtime::Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     for (const RootFrame& root : placed.roots) {
         const Float3 p = root.position;
@@ -244,7 +246,7 @@ Result<double> StrandEngine::wait() {
 Result<runtime::Measurements> StrandEngine::measure() {
     const auto state = readState();
     if (!state) return tl::unexpected(state.error());
-    return runtime::measureState(*impl_->shape, *state, settings());
+    return runtime::measureState(*impl_->shape, *state, settings(), impl_->frameSpheres.ofSkin);
 }
 
 Status StrandEngine::readPositions(std::span<Float3> positions_ws) {

@@ -86,6 +86,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
     options.layout = gpu_simulation::layoutFor(device.info().type);
     options.velocities = true;
     options.waitForKernels = false;
+    options.body = groom.body;
     auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), input->strands(),
                                                      groom.simulation, options);
     if (!engine) return tl::unexpected(engine.error());
@@ -97,7 +98,6 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
     if (!head) return tl::unexpected(head.error());
     DeviceHair hair(device, std::move(*input), std::move(*engine), std::move(*head));
     hair.skinned_ = skin != nullptr && groom.scalp != nullptr;
-    hair.spheres_ = groom.spheres;
     hair.reach_ = hair.engine_.restShape().longestStrand;
     if (const StrandFollow* follow = scene.follow()) {
         const runtime::FollowView view = follow->view();
@@ -107,6 +107,11 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
         // A wisp is as wide as twice its radius at rest at most, or at 7 m/s.
         hair.reach_ += 2 * *std::ranges::max_element(view.radii);
     }
+    if (scene.bodyPush() != nullptr && options.body != nullptr) {
+        auto made = gpu_simulation::GpuBodyPush::make(device, *scene.bodyPush());
+        if (!made) return tl::unexpected(made.error());
+        hair.push_.emplace(std::move(*made));
+    }
     const auto drawn = scene.scene().strands.front().positions_ws;
     hair.drawnPointCount_ = static_cast<std::uint32_t>(drawn.size());
     hair.sampleStep_ = std::max(1u, hair.drawnPointCount_ / kMaxSample) | 1u;  // odd: no stride of strands
@@ -114,7 +119,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
         hair.restSample_.push_back(drawn[i]);
     hair.sampleCount_ = static_cast<std::uint32_t>(hair.restSample_.size());
     if (auto made = hair.makeBuffers(); !made) return tl::unexpected(made.error());
-    hair.placedSpheres_ = spheresAt(hair.spheres_, start);
+    hair.placedSpheres_ = spheresAt(groom.spheres, start);
     hair.bones_ = hair.bonesOf(start);
     hair.morphed_ss_ = start.morphed_ss;
     hair.forgetSeen(start);
@@ -164,14 +169,22 @@ Status DeviceHair::setSettings(const runtime::SimulationSettings& settings) {
     return {};
 }
 
-/// From the head at rest to the world, as FrameInput::body_ws has bones.
-std::vector<runtime::BonePose> DeviceHair::bonesOf(const HeadPose& pose) const {
+/// From the head at rest to the world.
+std::vector<runtime::BonePose> DeviceHair::headBones(const HeadPose& pose) const {
     std::vector<runtime::BonePose> bones;
     const auto add = [&](const Eigen::Affine3f& bone) { bones.push_back(toBonePose(bone)); };
     if (skinned_ && !pose.bones_ws.empty())
         std::ranges::for_each(pose.bones_ws, add);
     else
         add(Eigen::Affine3f(pose.head_ws));
+    return bones;
+}
+
+/// Those of the head, and behind them those of its body, so that both go through a frame alike.
+std::vector<runtime::BonePose> DeviceHair::bonesOf(const HeadPose& pose) const {
+    std::vector<runtime::BonePose> bones = headBones(pose);
+    const auto body = bodyAt(input_.groom(), pose);
+    bones.insert(bones.end(), body.begin(), body.end());
     return bones;
 }
 
@@ -194,40 +207,70 @@ std::vector<Vec3f> DeviceHair::morphedAt(std::size_t piece, const HeadPose& end,
 }
 
 gpu::BufferPtr DeviceHair::drawnPoints() const {
-    return follow_ ? follow_->positions_ws() : engine_.positions_ws();
+    if (follow_) return follow_->positions_ws();
+    return pushed_ != nullptr ? pushed_ : engine_.positions_ws();
 }
 
 Status DeviceHair::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues,
                                   std::vector<Vec3f> morphed_ss) {
     bones_.assign(input.body_ws.begin(), input.body_ws.end());
     placedSpheres_.assign(input.spheres.begin(), input.spheres.end());
-    std::vector<Eigen::Affine3f> bones(bones_.size());
-    std::ranges::transform(bones_, bones.begin(), toAffine);
+    const auto ofHead = std::span(bones_).first(headBones_);
+    std::vector<Eigen::Affine3f> bones(ofHead.size());
+    std::ranges::transform(ofHead, bones.begin(), toAffine);
     morphed_ss_ = std::move(morphed_ss);
     if (auto recorded = head_.record(list, bones, morphed_ss_); !recorded) return recorded;
-    return engine_.record(list, input, head_.roots(), continues);
+    runtime::FrameInput ofBody = input;
+    ofBody.body_ws = std::span(bones_).subspan(headBones_);
+    return engine_.record(list, ofBody, head_.roots(), continues);
+}
+
+/// What is drawn, from strands that the frame has moved.
+Status DeviceHair::recordDrawn(gpu::CommandList& list) {
+    if (follow_) {
+        gpu_simulation::FollowInput guides{engine_.positions_ws(), engine_.velocities_ws(), {}};
+        guides.roots_ws = head_.roots().frames_ws;
+        follow_->record(list, guides);
+    }
+    const gpu_simulation::DeviceBody* const body = engine_.body();
+    if (!push_ || body == nullptr) {
+        pushed_ = nullptr;
+        return {};
+    }
+    if (!follow_ && pushed_ == nullptr) {
+        auto made = makeBuffer<shaders::float4>(*device_, "strands out of the body", kReadWrite,
+                                                engine_.pointCount(), {});
+        if (!made) return tl::unexpected(made.error());
+        pushed_ = std::move(*made);
+    }
+    if (!follow_) list.copyBuffer(engine_.positions_ws(), 0, pushed_, 0, pushed_->desc().size);
+    push_->record(list, *body, drawnPoints());
+    return {};
 }
 
 Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const HeadPose& pose,
                           std::span<const HeadPose> within) {
     listen();
     ++frame_;
-    auto spheres = spheresAt(spheres_, pose);
+    const std::span<const CollisionSphere> atRest = input_.groom().spheres;
+    const auto spheres = spheresAt(atRest, pose);
     runtime::FrameInput input;
     input.dt = dt;
     input.time = time;
-    const auto capsules = capsulesOf(spheres_);
+    const auto capsules = capsulesOf(atRest);
     input.spheres = spheres;
     input.capsules = capsules;
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
     const auto bones = bonesOf(pose);
     input.body_ws = bones;
+    headBones_ = headBones(pose).size();
+    engine_.setSkinSpheres(input_.skinSpheres());
     // Bones make the roots on the device, part after part of the frame.
     std::vector<std::vector<runtime::Sphere>> spheresWithin;
     std::vector<std::vector<runtime::BonePose>> bonesWithin;
     for (const HeadPose& on : within) {
-        spheresWithin.push_back(spheresAt(spheres_, on));
+        spheresWithin.push_back(spheresAt(atRest, on));
         bonesWithin.push_back(bonesOf(on));
     }
     std::vector<runtime::InnerPose> poses;
@@ -239,16 +282,31 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
         auto morphed = morphedAt(i, pose, within);
         if (auto recorded = recordStraight(list, part, i > 0, std::move(morphed)); !recorded) return recorded;
     }
-    if (follow_) {
-        gpu_simulation::FollowInput guides{engine_.positions_ws(), engine_.velocities_ws(), {}};
-        guides.roots_ws = head_.roots().frames_ws;
-        follow_->record(list, guides);
-    }
-    runtime::appendCapsules(capsules, spheres);
-    recordMeasures(list, spheres);
+    if (auto recorded = recordDrawn(list); !recorded) return recorded;
+    recordMeasures(list, pressing(spheres, capsules));
     recordExtent(list);
     recordReadback(list);
     return {};
+}
+
+/// Those that hair is measured against, capsules as spheres along them: what stands for the skin of the body
+/// is not met.
+std::vector<runtime::Sphere> DeviceHair::pressing(std::span<const runtime::Sphere> spheres,
+                                                  std::span<const runtime::Capsule> capsules) const {
+    const std::span<const std::uint8_t> ofSkin =
+        engine_.body() != nullptr ? input_.skinSpheres() : std::span<const std::uint8_t>();
+    const auto isSkin = [&](std::uint32_t sphere) { return sphere < ofSkin.size() && ofSkin[sphere] != 0; };
+    std::vector<runtime::Capsule> between;
+    for (const runtime::Capsule& capsule : capsules) {
+        if (!isSkin(capsule.first) || !isSkin(capsule.second)) between.push_back(capsule);
+    }
+    std::vector<runtime::Sphere> all(spheres.begin(), spheres.end());
+    runtime::appendCapsules(between, all);
+    std::vector<runtime::Sphere> left;
+    for (std::size_t s = 0; s < all.size(); ++s) {
+        if (!isSkin(static_cast<std::uint32_t>(s))) left.push_back(all[s]);
+    }
+    return left;
 }
 
 void DeviceHair::recordMeasures(gpu::CommandList& list, std::span<const runtime::Sphere> spheres) {

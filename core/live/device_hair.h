@@ -7,6 +7,7 @@
 
 #include <deque>
 
+#include "core/gpu_simulation/gpu_body_push.h"
 #include "core/gpu_simulation/gpu_follow_hairs.h"
 #include "core/gpu_simulation/gpu_head.h"
 #include "core/live/groom_scene.h"
@@ -39,7 +40,7 @@ class DeviceHair {
 
     /// From the next frame on, or from when their kernel is ready.
     Status setSettings(const runtime::SimulationSettings& settings);
-    void setSpheres(std::vector<CollisionSphere> spheres) { spheres_ = std::move(spheres); }
+    void setSpheres(std::vector<CollisionSphere> spheres) { input_.setSpheres(std::move(spheres)); }
 
     /// Whether frames from the next on tell where all strands are: for marks that are drawn on them.
     void setReadsPositions(bool on) { readsPositions_ = on; }
@@ -79,12 +80,16 @@ class DeviceHair {
         : device_(&device), input_(std::move(input)), engine_(std::move(engine)), head_(std::move(head)) {}
 
     Status makeBuffers();
+    Status recordDrawn(gpu::CommandList& list);
+    std::vector<runtime::BonePose> headBones(const HeadPose& pose) const;
     std::vector<runtime::BonePose> bonesOf(const HeadPose& pose) const;
     /// What goes straight on through a frame, or a part of one.
     Status recordStraight(gpu::CommandList& list, const runtime::FrameInput& input, bool continues,
                           std::vector<Vec3f> morphed_ss);
     std::vector<Vec3f> morphedAt(std::size_t piece, const HeadPose& end,
                                  std::span<const HeadPose> within) const;
+    std::vector<runtime::Sphere> pressing(std::span<const runtime::Sphere> spheres,
+                                          std::span<const runtime::Capsule> capsules) const;
     void recordMeasures(gpu::CommandList& list, std::span<const runtime::Sphere> spheres);
     void recordExtent(gpu::CommandList& list);
     void recordReadback(gpu::CommandList& list);
@@ -101,9 +106,11 @@ class DeviceHair {
     gpu_simulation::StrandEngine engine_;
     gpu_simulation::GpuHead head_;
     std::optional<gpu_simulation::GpuFollowHairs> follow_;
-    std::vector<CollisionSphere> spheres_;
+    std::optional<gpu_simulation::GpuBodyPush> push_;
+    gpu::BufferPtr pushed_;  ///< strands that are drawn themselves, out of the body
     runtime::FramePieces pieces_;
-    std::vector<runtime::BonePose> bones_;        ///< of the last frame
+    std::vector<runtime::BonePose> bones_;        ///< of the last frame: the head's, then its body's
+    std::size_t headBones_ = 0;                   ///< of bones_
     std::vector<Vec3f> morphed_ss_;               ///< likewise; empty: no morph target moves the head
     std::vector<runtime::Sphere> placedSpheres_;  ///< likewise
     bool skinned_ = false, readsPositions_ = false;

@@ -79,6 +79,8 @@ class GroomScene {
     const Groom& rest() const { return rest_; }
     /// Of the follow hairs that are drawn; null where the strands themselves are.
     const StrandFollow* follow() const { return follow_ ? &*follow_ : nullptr; }
+    /// Leads what is drawn out of the groom's body; null without one.
+    const runtime::BodyPush* bodyPush() const { return push_ ? &*push_ : nullptr; }
 
     /// What a picture should show: the hair, and below it enough of the head; all of the mesh that is drawn
     /// where there is no hair.

@@ -72,6 +72,7 @@ FrameCost frameCostOf(std::string_view pass) {
         {"hair-hair collision", FrameCost::hairHair},
         {"wisps", FrameCost::follow},
         {"follow hairs", FrameCost::follow},
+        {"hair out of the body", FrameCost::follow},
         {"measures", FrameCost::measures},
         {"extent", FrameCost::measures},
     };

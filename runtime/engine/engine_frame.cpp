@@ -16,8 +16,6 @@ namespace {
 constexpr std::size_t kBlocksPerJob = 4;
 /// Metres that a point may go before the body has to be looked at again.
 constexpr float kNeverSeen = -1e30f;
-/// Times the substeps of the settings, in a frame that is too fast for them beside a body.
-constexpr std::uint32_t kMostMore = 4;
 
 RootBounds noRoots() {
     RootBounds bounds;
@@ -287,19 +285,13 @@ void Engine::Impl::allocateForBody() {
     bodyLost_ = true;
     movingBody_ = {};
     if (!meetsBody()) return;
-    const std::uint32_t most = kMostMore * substepsIn(settings_, kUsualFrame);
+    const std::uint32_t most = kMostMoreSubsteps * substepsIn(settings_, kUsualFrame);
     movingBody_.reserve(*body_, bodyTable_, bodyCarriers_, std::min(most, kMaxSubsteps));
 }
 
-/// More than the settings ask for where there is a body and hair or roots are so fast that a substep would
-/// take them through it: what one substep has to push out by a segment's length it turns by a right angle.
 std::uint32_t Engine::Impl::substepsOf(const FrameInput& input, std::uint32_t usual) const {
     if (!meetsBody()) return usual;
-    constexpr float kFar = 0.025f, kNear = 0.01f;  // metres in a substep: too far, and what is wanted then
-    const float way = std::max(rootMotion_, state_.fastest * input.dt);
-    if (!(way > kFar * static_cast<float>(usual)) || !std::isfinite(way)) return usual;
-    const float wanted = std::min(std::ceil(way / kNear), static_cast<float>(kMostMore * usual));
-    return std::clamp(static_cast<std::uint32_t>(wanted), usual, std::max(usual, kMaxSubsteps));
+    return substepsBesideBody(std::max(rootMotion_, state_.fastest * input.dt), usual);
 }
 
 /// Poses the body for the substeps of the frame.

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/body_free.h"
+#include "hairloom/settings.h"
 #include "shaders/rod_constants.h"
 
 namespace hairloom::runtime {
@@ -44,6 +45,7 @@ void MovingBody::take(const BodyField& field, const BodyTable& table, std::span<
     wholes_.resize(substeps);
     between_.resize(bones_);
     before_.assign(from.begin(), from.end());
+    starts_.assign(from.begin(), from.end());
     // Sums of lengths lose their digits, and a carrier that is flat tells no place.
     constexpr float kFarStrayed = 0.5f;
     lostTrack_ = std::any_of(strayed_.begin(), strayed_.end(),
@@ -164,6 +166,13 @@ void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, float near
         gone += room;
         if (gone >= whole) return;
     }
+}
+
+std::uint32_t substepsBesideBody(float way, std::uint32_t usual) {
+    constexpr float kFar = 0.025f, kNear = 0.01f;  // metres in a substep: too far, and what is wanted then
+    if (!(way > kFar * static_cast<float>(usual)) || !std::isfinite(way)) return usual;
+    const float wanted = std::min(std::ceil(way / kNear), static_cast<float>(kMostMoreSubsteps * usual));
+    return std::clamp(static_cast<std::uint32_t>(wanted), usual, std::max(usual, kMaxSubsteps));
 }
 
 Vector<std::uint32_t> carriersOf(const RestShape& shape, const BodyField& body) {

@@ -71,6 +71,8 @@ class MovingBody {
     /// All bones move alike in the substep.
     bool isWhole(std::uint32_t substep) const { return wholes_[substep] != 0; }
     bool moves() const { return moves_; }
+    /// Of each bone at the start of the frame.
+    std::span<const BonePose> starts() const { return starts_; }
     /// At the start of a substep; at its end with one more.
     const PosedBody& posed(std::uint32_t substep) const { return at_[substep]; }
     /// Of each bone at the end of a substep, and metres in the world of one that it carries, at least; 0: it
@@ -92,7 +94,7 @@ class MovingBody {
 
     /// At the start of the frame, and at the end of each substep; behind them those of longer frames before.
     Vector<PosedBody> at_;
-    Vector<BonePose> between_, before_;
+    Vector<BonePose> between_, before_, starts_;
     Vector<BonePose> inverses_;  ///< of each bone at the end of each substep
     Vector<float> leasts_;       ///< metres in the world of one that it carries, at least; 0: it is flat
     const BodyField* field_ = nullptr;
@@ -103,6 +105,12 @@ class MovingBody {
     std::array<float, kMostCarriers> strayed_{};
     bool moves_ = false, lostTrack_ = true;
 };
+
+/// More substeps than a frame usually has, where hair or roots beside a body go so far (metres in the frame)
+/// that a substep would take them through it: what one substep has to push out by a segment's length it turns
+/// by a right angle. At most kMostMoreSubsteps times as many.
+std::uint32_t substepsBesideBody(float way, std::uint32_t usual);
+inline constexpr std::uint32_t kMostMoreSubsteps = 4;
 
 /// Per block and lane of a plane: metres that a point is from the body at rest, so far that it may come again
 /// (it is pushed no farther out than it was authored). Large where the body is not near.

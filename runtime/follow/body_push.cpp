@@ -9,15 +9,14 @@
 
 #include "engine/body_free.h"
 #include "engine/in_parallel.h"
+#include "shaders/push_types.h"
 
 namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kPushedPerJob = 256;
-/// Metres from the body at which hair stays that was authored no closer: skin bulges between distances.
-constexpr float kKept = 0.0005f;
-/// Metres of what a field that is interpolated is wrong at most: hair that rests is not moved.
-constexpr float kPushSlack = 1e-5f;
+constexpr auto kKept = static_cast<float>(HAIRLOOM_PUSH_KEPT);
+constexpr auto kPushSlack = static_cast<float>(HAIRLOOM_PUSH_SLACK);
 /// Metres within which a body is looked up at once: there is no free space around.
 constexpr float kBeside = 0.006f;
 constexpr float kNothingKnown = std::numeric_limits<float>::infinity();
@@ -31,8 +30,7 @@ constexpr std::array<CubicPlace, 3> kPlaces{{{-9.0f / 128, 111.0f / 128, 29.0f /
                                              {-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16},
                                              {-3.0f / 128, 29.0f / 128, 111.0f / 128, -9.0f / 128}}};
 
-/// How much farther from both ends together a place is than these from each other, of the lengths beside.
-constexpr float kBow = 2 * 9.0f / 128;
+constexpr auto kBow = static_cast<float>(HAIRLOOM_PUSH_BOW);  // 2 · 9/128
 
 /// Missing neighbours repeat the end points.
 Float3 placeOf(std::span<const Float3> hair, std::size_t p, const CubicPlace& place) {
@@ -119,7 +117,7 @@ void BodyPush::liftPoints(const PosedBody& body, Hair& hair) const {
             if (free > kKept) continue;
         }
         // What is deep is led out along the way that leads out there, which is another one higher up.
-        constexpr int kRounds = 3;
+        constexpr int kRounds = HAIRLOOM_PUSH_POINT_ROUNDS;
         for (int round = 0; round < kRounds; ++round) {
             const PosedBody::Contact contact = body.at(hair.points[p]);
             if (!std::isfinite(contact.distance)) break;
@@ -185,7 +183,7 @@ void BodyPush::apply(std::span<const BonePose> pose, std::span<Float3> points_ws
                       known};
             hair.start();
             // What was led out may have drawn what is beside it in.
-            constexpr int kRounds = 6;
+            constexpr int kRounds = HAIRLOOM_PUSH_ROUNDS;
             for (int round = 0; round < kRounds; ++round) {
                 liftPoints(body, hair);
                 if (!liftCurve(body, hair)) break;

@@ -46,6 +46,21 @@
 /// contacts with shapes that rest are not looked at for energy that they add; of a point's approach.
 #define HAIRLOOM_ROD_CONTACT_SPEED 5e-3
 
+/// A body that comes fast is many times as deep in a strand as what one step can turn: it pushes by so many
+/// metres a step, in so many steps at most, until no node is deeper than so many metres.
+#define HAIRLOOM_BODY_PUSH 8e-3
+#define HAIRLOOM_BODY_LOOKS 10
+#define HAIRLOOM_BODY_DEEP 1e-3
+/// Share of what a contact's force would move a free node by in a substep, by which such a node stays in
+/// contact that starts the substep at the surface: the rest of the strand holds it back as well.
+#define HAIRLOOM_BODY_BACK 0.05
+/// Metres that a node may be off the skin and still be held by a plane that a look before found.
+#define HAIRLOOM_BODY_FOLD_REACH 5e-4
+/// Cosines of the angle between two planes of folded skin: what is nearer to 1 is one plane, and of two that
+/// look away from each other, as those of a thin part, one would hold the node on the wrong side.
+#define HAIRLOOM_BODY_FOLDS_BACK -0.2
+#define HAIRLOOM_BODY_FOLDS_AHEAD 0.99
+
 /// How fast hair follows a pose (docs/engine.md, "Poses"), 1/s: at most, and at an amount of a half. Metres
 /// per second at which a far pose draws it.
 #define HAIRLOOM_POSE_RATE 600.0

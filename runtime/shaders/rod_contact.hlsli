@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Which shapes a node of a rod meets (docs/engine.md, "Contacts").
 #include "spheres.hlsli"
+#if HAIR_BODY
+#include "rod_body.hlsli"
+#endif
 
 #define CONTACT_PLANE HAIRLOOM_ROD_WORK_PLANES
 BUFFER_ARRAY(float3, contactGradient, setContactGradient, gScratch, CONTACT_PLANE + 6)
@@ -104,15 +107,34 @@ bool touchShape(uint k, float3 origin, RodNode node, out RodTouch touch) {
     return dot(to, to) <= farthest * farthest;
 }
 
+/// Whether the strand may touch anything in this frame.
+bool meetsShapes() {
+#if HAIR_BODY
+    return true;
+#else
+    return gReachable != 0u;
+#endif
+}
+
 /// All strands of a group look at the same shape at a time: one read of a constant serves them.
 #define EACH_SHAPE(k) \
     [loop] for (uint k = 0; k < shapeCount(); ++k) \
         if ((gReachable & (1u << (k & 31u))) != 0u)
 
-/// What the shapes do to a node that hold it, which may be outside by `slack` metres; whether any is near it. Of those
-/// that press alike, as two capsules do at the end that they share, one that another keeps the node off does not hold it
-/// back, and friction is by the force of all of them together (RodStrip::pressedBySeveral()).
-RodContact contactOf(float3 origin, RodNode node, float slack, out bool near) {
+/// Metres outside a shape at which it holds a node that the prediction has there.
+float slackAsPredicted(RodTouch touch, RodNode node) {
+#if HAIR_BODY
+    return bodySlackAfter(touch, node);
+#else
+    return rodSlackAfter(node.load);
+#endif
+}
+
+/// What the shapes do to node p that hold it; whether any is near it. It may be outside by `slack` metres, or, as predicted, by as
+/// much as its last contact says. Of those that press alike, as two capsules do at the end that they share, one that another keeps
+/// the node off does not hold it back, and friction is by the force of all of them together (RodStrip::pressedBySeveral()). Folds of
+/// skin hold by several planes in turn: what presses there twice calms it.
+RodContact contactOf(float3 origin, uint p, RodNode node, bool isPredicted, float slack, out bool near) {
     RodContact found = noContact();
     float friction = gFrame.substep.friction, least = -1e9;
     near = false;
@@ -123,12 +145,25 @@ RodContact contactOf(float3 origin, RodNode node, float slack, out bool near) {
             RodTouch touch;
             if (touchShape(k, origin, node, touch)) {
                 near = true;
-                if (rodHolds(touch, slack) && touch.depth >= least) {
+                const float reach = isPredicted ? slackAsPredicted(touch, node) : slack;
+                if (rodHolds(touch, reach) && touch.depth >= least) {
                     deepest = max(deepest, touch.depth);
                     rodPress(touch, true, node, 1.0 / gFrame.h, friction, gFrame.substep.restitution, found);
                 }
             }
         }
+#if HAIR_BODY
+        [loop] for (uint which = 0; which < 2u; ++which) {
+            RodTouch skin;
+            if (touchOfBody(which, p, node, skin)) {
+                near = true;
+                const float reach = isPredicted ? bodySlackAfter(skin, node) : slack;
+                if (rodHolds(skin, reach))
+                    rodPress(skin, true, node, 1.0 / gFrame.h, friction, gFrame.substep.restitution, found);
+            }
+        }
+        break;
+#endif
         const float alike = rodPressAlike(found);
         if (alike <= 1.0) break;
         if (turn == 0u) {

@@ -17,7 +17,7 @@ void finishRodStep() {
     const float normalShare = 1.0 / sqrt(1.0 + gFrame.substep.friction * gFrame.substep.friction);
     float touched = 0.0;
 #if HAIR_SPHERES
-    if (gReachable != 0u) touched = gTouched;
+    if (meetsShapes()) touched = gTouched;
 #endif
     // A bounce is no smooth motion: speeds behind it are those of the mean way.
     const bool bounces = touched > 2.0;
@@ -27,7 +27,12 @@ void finishRodStep() {
         const float4 rest = restTangentAndBend(j), relative = newRelative(j);
         at = mad3(rodRotate(rotation(j), rest.xyz), segmentLength(j), at);
         const float3 moved = newDisplacement(j);
-        const float3 now = negMad3(displacement(node), blend, moved) * inverseStep;
+        float3 now = negMad3(displacement(node), blend, moved) * inverseStep;
+#if HAIR_BODY
+        // What goes back and forth on skin is as fast as it gets on.
+        if (touched > 0.0 && gFrame.substep.restitution <= 0.0 && goesBack(moved, displacement(node)))
+            now = (moved + displacement(node)) * (0.5 / gFrame.h);
+#endif
         setVelocityBefore(node, velocity(node));
         setVelocity(node, now);
         setDisplacement(node, moved);
@@ -48,12 +53,15 @@ void finishRodStep() {
         masses += metres;
         float pressed = 0.0;
 #if HAIR_SPHERES
-        if (gReachable != 0u) {
+        if (meetsShapes()) {
             const RodContact met = contact(j);
             const float3 force = rodContactForce(met, moved - predictedDisplacement(j));
             if (dot(force, met.normal) > 0.0) pressed = sqrt(dot(force, force)) * normalShare;
             if (met.touching > 1.0) pressed = -pressed;
         }
+#endif
+#if HAIR_BODY
+        keepFolds(node, moved, pressed != 0.0);
 #endif
         setLoad(node, pressed);
     }

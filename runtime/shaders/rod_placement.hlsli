@@ -9,6 +9,9 @@ void turnRodAlong(uint p, float4 turn) {
     setDisplacement(p, rotate(turn, displacement(p)));
     setVelocity(p, rotate(turn, velocity(p)));
     setVelocityBefore(p, rotate(turn, velocityBefore(p)));
+#if HAIR_BODY
+    forgetFolds(p);
+#endif
 }
 
 /// At rest on the root of the end of the frame, without a step before.

@@ -51,6 +51,35 @@ void setLargestTurn(float v) { gRodState[slotOfLane(0)] = v; }
 float energyBefore() { return gRodState[slotOfLane(1)]; }
 void setEnergyBefore(float v) { gRodState[slotOfLane(1)] = v; }
 
+#if HAIR_BODY
+// Planes of a body that pressed the point in the last substep, two: normal (0 for none) and metres outside. They are behind the rows of
+// the strands.
+uint slotOfFold(uint plane, uint p) {
+    const uint behind = (HAIRLOOM_ROD_STATE_PLANES * HAIR_POINTS + 2) * gFrame.slots;
+#if HAIR_TOGETHER
+    return behind + (plane * gFrame.slots + gSlot) * HAIR_POINTS + p;
+#else
+    return behind + (plane * HAIR_POINTS + p) * gFrame.slots + gSlot;
+#endif
+}
+float4 keptFold(uint which, uint p) {
+    const uint plane = 4u * which;
+    return float4(gRodState[slotOfFold(plane, p)], gRodState[slotOfFold(plane + 1, p)], gRodState[slotOfFold(plane + 2, p)],
+                  gRodState[slotOfFold(plane + 3, p)]);
+}
+void keepFold(uint which, uint p, float4 fold) {
+    const uint plane = 4u * which;
+    gRodState[slotOfFold(plane, p)] = fold.x;
+    gRodState[slotOfFold(plane + 1, p)] = fold.y;
+    gRodState[slotOfFold(plane + 2, p)] = fold.z;
+    gRodState[slotOfFold(plane + 3, p)] = fold.w;
+}
+void forgetFolds(uint p) {
+    keepFold(0u, p, float4(0, 0, 0, 0));
+    keepFold(1u, p, float4(0, 0, 0, 0));
+}
+#endif
+
 // What a substep keeps of segment j and of its outer node while it is solved, as RodPoint of the engine.
 BUFFER_QUATERNIONS(predictedRotation, setPredictedRotation, gScratch, 0)
 BUFFER_QUATERNIONS(predictedRelative, setPredictedRelative, gScratch, 4)

@@ -93,14 +93,18 @@ RodNode nodeOf(uint p, float3 moved, float3 tangent, float3 position, float weig
     node.load = load(p);
     node.step = gTimeStep;
     node.radius = collisionRadiusAt(p);
+#if HAIR_BODY
+    node.fresh = 0.0;
+#else
     node.fresh = gFrame.substep.restitution > 0.0 ? 0.0 : 1.0;
+#endif
     return node;
 }
 
 /// The contacts of segment j's outer node, as predicted.
 RodContact meet(uint j, RodNode node) {
     bool near;
-    const RodContact found = contactOf(rootAtEnd(), node, rodSlackAfter(node.load), near);
+    const RodContact found = contactOf(rootAtEnd(), j + 1, node, true, 0.0, near);
     gTouched = max(gTouched, found.touching);
     gNear = gNear || near;
     setNear(j, near);
@@ -185,7 +189,10 @@ void predict(bool runs) {
         setPredictedDisplacement(j, outer);
         setTarget(j, aimed);
 #if HAIR_SPHERES
-        if (gReachable != 0u) {
+        if (meetsShapes()) {
+#if HAIR_BODY
+            findPlane(rootAtEnd(), j + 1, position, outer);
+#endif
             const RodContact met = meet(j, nodeOf(j + 1, outer, tangent, position, aimed.w));
             sums.x += met.twiceEnergy;
             sums.y += rodContactTwiceEnergy(met, gInDisplacement - outer);
@@ -214,7 +221,7 @@ void eliminate() {
         const float4 aimed = target(j);
         float3 r = (predictedDisplacement(j) - aimed.xyz) * aimed.w;
 #if HAIR_SPHERES
-        if (gReachable != 0u) {
+        if (meetsShapes()) {
             const RodContact met = contact(j);
             r += met.gradient;
             rodAddContact(form, met.hessian[0], met.hessian[1], met.hessian[2], met.hessian[3], met.hessian[4],
@@ -240,7 +247,7 @@ float twiceEnergyOf(uint j, float bend, float4 before, float4 q, float3 outer, f
     const float3 off = outer - aimed.xyz;
     float sum = rodTwiceEnergy(twice(relative) - wantedStrain(j), bend, section(j, bend)) + aimed.w * dot(off, off);
 #if HAIR_SPHERES
-    if (gReachable != 0u) sum += rodContactTwiceEnergy(contact(j), x);
+    if (meetsShapes()) sum += rodContactTwiceEnergy(contact(j), x);
 #endif
     setNewRelative(j, relative);
     return sum;
@@ -318,13 +325,35 @@ float3 beginOfNow(bool runs) {
 }
 
 #if HAIR_SPHERES
+/// Whether the outer node of segment j is near a shape, or has come to the body since it was last seen.
+bool mayTouch(uint j) {
+#if HAIR_BODY
+    return isNear(j) || mayTouchBody(j + 1, newDisplacement(j));
+#else
+    return isNear(j);
+#endif
+}
+
 /// Looks for contacts where the step has led. Where it has pressed a node into a shape that the prediction had outside,
 /// or holds one that it has lifted off, what it has found is the next guess; false: nowhere. Looks after the first are
-/// for hair that comes to rest (models/rods/rod_look-inl.h).
-bool lookAgain(bool isFirst, bool runs) {
+/// for hair that comes to rest; the body has more curves than spheres have: there all are for whatever they find, the last for what
+/// is deep (models/rods/rod_look-inl.h).
+bool lookAgain(int look, bool runs) {
+    const bool isFirst = look == 0;
+#if HAIR_BODY
+    float any = gNear ? 1.0 : 0.0;
+    if (runs) OWN_SEGMENTS(s) any = mayTouchBody(s + 1, newDisplacement(s)) ? 1.0 : any;
+    float4 most1 = float4(any, 0.0, 0.0, 0.0), nothing = float4(0, 0, 0, 0);
+    join(nothing, most1);
+    runs = runs && most1.x != 0.0;
+    const bool restsOnly = false, isDeepOnly = look >= HAIRLOOM_ROD_CONTACT_LOOKS;
+    const float deepest = HAIRLOOM_BODY_DEEP, inwards = isDeepOnly ? HAIRLOOM_BODY_DEEP : HAIRLOOM_ROD_CONTACT_LOOK;
+#else
     runs = runs && gNear;
+    const bool restsOnly = !isFirst, isDeepOnly = false;
+    const float deepest = isFirst ? 1e9 : HAIRLOOM_ROD_CONTACT_SUNK, inwards = HAIRLOOM_ROD_CONTACT_LOOK;
+#endif
     if (!anyOf(runs)) return false;
-    const float deepest = isFirst ? 1e9 : HAIRLOOM_ROD_CONTACT_SUNK;
     const float3 begin = beginOfNow(runs);
     bool wrong = false;
     float farthest = 0.0;
@@ -332,8 +361,12 @@ bool lookAgain(bool isFirst, bool runs) {
     if (runs) OWN_SEGMENTS(j) {
         const float3 tangent = rodRotate(rotation(j), restTangent(j));
         position = mad3(tangent, segmentLength(j), position);
-        if (isNear(j)) {
+        if (mayTouch(j)) {
             const RodNode node = nodeOf(j + 1, newDisplacement(j), tangent, position, target(j).w);
+#if HAIR_BODY
+            setNear(j, true);
+            findPlane(rootAtEnd(), j + 1, position, node.displacement);
+#endif
             const RodContact met = contact(j);
             const bool held = met.touching > 0.0;
             const float slack = rodSlackOf(met, newDisplacement(j) - predictedDisplacement(j));
@@ -341,11 +374,20 @@ bool lookAgain(bool isFirst, bool runs) {
             EACH_SHAPE(k) {
                 RodTouch touch;
                 if (touchShape(k, rootAtEnd(), node, touch)) {
-                    inside = inside || touch.depth > (held ? deepest : HAIRLOOM_ROD_CONTACT_LOOK);
+                    inside = inside || touch.depth > (held ? deepest : inwards);
                     lifted = lifted && !rodHolds(touch, HAIRLOOM_ROD_CONTACT_LOOK);
                 }
             }
-            wrong = wrong || lifted || inside;
+#if HAIR_BODY
+            [loop] for (uint which = 0; which < 2u; ++which) {
+                RodTouch skin;
+                if (touchOfBody(which, j + 1, node, skin)) {
+                    inside = inside || skin.depth > (held ? deepest : inwards);
+                    lifted = lifted && !rodHolds(skin, HAIRLOOM_ROD_CONTACT_LOOK);
+                }
+            }
+#endif
+            wrong = wrong || inside || (lifted && !isDeepOnly);
             farthest = max(farthest, dot(node.displacement, node.displacement));
         }
     }
@@ -353,7 +395,7 @@ bool lookAgain(bool isFirst, bool runs) {
     join(none, seen);
     const float slow = HAIRLOOM_ROD_CONTACT_SLOW * gFrame.h;
     const bool moves = gTouched > 2.0 || seen.y > slow * slow;
-    runs = runs && seen.x != 0.0 && (isFirst || !moves);
+    runs = runs && seen.x != 0.0 && !(restsOnly && moves);
     if (!anyOf(runs)) return false;
     position = begin;
     float sum = 0.0, touched = 0.0;
@@ -365,7 +407,7 @@ bool lookAgain(bool isFirst, bool runs) {
             const RodNode node = nodeOf(i + 1, moved, tangent, position, aimed.w);
             const float slack = rodSlackOf(contact(i), moved - predictedDisplacement(i));
             bool near;
-            setContact(i, contactOf(rootAtEnd(), node, slack, near));
+            setContact(i, contactOf(rootAtEnd(), i + 1, node, false, slack, near));
         }
         const RodContact met = contact(i);
         touched = max(touched, met.touching);
@@ -392,6 +434,9 @@ bool lookAgain(bool isFirst, bool runs) {
 /// All that moves a rod in a substep, in one solve.
 void stageRod() {
     openRodStep();
+#if HAIR_BODY
+    OWN_SEGMENTS(s) forgetPlane(s + 1);
+#endif
     // Drivers inline: each of these is called in one place.
     bool runs = true;
     gPredicts = true;
@@ -403,10 +448,15 @@ void stageRod() {
     }
 #if HAIR_SPHERES
     runs = true;
-    [loop] for (int look = 0; look <= HAIRLOOM_ROD_CONTACT_LOOKS; ++look) {
+#if HAIR_BODY
+    const int looks = HAIRLOOM_BODY_LOOKS;
+#else
+    const int looks = HAIRLOOM_ROD_CONTACT_LOOKS;
+#endif
+    [loop] for (int look = 0; look <= looks; ++look) {
         descend(runs);
-        runs = runs && gReachable != 0u && look < HAIRLOOM_ROD_CONTACT_LOOKS;
-        runs = lookAgain(look == 0, runs);
+        runs = runs && meetsShapes() && look < looks;
+        runs = lookAgain(look, runs);
         if (!anyOf(runs)) break;
     }
 #else

@@ -15,8 +15,9 @@ namespace hairloom::shaders {
 #define HAIRLOOM_CONSTANT_SPHERES 32
 /// Strands of a work group: a block of the engine, which falls asleep as one.
 #define HAIRLOOM_GROUP_STRANDS 32
-/// What says of a block how it rests, one after the other: seconds for which it was slow, 1 where it sleeps, seconds for
-/// which it stayed, 1 where its anchors are to be moved to its points in the next frame. After those of all blocks come the anchors of each: x, y, z of each anchor in all strands, metres.
+/// What says of a block how it rests, one after the other: seconds for which it was slow, 1 where it sleeps,
+/// seconds for which it stayed, 1 where its anchors are to be moved to its points in the next frame. After
+/// those of all blocks come the anchors of each: x, y, z of each anchor in all strands, metres.
 #define HAIRLOOM_REST_NUMBERS 4
 /// Points of a strand that say whether it stays: at each quarter of them, the tip last.
 #define HAIRLOOM_REST_ANCHORS 4

@@ -9,6 +9,7 @@
 #include "tests/documents/small_head.h"
 #include "tests/documents/talking_groom.h"
 #include "tests/gpu/test_backend.h"
+#include "tests/simulation/hairy_ball.h"
 
 namespace hairloom {
 namespace {
@@ -140,6 +141,31 @@ TEST_F(MovingHairTest, BothEnginesKeepRootsOnAFaceThatTalks) {
     const auto still = stageOf(face.groom, **nod, EngineKind::gpu);
     play(*still, 1);
     EXPECT_GT(render::flipDifference(pictureOf(*gpu), pictureOf(*still))->mean, 0.005);
+}
+
+/// Hair that falls onto a ball that nods; follow hairs lie between strands, on which no contact holds them.
+TEST_F(MovingHairTest, BothEnginesKeepDrawnHairOutOfTheSkin) {
+    Groom groom = test::hairyBody();
+    groom.interpolation.followPerGuide = 40;
+    groom.material.rootRadius = 5e-4f;
+    const auto motion = makeRigidMotion("nod", groom);
+    ASSERT_TRUE(motion) << motion.error().message();
+    const auto gpu = stageOf(groom, **motion, EngineKind::gpu),
+               cpu = stageOf(groom, **motion, EngineKind::cpu);
+    play(*gpu, 24);
+    play(*cpu, 24);
+    EXPECT_LT(farthest(positionsOf(*cpu), positionsOf(*gpu)), 2e-3f);
+    const render::Image beside = pictureOf(*cpu);
+    EXPECT_LT(render::flipDifference(beside, pictureOf(*gpu))->mean, 0.01);
+    const auto effects = gpu->hair.stats().effects;
+    const auto body = std::ranges::find(effects, "body", &EffectReport::name);
+    ASSERT_NE(body, effects.end());
+    EXPECT_GT(body->bytes, groom.body->bytes());
+    // Without skin it hangs through the ball.
+    groom.body.reset();
+    const auto through = stageOf(groom, **motion, EngineKind::gpu);
+    play(*through, 24);
+    EXPECT_GT(render::flipDifference(beside, pictureOf(*through))->mean, 0.03);
 }
 
 TEST_F(MovingHairTest, BothEnginesDrawLayersAsDenseAndInTheColoursTheyHave) {

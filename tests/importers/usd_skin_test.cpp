@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Heads of USD that skeletons, blend shapes and points in time move, against the points that USD's own library
-// computes of them
-// (tests/interop/usd_skin_truth.py writes both).
+// Heads of USD that skeletons, blend shapes and points in time move, against the points that USD's own
+// library computes of them (tests/interop/usd_skin_truth.py writes both).
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,9 +20,8 @@ namespace fs = std::filesystem;
 
 /// The largest distance to the nearest vertex of the mesh as it is posed, over all points and times.
 double farthest(const ImportedScene& scene, const nlohmann::json& truth) {
-    const auto actor =
-        Actor::make(std::make_shared<const ScalpMesh>(scene.mesh), scene.skeleton, scene.clips, scene.skin,
-                    scene.morphs);
+    const auto actor = Actor::make(std::make_shared<const ScalpMesh>(scene.mesh), scene.skeleton, scene.clips,
+                                   scene.skin, scene.morphs);
     if (!actor) return ADD_FAILURE() << actor.error().message(), 0;
     double most = 0;
     for (const auto& frame : truth.at("frames")) {

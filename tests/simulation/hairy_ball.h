@@ -2,6 +2,8 @@
 #pragma once
 // Hair on a ball, whose equations tell how deep it comes.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -46,6 +48,36 @@ inline Groom withBody(Groom groom) {
 inline const Groom& hairyBody() {
     static const Groom kGroom = withBody(hairyBall());
     return kGroom;
+}
+
+/// The ball with two bones, the upper of which moves its upper half and most roots.
+inline std::shared_ptr<const runtime::BodyField> bentBall() {
+    constexpr unsigned kSteps = 16;
+    auto field = std::make_shared<runtime::BodyField>(*hairyBody().body);
+    field->bones = {"base", "top"};
+    field->palette.clear();
+    for (unsigned step = 0; step < kSteps; ++step) {
+        const auto upper = static_cast<std::uint8_t>(255 * step / (kSteps - 1));
+        field->palette.push_back({{0, 1, 0, 0}, {static_cast<std::uint8_t>(255 - upper), upper, 0, 0}});
+    }
+    const std::size_t row = field->size[0] + 1, layer = row * (field->size[1] + 1);
+    std::array<Box3f, 2> boxes;
+    for (std::size_t i = 0; i < field->skins.size(); ++i) {
+        const Vec3f at = Vec3f(field->low_ss.x, field->low_ss.y, field->low_ss.z) +
+                         field->cell * Vec3f(static_cast<float>(i % row), static_cast<float>(i % layer / row),
+                                             static_cast<float>(i / layer));
+        const float upper = std::clamp((at.y() + 0.05f) / 0.06f, 0.0f, 1.0f);
+        field->skins[i] = static_cast<std::uint16_t>(std::lround(upper * (kSteps - 1)));
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            if (field->palette[field->skins[i]].weights[b] > 0) boxes[b].extend(at);
+        }
+    }
+    for (const Box3f& box : boxes) {
+        const Vec3f low = box.min() - Vec3f::Constant(field->cell),
+                    high = box.max() + Vec3f::Constant(field->cell);
+        field->boxes.push_back({{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}});
+    }
+    return field;
 }
 
 }  // namespace hairloom::test

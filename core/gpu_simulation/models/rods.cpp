@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/gpu_simulation/models/models.h"
+#include "runtime/engine/moving_body.h"
 #include "runtime/models/rods/rod_slots.h"
+#include "runtime/shaders/body_types.h"
 
 namespace hairloom::gpu_simulation {
 namespace {
@@ -23,6 +27,8 @@ void fillKey(const runtime::EffectPlan&, const runtime::SimulationSettings&, Ker
     shape.strands = shape.members > 1 ? kSharedStrands : runtime::kBlockLanes;
     shape.perThread = 1;
     shape.wave = 0;
+    // Skin is met as spheres are, by code that is there for these.
+    if (key.body && key.spheres == SphereSource::none) key.spheres = SphereSource::constants;
 }
 
 std::string defines(const KernelKey& key) {
@@ -30,15 +36,16 @@ std::string defines(const KernelKey& key) {
     return fmt::format(
         "#define HAIR_RODS 1\n#define HAIR_MEMBERS {}\n#define HAIR_STRANDS {}\n#define HAIR_TOGETHER {}\n"
         "#define HAIR_CLAMPED {}\n#define HAIR_SPHERES {}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
-        "#define HAIR_VELOCITIES {}\n#define HAIR_STAGES {}\n",
+        "#define HAIR_VELOCITIES {}\n#define HAIR_BODY {}\n#define HAIR_STAGES {}\n",
         key.shape.members, key.shape.strands, flag(key.shape.together), key.clampedPoints,
         static_cast<std::uint32_t>(key.spheres), flag(key.wind), flag(key.sleep), flag(key.velocities),
-        key.stages);
+        flag(key.body), key.stages);
 }
 
 std::size_t scratchPlanes(const KernelKey& key) {
     const bool contacts = key.spheres != SphereSource::none;
-    return HAIRLOOM_ROD_WORK_PLANES + (contacts ? HAIRLOOM_ROD_CONTACT_PLANES : 0);
+    return HAIRLOOM_ROD_WORK_PLANES + (contacts ? HAIRLOOM_ROD_CONTACT_PLANES : 0) +
+           (key.body ? HAIRLOOM_ROD_BODY_PLANES : 0);
 }
 
 std::uint32_t velocitySlot(const KernelKey&) {
@@ -53,6 +60,8 @@ class DeviceRods final : public DeviceStrands {
         if (rest_) energyKnown_ = energyKnown_ && runtime::haveEqualRodEnergy(settings, settings_);
         settings_ = settings;
         rest_ = runtime::makeRodRest(shape, settings);
+        touches_.folds =
+            std::ranges::any_of(batches, [](const StrandBatch& b) { return b.clearances != nullptr; });
         for (StrandBatch& batch : batches) {
             if (auto made = makeBuffers(device, shape, batch); !made) return made;
         }
@@ -82,7 +91,7 @@ class DeviceRods final : public DeviceStrands {
 
     void allocateState(const runtime::RestShape& shape, const runtime::EffectPlan&,
                        runtime::State& state) const override {
-        runtime::allocateRods(shape, rest_->parts, {.loads = true}, state);
+        runtime::allocateRods(shape, rest_->parts, touches_, state);
     }
 
     void placeAtRest(const runtime::RestShape& shape, runtime::State& state, std::size_t index,
@@ -95,11 +104,12 @@ class DeviceRods final : public DeviceStrands {
                                             const runtime::State& given) override {
         fresh_ = false;
         const bool bends = rest_->parts >= runtime::RodParts::bending;
-        const bool complete =
-            given.model == runtime::StrandModel::rods && !(bends && given.own[runtime::kOwnStrains].empty());
+        const bool complete = given.model == runtime::StrandModel::rods &&
+                              !(bends && given.own[runtime::kOwnStrains].empty()) &&
+                              !(touches_.folds && given.own[runtime::kOwnFolds].empty());
         if (complete) return {};
         std::optional<runtime::State> made = given;
-        runtime::completeRods(shape, *rest_, {.loads = true}, *made);
+        runtime::completeRods(shape, *rest_, touches_, *made);
         return made;
     }
 
@@ -110,7 +120,7 @@ class DeviceRods final : public DeviceStrands {
 
     void writeOwn(const runtime::RestShape& shape, const StrandBatch& batch, const runtime::State& state,
                   runtime::Vector<float>&, runtime::Vector<float>& own) const override {
-        own = runtime::rodStateOfSlots(shape, batch.inSlots(), state);
+        own = runtime::rodStateOfSlots(shape, batch.inSlots(), state, touches_.folds);
     }
 
   private:
@@ -133,7 +143,9 @@ class DeviceRods final : public DeviceStrands {
         make("curved blocks", 9, rods.curved);
         if (!status || batch.model.state.buffer != nullptr) return status;
         const std::size_t rows =
-            std::size_t{batch.shape.points} * runtime::kRodStatePlanes + runtime::kRodLaneRows;
+            std::size_t{batch.shape.points} *
+                (runtime::kRodStatePlanes + (touches_.folds ? runtime::kFoldPlanes : 0)) +
+            runtime::kRodLaneRows;
         auto made = makeBuffer<float>(device, "rods", Usage::ShaderRead | Usage::UnorderedAccess,
                                       rows * batch.slots, {});
         if (!made) return tl::unexpected(made.error());
@@ -142,6 +154,7 @@ class DeviceRods final : public DeviceStrands {
     }
 
     std::optional<runtime::RodRest> rest_;  ///< once settings were taken
+    runtime::RodTouches touches_{.loads = true};
     runtime::SimulationSettings settings_;  ///< that rest_ was made with
     bool energyKnown_ = true;               ///< what rods had before the frame is energy under these settings
     bool fresh_ = true;                     ///< the device has places of rods, and nothing else yet

@@ -26,6 +26,13 @@ class BodyPush {
     /// bits for any number of threads.
     void apply(std::span<const BonePose> pose, std::span<Float3> points_ws, const Host& host = {}) const;
 
+    /// Of each hair, where its points begin, and behind the last one where they end.
+    std::span<const std::uint32_t> offsets() const { return offsets_; }
+    /// Metres that each point keeps from the body, negative inside it, and likewise three places on the way
+    /// from each to the next: ¼, ½ and ¾.
+    std::span<const float> least() const { return least_; }
+    std::span<const float> leastBetween() const { return leastBetween_; }
+
     std::size_t bytes() const {
         return offsets_.size() * sizeof(std::uint32_t) +
                (least_.size() + leastBetween_.size()) * sizeof(float);
@@ -38,8 +45,7 @@ class BodyPush {
 
     std::shared_ptr<const BodyField> body_;
     Vector<std::uint32_t> offsets_;
-    Vector<float> least_;         ///< of each point, metres that it keeps from the body; negative inside
-    Vector<float> leastBetween_;  ///< likewise at three places on the way to the next point of its hair
+    Vector<float> least_, leastBetween_;
 };
 
 }  // namespace hairloom::runtime

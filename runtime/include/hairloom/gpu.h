@@ -86,7 +86,7 @@ extern "C" {
     X(CURVED, 4, BLOCKS, BEGIN, "1 where rods twist")                                                   \
     X(STATE, 4, SLOT_STATE, BEGIN, "where points are, and were")                                        \
     X(ROOTS, 4, SLOT_ROOTS, BEGIN, "where roots were")                                                  \
-    X(RESTS, 4, BLOCK_RESTS, BEGIN, "of a block: how long it rests, whether it sleeps, where it stays")  \
+    X(RESTS, 4, BLOCK_RESTS, BEGIN, "of a block: how long it rests, whether it sleeps, where it stays") \
     X(ROD_STATE, 4, SLOT_RODS, BEGIN, "speeds, turns and strains of rods")                              \
     X(SCRATCH, 4, SLOT_SCRATCH, DEVICE, "what GUIDES works in")                                         \
     X(LAMP, 96, ONE, HOST, "hl_gpu_lamp")                                                               \

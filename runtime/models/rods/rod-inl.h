@@ -75,7 +75,7 @@ class RodStrip {
         }
         descend();
         if constexpr (kContacts) {
-            const int looks = context_.body ? kBodyLooks : HAIRLOOM_ROD_CONTACT_LOOKS;
+            const int looks = context_.body ? HAIRLOOM_BODY_LOOKS : HAIRLOOM_ROD_CONTACT_LOOKS;
             for (int look = 0; look < looks && lookAgain(look); ++look) descend();
         }
         finish();

@@ -78,22 +78,15 @@ HWY_INLINE void forEachTouch(const LaneFrame& lanes, V3 root, const RodNode& nod
 
 constexpr float kAnyDepth = 1e9f;  ///< metres
 
-/// A body that comes fast is many times as deep in a strand as what one step can turn: it pushes by so many
-/// metres a step, in so many steps at most, until no node is deeper than so many metres.
-constexpr float kBodyPush = 8e-3f;
-constexpr int kBodyLooks = 10;
-constexpr float kBodyDeep = 1e-3f;
-
-/// Share of what a contact's force would move a free node by in a substep, by which such a node stays in
-/// contact that starts the substep at the surface: the rest of the strand holds it back as well.
-constexpr float kBodyBack = 0.05f;
+constexpr auto kBodyPush = static_cast<float>(HAIRLOOM_BODY_PUSH);
+constexpr auto kBodyDeep = static_cast<float>(HAIRLOOM_BODY_DEEP);
 
 /// Metres by which a prediction may lift a node off what pressed it in the last substep. Skin has folds and
 /// edges: what one substep presses a node against, the next may not meet, and the node falls back by more
 /// than it was lifted.
 HWY_INLINE V bodySlackAfter(const RodTouch& touch, const RodNode& node) {
     const V slack = rodSlackAfter(node.load);
-    const V back = hn::Min(hn::Abs(node.load) * all(kBodyBack) / node.weight,
+    const V back = hn::Min(hn::Abs(node.load) * all(static_cast<float>(HAIRLOOM_BODY_BACK)) / node.weight,
                            all(static_cast<float>(HAIRLOOM_ROD_CONTACT_NEAR)));
     const auto wasThere = touch.before > all(-static_cast<float>(HAIRLOOM_ROD_CONTACT_DEEP));
     return choose(wasThere, hn::Max(slack, back), slack);
@@ -107,8 +100,7 @@ HWY_INLINE RodMask goesBack(V3 moved, V3 last, float h) {
     return both(most < slow * slow, dot(moved, last) < all(-0.5f) * most);
 }
 
-/// Metres that a node may be off the skin and still be held by a plane that a look before found.
-constexpr float kFoldReach = 5e-4f;
+constexpr auto kFoldReach = static_cast<float>(HAIRLOOM_BODY_FOLD_REACH);
 
 /// The same for a body, by the plane that BodySearch has found, and by the other one where skin folds. A node
 /// keeps its radius from them, but no more than its clearance.

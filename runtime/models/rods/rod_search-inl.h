@@ -320,9 +320,8 @@ class BodySearch {
     }
 
     static constexpr std::size_t kDistance = 3, kWay = 5, kKnown = 8, kMeets = 10, kLevel = 11;
-    /// Cosines of the angle between two planes of folded skin: what is nearer to 1 is one plane, and of two
-    /// that look away from each other, as those of a thin part, one would hold the node on the wrong side.
-    static constexpr float kFoldsBack = -0.2f, kFoldsAhead = 0.99f;
+    static constexpr auto kFoldsBack = static_cast<float>(HAIRLOOM_BODY_FOLDS_BACK),
+                          kFoldsAhead = static_cast<float>(HAIRLOOM_BODY_FOLDS_AHEAD);
 
     const MovingBody& body_;
     const RodBlock& block_;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/moving_body.h"
+
 namespace hairloom::runtime {
 namespace {
 
@@ -44,7 +46,7 @@ RodSlots rodsOfSlots(const RestShape& shape, const Slots& slots, const RodRest& 
     return made;
 }
 
-Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state) {
+Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state, bool folds) {
     Vector<float> rods;
     const auto append = [&](std::size_t own, std::size_t planes) {
         const Vector<float> values = state.own[own].empty()
@@ -57,6 +59,7 @@ Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const 
     append(kOwnLoads, 1);
     const Vector<float> rows = rowsOfSlots(slots, state.own[kOwnLanes].data(), kRodLaneRows);
     rods.insert(rods.end(), rows.begin(), rows.end());
+    if (folds) append(kOwnFolds, kFoldPlanes);
     return rods;
 }
 
@@ -69,7 +72,10 @@ void rodStateToBlocks(const RestShape& shape, const Slots& slots, std::span<cons
     take(kOwnMotion, kRodMotionPlanes);
     take(kOwnStrains, kRodStrainPlanes);
     take(kOwnLoads, 1);
-    rowsToBlocks(slots, rods, kRodLaneRows, state.own[kOwnLanes].data());
+    const std::size_t rows = std::size_t{kRodLaneRows} * slots.count;
+    rowsToBlocks(slots, rods.first(rows), kRodLaneRows, state.own[kOwnLanes].data());
+    rods = rods.subspan(rows);
+    if (!rods.empty()) take(kOwnFolds, kFoldPlanes);
 }
 
 shaders::RodConstants rodConstants(const SubstepContext& context, const Wind& wind, float before,

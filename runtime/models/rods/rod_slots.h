@@ -19,9 +19,10 @@ struct RodSlots {
 };
 RodSlots rodsOfSlots(const RestShape& shape, const Slots& slots, const RodRest& rods);
 
-/// The planes of the device are those of motion, strains and loads, then the rows of strands; 0 where the
-/// state has none.
-Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state);
+/// The planes of the device are those of motion, strains and loads, then the rows of strands, then, with a
+/// body, the planes of `folds`; 0 where the state has none.
+Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state,
+                              bool folds = false);
 /// The reverse.
 void rodStateToBlocks(const RestShape& shape, const Slots& slots, std::span<const float> rods, State& state);
 
