@@ -50,6 +50,8 @@ struct BrushInfo {
     bool drags = false;
     /// The brush itself leaves segments at their lengths.
     bool turnsSegments = false;
+    /// Sharp turns are what it is for, as of curls.
+    bool makesTurns = false;
     /// It goes down on the head as a ball; others reach along the view, to hair.
     bool worksOnSkin = false;
     /// What it moves must be kept out of the head.

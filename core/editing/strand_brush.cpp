@@ -149,16 +149,19 @@ void StrandBrush::editReached(StrokeTarget& target, const DabContext& dab, const
     const Groom& groom = target.groom();
     const StrandFacts facts(groom);
     const bool keepsLengths = info().keepsLengths, turnsSegments = info().turnsSegments;
+    // Lengths that change move turns along the points.
+    const bool asMade = info().makesTurns || !keepsLengths;
     const SkinQuery* skin = target.settings.collide ? target.skin : nullptr;
     std::vector<std::uint8_t> changed(reached.strands.size(), 0);
     parallelFor(reached.strands.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> lengths;
+        std::vector<float> lengths, turns;
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t s = reached.strands[k];
             const std::size_t offset = groom.offsets[s];
             const auto points = std::span(positions).subspan(offset, groom.offsets[s + 1] - offset);
             const auto weights = std::span(reached.weights).subspan(reached.begins[k], points.size());
             measureSegments(points, lengths);
+            measureTurns(points, turns);
             StrandUnderBrush strand{points,
                                     target.changes.points.kept(s),
                                     weights,
@@ -178,7 +181,8 @@ void StrandBrush::editReached(StrokeTarget& target, const DabContext& dab, const
                 restoreLengths(points.subspan(strand.first - 1),
                                std::span<const float>(lengths).subspan(strand.first - 1));
             }
-            if (skin) keepOutside(points, lengths, *skin, target.settings.clearance, strand.first);
+            if (asMade) measureTurns(points, turns);
+            settle(points, lengths, turns, skin, target.settings.clearance, strand.first);
             target.bounds.update(s, points);
             changed[k] = 1;
         }

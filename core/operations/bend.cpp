@@ -32,7 +32,8 @@ std::span<const Field<S>> fieldsOf(const S&) {
 
 Result<std::size_t> bend(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("bend", varied.base()); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+    const EditOptions options{varied.base().clearance, Turns::asMade, true};
+    return editStrands(groom, region, options, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         const float total = strand.totalLength();
         if (!(total > 0)) return;

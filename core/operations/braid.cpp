@@ -127,7 +127,7 @@ Result<std::size_t> braid(Groom& groom, const S& settings, const Region& region)
     };
     std::erase_if(strands, [&](std::uint32_t s) { return !reaches(groom.strand(s)[0]); });
     const std::vector<int> locks = locksOf(groom, strands, line);
-    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {settings.clearance, Turns::asMade, true}, [&](StrandEdit& strand) {
         if (!reaches(strand.points[0])) return;
         Random random = strand.random(settings.seed);
         const float angle = kPi * random.uniform(-1, 1);

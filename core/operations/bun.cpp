@@ -84,7 +84,7 @@ Result<std::size_t> bun(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("bun", settings); !status) return tl::unexpected(status.error());
     if (!groom.scalp) return fail("bun: the groom has no scalp", "bind it to one first");
     const Frame frame = frameOf(bunPlace(groom, settings.centre, settings.axis, settings.thickness));
-    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {settings.clearance, Turns::asMade, true}, [&](StrandEdit& strand) {
         const Vec3f root = strand.points[0];
         if (settings.reach > 0 && (root - frame.centre).norm() > settings.reach) return;
         const std::vector<Vec3f> roll =

@@ -56,7 +56,7 @@ namespace {
 
 Result<std::size_t> curlVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("curl", varied.base()); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {varied.base().clearance, Turns::asMade}, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         const float phase = 2 * kPi * settings.phaseVariation * strand.random(settings.seed).uniform();
         curlStrand(strand.points, strand.lengths, settings, phase);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/operations/drape.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/geometry/curve.h"
 #include "core/operations/operation.h"
 
@@ -36,12 +39,19 @@ Result<std::size_t> drapeVaried(Groom& groom, const Varied<S>& varied, const Reg
         const S settings = varied.at(strand.index);
         const std::size_t segments = strand.lengths.size();
         Vec3f before = strand.points[0];
+        float last = settings.rootAmount;
         for (std::size_t i = 1; i <= segments; ++i) {
             const float t = static_cast<float>(i) / static_cast<float>(segments);
             const float share = settings.rootAmount + t * (settings.amount - settings.rootAmount);
             const Vec3f along = strand.points[i] - before;
             before = strand.points[i];
             if (!(along.norm() > 0)) continue;
+            // What the shares ask for; hair that points up nearly would else go down on any side.
+            const float asked =
+                (share - last) * std::acos(std::clamp(-along.y() / along.norm(), -1.0f, 1.0f));
+            const float had = std::acos(std::clamp(strand.turns[i - 1], -1.0f, 1.0f));
+            strand.turns[i - 1] = std::cos(std::min(had + std::abs(asked), kPi));
+            last = share;
             const Vec3f turned = turnDown(along.normalized(), share);
             strand.points[i] = strand.points[i - 1] + turned * strand.lengths[i - 1];
         }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/base/smooth_step.h"
 #include "core/operations/head_places.h"
@@ -129,6 +130,7 @@ void layStrand(StrandEdit& strand, const Laid& settings) {
     if (!(step.total > 0)) return;
     Skin::Sample sample = skin.at(strand.points[0]);
     Vec3f direction = sample.outward;
+    std::vector<float> turns(strand.points.size(), 1.0f);  // that the flow asks for, where the skin does not
     for (std::size_t i = 1; i < strand.points.size(); ++i) {
         step.length = strand.lengths[i - 1];
         step.arc += step.length;
@@ -136,7 +138,9 @@ void layStrand(StrandEdit& strand, const Laid& settings) {
             const Vec3f& from = strand.points[i - 1];
             const Vec3f next = nextDirection(from, direction, sample, step, character, settings);
             const float turn = settings.bend > 0 ? 1 - std::exp(-step.length / settings.bend) : 1.0f;
+            const Vec3f last = direction;
             direction = unitOr(direction * (1 - turn) + next * turn, next);
+            turns[i - 1] = last.dot(direction);
             const float clearance = std::min(settings.clearance, 0.5f * step.arc);
             strand.points[i] = placeOutside(*strand.outside, from, direction, step.length, clearance);
             direction = unitOr(strand.points[i] - from, direction);
@@ -145,6 +149,7 @@ void layStrand(StrandEdit& strand, const Laid& settings) {
             strand.points[i] = strand.points[i - 1];
         }
     }
+    settle(strand.points, strand.lengths, turns, strand.outside, settings.clearance);
 }
 
 }  // namespace
@@ -162,7 +167,7 @@ Result<std::size_t> flowVaried(Groom& groom, const Varied<S>& varied, const Regi
     const Vec3f crown = asked.crown.isZero(0) ? crownOfHead(groom) : asked.crown;
     const Vec3f parting = asked.partingPoint.isZero(0) ? topOfHead(groom) : asked.partingPoint;
     const float scale = headScale(groom);
-    return editStrands(groom, region, {-1.0f, true}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {.turns = Turns::asMade, .needsSkin = true}, [&](StrandEdit& strand) {
         Laid settings{varied.at(strand.index), scale};
         settings.crown = crown;
         settings.partingPoint = parting;

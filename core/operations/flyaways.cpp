@@ -35,7 +35,8 @@ std::span<const Field<S>> fieldsOf(const S&) {
 
 Result<std::size_t> flyaways(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("flyaways", varied.base()); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+    const EditOptions options{varied.base().clearance, Turns::asMade, true};
+    return editStrands(groom, region, options, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         Random random = strand.random(settings.seed);
         const std::uint64_t stream = random.next();

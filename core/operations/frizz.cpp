@@ -35,7 +35,7 @@ std::span<const Field<S>> fieldsOf(const S&) {
 /// Turns segments, and keeps the course: kinks lead to and fro about it.
 Result<std::size_t> frizz(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("frizz", varied.base()); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {varied.base().clearance, Turns::asMade}, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         const float sine = std::sin(radians(settings.angleDegrees));
         Random random = strand.random(settings.seed);

@@ -12,10 +12,13 @@ namespace hairloom {
 namespace {
 
 constexpr float kNoDirection = 1e-9f;  ///< metres; shorter differences point nowhere
+constexpr int kSettlings = 6;          ///< turns that the skin makes are spread so often
 constexpr int kTurns = 6;              ///< towards the offset surface, which one reaches where it is flat
 constexpr int kHalvings = 10;          ///< of the turn towards the normal
 constexpr float kMostTurn = 28 * kPi / 180;  ///< of a bend from a segment to the next
-constexpr float kSlack = 1e-5f;              ///< metres by which a clearance may be missed
+const float kMostTurnCosine = std::cos(kMostTurn);
+constexpr float kSlackOfTurn = 1e-4f;  ///< of a cosine
+constexpr float kSlack = 1e-5f;        ///< metres by which a clearance may be missed
 
 Vec3f directionOr(const Vec3f& difference, const Vec3f& fallback) {
     const float norm = difference.norm();
@@ -78,6 +81,49 @@ Vec3f turnedAtMost(const Vec3f& from, const Vec3f& to, float maximum) {
     const Quatf whole = shortestArc(from, to);
     return (Quatf::Identity().slerp(maximum / angle, whole) * from).normalized();
 }
+
+/// Directions of segments that must not turn by more than their limits.
+class LimitedTurns {
+  public:
+    LimitedTurns(std::span<const Vec3f> points, std::span<const float> limits, std::size_t first)
+        : limits_(limits), first_(first), directions_(points.size(), Vec3f::Zero()) {
+        Lead lead(points);
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            lead.follow(points[i] - points[i - 1]);
+            directions_[i] = lead.direction();
+        }
+    }
+    /// Root to tip: a segment that turns too far turns as far as it may. True when one did.
+    bool spreadToTip() {
+        bool spread = false;
+        for (std::size_t i = std::max<std::size_t>(first_, 2); i < directions_.size(); ++i)
+            spread |= limit(i - 1, directions_[i - 1], directions_[i]);
+        return spread;
+    }
+    /// Tip to root: hair begins to turn earlier instead.
+    bool spreadToRoot() {
+        bool spread = false;
+        for (std::size_t i = directions_.size() - 1; i > first_; --i)
+            spread |= limit(i - 1, directions_[i], directions_[i - 1]);
+        return spread;
+    }
+    void lay(std::span<Vec3f> points, std::span<const float> lengths) const {
+        for (std::size_t i = first_; i < points.size(); ++i)
+            points[i] = points[i - 1] + directions_[i] * lengths[i - 1];
+    }
+
+  private:
+    bool limit(std::size_t point, const Vec3f& from, Vec3f& to) const {
+        const Vec3f turned = turnedAsMay(from, to, limits_[point]);
+        if (turned == to) return false;
+        to = turned;
+        return true;
+    }
+
+    std::span<const float> limits_;
+    std::size_t first_;
+    std::vector<Vec3f> directions_;  ///< of the segments that end at the points
+};
 
 float clearanceAt(float arcLength, float clearance) {
     return std::min(clearance, 0.5f * arcLength);
@@ -209,6 +255,39 @@ bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const 
         moved = true;
     }
     return moved;
+}
+
+void measureTurns(std::span<const Vec3f> points, std::vector<float>& turns) {
+    turns.assign(points.size(), 1.0f);
+    if (points.size() < 3) return;
+    Lead lead(points);
+    Vec3f last = lead.direction();
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        lead.follow(points[i + 1] - points[i]);
+        const Vec3f next = lead.direction();
+        turns[i] = last.dot(next);
+        last = next;
+    }
+}
+
+Vec3f turnedAsMay(const Vec3f& last, const Vec3f& wanted, float turn) {
+    const float least = std::min(kMostTurnCosine, turn);
+    if (!(last.dot(wanted) < least - kSlackOfTurn)) return wanted;
+    return turnedAtMost(last, wanted, std::acos(std::max(-1.0f, least)));
+}
+
+void settle(std::span<Vec3f> points, std::span<const float> lengths, std::span<const float> turns,
+            const SkinQuery* skin, float clearance, std::size_t first) {
+    assert(points.size() == turns.size() && lengths.size() + 1 == points.size() && first >= 1);
+    LimitedTurns wanted(points, turns, first);
+    if (wanted.spreadToTip()) wanted.lay(points, lengths);
+    if (!skin) return;
+    for (int i = 0; keepOutside(points, lengths, *skin, clearance, first) && i < kSettlings; ++i) {
+        LimitedTurns pushed(points, turns, first);
+        if (!pushed.spreadToRoot()) return;
+        pushed.spreadToTip();
+        pushed.lay(points, lengths);
+    }
 }
 
 }  // namespace hairloom

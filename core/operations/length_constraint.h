@@ -31,6 +31,22 @@ void restoreLengthsByDirection(std::span<Vec3f> points, std::span<const float> l
 bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
                  float clearance, std::size_t first = 1);
 
+/// Cosine of the turn at each point, from the segment that ends there to the one that begins; 1 at root and
+/// tip and where a segment points nowhere. `turns` gets points.size() values.
+void measureTurns(std::span<const Vec3f> points, std::vector<float>& turns);
+
+/// The unit vector `wanted` as far as a segment may turn to it from the unit vector `last`: by 28 degrees, or
+/// by an angle of the cosine `turn` where that is more.
+Vec3f turnedAsMay(const Vec3f& last, const Vec3f& wanted, float turn);
+
+/// Ends an edit that moved the points from `first` (≥ 1) on: out of the skin as keepOutside() leaves it, or
+/// anyhow where `skin` is null, and turning at no point by more than 28 degrees or than `turns` has for it
+/// (cosines, as measureTurns() gives them). What is turned back carries the rest of the strand along, and
+/// what the skin turns bends before it is met. Only where the points before `first` leave no way, the skin
+/// may turn hair further.
+void settle(std::span<Vec3f> points, std::span<const float> lengths, std::span<const float> turns,
+            const SkinQuery* skin, float clearance, std::size_t first = 1);
+
 /// The end of a segment of `length` from `from` that points as nearly along the unit vector `direction` as
 /// lets it keep `clearance` from the skin.
 Vec3f placeOutside(const SkinQuery& skin, const Vec3f& from, const Vec3f& direction, float length,

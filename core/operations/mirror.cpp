@@ -43,7 +43,7 @@ Result<std::size_t> mirror(Groom& groom, const S& settings, const Region& region
         const auto points = before.strand(s);
         if (points.size() >= 2 && points[0].allFinite() && height(points[0]) > 0) models.add(s);
     }
-    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {settings.clearance, Turns::asMade}, [&](StrandEdit& strand) {
         const Vec3f root = strand.points[0];
         if (!(height(root) < 0)) return;
         const std::uint32_t model = models.nearest(root - 2 * height(root) * normal);

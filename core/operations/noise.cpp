@@ -53,7 +53,7 @@ namespace {
 
 Result<std::size_t> noiseVaried(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("noise", varied.base()); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {varied.base().clearance}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {varied.base().clearance, Turns::asMade}, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         Random random = strand.random(settings.seed);
         noiseStrand(strand.points, strand.lengths, settings, random.next());

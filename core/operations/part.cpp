@@ -57,11 +57,14 @@ bool layAwayFrom(const CurveLine& line, const PartingForce& force, std::span<Vec
     if (home.distance >= force.reach) return false;
     const float side = (points[0] - home.point).dot(across(home, outward)) < 0 ? -1.0f : 1.0f;
     Vec3f last = points[0];
+    Vec3f led = Vec3f::Zero(),
+          ledBefore = Vec3f::Zero();  // directions of the last segment, now and as it was
     float arc = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
         arc += lengths[i - 1];
         Vec3f direction = unitOr(points[i] - last, outward);
         last = points[i];
+        const Vec3f own = direction;
         const Vec3f& from = points[i - 1];
         const CurveLine::Nearest place = line.nearest(from);
         const float weight =
@@ -79,7 +82,11 @@ bool layAwayFrom(const CurveLine& line, const PartingForce& force, std::span<Vec
             const Vec3f tangent = unitOr(direction - normal * rises, away);
             direction = tangent * std::sqrt(std::max(0.0f, 1 - wanted * wanted)) + normal * wanted;
         }
-        points[i] = from + unitOr(direction, outward) * lengths[i - 1];
+        direction = unitOr(direction, outward);
+        if (i > 1) direction = turnedAsMay(led, direction, ledBefore.dot(own));
+        led = direction;
+        ledBefore = own;
+        points[i] = from + direction * lengths[i - 1];
     }
     return true;
 }
@@ -90,7 +97,8 @@ Result<std::size_t> part(Groom& groom, const Varied<S>& varied, const Region& re
     if (auto status = checkFields("part", varied.base()); !status) return tl::unexpected(status.error());
     if (!CurveLine::isDrawn(varied.base().curve)) return std::size_t{0};
     const CurveLine line(varied.base().curve);
-    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+    const EditOptions options{varied.base().clearance, Turns::asBefore, true};
+    return editStrands(groom, region, options, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         const PartingForce force{settings.strength, settings.reach, settings.liftDegrees, settings.rise};
         layAwayFrom(line, force, strand.points, strand.lengths, strand.outward(), strand.skin);

@@ -49,7 +49,7 @@ Result<std::size_t> setLengthVaried(Groom& groom, const Varied<S>& varied, const
         return tl::unexpected(status.error());
     const S& asked = varied.base();
     const Vec3f begin = asked.gradientPoint.isZero(0) ? topOfHead(groom) : asked.gradientPoint;
-    return editStrands(groom, region, {asked.clearance}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {asked.clearance, Turns::asMade}, [&](StrandEdit& strand) {
         S settings = varied.at(strand.index);
         settings.gradientPoint = begin;
         const float share = 1 - settings.variation * strand.random(settings.seed).uniform();

@@ -67,7 +67,8 @@ Result<std::size_t> shrinkwrap(Groom& groom, const Varied<S>& varied, const Regi
         if (!made) return tl::unexpected(made.error());
         group = std::move(*made);
     }
-    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+    const EditOptions options{varied.base().clearance, Turns::asBefore, true};
+    return editStrands(groom, region, options, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         const Skin& onto = group ? *group : *strand.skin;
         const float height =

@@ -89,18 +89,18 @@ std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& o
     std::vector<Vec3f> after(before.begin(), before.end());
     std::atomic<std::size_t> changed{0};
     parallelFor(strands.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> lengths;
+        std::vector<float> lengths, turns;
         for (std::size_t i = begin; i < end && (options.cancelled == nullptr || !*options.cancelled); ++i) {
             const std::size_t s = strands[i];
             const std::size_t first = groom.offsets[s];
             const std::span<Vec3f> points = std::span(after).subspan(first, groom.offsets[s + 1] - first);
             measureSegments(points, lengths);
-            StrandEdit strand{points, lengths, s, idOf(groom, s), skin, outside};
+            measureTurns(points, turns);
+            StrandEdit strand{points, lengths, turns, s, idOf(groom, s), skin, outside};
             edit(strand);
-            if (skin && options.clearance >= 0) {
-                measureSegments(points, lengths);
-                keepOutside(points, lengths, *outside, options.clearance);
-            }
+            measureSegments(points, lengths);
+            if (options.turns == Turns::asMade) measureTurns(points, turns);
+            settle(points, lengths, turns, options.clearance >= 0 ? outside : nullptr, options.clearance);
             changed += !std::equal(points.begin(), points.end(),
                                    before.begin() + static_cast<std::ptrdiff_t>(first));
         }

@@ -32,6 +32,9 @@ std::span<const Field<Region>> fieldsOf(const Region&);
 struct StrandEdit {
     std::span<Vec3f> points;         ///< ≥ 2, root first
     std::span<const float> lengths;  ///< of the segments before the edit, metres
+    /// Cosines of its turns before the edit (measureTurns()); less where the edit asks for more, unless it
+    /// has Turns::asMade.
+    std::span<float> turns;
     std::size_t index;
     std::uint32_t id;          ///< the strand's id attribute, else its index
     const Skin* skin;          ///< null without a scalp
@@ -44,10 +47,15 @@ struct StrandEdit {
     Vec3f outward() const { return skin ? skin->distanceAt(points[0]).outward : Vec3f(Vec3f::UnitY()); }
 };
 
+/// Which sharp turns an edit may leave: those that were there, or whatever it makes itself (curls, plaits,
+/// waves at random, lengths that are cut), so that the push out of the skin alone may add none.
+enum class Turns { asBefore, asMade };
+
 struct EditOptions {
     /// Metres; strands nearer to the skin are pushed out after the edit, lengths kept. Negative: no such
     /// push.
     float clearance = -1.0f;
+    Turns turns = Turns::asBefore;
     bool needsSkin = false;  ///< edits use StrandEdit::skin; it is there also without a clearance
     const std::atomic<bool>* cancelled = nullptr;  ///< once it is set, strands that are left stay as they are
 };
@@ -56,8 +64,8 @@ struct EditOptions {
 std::vector<std::uint32_t> strandsToEdit(const Groom& groom, const Region& region);
 
 /// Runs the edit over every strand of the region that is neither frozen nor on a locked layer, then keeps it
-/// out of the head. Returns the number of strands that changed; the positions keep their version when none
-/// did.
+/// out of the head and from folding (settle()). Returns the number of strands that changed; the positions
+/// keep their version when none did.
 std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& options,
                         const std::function<void(StrandEdit&)>& edit);
 

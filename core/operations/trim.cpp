@@ -55,7 +55,7 @@ Result<std::size_t> trimVaried(Groom& groom, const Varied<S>& varied, const Regi
     if (auto status = checkFields("trim", varied.base()); !status) return tl::unexpected(status.error());
     const S& asked = varied.base();
     const Vec3f point = asked.planePoint.isZero(0) ? topOfHead(groom) : asked.planePoint;
-    return editStrands(groom, region, {}, [&](StrandEdit& strand) {
+    return editStrands(groom, region, {.turns = Turns::asMade}, [&](StrandEdit& strand) {
         S settings = varied.at(strand.index);
         settings.planePoint = point;
         const float now = strand.totalLength();

@@ -45,7 +45,8 @@ constexpr float kSegmentsPerWave = 4;
 
 Result<std::size_t> wave(Groom& groom, const Varied<S>& varied, const Region& region) {
     if (auto status = checkFields("wave", varied.base()); !status) return tl::unexpected(status.error());
-    return editStrands(groom, region, {varied.base().clearance, true}, [&](StrandEdit& strand) {
+    const EditOptions options{varied.base().clearance, Turns::asMade, true};
+    return editStrands(groom, region, options, [&](StrandEdit& strand) {
         const S settings = varied.at(strand.index);
         const float total = strand.totalLength();
         if (!(total > 0)) return;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -65,6 +66,46 @@ TEST(LengthConstraint, WhatIsDrawnApartFollowsAndIsSmooth) {
     restoreLengthsByDirection(turnedOnly, lengths);
     EXPECT_LT((points.back() - wanted).norm(), (turnedOnly.back() - wanted).norm());
     EXPECT_LT(largestTurn(points), asked + 30);
+}
+
+TEST(LengthConstraint, WhatFoldsIsSpreadTowardsTheTipAndCurlsStay) {
+    std::vector<Vec3f> points;
+    for (int i = 0; i < 20; ++i) points.emplace_back(0, 0.01f * static_cast<float>(std::min(i, 20 - i)), 0);
+    points[10].x() = 0.001f;
+    std::vector<float> lengths, turns;
+    measureSegments(points, lengths);
+    measureTurns(points, turns);
+    const std::vector<Vec3f> folded = points;
+    settle(points, lengths, turns, nullptr, 0);
+    EXPECT_EQ(points, folded) << "it was so";
+
+    settle(points, lengths, std::vector<float>(points.size(), 1.0f), nullptr, 0);
+    EXPECT_LT(largestTurn(points), 28.5f);
+    EXPECT_GT(largestTurn(folded), 150);
+    for (std::size_t i = 1; i < points.size(); ++i)
+        EXPECT_NEAR((points[i] - points[i - 1]).norm(), lengths[i - 1], 1e-6f);
+    EXPECT_TRUE(std::equal(points.begin(), points.begin() + 10, folded.begin())) << "before the fold";
+    EXPECT_LT((points[19] - points[18]).normalized().y(), -0.99f) << "it leads where it was to";
+}
+
+/// Hair that leads straight into the skin bends before it, and lies along it.
+TEST(LengthConstraint, WhatMeetsTheSkinBendsBefore) {
+    const Skin skin(sphereScalp(kHeadRadius, 4, kHeadCentre));
+    std::vector<Vec3f> points;
+    for (int i = 0; i < 20; ++i)
+        points.push_back(kHeadCentre + Vec3f(0.01f, kHeadRadius + 0.1f - 0.01f * static_cast<float>(i), 0));
+    std::vector<float> lengths, turns;
+    measureSegments(points, lengths);
+    measureTurns(points, turns);
+    std::vector<Vec3f> pushed = points;
+    ASSERT_TRUE(keepOutside(pushed, lengths, skin, 0.001f));
+    EXPECT_GT(largestTurn(pushed), 40);
+    settle(points, lengths, turns, &skin, 0.001f);
+    EXPECT_LT(largestTurn(points), 30);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        EXPECT_NEAR((points[i] - points[i - 1]).norm(), 0.01f, 1e-5f);
+        EXPECT_GT(skin.distanceAt(points[i]).distance, 0.0009f);
+    }
 }
 
 /// Answers as little as a query up to a distance may.

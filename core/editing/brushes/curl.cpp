@@ -23,6 +23,7 @@ constexpr BrushInfo kInfo{
     .inverse = "curls hair the other way",
     .parameters = kParameters,
     .turnsSegments = true,
+    .makesTurns = true,
     .order = 144,
 };
 

@@ -21,6 +21,7 @@ constexpr BrushInfo kInfo{
     .key = "V",
     .parameters = kParameters,
     .turnsSegments = true,
+    .makesTurns = true,
     .order = 146,
 };
 
