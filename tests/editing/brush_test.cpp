@@ -327,6 +327,25 @@ TEST(CutLine, KeepsToTheLineThatIsDrawn) {
     EXPECT_GT(cut, 5u);
 }
 
+/// Hair that hangs before the depth at which the line was begun is cut, too; behind, the depth ends it.
+TEST(CutLine, CutsAllThatHangsBeforeIt) {
+    const float level = TopStrand().points()[6].y() + 0.001f;
+    const auto cutAt = [&](float z) {
+        TopStrand top;
+        Stroke stroke = top.at("cut_line", {Vec3f(-0.3f, level, z), Vec3f(0.3f, level, z)});
+        stroke.settings.depth = 0.02f;
+        for (Dab& dab : stroke.dabs) dab.direction_ss = -Vec3f::UnitZ();
+        const Groom before = top.document.groom();
+        EXPECT_TRUE(top.document.replay(stroke));
+        std::size_t cut = 0;
+        for (std::size_t s = 0; s < 300; ++s)
+            cut += top.document.groom().strand(s)[15] != before.strand(s)[15] ? 1 : 0;
+        return cut;
+    };
+    EXPECT_GT(cutAt(-0.5f), 50u);
+    EXPECT_EQ(cutAt(0.5f), 0u);
+}
+
 TEST(Delete, TakesStrandsByRootOrByAnyPart) {
     TopStrand top;
     const Vec3f tip = top.points()[15];

@@ -23,7 +23,8 @@ constexpr BrushInfo kInfo{
 };
 
 /// The sheet that a piece of the line sweeps along the view: between the lines of sight through its ends,
-/// `depth` before and behind them.
+/// from the eye to `depth` behind them. What hangs before the line is in the way of the scissors wherever the
+/// stroke began: hair over a nose lies far before that on the temples.
 struct Sheet {
     Vec3f from, to;          ///< ends of the piece, metres
     Vec3f fromView, toView;  ///< unit length
@@ -46,7 +47,7 @@ struct Sheet {
         const Vec3f inward = fromView.cross(normal);
         const float sign = (to - from).dot(inward) < 0 ? -1.0f : 1.0f;
         const float deep = (point - 0.5f * (from + to)).dot((fromView + toView).normalized());
-        return sign * side(from, fromView) >= 0 && sign * side(to, toView) <= 0 && std::abs(deep) <= depth;
+        return sign * side(from, fromView) >= 0 && sign * side(to, toView) <= 0 && deep <= depth;
     }
     /// Share of the segment before it crosses, or more than 1 where it does not.
     float crossing(const Vec3f& a, const Vec3f& b) const {
