@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/groom/point_width.h"
+#include "core/groom/poses.h"
 #include "core/groom/strand_subset.h"
 #include "importers/attribute_units.h"
 

@@ -49,9 +49,8 @@ Status change(Groom& groom, const PoseOptions& options) {
         const std::vector<Vec3f> shape(positions.begin(), positions.end());
         if (auto put = putPose(groom, options.name, shape); !put) return put;
     }
-    const auto found = findPose(groom, options.name);
-    // The same words as for one that cannot be removed.
-    if (!found) return removePose(groom, options.name);
+    const auto found = placeOfPose(groom, options.name);
+    if (!found) return tl::unexpected(found.error());
     GroomPose& pose = groom.poses[*found];
     if (options.amount) pose.amount = *options.amount;
     if (options.mask) {
@@ -71,8 +70,7 @@ Report posesReport(const Groom& groom) {
         float farthest = 0;
         for (std::size_t s = 0; s < groom.strandCount() && !shape.empty(); ++s) {
             const auto known = shape.subspan(groom.offsets[s], groom.offsets[s + 1] - groom.offsets[s]);
-            // All points of a strand that it does not know are one.
-            if (std::ranges::all_of(known, [&](const Vec3f& p) { return p == known[0]; })) continue;
+            if (!knowsStrand(known)) continue;
             for (std::size_t p = 0; p < known.size(); ++p)
                 farthest = std::max(farthest, (known[p] - positions[groom.offsets[s] + p]).norm());
         }

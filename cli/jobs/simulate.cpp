@@ -23,6 +23,7 @@
 #include "core/editing/document.h"
 #include "core/editing/take_shape.h"
 #include "core/groom/file/project_file.h"
+#include "core/groom/poses.h"
 #include "core/live/drawn_depth.h"
 #include "core/simulation/frame_record.h"
 #include "core/simulation/morph_meter.h"
@@ -54,8 +55,8 @@ Status setPose(Groom& groom, const std::string& assignment) {
     if (!(amount >= 0 && amount <= 1))
         throw WrongUsage(fmt::format("--pose {}", assignment),
                          "expected NAME=AMOUNT with an amount of 0 to 1");
-    const auto found = findPose(groom, name);
-    if (!found) return removePose(groom, name);  // the same words
+    const auto found = placeOfPose(groom, name);
+    if (!found) return tl::unexpected(found.error());
     groom.poses[*found].amount = static_cast<float>(amount);
     if (groom.timeLine) {
         TimeLine line = *groom.timeLine;

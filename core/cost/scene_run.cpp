@@ -10,6 +10,7 @@
 #include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/curve.h"
+#include "core/groom/poses.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/strand_follow.h"
 

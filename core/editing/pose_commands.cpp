@@ -15,8 +15,6 @@
 namespace hairloom::editing {
 namespace {
 
-constexpr double kFarthestPosed = 1e6;  // metres, as validate() has it of positions
-
 std::string shapeRecord(const std::string& name, std::span<const Vec3f> positions_ss) {
     auto numbers = nlohmann::ordered_json::array();
     for (const Vec3f& position : positions_ss) {
@@ -98,7 +96,8 @@ MakeCommand readPutPose(JsonReader& reader) {
     const std::string name = reader.string("name");
     if (!reader.has("positions"))
         return [name](const Document& document) { return poseOfShape(document.model(), name); };
-    const auto numbers = reader.numbers("positions", -kFarthestPosed, kFarthestPosed, 3 * kMaxNumbers, "m");
+    constexpr double kFarthest{kFarthestPosed};
+    const auto numbers = reader.numbers("positions", -kFarthest, kFarthest, 3 * kMaxNumbers, "m");
     if (numbers.size() % 3 != 0)
         reader.complain("positions", fmt::format("has {} numbers", numbers.size()),
                         "expected three for each point");

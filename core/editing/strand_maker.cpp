@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/editing/zero.h"
 #include "core/geometry/curve.h"
+#include "core/groom/poses.h"
 #include "core/operations/length_constraint.h"
 
 namespace hairloom::editing {

@@ -14,9 +14,9 @@
 #include "core/geometry/scalp_mesh.h"
 #include "core/groom/attributes.h"
 #include "core/groom/card_edits.h"
+#include "core/groom/groom_pose.h"
 #include "core/groom/material.h"
 #include "core/groom/operator_stack.h"
-#include "core/groom/poses.h"
 #include "core/groom/shadow_settings.h"
 #include "hairloom/settings.h"
 

@@ -11,6 +11,7 @@
 #include "core/groom/groom.h"
 #include "core/groom/strand_pairs.h"
 #include "core/groom/time_line.h"
+#include "core/groom/validate.h"
 
 namespace hairloom {
 namespace {
@@ -28,14 +29,13 @@ Status checkShape(std::span<const Vec3f> positions, std::size_t points) {
     if (positions.size() != points)
         return fail(fmt::format("the pose has {} points", positions.size()),
                     fmt::format("expected those of the groom, {}", points));
-    constexpr float kFarthest = 1e6f;  // metres, as validate() has it of positions
     const auto broken = std::ranges::find_if(positions, [](const Vec3f& position) {
-        return !(position.cwiseAbs().maxCoeff() <= kFarthest) || !position.allFinite();
+        return !(position.cwiseAbs().maxCoeff() <= kFarthestPosed) || !position.allFinite();
     });
     if (broken == positions.end()) return {};
     const std::string point = fmt::format("point {} of the pose", broken - positions.begin());
     if (!broken->allFinite()) return fail(point + " is not finite", "expected a position in metres");
-    return fail(point + " is far away", fmt::format("expected at most {} m from the origin", kFarthest));
+    return fail(point + " is far away", fmt::format("expected at most {} m from the origin", kFarthestPosed));
 }
 
 /// Metres from root to tip along the strand.
@@ -59,6 +59,19 @@ std::optional<std::size_t> findPose(const Groom& groom, std::string_view name) {
     const auto found = std::ranges::find(groom.poses, name, &GroomPose::name);
     if (found == groom.poses.end()) return std::nullopt;
     return static_cast<std::size_t>(found - groom.poses.begin());
+}
+
+Result<std::size_t> placeOfPose(const Groom& groom, std::string_view name) {
+    if (const auto found = findPose(groom, name)) return *found;
+    std::vector<std::string> names;
+    for (const GroomPose& pose : groom.poses) names.push_back(pose.name);
+    return fail(
+        fmt::format("no pose is called '{}'", name),
+        names.empty() ? "the groom has none" : fmt::format("expected one of {}", fmt::join(names, ", ")));
+}
+
+bool knowsStrand(std::span<const Vec3f> posed) {
+    return lengthOf(posed) > 0;
 }
 
 std::string freshPoseName(const Groom& groom) {
@@ -110,21 +123,8 @@ Status putPoseOf(Groom& groom, const std::string& name, const Groom& other) {
     return putPose(groom, name, positions);
 }
 
-namespace {
-
-Result<std::size_t> placeOf(const Groom& groom, const std::string& name) {
-    if (const auto found = findPose(groom, name)) return *found;
-    std::vector<std::string> names;
-    for (const GroomPose& pose : groom.poses) names.push_back(pose.name);
-    return fail(
-        fmt::format("no pose is called '{}'", name),
-        names.empty() ? "the groom has none" : fmt::format("expected one of {}", fmt::join(names, ", ")));
-}
-
-}  // namespace
-
 Status swapPose(Groom& groom, const std::string& name) {
-    if (const auto found = placeOf(groom, name); !found) return tl::unexpected(found.error());
+    if (const auto found = placeOfPose(groom, name); !found) return tl::unexpected(found.error());
     if (!groom.operators.empty())
         return fail("operators make the shape of this hair", "bake or remove them, then swap");
     std::vector<Vec3f>& shape = groom.pointAttributes.edit<Vec3f>(poseAttribute(name));
@@ -133,7 +133,7 @@ Status swapPose(Groom& groom, const std::string& name) {
         return fail(fmt::format("the pose '{}' has no shape", name), "make it again, or remove it");
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         const std::uint32_t begin = groom.offsets[s], end = groom.offsets[s + 1];
-        if (!(lengthOf(std::span<const Vec3f>(shape).subspan(begin, end - begin)) > 0)) continue;
+        if (!knowsStrand(std::span<const Vec3f>(shape).subspan(begin, end - begin))) continue;
         const Vec3f toRoot = positions[begin] - shape[begin];
         for (std::uint32_t p = begin; p < end; ++p) {
             const Vec3f posed = p == begin ? positions[p] : Vec3f(shape[p] + toRoot);
@@ -145,7 +145,7 @@ Status swapPose(Groom& groom, const std::string& name) {
 }
 
 Status removePose(Groom& groom, const std::string& name) {
-    const auto found = placeOf(groom, name);
+    const auto found = placeOfPose(groom, name);
     if (!found) return tl::unexpected(found.error());
     groom.poses.erase(groom.poses.begin() + static_cast<std::ptrdiff_t>(*found));
     groom.pointAttributes.erase(poseAttribute(name));
@@ -160,8 +160,7 @@ std::vector<float> poseWeights(const Groom& groom, const GroomPose& pose) {
     if (shape.size() != weights.size()) return weights;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         const std::uint32_t begin = groom.offsets[s], end = groom.offsets[s + 1];
-        // What came later has no shape there: all of its points are one.
-        if (!(lengthOf(shape.subspan(begin, end - begin)) > 0)) continue;
+        if (!knowsStrand(shape.subspan(begin, end - begin))) continue;
         float share = pose.mask == 0 ? 1.0f : s < painted.size() ? painted[s] : 0.0f;
         if (pose.mask > 0 && pose.invert) share = 1 - share;
         const auto points = groom.strand(s);
@@ -174,6 +173,18 @@ std::vector<float> poseWeights(const Groom& groom, const GroomPose& pose) {
         }
     }
     return weights;
+}
+
+PoseViews poseViews(const Groom& groom) {
+    PoseViews poses;
+    for (const GroomPose& pose : groom.poses) poses.weights.push_back(poseWeights(groom, pose));
+    for (std::size_t k = 0; k < groom.poses.size(); ++k) {
+        auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute(groom.poses[k].name));
+        if (shape.empty()) shape = groom.positions();  // nothing follows it
+        poses.views.push_back(
+            {{reinterpret_cast<const runtime::Float3*>(shape.data()), shape.size()}, poses.weights[k]});
+    }
+    return poses;
 }
 
 std::vector<float> poseAmounts(const Groom& groom) {
@@ -190,14 +201,15 @@ bool followsPoses(const Groom& groom) {
     });
 }
 
-std::vector<PoseProblem> poseProblems(const Groom& groom) {
-    std::vector<PoseProblem> problems;
+std::vector<Finding> findPoseProblems(const Groom& groom) {
+    std::vector<Finding> problems;
     const auto add = [&](std::string what, const std::string& name, std::string fix) {
-        problems.push_back({std::move(what), fmt::format("pose '{}'", name), std::move(fix), false});
+        problems.push_back(
+            {Severity::Error, std::move(what), fmt::format("pose '{}'", name), std::move(fix)});
     };
     if (groom.poses.size() > kMaxGroomPoses)
-        problems.push_back({fmt::format("there are {} poses", groom.poses.size()), "poses",
-                            fmt::format("keep at most {}", kMaxGroomPoses), false});
+        problems.push_back({Severity::Error, fmt::format("there are {} poses", groom.poses.size()), "poses",
+                            fmt::format("keep at most {}", kMaxGroomPoses)});
     for (std::size_t k = 0; k < groom.poses.size(); ++k) {
         const GroomPose& pose = groom.poses[k];
         if (const auto named = checkPoseName(pose.name); !named)
@@ -208,8 +220,8 @@ std::vector<PoseProblem> poseProblems(const Groom& groom) {
         const auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute(pose.name));
         const auto sound = checkShape(shape, groom.pointCount());
         if (shape.empty() && groom.pointCount() > 0)
-            problems.push_back({"has no shape, so nothing follows it", fmt::format("pose '{}'", pose.name),
-                                "make the pose again, or remove it", true});
+            problems.push_back({Severity::Warning, "has no shape, so nothing follows it",
+                                fmt::format("pose '{}'", pose.name), "make the pose again, or remove it"});
         else if (!sound)
             add(sound.error().problem, pose.name, "make the pose again, or remove it");
     }

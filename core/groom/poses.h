@@ -12,28 +12,18 @@
 
 #include "core/base/math.h"
 #include "core/base/result.h"
-#include "hairloom/field.h"
-#include "hairloom/ramp.h"
+#include "core/groom/groom_pose.h"
 #include "hairloom/strands.h"
 
 namespace hairloom {
 
+struct Finding;
 struct Groom;
-
-/// fieldsOf() describes the members but the name.
-struct GroomPose {
-    std::string name;  ///< unique in the groom, 1 to kMaxPoseName bytes
-    float amount = 0;
-    std::uint32_t mask = 0;
-    bool invert = false;
-    runtime::Ramp ramp;
-
-    friend bool operator==(const GroomPose&, const GroomPose&) = default;
-};
-std::span<const runtime::Field<GroomPose>> fieldsOf(const GroomPose&);
 
 inline constexpr std::size_t kMaxGroomPoses = runtime::kMaxPoses;
 inline constexpr std::size_t kMaxPoseName = 64;
+/// Of a point of a pose from the origin, along each axis; metres, as validate() has it of positions.
+inline constexpr float kFarthestPosed = 1e6f;
 
 /// "pose.NAME": float3 per point, metres, in the scalp's rest space. The directions of its segments count.
 inline constexpr std::string_view kPosePrefix = "pose.";
@@ -41,6 +31,11 @@ std::string poseAttribute(std::string_view name);
 
 /// Its place in Groom::poses.
 std::optional<std::size_t> findPose(const Groom& groom, std::string_view name);
+/// The same. Error: there is none of that name, listing those there are.
+Result<std::size_t> placeOfPose(const Groom& groom, std::string_view name);
+/// Whether a pose knows a strand, by the points that it has of it: those of one that came later are all in
+/// one place.
+bool knowsStrand(std::span<const Vec3f> posed);
 /// "Pose 1", "Pose 2", …: the first that is free.
 std::string freshPoseName(const Groom& groom);
 /// Errors: a name that is empty, too long or has control characters.
@@ -53,24 +48,26 @@ Status putPose(Groom& groom, const std::string& name, std::span<const Vec3f> pos
 /// their order. Errors: as putPose(), other strands, or strands of other numbers of points.
 Status putPoseOf(Groom& groom, const std::string& name, const Groom& other);
 /// Strands get the shape of the pose, on their roots, and the pose that of the strands. Those that it does
-/// not know stay. Errors: as removePose(), a groom with operators, which make the shape of its strands.
+/// not know stay. Errors: as placeOfPose(), a groom with operators, which make the shape of its strands.
 Status swapPose(Groom& groom, const std::string& name);
-/// With its shape. Error: there is none of that name, listing those there are.
+/// With its shape. Errors: as placeOfPose().
 Status removePose(Groom& groom, const std::string& name);
 
 /// How much of the amount each point takes, 0 … 1: the mask's share times the ramp's. A strand that the pose
 /// does not know, since it came later, takes none. Empty: 1 everywhere.
 std::vector<float> poseWeights(const Groom& groom, const GroomPose& pose);
+/// Poses as engines take them; of the groom, which stays, and of these weights.
+struct PoseViews {
+    std::vector<std::vector<float>> weights;
+    std::vector<runtime::PoseView> views;
+};
+PoseViews poseViews(const Groom& groom);
 /// Of all poses, in their order.
 std::vector<float> poseAmounts(const Groom& groom);
 /// Some amount is above 0, or the time line keys one.
 bool followsPoses(const Groom& groom);
 
-/// What does not hold.
-struct PoseProblem {
-    std::string what, where, fix;
-    bool isHarmless = false;  ///< the hair can be simulated
-};
-std::vector<PoseProblem> poseProblems(const Groom& groom);
+/// What does not hold. Warnings: nothing follows the pose, but the hair can be simulated.
+std::vector<Finding> findPoseProblems(const Groom& groom);
 
 }  // namespace hairloom

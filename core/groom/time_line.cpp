@@ -10,6 +10,7 @@
 
 #include "core/groom/file/fields.h"
 #include "core/groom/groom.h"
+#include "core/groom/poses.h"
 
 namespace hairloom {
 namespace {
@@ -295,10 +296,6 @@ std::vector<float> poseAmountsAt(const TimeLine& line, float time, std::span<con
         amounts.push_back(isKeyed ? static_cast<float>(valueAt(*track, time)[0]) : pose.amount);
     }
     return amounts;
-}
-
-bool keysPoses(const TimeLine& line) {
-    return std::ranges::any_of(line.settings, isOf(kPosePrefix));
 }
 
 bool keysSimulation(const TimeLine& line) {

@@ -12,8 +12,8 @@
 
 #include "core/base/math.h"
 #include "core/base/smooth_step.h"
+#include "core/groom/groom_pose.h"
 #include "core/groom/material.h"
-#include "core/groom/poses.h"
 #include "hairloom/field.h"
 #include "hairloom/settings.h"
 
@@ -128,7 +128,6 @@ runtime::SimulationSettings settingsAt(const TimeLine& line, float time,
 HairMaterial materialAt(const TimeLine& line, float time, const HairMaterial& authored);
 /// The amounts of poses, likewise.
 std::vector<float> poseAmountsAt(const TimeLine& line, float time, std::span<const GroomPose> authored);
-bool keysPoses(const TimeLine& line);
 /// Whether settingsAt() and materialAt() may give something else than what is authored.
 bool keysSimulation(const TimeLine& line);
 bool keysMaterial(const TimeLine& line);

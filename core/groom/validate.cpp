@@ -6,6 +6,7 @@
 
 #include "core/groom/file/fields.h"
 #include "core/groom/findings.h"
+#include "core/groom/poses.h"
 #include "core/groom/spheres.h"
 #include "core/groom/time_line.h"
 
@@ -82,9 +83,7 @@ void findTimeLine(const Groom& groom, std::vector<Finding>& findings) {
 }
 
 void findPoses(const Groom& groom, std::vector<Finding>& findings) {
-    for (PoseProblem& problem : poseProblems(groom))
-        findings.push_back({problem.isHarmless ? Severity::Warning : Severity::Error, std::move(problem.what),
-                            std::move(problem.where), std::move(problem.fix)});
+    for (Finding& problem : findPoseProblems(groom)) findings.push_back(std::move(problem));
 }
 
 }  // namespace

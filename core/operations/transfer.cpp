@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
+#include "core/groom/poses.h"
 #include "core/operations/strand_edit.h"
 
 namespace hairloom {

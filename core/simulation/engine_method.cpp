@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/base/parallel.h"
+#include "core/groom/poses.h"
 #include "core/simulation/effect_switch.h"
 #include "core/simulation/strand_method.h"
 #include "hairloom/alternatives/hair_flow.h"
@@ -127,15 +128,8 @@ class EngineMethod : public StrandMethod {
 
 /// With their authored amounts.
 Status givePoses(const Groom& groom, runtime::Engine& engine) {
-    std::vector<std::vector<float>> weights;
-    for (const GroomPose& pose : groom.poses) weights.push_back(poseWeights(groom, pose));
-    std::vector<runtime::PoseView> poses;
-    for (std::size_t k = 0; k < groom.poses.size(); ++k) {
-        auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute(groom.poses[k].name));
-        if (shape.empty()) shape = groom.positions();  // nothing follows it
-        poses.push_back({{reinterpret_cast<const runtime::Float3*>(shape.data()), shape.size()}, weights[k]});
-    }
-    if (const std::string problem = engine.setPoses(poses); !problem.empty())
+    const PoseViews poses = poseViews(groom);
+    if (const std::string problem = engine.setPoses(poses.views); !problem.empty())
         return tl::unexpected(errorOfWords(problem));
     engine.setPoseAmounts(poseAmounts(groom));
     return {};

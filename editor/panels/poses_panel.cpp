@@ -15,6 +15,7 @@
 #include "core/editing/document.h"
 #include "core/editing/pose_commands.h"
 #include "core/editing/settings_commands.h"
+#include "core/groom/poses.h"
 #include "core/simulation/rest_positions.h"
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"

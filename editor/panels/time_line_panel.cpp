@@ -12,6 +12,7 @@
 #include <map>
 
 #include "core/animation/actor.h"
+#include "core/groom/poses.h"
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
 #include "editor/fields/number_spin.h"

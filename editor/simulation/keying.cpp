@@ -3,6 +3,7 @@
 
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
+#include "core/groom/poses.h"
 #include "core/simulation/time_line_motion.h"
 #include "editor/document/words.h"
 

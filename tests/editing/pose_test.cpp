@@ -4,6 +4,7 @@
 
 #include "core/editing/pose_commands.h"
 #include "core/editing/settings_commands.h"
+#include "core/groom/poses.h"
 #include "core/operations/script.h"
 #include "tests/editing/editing_samples.h"
 

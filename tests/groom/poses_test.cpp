@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <memory>
 
 #include "core/groom/file/poses_json.h"
 #include "core/groom/file/project_file.h"
@@ -157,8 +158,11 @@ TEST(Poses, AreKeyed) {
     TimeLine line;
     line.settings = {{"pose.Windswept", {{0, Vec3d(0, 0, 0)}, {2, Vec3d(1, 0, 0)}}}};
     EXPECT_THAT(problemsOf(line), testing::IsEmpty());
-    EXPECT_TRUE(keysPoses(line));
     EXPECT_FALSE(keysSimulation(line));
+    Groom keyed = posedHair(0);
+    EXPECT_FALSE(followsPoses(keyed));
+    keyed.timeLine = std::make_shared<const TimeLine>(line);
+    EXPECT_TRUE(followsPoses(keyed));
     EXPECT_FLOAT_EQ(poseAmountsAt(line, 0.5f, groom.poses)[0], 0.25f);
     EXPECT_FLOAT_EQ(poseAmountsAt(line, 1.5f, groom.poses)[0], 0.75f);
     EXPECT_FLOAT_EQ(poseAmountsAt(TimeLine(), 1.5f, groom.poses)[0], 0.25f) << "what is not keyed stays";
