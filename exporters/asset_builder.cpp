@@ -159,9 +159,10 @@ std::vector<std::byte> AssetBuilder::finish(const Box3f& bounds, std::uint32_t p
             return std::string_view(part.section.kind.data(), part.section.kind.size()) == kind;
         });
     };
-    header.minor = has(asset::kMaterials) ? asset::kMinorOfMaterials
-                   : has(asset::kClip)    ? asset::kMinorOfClips
-                                          : asset::kMinor;
+    header.minor = has(asset::kPoses)       ? asset::kMinorOfPoses
+                   : has(asset::kMaterials) ? asset::kMinorOfMaterials
+                   : has(asset::kClip)      ? asset::kMinorOfClips
+                                            : asset::kMinor;
     header.headerBytes = sizeof header;
     header.sections = static_cast<std::uint32_t>(parts_.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {

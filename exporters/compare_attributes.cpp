@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/groom/file/fields.h"
+#include "core/groom/poses.h"
 #include "core/groom/strand_subset.h"
 
 namespace hairloom {
@@ -128,7 +129,8 @@ void reportLayers(const Groom& groom, const PreparedStrands& prepared, const Imp
              "keep the project"});
 }
 
-void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportReport& report) {
+void reportSettings(const Groom& groom, const PreparedStrands& prepared, const ImportedStrands& readBack,
+                    ExportReport& report) {
     const Groom& read = readBack.groom;
     const bool carried = readBack.hasSettings;
     const auto leave = [&](std::string what, std::string fix) {
@@ -137,7 +139,7 @@ void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportR
     if (groom.interpolation.followPerGuide > 0 && !(carried && same(groom.interpolation, read.interpolation)))
         leave(fmt::format("{} follow hairs per strand", groom.interpolation.followPerGuide),
               "export the hairs instead of the guides, or interpolate in the other program");
-    if (!groom.poses.empty() && read.poses != groom.poses)
+    if (!groom.poses.empty() && !prepared.holdsPoses && read.poses != groom.poses)
         leave(fmt::format("{} poses that hair follows", groom.poses.size()),
               "export a take of the hair that follows them, or keep the project");
     if (!groom.spheres.empty() && !(carried && read.spheres.size() == groom.spheres.size()))
@@ -166,7 +168,7 @@ void compareAttributes(const Groom& groom, const PreparedStrands& prepared, floa
                    "points", report);
     }
     reportLayers(groom, prepared, readBack, report);
-    reportSettings(groom, readBack, report);
+    reportSettings(groom, prepared, readBack, report);
 }
 
 }  // namespace hairloom

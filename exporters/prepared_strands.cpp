@@ -21,17 +21,6 @@ namespace {
 
 constexpr float kRootTolerance = 0.005f;  ///< metres; roots farther from the scalp float visibly
 
-/// Values at even steps of the arc length, as resampleEvenly places the points.
-template <class T>
-std::vector<T> resampleValues(std::span<const Vec3f> points, std::span<const T> values, std::size_t count) {
-    std::vector<T> result;
-    result.reserve(count);
-    for (const auto& [segment, t] : evenPlaces(points, count))
-        result.push_back(values[segment] + (values[segment + 1] - values[segment]) * t);
-    result.back() = values.back();
-    return result;
-}
-
 /// Half the fibre's diameter from the material, for grooms without a radius of their own.
 std::vector<float> materialRadii(const HairMaterial& material, std::size_t points) {
     std::vector<float> radii(points);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/geometry/curve.h"
 #include "exporters/strands.h"
 
 namespace hairloom {
@@ -33,6 +34,7 @@ struct PreparedStrands {
     float metresPerUnit = 1;                 ///< of the file
     UpAxis up = UpAxis::Y;                   ///< likewise
     bool isResampled = false;                ///< some strand has other points than the groom's
+    bool holdsPoses = false;                 ///< the file has the groom's poses, which nothing reads back
     std::vector<std::string> names;          ///< of attributes in the file, as exportedAttributes() gave them
     std::vector<Finding> findings;
 
@@ -52,6 +54,17 @@ Vec3f toFile(const Vec3f& position, const StrandExportOptions& options);
 /// Errors: options out of range, nothing to write.
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
                                        std::uint32_t pointsPerStrand, StrandOrder order = StrandOrder::groom);
+
+/// Values at even steps of the arc length, as resampleEvenly places the points.
+template <class T>
+std::vector<T> resampleValues(std::span<const Vec3f> points, std::span<const T> values, std::size_t count) {
+    std::vector<T> result;
+    result.reserve(count);
+    for (const auto& [segment, t] : evenPlaces(points, count))
+        result.push_back(values[segment] + (values[segment + 1] - values[segment]) * t);
+    result.back() = values.back();
+    return result;
+}
 
 /// Of Unity's hair (com.unity.demoteam.hair).
 TargetLimits unityLimits();

@@ -13,6 +13,7 @@
 #include "core/interpolation/follow_hairs.h"
 #include "exporters/asset_clip.h"
 #include "exporters/asset_extras.h"
+#include "exporters/asset_poses.h"
 #include "exporters/asset_scalp.h"
 #include "exporters/prepared_strands.h"
 #include "hairloom/asset.h"
@@ -224,6 +225,16 @@ Finding clipFinding(const AssetClip& clip, std::size_t points, double error) {
             "clip", ""};
 }
 
+Finding posesFinding(const AssetPoses& poses, double error) {
+    const auto bytes =
+        static_cast<double>(poses.directions.size() * sizeof(asset::PoseDirection) + poses.weights.size());
+    return {Severity::Info,
+            fmt::format("{} poses take {:.2f} MB, at most {:.2g} mm from their shape. The game sets their "
+                        "amounts: keys of them are not in the asset",
+                        poses.records.size(), bytes * 1e-6, error * 1e3),
+            "poses", ""};
+}
+
 Finding gridFinding(const runtime::Asset& asset) {
     return {
         Severity::Info,
@@ -270,16 +281,27 @@ void addLayers(const Groom& groom, const PreparedStrands& strands, AssetBuilder&
     builder.add<std::uint16_t>(asset::kStrandLayers, ofStrands);
 }
 
-struct WrittenClip {
-    std::string name;
-    const AssetClip* encoded = nullptr;  ///< null: none
+/// What an asset may have beside hair that can be simulated; null: none.
+struct AssetParts {
+    MeasuredLevels levels{};
+    std::string clipName{};
+    const AssetClip* clip = nullptr;
+    const HairLooks* looks = nullptr;
+    const AssetPoses* poses = nullptr;
 };
+
+void addPoses(const AssetPoses& poses, AssetBuilder& builder) {
+    std::vector<asset::Pose> records = poses.records;
+    for (std::size_t k = 0; k < records.size(); ++k) records[k].name = builder.text(poses.names[k]);
+    builder.add<asset::Pose>(asset::kPoses, records);
+    builder.add<asset::PoseDirection>(asset::kPoseDirections, poses.directions);
+    builder.add<std::uint8_t>(asset::kPoseWeights, poses.weights);
+}
 
 Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& strands,
                                           const FollowSections& follow,
                                           const std::optional<SafeLimits>& safeLimits,
-                                          const MeasuredLevels& levels, const WrittenClip& clip,
-                                          const HairLooks* looks,
+                                          const AssetParts& parts,
                                           std::vector<std::uint32_t>* scalpVertices = nullptr) {
     const auto encoded = encodeStrands(strands.offsets, strands.positions);
     if (!encoded) return tl::unexpected(encoded.error());
@@ -306,20 +328,21 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     builder.add<std::uint16_t>(asset::kRadii, ownRadii(groom, strands));
     addLayers(groom, strands, builder);
     addAttributes(groom, strands, builder);
-    builder.add<asset::MeasuredLevel>(asset::kLevelErrors, levels.paths);
-    builder.add<asset::MeasuredLevel>(asset::kSeenErrors, levels.seen);
-    if (clip.encoded) {
-        asset::Clip record = clip.encoded->record;
-        record.name = builder.text(clip.name);
+    builder.add<asset::MeasuredLevel>(asset::kLevelErrors, parts.levels.paths);
+    builder.add<asset::MeasuredLevel>(asset::kSeenErrors, parts.levels.seen);
+    if (parts.clip) {
+        asset::Clip record = parts.clip->record;
+        record.name = builder.text(parts.clipName);
         builder.add<asset::Clip>(asset::kClip, std::span(&record, 1));
-        builder.add<std::uint32_t>(asset::kClipPlaces, clip.encoded->places);
-        builder.add<std::byte>(asset::kClipFrames, clip.encoded->frames);
+        builder.add<std::uint32_t>(asset::kClipPlaces, parts.clip->places);
+        builder.add<std::byte>(asset::kClipFrames, parts.clip->frames);
     }
-    if (looks) {
-        builder.add<asset::Material>(asset::kMaterials, looks->materials);
-        builder.add<std::uint16_t>(asset::kFibreTables, looks->tables);
-        if (follow.bindings) builder.add<asset::HairLook>(asset::kHairLooks, looks->hairs);
+    if (parts.looks) {
+        builder.add<asset::Material>(asset::kMaterials, parts.looks->materials);
+        builder.add<std::uint16_t>(asset::kFibreTables, parts.looks->tables);
+        if (follow.bindings) builder.add<asset::HairLook>(asset::kHairLooks, parts.looks->hairs);
     }
+    if (parts.poses) addPoses(*parts.poses, builder);
     builder.addSettings("simulation", groom.simulation);
     builder.addSettings("material", groom.material);
     builder.addSettings("interpolation", groom.interpolation);
@@ -341,21 +364,27 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
     // Levels are measured on the asset without them; findings are told once.
     PreparedStrands unmeasured = *strands;
     std::vector<std::uint32_t> scalpVertices;
-    const auto plain =
-        buildAsset(groom, unmeasured, *follow, options.safeLimits, {}, {}, nullptr, &scalpVertices);
+    const auto plain = buildAsset(groom, unmeasured, *follow, options.safeLimits, {}, &scalpVertices);
     if (!plain) return here(plain.error());
     std::optional<AssetClip> encoded;
-    WrittenClip clip;
     if (options.clip) {
         auto made = encodeClip(*options.clip, *strands, groom, *runtime::Asset::open(*plain).asset,
                                scalpVertices, options.watch.part(0, 0.3));
         if (!made) return here(made.error());
         encoded = std::move(*made);
-        clip = {options.clip->name, &*encoded};
     }
-    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits, measureLevels(*plain), clip,
-                                  options.looks.get());
+    const AssetPoses poses = encodePoses(groom, *strands);
+    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits,
+                                  {measureLevels(*plain), options.clip ? options.clip->name : std::string(),
+                                   encoded ? &*encoded : nullptr, options.looks.get(), &poses});
     if (!bytes) return here(bytes.error());
+    strands->holdsPoses = true;
+    std::vector<Finding> ofPoses = poses.findings;
+    double posesError = 0;
+    if (const auto file = runtime::Asset::open(*bytes); file.asset && !poses.records.empty()) {
+        posesError = poseError(groom, *strands, *file.asset);
+        ofPoses.push_back(posesFinding(poses, posesError));
+    }
     Finding ofClip;
     double clipError = 0;
     if (encoded) {
@@ -379,6 +408,8 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
     if (options.looks)
         report->findings.insert(report->findings.end(), options.looks->findings.begin(),
                                 options.looks->findings.end());
+    if (!poses.records.empty()) report->attributes.push_back({"poses", posesError});
+    report->findings.insert(report->findings.end(), ofPoses.begin(), ofPoses.end());
     if (encoded) {
         report->frames = static_cast<std::size_t>(options.clip->frames);
         report->attributes.push_back({"clip", clipError});
@@ -393,7 +424,8 @@ HairWriter runtimeWriter() {
     return {
         "runtime",
         "Hairloom runtime asset .hairrt",
-        "root bindings, the head's bones, spheres, the skin collider, settings, layers, materials, tables of "
+        "root bindings, the head's bones, spheres, the skin collider, settings, layers, poses, materials, "
+        "tables of "
         "Marschner's shading, attributes of strands "
         "and how "
         "follow hairs come from guides",

@@ -181,6 +181,10 @@ Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&&
             fileNote(fmt::format("the clip '{}' of {} frames is not read back, which games play",
                                  from.text(clip->name), clip->frames),
                      "clip", "keep the take that it was exported from"));
+    if (!from.poses().empty())
+        raw.warnings.push_back(
+            fileNote(fmt::format("{} poses are not read back, which games play", from.poses().size()),
+                     "poses", "keep the project that they were exported from"));
     return raw;
 }
 

@@ -67,12 +67,18 @@ Result<Report> assetReport(const std::string& path) {
                       {"loops", found->loops != 0},
                       {"bytes", asset.clipPlaces().size_bytes() + asset.clipFrames().size()},
                       {"max_error_mm", 1e3 * static_cast<double>(found->largestError)}};
+    Report poses = Report::array();
+    for (const runtime::asset::Pose& pose : asset.poses())
+        poses.push_back({{"name", std::string(asset.text(pose.name))},
+                         {"amount", pose.amount},
+                         {"partial", pose.weights > 0}});
     return Report{{"version", fmt::format("{}.{}", asset.major(), asset.minor())},
                   {"bytes", asset.bytes()},
                   {"follow_hairs", asset.hairCount()},
                   {"bones", asset.bones.size()},
                   {"greatest_error_mm", asset.greatestError() * 1e3},
                   {"clip", std::move(clip)},
+                  {"poses", std::move(poses)},
                   {"sections", std::move(sections)}};
 }
 

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "core/groom/poses.h"
+
 namespace hairloom::editor {
 namespace {
 
@@ -11,10 +13,11 @@ bool isDone(const std::future<Value>& value) {
     return value.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-Status take(MovingHair& hair, const Groom& changed) {
+/// `next`: where the step that follows ends. Amounts that it has come with it.
+Status take(MovingHair& hair, const Groom& changed, const HeadPose& next) {
     hair.setColliders(changed.spheres);
     if (auto set = hair.setSettings(changed.simulation); !set) return set;
-    return hair.setPoseAmounts(poseAmounts(changed));
+    return next.poseAmounts.empty() ? hair.setPoseAmounts(poseAmounts(changed)) : Status();
 }
 
 }  // namespace
@@ -58,7 +61,7 @@ Status Transport::step(float dt, std::shared_ptr<const Groom> changed, std::vect
                        HairPose& pose, Status& refused) {
     const HeadStep head{pose.head, std::move(within)};
     if (here_) {
-        if (changed) refused = take(*here_, *changed);
+        if (changed) refused = take(*here_, *changed, head.end);
         const Status stepped = here_->step(dt, head);
         const auto points = here_->positions_ws();
         pose.positions_ws.assign(points.begin(), points.end());
@@ -70,7 +73,7 @@ Status Transport::step(float dt, std::shared_ptr<const Groom> changed, std::vect
         MovingHair* const hair = played ? played->hair() : nullptr;
         if (!hair) return {fail("the device was lost"), {}, {}};
         if (changed) {
-            if (auto taken = take(*hair, *changed); !taken) return {std::move(taken), {}, {}};
+            if (auto taken = take(*hair, *changed, head.end); !taken) return {std::move(taken), {}, {}};
         }
         hair->setReadsPositions(wanted);
         if (auto stepped = hair->step(dt, head); !stepped) return {std::move(stepped), {}, {}};

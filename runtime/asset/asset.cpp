@@ -163,7 +163,9 @@ std::optional<AssetError> Asset::takeSection(const Section& section) {
         isSound<std::byte>(section, kClipFrames, problem) ||
         isSound<Material>(section, kMaterials, problem) ||
         isSound<std::uint16_t>(section, kFibreTables, problem) ||
-        isSound<HairLook>(section, kHairLooks, problem);
+        isSound<HairLook>(section, kHairLooks, problem) || isSound<Pose>(section, kPoses, problem) ||
+        isSound<PoseDirection>(section, kPoseDirections, problem) ||
+        isSound<std::uint8_t>(section, kPoseWeights, problem);
     if (!problem.empty()) return wrong(problem);
     if (!known && (section.flags & kRequired) != 0) {
         AssetError error = wrong("is needed and not known to this library");

@@ -44,7 +44,7 @@ Problem Asset::checkContent() const {
     for (const auto& check :
          {&Asset::checkStrands, &Asset::checkPoints, &Asset::checkScalp, &Asset::checkFollowHairs,
           &Asset::checkLayers, &Asset::checkSettings, &Asset::checkAttributes, &Asset::checkLevels,
-          &Asset::checkBody, &Asset::checkClip, &Asset::checkMaterials}) {
+          &Asset::checkBody, &Asset::checkClip, &Asset::checkMaterials, &Asset::checkPoses}) {
         if (Problem problem = (this->*check)()) return problem;
     }
     return std::nullopt;

@@ -73,6 +73,10 @@ std::span<const float> Engine::poseAmounts() const {
     return impl_->poseAmounts_;
 }
 
+std::shared_ptr<const PoseSet> Engine::poses() const {
+    return impl_->poses_;
+}
+
 void Engine::setSkinSpheres(std::span<const std::uint8_t> ofSkin) {
     if (std::equal(ofSkin.begin(), ofSkin.end(), impl_->skinSpheres_.begin(), impl_->skinSpheres_.end()))
         return;

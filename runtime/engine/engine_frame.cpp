@@ -144,7 +144,7 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (other || before.substeps != settings.substeps) allocateForBody();
     strands_->takeSettings(*shape_, settings_, other ? nullptr : &before, state_, host_);
     strands_->takeState(*shape_, settings_, state_);
-    if (poses_) followPoses(true);
+    if (poses_) followPoses(false);
     if (asksForOtherHairGrid(before, settings_)) hairGrid_.take(*shape_, settings_, host_);
     scratch_ = {};
     wind_ = {makeWind(settings), false};

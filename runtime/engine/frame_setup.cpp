@@ -255,13 +255,13 @@ EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& p
     const float pushed = (length(settings.gravity) + settings.airDrag * length(wind.wind.mean)) * frameTime;
     scene.fastest =
         16.0f * planInput.fastest * h + pushed * h + (planInput.rootMotion + sphereDisplacement) / substeps;
-    // Of strands whose amount rises, too, which were slow before.
-    if (scene.poseAmount > 0.0f) scene.fastest += 2.0f * kPoseSpeed * h;
     scene.asleep = planInput.asleep;
     scene.restTime = planInput.restTime;
     scene.hairCell = planInput.hairCell;
     scene.poses = static_cast<std::uint32_t>(planInput.poseAmounts.size());
     for (const float amount : planInput.poseAmounts) scene.poseAmount = std::max(scene.poseAmount, amount);
+    // Of strands whose amount rises, too, which were slow before.
+    if (scene.poseAmount > 0.0f) scene.fastest += 2.0f * kPoseSpeed * h;
     return plan(scene);
 }
 

@@ -94,6 +94,53 @@ PoseSet makePoseSet(std::span<const PoseView> poses, const RestShape& shape) {
     return set;
 }
 
+bool takePoseAmounts(std::span<const float> amounts, std::span<float> kept) {
+    bool changed = false;
+    for (std::size_t k = 0; k < amounts.size(); ++k) {
+        if (!std::isfinite(amounts[k])) continue;
+        const float amount = std::clamp(amounts[k], 0.0f, 1.0f);
+        changed = changed || amount != kept[k];
+        kept[k] = amount;
+    }
+    return changed;
+}
+
+void standInPoses(const RestShape& shape, const PoseSet& poses, std::span<const float> amounts,
+                  std::uint32_t clampedPoints, std::span<Float3> positions) {
+    for (const Block& block : shape.blocks) {
+        const std::size_t size = planeSize(block);
+        const float* const rest = shape.planes.data() + block.firstPlane * kRestPlanes;
+        const auto segmentIn = [&](const float* planes, std::size_t i) {
+            return Float3{planes[i], planes[size + i], planes[2 * size + i]};
+        };
+        for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
+            const std::uint32_t first = shape.offsets[block.strandOfLane[lane]];
+            positions[first] = {};
+            for (std::uint32_t p = 1; p < block.points; ++p) {
+                const std::size_t i = std::size_t{p - 1} * kBlockLanes + lane;
+                const Float3 authored = segmentIn(rest, i);
+                Float3 posed;
+                float sum = 0.0f, left = 1.0f;
+                for (std::size_t k = 0; k < poses.count && p >= clampedPoints; ++k) {
+                    const float* const planes = poses.of(shape, k, block);
+                    const float share = amounts[k] * planes[3 * size + i + kBlockLanes];
+                    posed = posed + segmentIn(planes, i) * share;
+                    sum += share;
+                    left *= 1.0f - share;
+                }
+                Float3 segment = authored;
+                if (sum > 0.0f) {
+                    segment = authored * left + posed * ((1.0f - left) / sum);
+                    const float mean = length(segment), lengthAtRest = rest[3 * size + i];
+                    // Where a pose points back along the strand, there is no mean on the way to it.
+                    segment = mean > 1e-3f * lengthAtRest ? segment * (lengthAtRest / mean) : authored;
+                }
+                positions[first + p] = positions[first + p - 1] + segment;
+            }
+        }
+    }
+}
+
 std::string Engine::Impl::setPoses(std::span<const PoseView> poses) {
     if (std::string error = validationError(poses, *shape_); !error.empty()) return error;
     if (poses.empty() && !poses_) return {};
@@ -106,20 +153,14 @@ std::string Engine::Impl::setPoses(std::span<const PoseView> poses) {
 
 void Engine::Impl::setPoseAmounts(std::span<const float> amounts) {
     if (amounts.empty() || amounts.size() != poseAmounts_.size()) return;
-    bool changed = false;
-    for (std::size_t k = 0; k < amounts.size(); ++k) {
-        if (!std::isfinite(amounts[k])) continue;
-        const float amount = std::clamp(amounts[k], 0.0f, 1.0f);
-        changed = changed || amount != poseAmounts_[k];
-        poseAmounts_[k] = amount;
-    }
-    if (changed) followPoses(false);
+    if (takePoseAmounts(amounts, poseAmounts_)) followPoses(false);
 }
 
-/// Poses, settings or amounts have changed: strands that rest may have to move.
+/// `others`: poses have changed, not settings or amounts alone: strands that rest may have to move.
 void Engine::Impl::followPoses(bool others) {
     static const PoseSet kNone;
-    strands_->takePoses(*shape_, settings_, poses_ ? *poses_ : kNone, poseAmounts_, others, state_, host_);
+    strands_->takePoses(*shape_, settings_, {poses_ ? *poses_ : kNone, poseAmounts_, others, keepsMemory_},
+                        state_, host_);
     if (poses_) std::fill(state_.rests.begin(), state_.rests.end(), Rest{});
 }
 

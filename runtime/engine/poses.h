@@ -34,4 +34,22 @@ std::string validationError(std::span<const PoseView> poses, const RestShape& sh
 /// `poses` are sound.
 PoseSet makePoseSet(std::span<const PoseView> poses, const RestShape& shape);
 
+/// Takes amounts, as many as there are, into `kept`, within 0 … 1; what is no number stays. Whether one is
+/// another than before.
+bool takePoseAmounts(std::span<const float> amounts, std::span<float> kept);
+
+/// Where points stand in the poses by their amounts, while nothing else moves them: metres from their roots,
+/// in the roots' frames, in the order of strands. The first `clampedPoints` are as authored. Segments keep
+/// their lengths: each points where its directions at rest and in the poses do on the mean.
+void standInPoses(const RestShape& shape, const PoseSet& poses, std::span<const float> amounts,
+                  std::uint32_t clampedPoints, std::span<Float3> positions);
+
+/// What models are told of poses.
+struct PoseChange {
+    const PoseSet& poses;
+    std::span<const float> amounts;
+    bool others;       ///< poses have changed, not amounts or settings alone
+    bool keepsMemory;  ///< while all amounts are 0, for the frame in which one comes back
+};
+
 }  // namespace hairloom::runtime

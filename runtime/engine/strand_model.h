@@ -77,10 +77,9 @@ class ModelStrands : public InMemory {
     virtual void allocate(const RestShape& shape, const SimulationSettings& settings, const EffectPlan& plan,
                           bool body, State& state) = 0;
     /// Follows poses by their amounts, in place of those before; after takeSettings() and takeState(), on the
-    /// host's threads. `others`: poses or settings have changed, not amounts alone. It has memory for them
-    /// only while an amount is above 0.
-    virtual void takePoses(const RestShape&, const SimulationSettings&, const PoseSet&,
-                           std::span<const float>, bool, State&, const Host&) {}
+    /// host's threads. It has memory for them only while an amount is above 0, or where it is to be kept.
+    virtual void takePoses(const RestShape&, const SimulationSettings&, const PoseChange&, State&,
+                           const Host&) {}
     /// There is another body, or none: what the state knows of it is void.
     virtual void forgetBody(State&) const {}
 
@@ -148,6 +147,8 @@ struct Model {
     bool keepsVelocities;    ///< in State::own; else what a point went in the last substep is its velocity
     std::size_t mostPlanes;  ///< floats of each point and lane that it can take, with those of `own`
     std::size_t (*mostSolverFloats)();
+    /// Likewise while strands follow so many poses; null where they follow none.
+    std::size_t (*posePlanes)(std::size_t poses) = nullptr;
     const char* gpuSource;  ///< of runtime/shaders: what becomes its kernel of a GPU
 };
 const Model& modelOf(StrandModel model);

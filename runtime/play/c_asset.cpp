@@ -169,6 +169,7 @@ hl_code hl_asset_describe_sized(const hl_asset* opened, hl_asset_info* out, size
         info.settings = static_cast<std::uint32_t>(asset.settings.size());
         info.attributes = static_cast<std::uint32_t>(asset.attributes().size());
         info.measured_levels = asset.levelErrors().empty() ? 0 : 1;
+        info.poses = static_cast<std::uint32_t>(asset.poses().size());
         giveBack(info, out, size);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
@@ -317,6 +318,35 @@ hl_code hl_asset_find_attribute(const hl_asset* opened, const char* name, uint32
             return say(error, HL_BAD_VALUE, HL_NO_PLACE,
                        std::string("no attribute of the name '") + name + "'");
         *attribute = static_cast<std::uint32_t>(found - asset.attributes().data());
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_asset_pose(const hl_asset* opened, uint32_t number, hl_hair_pose* out, hl_error* error) {
+    if (!opened || !out) return nullRefused(error, "no asset or no place for the pose");
+    const std::size_t size = out->size;
+    if (const Outcome refused = checkSize<hl_hair_pose>("hl_hair_pose", size, sizeof(hl_hair_pose)))
+        return say(error, refused);
+    return withContent(opened, error, [&](const Asset& asset) {
+        const auto all = asset.poses();
+        if (number >= all.size()) return pastTheLast(error, "pose", number, all.size());
+        const asset::Pose& record = all[number];
+        const std::string_view name = asset.text(record.name);
+        const hl_hair_pose found{size, name.data(), name.size(), record.amount, record.weights > 0 ? 1u : 0u};
+        giveBack(found, out, size);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_asset_find_pose(const hl_asset* opened, const char* name, uint32_t* pose, hl_error* error) {
+    if (!opened || !name || !pose) return nullRefused(error, "no asset, name or place");
+    return withContent(opened, error, [&](const Asset& asset) {
+        const auto all = asset.poses();
+        const auto found = std::find_if(all.begin(), all.end(),
+                                        [&](const asset::Pose& one) { return asset.text(one.name) == name; });
+        if (found == all.end())
+            return say(error, HL_BAD_VALUE, HL_NO_PLACE, std::string("no pose of the name '") + name + "'");
+        *pose = static_cast<std::uint32_t>(found - all.begin());
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }

@@ -137,7 +137,7 @@ hl_code hl_instance_copy(const hl_instance* instance, hl_instance** out, hl_erro
     if (!instance || !out) return nullRefused(error, "no instance or no place for its copy");
     return guarded(error, [&] {
         *out = new hl_instance(*instance);
-        (*out)->instance.leaveGpu();
+        (*out)->instance.beCopy();
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }
@@ -196,6 +196,20 @@ hl_code hl_instance_choose(hl_instance* instance, const char* name, const char* 
     return guarded(error, [&] { return say(error, instance->instance.choose(name, choice)); });
 }
 
+hl_code hl_instance_set_pose(hl_instance* instance, uint32_t pose, float amount, hl_error* error) {
+    if (!instance) return nullRefused(error, "no instance");
+    return guarded(error, [&] { return say(error, instance->instance.setPose(pose, amount)); });
+}
+
+hl_code hl_instance_pose(const hl_instance* instance, uint32_t pose, float* amount, hl_error* error) {
+    if (!instance || !amount) return nullRefused(error, "no instance or no place for the amount");
+    return guarded(error, [&] {
+        if (const Outcome refused = instance->instance.checkPose(pose)) return say(error, refused);
+        *amount = instance->instance.poseAmount(pose);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
 void hl_reserve_init(hl_reserve* reserve) {
     if (!reserve) return;
     *reserve = {};
@@ -206,7 +220,7 @@ hl_code hl_instance_reserve(hl_instance* instance, const hl_reserve* given, hl_e
     if (!instance || !given) return nullRefused(error, "no instance or nothing to reserve");
     return guarded(error, [&] {
         hl_reserve wanted{};
-        if (const Outcome refused = takeIn(given, "hl_reserve", sizeof(hl_reserve), wanted))
+        if (const Outcome refused = takeIn(given, "hl_reserve", kFirstReserve, wanted))
             return say(error, refused);
         return say(error, instance->instance.reserve(wanted));
     });

@@ -120,7 +120,7 @@ Outcome takeIn(const Struct* given, const char* name, std::size_t least, Struct&
 inline constexpr std::size_t kFirstAssetInfo = 88, kFirstBone = 72, kFirstLayer = 24, kFirstInstanceInfo = 40,
                              kFirstEffect = 136, kFirstLevel = 28, kFirstViewed = 24, kFirstReport = 12,
                              kFirstFrame = 128, kFirstLimits = 24, kFirstClip = 56, kFirstPlay = 24,
-                             kFirstView = 144, kFirstLamp = 96, kFirstPose = 48;
+                             kFirstView = 144, kFirstLamp = 96, kFirstPose = 48, kFirstReserve = 24;
 
 /// A frame of any version.
 template <class Body>

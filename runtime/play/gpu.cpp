@@ -214,11 +214,20 @@ std::size_t Instance::gpuBytes(std::uint32_t buffer) const {
     return static_cast<std::size_t>(kGpuBuffers[buffer].count(counts)) * kGpuBuffers[buffer].element;
 }
 
+namespace {
+
+Refusal refusedPoses() {
+    return {HL_BAD_VALUE, "hair follows poses, and the kernel of guides follows none: step on the CPU"};
+}
+
+}  // namespace
+
 Outcome Instance::beginGpu() {
     if (level() != HL_LEVEL_FINEST)
         return Refusal{HL_BAD_VALUE, "level " + std::to_string(level()) + "; the GPU steps the finest alone"};
     if (std::string why = gpuGuidesRefused(engine_.settings()); !why.empty())
         return Refusal{HL_BAD_VALUE, std::move(why)};
+    if (isPosed()) return refusedPoses();
     settlePlayed();
     // What there was stays where memory is missing.
     GpuGuides guides(engine_.restShape(), engine_.settings(), engine_.state(),
@@ -229,6 +238,7 @@ Outcome Instance::beginGpu() {
 
 Outcome Instance::stepGpu(const hl_frame& frame) {
     if (!gpuGuides_) return Refusal{HL_BAD_VALUE, "hl_gpu_begin() comes before the first hl_gpu_step()"};
+    if (isPosed()) return refusedPoses();
     if (frame.dt == 0) return std::nullopt;
     if (Outcome refused = checkStep(frame)) return refused;
     // A capsule has both of its ends to itself.

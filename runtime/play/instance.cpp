@@ -34,7 +34,7 @@ std::size_t bytesOf(const Engine& engine) {
     std::size_t bytes = engine.baseBytes();
     for (std::uint32_t effect = 0; effect < kEffectCount; ++effect)
         bytes += engine.effectBytes(static_cast<Effect>(effect));
-    return bytes;
+    return bytes + bytesOfPoses(engine);
 }
 
 }  // namespace
@@ -103,6 +103,8 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsL
         instance.engine_.setSkinSpheres(instance.skinSpheres_);
     }
     if (wantsLevels) instance.makeLevels(asset, strands);
+    if (std::string problem = instance.makePoses(asset, strands); !problem.empty())
+        return {std::nullopt, std::move(problem)};
     return {std::move(instance), {}};
 }
 
@@ -162,6 +164,7 @@ Outcome Instance::step(const hl_frame& frame) {
     // A game's own spheres are what it says.
     const auto ofSkin = frame.spheres ? std::span<const std::uint8_t>() : std::span(skinSpheres_);
     if (Engine* const engine = engineOfLevel()) engine->setSkinSpheres(ofSkin);
+    input.poseAmounts = hairPoses_.amounts;
     if (levels_)
         stepLevel(input);
     else
@@ -223,7 +226,7 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
     engine_ = std::move(finest);
     if (levels_) levels_->engines = std::move(coarser);
     leaveGpu();
-    playedWaits_ = asleep_ = false;
+    playedWaits_ = asleep_ = hairPoses_.isStanding = hairPoses_.isReserved = false;
     return std::nullopt;
 }
 
@@ -270,7 +273,8 @@ hl_instance_info Instance::describe() const {
                  spheres_.size() * sizeof(Sphere) + skinSpheres_.size() + bytesOfLevels() +
                  (shown_[0].positions.size() + shown_[1].positions.size()) * sizeof(Float3) +
                  allStrands_.size() * sizeof(std::uint32_t) + rootsBefore_.size() * sizeof(Float3) +
-                 (clip_ ? clip_->bytes() : 0) + inner_.bytes();
+                 (clip_ ? clip_->bytes() : 0) + inner_.bytes() + hairPoses_.amounts.size() * sizeof(float) +
+                 (hairPoses_.all.size() + hairPoses_.simulated.size()) * sizeof(Float3);
     return info;
 }
 

@@ -38,6 +38,8 @@ struct InstanceMemory {
 InstanceMemory instanceMemory(const Asset& asset);
 /// Of an instance beside its engine and its FollowHairs.
 std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t velocities);
+/// Of poses that an engine may follow, while it follows none.
+std::size_t bytesOfPoses(const Engine& engine);
 /// How many strands have how many points.
 Map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset);
 /// Whether some layers have materials of their own.
@@ -68,6 +70,10 @@ class Instance {
     static std::size_t clipMemory(const Asset& asset);
     Outcome set(std::string_view name, std::span<const double> values);
     Outcome choose(std::string_view name, std::string_view choice);
+    /// Poses of the asset (instance_poses.cpp).
+    Outcome checkPose(std::uint32_t pose) const;
+    Outcome setPose(std::uint32_t pose, float amount);
+    float poseAmount(std::uint32_t pose) const { return hairPoses_.amounts[pose]; }
     Outcome read(hl_read& read, bool wantsBounds = true);
     /// What the kernels of hairs are given each frame (gpu.cpp): number HL_GPU_BUFFER_… into `bytes`.
     bool hasGpuHairs() const { return gpuHairs_ > 0; }
@@ -82,6 +88,11 @@ class Instance {
     Outcome checkGpuGuides(std::uint32_t buffer) const;
     Outcome beginGpu();
     void leaveGpu() { gpuGuides_.reset(); }
+    /// Of what was copied: what belongs to one instance alone.
+    void beCopy() {
+        leaveGpu();
+        hairPoses_.isReserved = false;
+    }
     Outcome stepGpu(const hl_frame& frame);
     Outcome readHairNumbers(std::span<std::uint32_t> numbers) const;
     Outcome readOffsets(std::span<std::uint32_t> offsets) const;
@@ -182,6 +193,11 @@ class Instance {
     /// Positions may change in their last bits, which the engine keeps from roots.
     void settlePlayed() const { const_cast<Instance*>(this)->settlePlayed(); }
     void grow(const hl_reserve& wanted);
+    std::string makePoses(const Asset& asset, const Asset::Strands& strands);
+    static void giveAmounts(std::span<const float> amounts, Engine& finest, std::span<Engine> coarser);
+    void takeAmounts(std::span<const float> amounts);
+    bool isPosed() const;
+    Standing standing();
     static Outcome checkStep(const hl_frame& frame);
     Outcome place(const hl_frame& frame, FrameInput& input);
     Outcome checkInner(const hl_frame& frame) const;
@@ -202,6 +218,12 @@ class Instance {
     Vector<std::uint32_t> hairGroups_;  // hairs before each guide's, then all
     std::optional<Levels> levels_;
     RootPoses poses_;
+    struct HairPoses {
+        Vector<float> amounts;          // of each of the asset's poses
+        Vector<Float3> all, simulated;  // of instances with levels: as standing() gives them
+        bool isStanding = false;        // ... and it is that of the amounts
+        bool isReserved = false;        // memory for them stays
+    } hairPoses_;
     Host host_;
     Radii radii_{};
     Vector<std::uint32_t> offsets_;

@@ -191,10 +191,10 @@ void Instance::showPositions() {
     } else if (engine) {
         const auto simulated = std::span(levels_->simulated).first(engine->pointCount());
         engine->readPositions(simulated);
-        showGuides(*levels_->set, levels_->set->coarser[levels_->level - 1], levels_->placed, simulated,
-                   levels_->moved, positions_);
+        showGuides(*levels_->set, levels_->set->coarser[levels_->level - 1], standing(), levels_->placed,
+                   simulated, levels_->moved, positions_);
     } else {
-        showRigid(*levels_->set, levels_->placed, positions_);
+        showRigid(*levels_->set, standing(), levels_->placed, positions_);
     }
     if (!levels_ || !levels_->fading) return;
     for (std::size_t g = 0; g < roots_.size(); ++g) {
@@ -250,7 +250,7 @@ Outcome Instance::setLevel(std::uint32_t number, float hairShare) {
     showPositions();
     showVelocities();
     levels.level = number;
-    levels.fading = false;
+    levels.fading = hairPoses_.isStanding = false;
     asleep_ = last_.known = false;
     levels.fade.swap(positions_);  // where they are seen now
     placeRootsOfLevels();
@@ -360,6 +360,12 @@ std::uint64_t Instance::hash() const {
         std::memcpy(bits, &root.position, sizeof bits);
         for (const std::uint32_t word : bits) hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
     }
+    // Hair that is not simulated stands in its poses.
+    for (const float amount : hairPoses_.amounts) {
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &amount, sizeof bits);
+        if (bits != 0) hash = (hash ^ bits) * 0x9e3779b97f4a7c15ull;
+    }
     return hash ^ levels_->level;
 }
 
@@ -370,7 +376,7 @@ std::size_t Instance::bytesOfLevels() const {
                         (levels.placed.size() + levels.simulatedRoots.size()) * sizeof(RootFrame) +
                         (levels.fade.size() + levels.simulated.size() + levels.moved.size()) * sizeof(Float3);
     for (const Engine& engine : levels.engines) {
-        bytes += sizeof(Engine) + engine.baseBytes();
+        bytes += sizeof(Engine) + engine.baseBytes() + bytesOfPoses(engine);
         for (std::uint32_t effect = 0; effect < kEffectCount; ++effect)
             bytes += engine.effectBytes(static_cast<Effect>(effect));
     }

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kReportBytes = 1024;
 
 /// Of an engine at most, beside what threads work in; `strandsOf` counts strands by their points.
-std::size_t engineBytes(const Map<std::uint32_t, std::size_t>& strandsOf, bool hasBody) {
+std::size_t engineBytes(const Map<std::uint32_t, std::size_t>& strandsOf, bool hasBody, std::size_t poses) {
     // Strands of one point count fill blocks; straight ones and others are apart, and the last of each has
     // room to spare.
     std::size_t planeFloats = 0, blocks = 0, strands = 0;
@@ -27,15 +27,17 @@ std::size_t engineBytes(const Map<std::uint32_t, std::size_t>& strandsOf, bool h
         planeFloats += more * (std::size_t{points} * kBlockLanes + kPlanePadding);
         strands += count;
     }
-    std::size_t most = 0, laneRows = 0;
+    std::size_t most = 0, mostOfPoses = 0, laneRows = 0;
     for (const Model* const model : allModels()) {
         most = std::max(most, model->mostPlanes);
+        if (model->posePlanes) mostOfPoses = std::max(mostOfPoses, model->posePlanes(poses));
         std::size_t rows = 0;
         for (const OwnArray& array : model->own) rows += array.laneRows;
         laneRows = std::max(laneRows, rows);
     }
-    const std::size_t planes =
-        kRestPlanes + kStatePlanes + most + (hasBody ? kBodyPlanes + 1 + kFoldPlanes : 0);
+    const std::size_t planes = kRestPlanes + kStatePlanes + most +
+                               (hasBody ? kBodyPlanes + 1 + kFoldPlanes : 0) + mostOfPoses +
+                               PoseSet::kPosePlanes * poses;
     const std::size_t lanes =
         (2 * kRootRows + laneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
     return planeFloats * planes * sizeof(float) + blocks * lanes +
@@ -54,7 +56,9 @@ std::size_t sphereBytes(const Asset& asset) {
 /// What HL_LEVELS adds; strands of a level have at most the points of the longest.
 std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread, std::size_t bodyTable) {
     const std::size_t strands = asset.strandCount(), points = asset.pointCount();
-    std::size_t bytes = 2 * points * sizeof(Float3) + 2 * strands * sizeof(RootFrame) +
+    const std::size_t poses = asset.poses().size();
+    std::size_t bytes = (poses > 0 ? 2 * points * sizeof(Float3) : 0) + 2 * points * sizeof(Float3) +
+                        2 * strands * sizeof(RootFrame) +
                         (strands + 2 * asset.guides.size() + 4) * sizeof(std::uint32_t) + sizeof(LevelSet);
     for (std::uint32_t level = 1; level < HL_LEVEL_RIGID; ++level) {
         Map<std::uint32_t, std::size_t> strandsOf;
@@ -63,10 +67,10 @@ std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t th
         strandsOf[pointsOfLevel(level, longest)] = guides;
         const std::size_t blocksMore = strandsByPoints(asset).size() * 2;
         const bool hasBody = bodyTable > 0;
-        bytes += engineBytes(strandsOf, hasBody) + bodyTable + thread +
-                 blocksMore * engineBytes({{longest, 1}}, hasBody) + strands * sizeof(Level::Sources) +
+        bytes += engineBytes(strandsOf, hasBody, poses) + bodyTable + thread +
+                 blocksMore * engineBytes({{longest, 1}}, hasBody, poses) + strands * sizeof(Level::Sources) +
                  guides * 2 * sizeof(std::uint32_t) + 3 * std::size_t{guides} * longest * sizeof(Float3) +
-                 sizeof(Level) + sizeof(Engine);
+                 sizeof(Level) + sizeof(Engine) + (poses > 0 ? sizeof(PoseSet) : 0);
         bytes += sphereBytes(asset);
     }
     return bytes;
@@ -100,7 +104,9 @@ InstanceMemory instanceMemory(const Asset& asset) {
     const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
     const BodyFieldRead body = asset.readBody();
     const std::size_t bodyTable = body.field ? BodyTable::bytesFor(*body.field) : 0;
-    const std::size_t guides = engineBytes(strandsOf, bodyTable > 0) + bodyTable + thread +
+    const std::size_t poses = asset.poses().size();
+    const std::size_t ofPoses = poses > 0 ? sizeof(PoseSet) + poses * sizeof(float) : 0;
+    const std::size_t guides = engineBytes(strandsOf, bodyTable > 0, poses) + ofPoses + bodyTable + thread +
                                (body.field ? body.field->bytes() : 0) + sphereBytes(asset) +
                                ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) +
                                RootPoses::bytesFor(asset);

@@ -125,12 +125,25 @@ std::uint32_t guidesOfLevel(std::uint32_t level, std::uint32_t guides) {
     return guides > each / 2 ? (guides - each / 2 + each - 1) / each : 1;
 }
 
-Float3 sampleAt(std::span<const Float3> values, std::size_t p, std::size_t count) {
+namespace {
+
+template <class T>
+T sampled(std::span<const T> values, std::size_t p, std::size_t count) {
     if (values.size() == count) return values[p];
     const float at = static_cast<float>(p * (values.size() - 1)) / static_cast<float>(count - 1);
     const std::size_t before = std::min(static_cast<std::size_t>(at), values.size() - 2);
     const float share = at - static_cast<float>(before);
     return values[before] * (1 - share) + values[before + 1] * share;
+}
+
+}  // namespace
+
+Float3 sampleAt(std::span<const Float3> values, std::size_t p, std::size_t count) {
+    return sampled(values, p, count);
+}
+
+float sampleAt(std::span<const float> values, std::size_t p, std::size_t count) {
+    return sampled(values, p, count);
 }
 
 std::size_t Level::bytes() const {
@@ -155,15 +168,18 @@ std::size_t LevelSet::bytes() const {
     return bytes;
 }
 
-void showGuides(const LevelSet& set, const Level& level, std::span<const RootFrame> roots_ws,
-                std::span<const Float3> simulated_ws, std::span<Float3> moved,
-                std::span<Float3> positions_ws) {
+void showGuides(const LevelSet& set, const Level& level, const Standing& standing,
+                std::span<const RootFrame> roots_ws, std::span<const Float3> simulated_ws,
+                std::span<Float3> moved, std::span<Float3> positions_ws) {
     for (std::size_t s = 0; s < level.guides.size(); ++s) {
         const RootFrame& root = roots_ws[level.guides[s]];
         const Quat back = conjugate(root.rotation);
         const Float3 rest = level.positions_ss[level.offsets[s]];
-        for (std::size_t p = level.offsets[s]; p < level.offsets[s + 1]; ++p)
-            moved[p] = rotate(back, simulated_ws[p] - root.position) - (level.positions_ss[p] - rest);
+        for (std::size_t p = level.offsets[s]; p < level.offsets[s + 1]; ++p) {
+            const Float3 stood =
+                standing.simulated.empty() ? level.positions_ss[p] - rest : standing.simulated[p];
+            moved[p] = rotate(back, simulated_ws[p] - root.position) - stood;
+        }
     }
     for (std::size_t g = 0; g < roots_ws.size(); ++g) {
         const Level::Sources& sources = level.sources[g];
@@ -177,15 +193,16 @@ void showGuides(const LevelSet& set, const Level& level, std::span<const RootFra
                 away = away + sampleAt(strand, p, count) * sources.shares[i];
             }
             positions_ws[first + p] =
-                roots_ws[g].position + rotate(roots_ws[g].rotation, set.rest[first + p] + away);
+                roots_ws[g].position + rotate(roots_ws[g].rotation, standing.all[first + p] + away);
         }
     }
 }
 
-void showRigid(const LevelSet& set, std::span<const RootFrame> roots_ws, std::span<Float3> positions_ws) {
+void showRigid(const LevelSet& set, const Standing& standing, std::span<const RootFrame> roots_ws,
+               std::span<Float3> positions_ws) {
     for (std::size_t g = 0; g < roots_ws.size(); ++g) {
         for (std::size_t p = set.offsets[g]; p < set.offsets[g + 1]; ++p)
-            positions_ws[p] = roots_ws[g].position + rotate(roots_ws[g].rotation, set.rest[p]);
+            positions_ws[p] = roots_ws[g].position + rotate(roots_ws[g].rotation, standing.all[p]);
     }
 }
 

@@ -59,14 +59,22 @@ std::uint32_t guidesOfLevel(std::uint32_t level, std::uint32_t guides);
 
 /// A quantity of a guide's points at share `p` / (`count` − 1) of it, by the number of points.
 Float3 sampleAt(std::span<const Float3> values, std::size_t p, std::size_t count);
+float sampleAt(std::span<const float> values, std::size_t p, std::size_t count);
+
+/// Where points are while nothing moves them: metres from their roots, in the roots' frames.
+struct Standing {
+    std::span<const Float3> all;        ///< of all guides: LevelSet::rest, or in poses
+    std::span<const Float3> simulated;  ///< of level.guides in poses; empty: at rest
+};
 
 /// Fills `positions_ws`, the points of all guides, by those of level.guides; `roots_ws` are of all guides.
 /// `moved` has room for as many points as are simulated.
-void showGuides(const LevelSet& set, const Level& level, std::span<const RootFrame> roots_ws,
-                std::span<const Float3> simulated_ws, std::span<Float3> moved,
-                std::span<Float3> positions_ws);
-/// Each goes with its root as it is at rest.
-void showRigid(const LevelSet& set, std::span<const RootFrame> roots_ws, std::span<Float3> positions_ws);
+void showGuides(const LevelSet& set, const Level& level, const Standing& standing,
+                std::span<const RootFrame> roots_ws, std::span<const Float3> simulated_ws,
+                std::span<Float3> moved, std::span<Float3> positions_ws);
+/// Each goes with its root as it stands.
+void showRigid(const LevelSet& set, const Standing& standing, std::span<const RootFrame> roots_ws,
+               std::span<Float3> positions_ws);
 
 /// Hairs of a guide with `all` of them that a share of them leaves: one at least.
 inline std::uint32_t takenOf(std::uint32_t all, float share) {

@@ -12,14 +12,18 @@ namespace {
 constexpr float kRehearsedRadius = 0.01f;  ///< m, of spheres at the roots: within reach of every strand
 constexpr float kRehearsedWind = 1;        ///< m/s
 
-/// Frames in still air and in wind, without spheres and among as many as there may be.
-void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const Sphere> spheres) {
+/// Frames in still air and in wind, without spheres and among as many as there may be, in poses where they
+/// will be followed.
+void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const Sphere> spheres,
+              bool followsPoses) {
     const std::shared_ptr<const State> before = engine.state();
+    const Vector<float> amounts(engine.poseAmounts().begin(), engine.poseAmounts().end());
     // With as many capsules as spheres.
     Vector<Capsule> capsules;
     for (std::uint32_t s = 1; s < spheres.size() && capsules.size() < kMaxCapsules; ++s)
         capsules.push_back({s - 1, s});
     engine.keepMemory();
+    if (followsPoses) engine.setPoseAmounts(Vector<float>(amounts.size(), 1.0f));
     engine.reset(roots);
     for (const float wind : {0.0f, kRehearsedWind}) {
         for (const std::size_t count : {std::size_t{0}, spheres.size()}) {
@@ -35,6 +39,7 @@ void rehearse(Engine& engine, std::span<const RootFrame> roots, std::span<const 
             engine.step(input);
         }
     }
+    engine.setPoseAmounts(amounts);
     engine.setState(*before);
 }
 
@@ -46,6 +51,7 @@ Outcome Instance::reserve(const hl_reserve& wanted) {
                                          "; expected 0 to " + std::to_string(kMaxGivenSpheres)};
     if (wanted.previous_guides > 1 || wanted.previous_hairs > 1)
         return Refusal{HL_BAD_VALUE, "reserve.previous_guides and previous_hairs are 0 or 1"};
+    if (wanted.poses > 1) return Refusal{HL_BAD_VALUE, "reserve.poses is 0 or 1"};
     if (wanted.inner > kMaxInnerPoses)
         return Refusal{HL_BAD_VALUE, "reserve.inner is " + std::to_string(wanted.inner) + "; expected 0 to " +
                                          std::to_string(kMaxInnerPoses)};
@@ -65,15 +71,16 @@ void Instance::grow(const hl_reserve& wanted) {
     Vector<Sphere> spheres(count);
     for (std::size_t s = 0; s < count; ++s)
         spheres[s] = {roots.empty() ? Float3{} : roots[s % roots.size()].position, kRehearsedRadius};
-    rehearse(engine_, roots, spheres);
+    rehearse(engine_, roots, spheres, wanted.poses > 0);
     for (std::size_t i = 0; levels_ && i < levels_->engines.size(); ++i) {
         fewer.clear();
         for (const std::uint32_t guide : levels_->set->coarser[i].guides) fewer.push_back(roots[guide]);
-        rehearse(levels_->engines[i], fewer, spheres);
+        rehearse(levels_->engines[i], fewer, spheres, wanted.poses > 0);
     }
     engine_.setSkinSpheres(skinSpheres_);
     for (std::size_t i = 0; levels_ && i < levels_->engines.size(); ++i)
         levels_->engines[i].setSkinSpheres(skinSpheres_);
+    hairPoses_.isReserved = hairPoses_.isReserved || wanted.poses > 0;
     last_.bones.reserve(12 * poses_.boneCount());
     if (wanted.inner > 0) {
         const std::size_t poses = wanted.inner;

@@ -12,7 +12,7 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x53494c48;  // "HLIS"
-constexpr std::uint32_t kSavedVersion = 5;
+constexpr std::uint32_t kSavedVersion = 6;
 constexpr std::size_t kMostBodyBones = 255;
 
 struct Head {
@@ -154,6 +154,10 @@ Vector<std::byte> Instance::save() const {
     writer.value(Head{});
     writer.value(origin_);
     writer.all<Quat>(turns_);
+    // What is asked for, and what the last step had: a change wakes hair.
+    writer.all<float>(hairPoses_.amounts);
+    const Engine* const stepped = engineOfLevel();
+    writer.all<float>(stepped ? stepped->poseAmounts() : std::span<const float>(hairPoses_.amounts));
     const std::uint32_t number = level();
     writer.value(number);
     if (levels_) {
@@ -193,6 +197,14 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
     const auto origin = reader.value<std::array<double, 3>>();
     Vector<Quat> turns;
     reader.all(turns, turns_.size());
+    Vector<float> amounts, followed;
+    reader.all(amounts, hairPoses_.amounts.size());
+    reader.all(followed, hairPoses_.amounts.size());
+    const auto areAmounts = [](const Vector<float>& all) {
+        return std::all_of(all.begin(), all.end(), [](float amount) { return amount >= 0 && amount <= 1; });
+    };
+    if (reader.good && !(areAmounts(amounts) && areAmounts(followed)))
+        return damaged("follows a pose by an amount that is not from 0 to 1");
     const auto number = reader.value<std::uint32_t>();
     if (number > (levels_ ? std::uint32_t{HL_LEVEL_RIGID} : 0u))
         return damaged("is at a level that there is not");
@@ -216,8 +228,23 @@ Outcome Instance::load(std::span<const std::byte> bytes) {
     if (engine && reader.good) state = readState(reader, *engine->state());
     if (!reader.good || !reader.atEnd()) return damaged("has other strands or settings");
 
-    // Takes memory, so it comes first.
-    if (engine && !engine->setState(*state)) return damaged("has other strands");
+    // Takes memory, so it comes first; in copies where engines follow poses otherwise.
+    const std::span<const float> follows = (engine ? engine : &engine_)->poseAmounts();
+    if (std::equal(followed.begin(), followed.end(), follows.begin())) {
+        if (engine && !engine->setState(*state)) return damaged("has other strands");
+    } else {
+        Engine finest(engine_);
+        Vector<Engine> coarser;
+        if (levels_) coarser = levels_->engines;
+        giveAmounts(followed, finest, coarser);
+        Engine* const other = number == HL_LEVEL_FINEST ? &finest : engine ? &coarser[number - 1] : nullptr;
+        if (other && !other->setState(*state)) return damaged("has other strands");
+        engine_ = std::move(finest);
+        if (levels_) levels_->engines = std::move(coarser);
+        hairPoses_.isReserved = false;
+    }
+    hairPoses_.amounts.swap(amounts);
+    hairPoses_.isStanding = false;
     if (levels_) {
         takeHairs(read.share);
         levels_->level = number;

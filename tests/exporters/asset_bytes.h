@@ -50,6 +50,9 @@ inline std::size_t useAll(const runtime::Asset& asset) {
         sum += asset.nameOf(setting).size() + asset.valuesOf(setting).size();
     for (const runtime::asset::Bone& bone : asset.bones) sum += asset.text(bone.name).size();
     for (const runtime::asset::Sphere& sphere : asset.spheres) sum += asset.text(sphere.name).size();
+    for (std::size_t pose = 0; pose < asset.poses().size(); ++pose)
+        sum +=
+            asset.text(asset.poses()[pose].name).size() + asset.poseArrays(pose, strands).positions_ss.size();
     if (const auto made = asset.followHairs(strands); made.hairs) sum += made.hairs->hairCount();
     const auto engine = runtime::Engine::make({strands.offsets, strands.positions_ss}, asset.simulation());
     return sum + (engine.engine ? engine.engine->pointCount() : engine.error.size());

@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/groom/poses.h"
 #include "tests/exporters/asset_samples.h"
 #include "tests/support/source_dir.h"
 
@@ -240,6 +241,52 @@ TEST_F(RuntimePage, IsEnoughToReadAFileBy) {
     }
     EXPECT_EQ(settings.at("simulation.windSpeed"), 3.5);
     EXPECT_EQ(settings.at("interpolation.followPerGuide"), 6);
+}
+
+TEST_F(RuntimePage, IsEnoughToReadPosesBy) {
+    Groom groom = helices({3, 7, 12});
+    std::vector<Vec3f> shape(groom.positions().begin(), groom.positions().end());
+    for (Vec3f& at : shape) at = Vec3f(at.y(), -at.z(), 0.4f * at.x());
+    ASSERT_TRUE(putPose(groom, "Wet", groom.positions()));
+    ASSERT_TRUE(putPose(groom, "Swept", shape));
+    groom.poses[1].amount = 0.625f;
+    groom.poses[1].ramp = runtime::Ramp::straight(1, 0);
+    const auto bytes = written(groom);
+    const Page page = readPage();
+    const PageReader reader(page, bytes);
+    EXPECT_EQ(reader.header("minor"), 5);
+    ASSERT_EQ(reader.count("POSE"), 2u);
+    for (const char* kind : {"POSE", "POSD"})
+        EXPECT_EQ(reader.recordBytes(kind), reader.table(kind, "recordBytes")) << kind;
+    EXPECT_EQ(reader.text(reader.record("POSE", 0, "nameAt"), reader.record("POSE", 0, "nameBytes")), "Wet");
+    EXPECT_EQ(reader.text(reader.record("POSE", 1, "nameAt"), reader.record("POSE", 1, "nameBytes")),
+              "Swept");
+    EXPECT_EQ(reader.record("POSE", 1, "amount"), 0.625);
+    EXPECT_EQ(reader.record("POSE", 0, "weights"), 0);
+    ASSERT_EQ(reader.record("POSE", 1, "weights"), 1);
+    const std::size_t points = groom.pointCount(), segments = points - groom.strandCount();
+    ASSERT_EQ(reader.count("POSD"), 2 * segments);
+    ASSERT_EQ(reader.count("POSW"), points);
+    const std::vector<float> weights = poseWeights(groom, groom.poses[1]);
+    std::size_t record = segments;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        for (std::size_t p = groom.offsets[s]; p < groom.offsets[s + 1]; ++p) {
+            EXPECT_NEAR(valueAt(reader.at("POSW") + p, "u8") / 255, double{weights[p]}, 0.00201) << p;
+            if (p == groom.offsets[s]) continue;
+            double x = std::max(-1.0, reader.record("POSD", record, "direction", 0) / 32767);
+            double y = std::max(-1.0, reader.record("POSD", record, "direction", 1) / 32767);
+            const double z = 1 - std::abs(x) - std::abs(y);
+            if (z < 0) {
+                const double flat = x;
+                x = (1 - std::abs(y)) * (flat < 0 ? -1 : 1);
+                y = (1 - std::abs(flat)) * (y < 0 ? -1 : 1);
+            }
+            const Vec3d expected = (shape[p] - shape[p - 1]).cast<double>().normalized();
+            EXPECT_LT((Vec3d(x, y, z).normalized() - expected).norm(), 5e-5) << p;
+            ++record;
+        }
+    }
+    EXPECT_EQ(record, 2 * segments);
 }
 
 /// Bits of CLPD, as the page has them.

@@ -28,6 +28,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!hair.make(opened, HL_HAIRS, nullptr, &error)) return error.what().empty() ? std::abort(), 0 : 0;
     std::vector<float> points;
     for (const double seconds : {0.0, 0.05, 0.4, 0.1}) hair.play(opened, Frame(), seconds, &error);
+    for (std::uint32_t pose = 0; pose < info.poses; ++pose) {
+        if (!hair.setPose(pose, 0.7f, &error)) std::abort();
+    }
     for (int f = 0; f < 3; ++f) hair.step(Frame(), &error);
     hair.readGuides(points);
     if (info.hairs > 0) hair.readHairs(points);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "tests/runtime/allocations.h"
 #include "tests/runtime/strand_fixture.h"
 
 namespace hairloom::runtime {
@@ -91,6 +92,42 @@ TEST(Pose, GivenUpLeavesNoMemory) {
     ASSERT_TRUE(engine.setPoseAmounts({&none, 1}));
     run(engine, strands, 1);
     EXPECT_EQ(engine.effectBytes(Effect::pose), 0u);
+}
+
+/// Laying them solves for the shapes that hang in them: what does not change these asks for none of it.
+TEST(Pose, AreLaidAgainOnlyWhereTheirShapesChange) {
+    const Strands strands = tuft(20, true);
+    Engine none = makeEngine(strands, rods()), half = posedEngine(strands, rods(), posedTuft(strands), 0.5f);
+    const auto asked = [](Engine& engine, const SimulationSettings& settings) {
+        const std::size_t before = allocationCount();
+        EXPECT_EQ(engine.setSettings(settings), "");
+        return allocationCount() - before;
+    };
+    SimulationSettings windy = rods();
+    windy.windSpeed = 2.0f;
+    windy.airDrag *= 2.0f;
+    EXPECT_EQ(asked(half, windy), asked(none, windy));
+    SimulationSettings lighter = windy;
+    lighter.gravity.y *= 0.5f;
+    EXPECT_GT(asked(half, lighter), asked(none, lighter));
+    // They are laid as those of an engine that was made with the settings.
+    Engine made = posedEngine(strands, lighter, posedTuft(strands), 0.5f);
+    run(half, strands, 300);
+    run(made, strands, 300);
+    EXPECT_LT(farthest(positionsOf(half), positionsOf(made)), 1e-4f);
+}
+
+/// Memory that is kept is there for poses that go and come.
+TEST(Pose, WithKeptMemoryAsksForNone) {
+    const Strands strands = tuft(20, true);
+    Engine engine = posedEngine(strands, rods(), posedTuft(strands), 0.5f);
+    engine.keepMemory();
+    run(engine, strands, 2);
+    const std::size_t before = allocationCount();
+    for (const float amount : {0.0f, 0.3f, 0.0f, 1.0f}) {
+        ASSERT_TRUE(engine.setPoseAmounts({&amount, 1}));
+    }
+    EXPECT_EQ(allocationCount() - before, 0u);
 }
 
 /// Hair of any stiffness, that carries its weight or not, on one clamped point or two.

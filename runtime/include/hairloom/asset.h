@@ -169,6 +169,20 @@ class Asset {
         return recordsOf<asset::HairLook>(asset::kHairLooks);
     }
 
+    /// Poses, by their names in text(); none.
+    std::span<const asset::Pose> poses() const { return recordsOf<asset::Pose>(asset::kPoses); }
+    std::span<const asset::PoseDirection> poseDirections() const {
+        return recordsOf<asset::PoseDirection>(asset::kPoseDirections);
+    }
+    /// Of each point, shares of 255, of poses one after the other.
+    std::span<const std::uint8_t> poseWeights() const { return recordsOf<std::uint8_t>(asset::kPoseWeights); }
+    /// A pose as an engine takes it: strands of the lengths that `rest` has, each from its root at 0.
+    struct PoseArrays {
+        Vector<Float3> positions_ss;
+        Vector<float> weights;  ///< of each point, or none
+    };
+    PoseArrays poseArrays(std::size_t pose, const Strands& rest) const;
+
     /// Recorded motion that games play, or none: null.
     const asset::Clip* clip() const {
         const auto clips = recordsOf<asset::Clip>(asset::kClip);
@@ -209,6 +223,7 @@ class Asset {
     std::optional<AssetError> checkLevels() const;
     std::optional<AssetError> checkBody() const;
     std::optional<AssetError> checkClip() const;
+    std::optional<AssetError> checkPoses() const;
     std::optional<AssetError> checkMaterials() const;  ///< after checkFollowHairs() and checkLayers()
 
     std::span<const std::byte> bytes_;

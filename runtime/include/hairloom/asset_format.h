@@ -24,6 +24,8 @@ inline constexpr std::uint16_t kMinorOfPartedRoots = 2;
 inline constexpr std::uint16_t kMinorOfClips = 3;
 /// Written where there are materials for the shaders of games.
 inline constexpr std::uint16_t kMinorOfMaterials = 4;
+/// Written where there are poses.
+inline constexpr std::uint16_t kMinorOfPoses = 5;
 /// Sections begin at multiples of it, and so does the memory that the file lies in.
 inline constexpr std::size_t kAlignment = 16;
 inline constexpr std::uint32_t kMaxSections = 4096;
@@ -62,7 +64,8 @@ inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots
                                   kSettings = "SETT", kValues = "VALS", kText = "TEXT", kAttributes = "ATTR",
                                   kAttributeValues = "ATTV", kLevelErrors = "LVLE", kSeenErrors = "LVLS",
                                   kBody = "BODY", kClip = "CLIP", kClipPlaces = "CLPI", kClipFrames = "CLPD",
-                                  kMaterials = "MATL", kFibreTables = "FIBT", kHairLooks = "HLOK";
+                                  kMaterials = "MATL", kFibreTables = "FIBT", kHairLooks = "HLOK",
+                                  kPoses = "POSE", kPoseDirections = "POSD", kPoseWeights = "POSW";
 
 /// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
 inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;
@@ -251,6 +254,20 @@ struct HairLook {
 static_assert(sizeof(HairLook) == 8);
 inline constexpr std::uint16_t kPlainPigment = 8191;
 inline constexpr float kLengthStep = 0x1p-14f;
+
+/// Another shape of the strands, which they follow by an amount. Pose k has the segments of all strands from
+/// k · (points − strands) of the section of directions on, strand after strand, root to tip.
+struct Pose {
+    Text name;
+    float amount;           ///< 0 to 1, until a game sets another
+    std::uint32_t weights;  ///< 1 + which points of the section of weights it has; 0: none, all are 1
+};
+static_assert(sizeof(Pose) == 16);
+/// x and y of a direction that is laid out as an octahedron (Meyer et al. 2010), shares of 32,767.
+using PoseDirection = std::array<std::int16_t, 2>;
+static_assert(sizeof(PoseDirection) == 4);
+/// Radians, of any direction from the nearest that there is.
+inline constexpr float kPoseDirectionError = 5e-5f;
 
 /// Metres that 1 in the section of radii stands for.
 inline constexpr float kRadiusStep = 0x1p-24f;

@@ -62,6 +62,8 @@ struct StepReport {
 struct State;
 /// What strands are at rest, and how they are grouped (src/state.h).
 struct RestShape;
+/// Poses that strands follow, laid out alike (src/poses.h).
+struct PoseSet;
 
 class Engine {
   public:
@@ -110,6 +112,8 @@ class Engine {
     /// As FrameInput::poseAmounts sets them, at once; false for another number than there are poses.
     bool setPoseAmounts(std::span<const float> amounts);
     std::span<const float> poseAmounts() const;
+    /// Those of setPoses(); copies of an engine share them. Null: none.
+    std::shared_ptr<const PoseSet> poses() const;
 
     /// Memory that the body and what is known of it take; 0 where there is none, or springs pass through it.
     std::size_t bodyBytes() const;

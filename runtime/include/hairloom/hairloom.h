@@ -116,6 +116,9 @@ typedef struct hl_asset_info {
     size_t levels_memory; /* what HL_LEVELS adds */
     uint32_t layers, settings, attributes;
     uint32_t measured_levels; /* 1: errors of levels are in the asset, so that HL_LEVELS takes little time */
+    /* Since 0.3: */
+    uint32_t poses;
+    uint32_t unused; /* 0 */
 } hl_asset_info;
 
 /* Looks at header and table of the file alone. `bytes` begin at a multiple of 16 and outlive the asset. */
@@ -182,6 +185,18 @@ HL_API hl_code hl_asset_attribute(const hl_asset* asset, uint32_t attribute, hl_
                                   hl_error* error);
 HL_API hl_code hl_asset_find_attribute(const hl_asset* asset, const char* name, uint32_t* attribute,
                                        hl_error* error);
+
+/* Another shape of the hair, for rods to follow by an amount that a game sets (hl_instance_set_pose); by its
+ * number below hl_asset_info.poses. What is given back lies in the asset's bytes. */
+typedef struct hl_hair_pose {
+    size_t size;      /* sizeof(hl_hair_pose) */
+    const char* name; /* UTF-8, does not end in 0 */
+    size_t name_bytes;
+    float amount;     /* that an instance begins with, 0 to 1 */
+    uint32_t partial; /* 1: points take less than the amount, as it was painted; 0: all take all of it */
+} hl_hair_pose;
+HL_API hl_code hl_asset_pose(const hl_asset* asset, uint32_t pose, hl_hair_pose* out, hl_error* error);
+HL_API hl_code hl_asset_find_pose(const hl_asset* asset, const char* name, uint32_t* pose, hl_error* error);
 
 /* What a follow hair is, whatever share of them is read: for vertex buffers and shaders, once. */
 typedef struct hl_hair {
@@ -343,6 +358,15 @@ HL_API hl_code hl_instance_set(hl_instance* instance, const char* name, const do
 HL_API hl_code hl_instance_choose(hl_instance* instance, const char* name, const char* choice,
                                   hl_error* error);
 
+/* How far hair follows one of the asset's poses from the next step on, in place of the authored amount: 0
+ * simulates it alone, 1 holds it in the pose but for what it collides with, and what is between draws it
+ * there. Poses add up: by 1 and 1 hair stands half way between two. The amount of a frame is the game's to
+ * animate. Springs follow none. Asks for memory at the first amount above 0, and gives it back when all are
+ * 0, unless it was reserved. Such a first amount takes about as long as making the instance, others as long
+ * as some hundredths of a step. */
+HL_API hl_code hl_instance_set_pose(hl_instance* instance, uint32_t pose, float amount, hl_error* error);
+HL_API hl_code hl_instance_pose(const hl_instance* instance, uint32_t pose, float* amount, hl_error* error);
+
 /* Memory ahead of time. hl_instance_make asks for what an instance holds, its first frames of new effects and
  * of more spheres for more. After this call no step, reset, change of level or read asks for any, whatever
  * head, bones and wind do, as long as frames have no more spheres, no more capsules than these, no more poses
@@ -354,6 +378,9 @@ typedef struct hl_reserve {
     uint32_t previous_guides,
         previous_hairs; /* 1 where reads of guides, of hairs will ask for hl_read.previous */
     uint32_t inner;     /* poses that hl_frame.inner will have at most, up to 15; 0: none */
+    /* 1: amounts of the asset's poses will change, so that hl_instance_set_pose asks for no memory either */
+    uint32_t poses;
+    uint32_t unused; /* 0 */
 } hl_reserve;
 HL_API void hl_reserve_init(hl_reserve* reserve);
 HL_API hl_code hl_instance_reserve(hl_instance* instance, const hl_reserve* reserve, hl_error* error);

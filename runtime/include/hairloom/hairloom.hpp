@@ -67,6 +67,10 @@ class Asset {
         return hl_asset_numbers(&asset_, name, values, 32, &count, nullptr) == HL_OK && count > 0 ? values[0]
                                                                                                   : missing;
     }
+    /// The number of the pose of that name, for Instance::setPose().
+    bool findPose(const char* name, std::uint32_t& pose, hl_error* error = nullptr) const {
+        return hl_asset_find_pose(&asset_, name, &pose, error) == HL_OK;
+    }
     const hl_asset* get() const { return &asset_; }
 
   private:
@@ -112,6 +116,10 @@ class Instance {
     }
     bool choose(const char* name, const char* choice, hl_error* error = nullptr) {
         return hl_instance_choose(instance_.get(), name, choice, error) == HL_OK;
+    }
+    /// How far hair follows a pose of the asset, 0 to 1.
+    bool setPose(std::uint32_t pose, float amount, hl_error* error = nullptr) {
+        return hl_instance_set_pose(instance_.get(), pose, amount, error) == HL_OK;
     }
     /// All memory that frames of up to so many spheres may come to ask for.
     bool reserve(std::uint32_t spheres, hl_error* error = nullptr) {

@@ -85,9 +85,11 @@ class RodStrands final : public ModelStrands {
 
     void takeSettings(const RestShape& shape, const SimulationSettings& settings,
                       const SimulationSettings* before, State& state, const Host& host) override {
+        // What rods rest in follows from no other settings.
+        if (before && haveEqualRodEnergy(settings, *before)) return;
         rest_ = makeRodRest(shape, settings, host);
-        if (before && state.model == StrandModel::rods && !haveEqualRodEnergy(settings, *before))
-            forgetRodEnergy(shape, state);
+        posesAreOld_ = true;
+        if (before && state.model == StrandModel::rods) forgetRodEnergy(shape, state);
     }
 
     void takeState(const RestShape& shape, const SimulationSettings&, State& state) override {
@@ -104,10 +106,13 @@ class RodStrands final : public ModelStrands {
                   State& state) override {
         allocateRods(shape, rest_.parts, {plan.on(Effect::collision) || body, body}, state);
     }
-    void takePoses(const RestShape& shape, const SimulationSettings& settings, const PoseSet& poses,
-                   std::span<const float> amounts, bool others, State& state, const Host& host) override {
+    void takePoses(const RestShape& shape, const SimulationSettings& settings, const PoseChange& change,
+                   State& state, const Host& host) override {
         const bool followed = poses_.isOn();
-        poses_.take(shape, settings, rest_, poses, amounts, others, host);
+        PoseChange known = change;
+        known.others = known.others || posesAreOld_;
+        poses_.take(shape, settings, rest_, known, host);
+        posesAreOld_ = false;
         if (followed || poses_.isOn()) forgetRodEnergy(shape, state);
     }
     void forgetBody(State& state) const override {
@@ -199,6 +204,7 @@ class RodStrands final : public ModelStrands {
 
     RodRest rest_;
     RodPoses poses_;
+    bool posesAreOld_ = false;  // since rest_ is another
 };
 
 }  // namespace
@@ -236,6 +242,7 @@ const Model& rodModel() {
         .keepsVelocities = true,
         .mostPlanes = kRodRestPlanes[3] + kRodStatePlanes,
         .mostSolverFloats = [] { return rodKernel().solverFloats; },
+        .posePlanes = RodPoses::planesOf,
         .gpuSource = "rods.hlsli",
     };
     return kModel;

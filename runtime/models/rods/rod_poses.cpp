@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "engine/in_parallel.h"
+#include "engine/strand_model.h"
 #include "shaders/rod_constants.h"
 
 namespace hairloom::runtime {
 namespace {
 
-constexpr std::size_t kLaidPlanes = 6, kLaidStrain = 3;
 constexpr std::size_t kBlocksPerPiece = 4;
 /// Of half of a vertex' turn, squared: beyond, a pose folds hair so far that stiffness says nothing any more.
 constexpr float kLeastCosine = 0.25f;
@@ -88,17 +88,24 @@ float poseRate(float amount) {
 }
 
 void RodPoses::take(const RestShape& shape, const SimulationSettings& settings, const RodRest& rest,
-                    const PoseSet& poses, std::span<const float> amounts, bool others, const Host& host) {
+                    const PoseChange& change, const Host& host) {
+    const std::span<const float> amounts = change.amounts;
     const bool on = std::any_of(amounts.begin(), amounts.end(), [](float amount) { return amount > 0.0f; });
-    if (!on) {
+    if (!on && !change.keepsMemory) {
         laid_ = {};
         planes_ = {};
         return;
     }
-    if (others || laid_.empty()) lay(shape, settings, rest, poses, host);
-    if (planes_.empty()) planes_ = zeroFloats(kPlanes * shape.planeFloats, host);
+    // What is kept is laid again at once: later frames ask for no memory.
+    const bool isLaid = !laid_.empty();
+    if (change.others ? on || isLaid : on && !isLaid) lay(shape, settings, rest, change.poses, host);
+    if (!on) {
+        planes_.clear();
+        return;
+    }
+    keepFloats(planes_, kPlanes * shape.planeFloats, host);
     inParallel(host, shape.blocks.size(), kBlocksPerPiece, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) blend(shape, poses, amounts, shape.blocks[b]);
+        for (std::size_t b = begin; b < end; ++b) blend(shape, change.poses, amounts, shape.blocks[b]);
     });
 }
 

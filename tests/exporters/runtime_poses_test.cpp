@@ -1,0 +1,552 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Poses in the runtime asset, and as games play them.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "core/groom/poses.h"
+#include "core/simulation/simulation.h"
+#include "hairloom/gpu.h"
+#include "runtime/asset/pose_directions.h"
+#include "tests/exporters/asset_bytes.h"
+#include "tests/exporters/levels_sample.h"
+#include "tests/runtime/allocations.h"
+
+namespace hairloom::test {
+namespace {
+
+using game::Error;
+using game::Instance;
+using testing::HasSubstr;
+
+/// Strands turned about their roots, and bent more towards the tip.
+std::vector<Vec3f> turned(const Groom& groom, const Vec3f& axis, float angle) {
+    std::vector<Vec3f> shape(groom.positions().begin(), groom.positions().end());
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        const auto points = groom.strand(s);
+        for (std::size_t p = 1; p < points.size(); ++p) {
+            const float share = static_cast<float>(p) / static_cast<float>(points.size() - 1);
+            const std::size_t at = groom.offsets[s] + p;
+            shape[at] =
+                shape[at - 1] + Eigen::AngleAxisf(angle * (0.5f + share), axis) * (points[p] - points[p - 1]);
+        }
+    }
+    return shape;
+}
+
+/// Hair with two poses; the second has a mask and a ramp.
+Groom posed() {
+    Groom groom = dome(6, 1, 14, 0.16f);
+    groom.interpolation.followPerGuide = 5;
+    groom.simulation.strandModel = runtime::StrandModel::rods;
+    groom.spheres = {{"skull", Vec3f(0, 1.6f, 0), 0.09f, ""}};
+    EXPECT_TRUE(putPose(groom, "Swept", turned(groom, Vec3f::UnitX(), 0.5f)));
+    EXPECT_TRUE(putPose(groom, "Wet", turned(groom, Vec3f::UnitZ(), -0.8f)));
+    std::vector<float> painted;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) painted.push_back(s % 3 == 0 ? 0.75f : 0.0f);
+    groom.strandAttributes.set(maskAttribute(2), painted);
+    groom.poses[1].mask = 2;
+    groom.poses[1].ramp = runtime::Ramp::straight(1, 0.5f);
+    return groom;
+}
+
+class RuntimePoses : public AssetTest {
+  protected:
+    void open(const Groom& groom, std::uint32_t what = HL_GUIDES, ExportReport* report = nullptr) {
+        bytes_ = written(groom, report);
+        Error error;
+        ASSERT_TRUE(asset_.open(bytes_.data(), bytes_.size(), &error)) << error.what();
+        ASSERT_TRUE(asset_.check(&error)) << error.what();
+        ASSERT_TRUE(hair_.make(asset_, what, nullptr, &error)) << error.what();
+    }
+    static std::vector<Vec3f> guides(const Instance& hair) {
+        std::vector<Vec3f> points(hair.describe().guide_points);
+        const hl_out out{points.data(), points.size() * sizeof(Vec3f), sizeof(Vec3f)};
+        EXPECT_EQ(hl_instance_read_guides(hair.get(), out, game::kNothing, game::kNothing, nullptr), HL_OK);
+        return points;
+    }
+    static float farthest(std::span<const Vec3f> a, std::span<const Vec3f> b) {
+        float most = 0;
+        for (std::size_t p = 0; p < a.size(); ++p) most = std::max(most, (a[p] - b[p]).norm());
+        return most;
+    }
+    static void play(Instance& hair, int from, int to, float still = 1) {
+        for (int f = from; f < to; ++f) ASSERT_TRUE(hair.step(Walk(f, 0, still).frame));
+    }
+    static std::vector<std::byte> saved(const Instance& hair) {
+        std::size_t size = 0;
+        EXPECT_EQ(hl_instance_save(hair.get(), nullptr, 0, &size, nullptr), HL_OK);
+        std::vector<std::byte> bytes(size);
+        EXPECT_EQ(hl_instance_save(hair.get(), bytes.data(), size, &size, nullptr), HL_OK);
+        return bytes;
+    }
+    hl_effect poseEffect(const Instance& hair) {
+        for (std::uint32_t e = 0;; ++e) {
+            hl_effect effect{};
+            if (hl_instance_effect(hair.get(), e, &effect, nullptr) != HL_OK) return {};
+            if (std::string_view(effect.name) == "pose") return effect;
+        }
+    }
+
+    std::vector<std::byte> bytes_;
+    game::Asset asset_;
+    Instance hair_;
+};
+
+TEST(PoseDirections, AreWithinTheStatedErrorAndOfLengthOne) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    float largest = 0;
+    const auto look = [&](Vec3f at) {
+        const Vec3f d = at.normalized();
+        const auto read = runtime::directionOf(runtime::packedDirection({d.x(), d.y(), d.z()}));
+        const Vec3f back(read.x, read.y, read.z);
+        EXPECT_NEAR(back.norm(), 1, 1e-6f);
+        largest = std::max(largest, 2 * std::asin(0.5f * (back - d).norm()));
+    };
+    for (int i = 0; i < 200'000; ++i) look({normal(random), normal(random), normal(random)});
+    for (int axis = 0; axis < 3; ++axis) {
+        look(Vec3f::Unit(axis));
+        look(-Vec3f::Unit(axis));
+        look(Vec3f(1, 1, 1) - Vec3f::Unit(axis));
+    }
+    EXPECT_LE(largest, runtime::asset::kPoseDirectionError);
+    EXPECT_GT(largest, 0.5f * runtime::asset::kPoseDirectionError) << "the stated error is that of the bits";
+    // Whatever bits there are, they are a direction.
+    for (int i = 0; i < 20'000; ++i) {
+        const auto bits = static_cast<std::uint32_t>(random());
+        const auto read = runtime::directionOf(
+            {static_cast<std::int16_t>(bits & 0xffffu), static_cast<std::int16_t>(bits >> 16u)});
+        ASSERT_NEAR(runtime::length(read), 1, 1e-6f) << bits;
+    }
+}
+
+TEST_F(RuntimePoses, GoIntoTheAssetWithNamesAmountsAndWeights) {
+    Groom groom = posed();
+    groom.poses[0].amount = 0.25f;
+    ExportReport report;
+    open(groom, HL_GUIDES, &report);
+    const hl_asset_info info = asset_.describe();
+    EXPECT_EQ(info.minor, 5u);
+    ASSERT_EQ(info.poses, 2u);
+    const auto poseAt = [&](std::uint32_t k) {
+        hl_hair_pose pose{};
+        pose.size = sizeof pose;
+        EXPECT_EQ(hl_asset_pose(asset_.get(), k, &pose, nullptr), HL_OK);
+        return pose;
+    };
+    EXPECT_EQ(std::string(poseAt(0).name, poseAt(0).name_bytes), "Swept");
+    EXPECT_EQ(poseAt(0).amount, 0.25f);
+    EXPECT_EQ(poseAt(0).partial, 0u);
+    EXPECT_EQ(std::string(poseAt(1).name, poseAt(1).name_bytes), "Wet");
+    EXPECT_EQ(poseAt(1).amount, 0);
+    EXPECT_EQ(poseAt(1).partial, 1u);
+    std::uint32_t found = 9;
+    EXPECT_TRUE(asset_.findPose("Wet", found));
+    EXPECT_EQ(found, 1u);
+    Error error;
+    EXPECT_FALSE(asset_.findPose("Dry", found, &error));
+    EXPECT_THAT(error.words, HasSubstr("no pose of the name 'Dry'"));
+    float amount = -1;
+    EXPECT_EQ(hl_instance_pose(hair_.get(), 0, &amount, &error), HL_OK);
+    EXPECT_EQ(amount, 0.25f) << "as authored";
+    EXPECT_EQ(hl_instance_pose(hair_.get(), 2, &amount, &error), HL_BAD_VALUE);
+    EXPECT_THAT(error.words, HasSubstr("pose 2 of 2"));
+    EXPECT_FALSE(hair_.setPose(2, 1, &error));
+    EXPECT_FALSE(hair_.setPose(0, 1.5f, &error));
+    EXPECT_THAT(error.words, HasSubstr("expected 0 to 1"));
+
+    const auto opened = runtime::Asset::open(bytes_);
+    const auto read = opened.asset->poseArrays(1, opened.asset->strandsAtRest());
+    const std::vector<float> weights = poseWeights(groom, groom.poses[1]);
+    ASSERT_EQ(read.weights.size(), weights.size());
+    for (std::size_t p = 0; p < weights.size(); ++p)
+        ASSERT_NEAR(read.weights[p], weights[p], 0.5f / 255 + 1e-6f);
+    EXPECT_TRUE(opened.asset->poseArrays(0, opened.asset->strandsAtRest()).weights.empty());
+    const auto error_mm = std::ranges::find(report.attributes, "poses", &ComparedAttribute::name);
+    ASSERT_NE(error_mm, report.attributes.end());
+    // Directions, of 16 cm, and lengths of segments, which are those of the quantised strands.
+    EXPECT_LT(error_mm->maxError, 0.16 * 5e-5 + 14 * 2 * opened.asset->greatestError());
+    EXPECT_GT(error_mm->maxError, 1e-7);
+    for (const LeftBehind& left : report.leftBehind) EXPECT_THAT(left.what, testing::Not(HasSubstr("poses")));
+}
+
+TEST_F(RuntimePoses, OfOtherFormatsAndWithoutAShapeAreSaid) {
+    Groom groom = posed();
+    const auto path = folder / "a.ply";
+    const auto other = strandWriter("ply").write(groom, path, {});
+    ASSERT_TRUE(other);
+    EXPECT_TRUE(std::ranges::any_of(other->leftBehind, [](const LeftBehind& left) {
+        return left.what.find("2 poses") != std::string::npos;
+    }));
+    groom.pointAttributes.erase(poseAttribute("Swept"));
+    groom.simulation.strandModel = runtime::StrandModel::springs;
+    ExportReport report;
+    open(groom, HL_GUIDES, &report);
+    EXPECT_EQ(asset_.describe().poses, 1u);
+    const auto said = [&](const char* words) {
+        return std::ranges::any_of(report.findings, [&](const Finding& finding) {
+            return finding.what.find(words) != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(said("has no shape"));
+    EXPECT_TRUE(said("springs follow no pose"));
+    ASSERT_TRUE(hair_.setPose(0, 1));
+    play(hair_, 1, 4);
+    EXPECT_EQ(poseEffect(hair_).on, 0u);
+}
+
+TEST_F(RuntimePoses, WithOtherPointsAreTheShapeAndTheRampOfTheGrooms) {
+    const Groom groom = posed();
+    StrandExportOptions options;
+    options.pointsPerStrand = 20;
+    const auto bytes = written(groom, nullptr, options);
+    const auto opened = runtime::Asset::open(bytes);
+    ASSERT_TRUE(opened.asset);
+    const auto rest = opened.asset->strandsAtRest();
+    const auto read = opened.asset->poseArrays(1, rest);
+    const std::vector<float> weights = poseWeights(groom, groom.poses[1]);
+    const auto shape = groom.pointAttributes.view<Vec3f>(poseAttribute("Wet"));
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        EXPECT_NEAR(read.weights[rest.offsets[s]], weights[groom.offsets[s]], 0.003f);
+        EXPECT_NEAR(read.weights[rest.offsets[s + 1] - 1], weights[groom.offsets[s + 1] - 1], 0.003f);
+        const auto& tip = read.positions_ss[rest.offsets[s + 1] - 1];
+        const Vec3f expected = shape[groom.offsets[s + 1] - 1] - shape[groom.offsets[s]];
+        EXPECT_LT((Vec3f(tip.x, tip.y, tip.z) - expected).norm(), 0.0005f) << "corners are cut";
+    }
+}
+
+TEST_F(RuntimePoses, AnAssetWithoutHasTheBytesAndTheBitsOfBefore) {
+    Groom groom = posed();
+    open(groom);
+    Groom none = groom;
+    none.poses.clear();
+    for (const char* name : {"Swept", "Wet"}) none.pointAttributes.erase(poseAttribute(name));
+    const auto plain = written(none);
+    game::Asset without;
+    ASSERT_TRUE(without.open(plain.data(), plain.size()));
+    EXPECT_EQ(without.describe().minor, 2u);
+    EXPECT_EQ(without.describe().poses, 0u);
+    Instance other;
+    ASSERT_TRUE(other.make(without, HL_GUIDES));
+    play(hair_, 1, 30);
+    play(other, 1, 30);
+    EXPECT_EQ(hair_.hash(), other.hash()) << "amounts of 0";
+    EXPECT_EQ(poseEffect(hair_).on, 0u);
+    // 16 bytes of each point and pose: the poses themselves, and padding of blocks.
+    const std::size_t more = hair_.describe().bytes - other.describe().bytes;
+    EXPECT_GE(more, std::size_t{2} * 16 * hair_.describe().guide_points);
+    EXPECT_LE(more, std::size_t{2} * 16 * hair_.describe().guide_points * 3 / 2);
+    hl_error error{};
+    EXPECT_EQ(hl_instance_set_pose(other.get(), 0, 0, &error), HL_BAD_VALUE);
+    EXPECT_THAT(error.words, HasSubstr("pose 0 of 0"));
+    // On and off again, it is simulated as hair that never was posed, and needs no more memory.
+    const std::size_t before = hair_.describe().bytes;
+    ASSERT_TRUE(hair_.setPose(0, 0.5f));
+    play(hair_, 30, 34);
+    EXPECT_EQ(poseEffect(hair_).on, 1u);
+    EXPECT_THAT(std::string(poseEffect(hair_).why), HasSubstr("0.5"));
+    EXPECT_GT(hair_.describe().bytes, before);
+    EXPECT_LE(hair_.describe().bytes, asset_.describe().guides_memory);
+    ASSERT_TRUE(hair_.setPose(0, 0));
+    play(hair_, 34, 36);
+    EXPECT_EQ(hair_.describe().bytes, before);
+}
+
+TEST_F(RuntimePoses, PlayAsInTheToolWithKeyedAmounts) {
+    const Groom groom = posed();
+    open(groom);
+    // As the tool has it, on the strands of the file: what quantising moves is looked at elsewhere.
+    const auto rest = runtime::Asset::open(bytes_).asset->strandsAtRest();
+    Groom quantised = groom;
+    auto& positions = quantised.pointAttributes.edit<Vec3f>(attribute::kPosition);
+    for (std::size_t p = 0; p < positions.size(); ++p)
+        positions[p] = Vec3f(rest.positions_ss[p].x, rest.positions_ss[p].y, rest.positions_ss[p].z);
+    auto tool = Simulation::make(quantised, {});
+    auto authored = Simulation::make(groom, {});
+    ASSERT_TRUE(tool) << tool.error().message();
+    float most = 0, mostOfAuthored = 0, way = 0;
+    for (int f = 1; f <= 120; ++f) {
+        // One comes and goes, the other joins it.
+        const float t = static_cast<float>(f) / 120;
+        const std::vector<float> amounts{std::max(0.0f, std::sin(6.3f * t)), t < 0.3f ? 0.0f : t};
+        const Walk walk(f);
+        HeadPose pose;
+        for (int i = 0; i < 12; ++i)
+            pose.head_ws.matrix()(i / 4, i % 4) = walk.head[static_cast<std::size_t>(i)];
+        pose.wind_ws = Vec3f(walk.wind[0], walk.wind[1], walk.wind[2]);
+        pose.poseAmounts = amounts;
+        tool->step(1 / 60.0f, pose);
+        authored->step(1 / 60.0f, pose);
+        for (std::uint32_t k = 0; k < 2; ++k) ASSERT_TRUE(hair_.setPose(k, amounts[k]));
+        ASSERT_TRUE(hair_.step(walk.frame));
+        const std::vector<Vec3f> played = guides(hair_);
+        most = std::max(most, farthest(played, tool->positions_ws()));
+        mostOfAuthored = std::max(mostOfAuthored, farthest(played, authored->positions_ws()));
+        way = std::max(way, farthest(played, groom.positions()));
+    }
+    EXPECT_GT(way, 0.05f);
+    EXPECT_LT(most, 0.0002f);
+    EXPECT_LT(mostOfAuthored, 0.0005f);
+    RecordProperty("farthest_mm", static_cast<int>(1000 * most));
+}
+
+TEST_F(RuntimePoses, HoldHairAtEveryLevel) {
+    Groom groom = posed();
+    open(groom, HL_GUIDES | HL_LEVELS);
+    const auto opened = runtime::Asset::open(bytes_);
+    const auto rest = opened.asset->strandsAtRest();
+    const auto pose = opened.asset->poseArrays(0, rest);
+    std::vector<Vec3f> expected;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        // The first segment goes with the root.
+        for (std::uint32_t p = rest.offsets[s]; p < rest.offsets[s + 1]; ++p) {
+            const auto at = [](const runtime::Float3& v) { return Vec3f(v.x, v.y, v.z); };
+            const std::uint32_t first = rest.offsets[s];
+            expected.push_back(p < first + 2 ? at(rest.positions_ss[p])
+                                             : Vec3f(expected.back() + at(pose.positions_ss[p]) -
+                                                     at(pose.positions_ss[p - 1])));
+        }
+    }
+    for (std::uint32_t level = 0; level < HL_LEVEL_COUNT; ++level) {
+        Instance one;
+        ASSERT_TRUE(one.copy(hair_));
+        ASSERT_TRUE(one.setLevel(level));
+        ASSERT_TRUE(one.setPose(0, 1));
+        play(one, 0, 150, 0);
+        // Coarser ones have fewer corners on each strand.
+        const float allowed = level == HL_LEVEL_FINEST || level == HL_LEVEL_RIGID ? 0.0005f : 0.004f;
+        EXPECT_LT(farthest(guides(one), expected), allowed) << level;
+        EXPECT_GT(farthest(guides(hair_), expected), 0.05f);
+        // Half way there is between.
+        ASSERT_TRUE(one.setPose(0, 0.5f));
+        play(one, 0, 150, 0);
+        const float left = farthest(guides(one), expected);
+        EXPECT_GT(left, 0.005f) << level;
+        EXPECT_LT(left, 0.12f) << level;
+        // Going to another moves nothing at once.
+        const std::vector<Vec3f> before = guides(one);
+        ASSERT_TRUE(one.setLevel((level + 1) % HL_LEVEL_COUNT));
+        EXPECT_LT(farthest(guides(one), before), 1e-5f) << level;
+        ASSERT_TRUE(one.setPose(0, 0));
+        play(one, 0, 200, 0);
+        EXPECT_GT(farthest(guides(one), expected), 0.03f) << "it is let go";
+        EXPECT_LE(one.describe().bytes, asset_.describe().guides_memory + asset_.describe().levels_memory);
+    }
+}
+
+TEST_F(RuntimePoses, OfGuidesThatAreNotSimulatedHaveTheirOwnMask) {
+    Groom groom = posed();
+    open(groom, HL_GUIDES | HL_LEVELS);
+    const std::vector<float> weights = poseWeights(groom, groom.poses[1]);
+    for (const std::uint32_t level : {3u, 4u}) {
+        Instance one, still;
+        ASSERT_TRUE(one.copy(hair_));
+        ASSERT_TRUE(still.copy(hair_));
+        for (Instance* hair : {&one, &still}) ASSERT_TRUE(hair->setLevel(level));
+        ASSERT_TRUE(one.setPose(1, 1));
+        for (Instance* hair : {&one, &still}) play(*hair, 0, 150, 0);
+        const std::vector<Vec3f> a = guides(one), b = guides(still);
+        float masked = 0, others = 0;
+        for (std::size_t p = 0; p < a.size(); ++p) {
+            float& most = weights[p] > 0 ? masked : others;
+            most = std::max(most, (a[p] - b[p]).norm());
+        }
+        EXPECT_GT(masked, 0.03f) << level;
+        // Neighbours that follow a pose fall less than hair that does not, which takes over their fall.
+        EXPECT_LT(others, level == HL_LEVEL_RIGID ? 1e-6f : 0.6f * masked) << level;
+    }
+}
+
+TEST_F(RuntimePoses, AreSavedCopiedAndWakeHair) {
+    open(posed(), HL_GUIDES | HL_LEVELS);
+    for (std::uint32_t level = 0; level < HL_LEVEL_COUNT; ++level) {
+        Instance one, two, copy;
+        ASSERT_TRUE(one.copy(hair_));
+        ASSERT_TRUE(one.setLevel(level));
+        play(one, 1, 6);
+        ASSERT_TRUE(one.setPose(0, 0.7f));
+        play(one, 6, 9);
+        ASSERT_TRUE(one.setPose(1, 0.3f));  // asked for, and not stepped yet
+        const std::vector<std::byte> bytes = saved(one);
+        ASSERT_TRUE(two.make(asset_, HL_GUIDES | HL_LEVELS));
+        Error error;
+        ASSERT_EQ(hl_instance_load(two.get(), bytes.data(), bytes.size(), &error), HL_OK) << error.what();
+        ASSERT_TRUE(copy.copy(one));
+        float amount = 0;
+        ASSERT_EQ(hl_instance_pose(two.get(), 1, &amount, nullptr), HL_OK);
+        EXPECT_EQ(amount, 0.3f);
+        for (int f = 9; f < 20; ++f) {
+            for (Instance* hair : {&one, &two, &copy}) play(*hair, f, f + 1);
+            ASSERT_EQ(one.hash(), two.hash()) << level << " " << f;
+            ASSERT_EQ(one.hash(), copy.hash()) << level << " " << f;
+            ASSERT_EQ(guides(one), guides(two)) << level << " " << f;
+        }
+        // Back to what it was, with no pose.
+        Instance off;
+        ASSERT_TRUE(off.copy(hair_));
+        const std::vector<std::byte> plain = saved(off);
+        ASSERT_EQ(hl_instance_load(one.get(), plain.data(), plain.size(), &error), HL_OK) << error.what();
+        EXPECT_EQ(one.hash(), off.hash());
+    }
+}
+
+TEST_F(RuntimePoses, WakeHairThatSleeps) {
+    Groom groom = dome(10, 1, 16, 0.18f);
+    groom.spheres = {{"skull", Vec3f(0, 1.6f, 0), 0.095f, ""}};
+    ASSERT_TRUE(putPose(groom, "Swept", turned(groom, Vec3f::UnitX(), 0.5f)));
+    open(groom);
+    play(hair_, 1, 20);
+    for (int f = 0; f < 600; ++f) play(hair_, 0, 1, 0);
+    ASSERT_EQ(hair_.describe().asleep, hair_.describe().guides);
+    const std::vector<Vec3f> before = guides(hair_);
+    ASSERT_TRUE(hair_.setPose(0, 0));
+    play(hair_, 0, 1, 0);
+    EXPECT_EQ(hair_.describe().asleep, hair_.describe().guides) << "as it was";
+    ASSERT_TRUE(hair_.setPose(0, 1));
+    play(hair_, 0, 60, 0);
+    EXPECT_GT(farthest(guides(hair_), before), 0.03f);
+}
+
+TEST_F(RuntimePoses, AskForNoMemoryOnceTheyAreReserved) {
+    open(posed(), HL_GUIDES | HL_LEVELS);
+    Instance with, without;
+    ASSERT_TRUE(with.copy(hair_));
+    ASSERT_TRUE(without.copy(hair_));
+    hl_reserve reserve;
+    hl_reserve_init(&reserve);
+    reserve.poses = 2;
+    Error error;
+    EXPECT_EQ(hl_instance_reserve(with.get(), &reserve, &error), HL_BAD_VALUE);
+    EXPECT_THAT(error.words, HasSubstr("reserve.poses"));
+    reserve.poses = 1;
+    ASSERT_EQ(hl_instance_reserve(with.get(), &reserve, &error), HL_OK) << error.what();
+    const auto asked = [](Instance& hair) {
+        const std::size_t from = runtime::allocationCount();
+        for (int f = 1; f < 60; ++f) {
+            if (f % 7 == 0) {
+                EXPECT_TRUE(hair.setLevel(static_cast<std::uint32_t>(f / 7) % HL_LEVEL_COUNT));
+            }
+            const float amount = f % 20 < 10 ? 0.05f * static_cast<float>(f % 20) : 0.0f;
+            EXPECT_TRUE(hair.setPose(0, amount));
+            EXPECT_TRUE(hair.setPose(1, f % 3 == 0 ? amount : 0.0f));
+            EXPECT_TRUE(hair.step(Walk(f).frame));
+        }
+        return runtime::allocationCount() - from;
+    };
+    EXPECT_EQ(asked(with), 0u);
+    EXPECT_GT(asked(without), 0u) << "else this test looks at nothing";
+    EXPECT_EQ(with.hash(), without.hash());
+}
+
+TEST_F(RuntimePoses, AreNotSteppedOnAGpu) {
+    open(posed());
+    Error error;
+    ASSERT_TRUE(hair_.setPose(0, 0.5f));
+    EXPECT_EQ(hl_gpu_begin(hair_.get(), &error), HL_BAD_VALUE);
+    EXPECT_THAT(error.words, HasSubstr("poses"));
+    ASSERT_TRUE(hair_.setPose(0, 0));
+    ASSERT_EQ(hl_gpu_begin(hair_.get(), &error), HL_OK) << error.what();
+    const Walk walk(1);
+    ASSERT_EQ(hl_gpu_step(hair_.get(), &walk.frame, &error), HL_OK) << error.what();
+    ASSERT_TRUE(hair_.setPose(0, 0.5f));
+    EXPECT_EQ(hl_gpu_step(hair_.get(), &walk.frame, &error), HL_BAD_VALUE);
+}
+
+TEST_F(RuntimePoses, OfDamageAreRefusedWithWordsOrFinite) {
+    open(posed());
+    namespace format = runtime::asset;
+    const auto sectionOf = [](AssetBytes& copy, std::string_view kind) {
+        return *std::ranges::find_if(copy.table(), [&](const format::Section& section) {
+            return std::string_view(section.kind.data(), 4) == kind;
+        });
+    };
+    const auto refused = [&](const auto& change, const char* words) {
+        AssetBytes copy(bytes_);
+        change(copy);
+        copy.seal();
+        const auto opened = runtime::Asset::open(copy.span());
+        ASSERT_TRUE(opened.asset) << words;
+        const auto problem = opened.asset->check();
+        ASSERT_TRUE(problem) << words;
+        EXPECT_THAT(problem->words, HasSubstr(words));
+    };
+    const auto poseIn = [&](AssetBytes& copy, std::size_t k) -> format::Pose& {
+        return reinterpret_cast<format::Pose*>(copy.span().data() + sectionOf(copy, "POSE").offset)[k];
+    };
+    refused([&](AssetBytes& copy) { poseIn(copy, 0).amount = 1.25f; }, "whose amount is not from 0 to 1");
+    refused([&](AssetBytes& copy) { poseIn(copy, 1).amount = NAN; }, "whose amount is not from 0 to 1");
+    refused([&](AssetBytes& copy) { poseIn(copy, 0).weights = 2; }, "whose weights are not in the file");
+    refused([&](AssetBytes& copy) { poseIn(copy, 1).name.at = ~0u; }, "without name");
+    refused([&](AssetBytes& copy) { poseIn(copy, 1).name.bytes = ~0u; }, "without name");
+    refused(
+        [&](AssetBytes& copy) {
+            for (format::Section& section : copy.table())
+                if (std::string_view(section.kind.data(), 4) == "POSD") section.bytes -= 4, --section.count;
+        },
+        "directions of 2 poses");
+    refused(
+        [&](AssetBytes& copy) {
+            for (format::Section& section : copy.table())
+                if (std::string_view(section.kind.data(), 4) == "POSW") --section.bytes, --section.count;
+        },
+        "weights of poses");
+    std::mt19937 random(3);
+    std::size_t refusals = 0, played = 0;
+    for (const char* kind : {"POSE", "POSD", "POSW"}) {
+        AssetBytes copy(bytes_);
+        const format::Section section = sectionOf(copy, kind);
+        const std::size_t step = std::max<std::size_t>(1, section.bytes / 64);
+        for (std::size_t at = section.offset; at < section.offset + section.bytes; at += step) {
+            const std::byte was = copy.span()[at];
+            copy.span()[at] ^= static_cast<std::byte>(random() % 255 + 1);
+            copy.seal();
+            game::Asset asset;
+            ASSERT_TRUE(asset.open(copy.span().data(), copy.span().size()));
+            Instance hair;
+            if (!asset.check() || !hair.make(asset, HL_GUIDES | HL_LEVELS)) {
+                ++refusals;
+            } else {
+                for (std::uint32_t k = 0; k < asset.describe().poses; ++k) ASSERT_TRUE(hair.setPose(k, 1));
+                for (int f = 1; f <= 6; ++f) {
+                    play(hair, f, f + 1);
+                    ASSERT_TRUE(hair.setLevel(static_cast<std::uint32_t>(f) % HL_LEVEL_COUNT));
+                    for (const Vec3f& point : guides(hair))
+                        ASSERT_TRUE(point.allFinite()) << kind << " " << at;
+                }
+                ++played;
+            }
+            copy.span()[at] = was;
+        }
+    }
+    EXPECT_GT(refusals, 10u);
+    EXPECT_GT(played, 100u);
+}
+
+TEST_F(RuntimePoses, OlderReadersSkipThem) {
+    open(posed());
+    // What a reader of 1.4 does with kinds that it does not know: none of them is required.
+    AssetBytes copy(bytes_);
+    std::set<std::string> kinds;
+    for (runtime::asset::Section& section : copy.table()) {
+        const std::string kind(section.kind.data(), 4);
+        if (!kind.starts_with("POS")) continue;
+        EXPECT_EQ(section.flags, 0u) << kind;
+        kinds.insert(kind);
+        section.kind[0] = 'X';
+    }
+    EXPECT_EQ(kinds, (std::set<std::string>{"POSE", "POSD", "POSW"}));
+    copy.seal();
+    game::Asset asset;
+    ASSERT_TRUE(asset.open(copy.span().data(), copy.span().size()));
+    EXPECT_TRUE(asset.check());
+    EXPECT_EQ(asset.describe().poses, 0u);
+}
+
+}  // namespace
+}  // namespace hairloom::test
