@@ -361,9 +361,9 @@ HL_API hl_code hl_instance_choose(hl_instance* instance, const char* name, const
 /* How far hair follows one of the asset's poses from the next step on, in place of the authored amount: 0
  * simulates it alone, 1 holds it in the pose but for what it collides with, and what is between draws it
  * there. Poses add up: by 1 and 1 hair stands half way between two. The amount of a frame is the game's to
- * animate. Springs follow none. Asks for memory at the first amount above 0, and gives it back when all are
- * 0, unless it was reserved. Such a first amount takes about as long as making the instance, others as long
- * as some hundredths of a step. */
+ * animate. Springs follow none, and hl_gpu_step refuses hair that follows one. Asks for memory at the first
+ * amount above 0, and gives it back when all are 0, unless it was reserved: at such a first amount poses are
+ * laid, which docs/integrate.md has the time of. */
 HL_API hl_code hl_instance_set_pose(hl_instance* instance, uint32_t pose, float amount, hl_error* error);
 HL_API hl_code hl_instance_pose(const hl_instance* instance, uint32_t pose, float* amount, hl_error* error);
 
