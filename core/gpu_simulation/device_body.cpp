@@ -70,7 +70,7 @@ Status DeviceBody::upload(gpu::CommandList& list) {
 }
 
 void DeviceBody::bind(std::vector<gpu::Binding>& bindings) const {
-    bindings.push_back(gpu::Binding::read(10, table_));
+    bindings.push_back(gpu::Binding::read(13, table_));
     bindings.push_back(gpu::Binding::read(11, poses_));
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu_simulation/gpu_engine_method.h"
 
+#include <fmt/format.h>
+
 #include "core/gpu_simulation/strand_engine.h"
+#include "core/groom/poses.h"
 #include "core/simulation/effect_switch.h"
 #include "core/simulation/strand_method.h"
 
@@ -30,6 +33,11 @@ class GpuEngineMethod final : public StrandMethod {
         } else {
             keep(tl::unexpected(report.error()));
         }
+    }
+
+    Status setPoseAmounts(std::span<const float> amounts) override {
+        if (engine_.setPoseAmounts(amounts)) return {};
+        return fail(fmt::format("there are {} amounts", amounts.size()), "expected one for each pose");
     }
 
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
@@ -97,13 +105,15 @@ MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels
     return [&device, kernels = std::move(kernels)](
                const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairVolume)
                -> Result<std::unique_ptr<StrandMethod>> {
-        if (const std::string why = kernelError(scene.groom()); !why.empty()) return fail(why);
         EngineOptions options;
         options.layout = layoutFor(device.info().type);
         options.hairVolume = hairVolume;
         options.body = scene.groom().body;
         auto engine = StrandEngine::make(device, kernels, scene.strands(), scene.groom().simulation, options);
         if (!engine) return tl::unexpected(engine.error());
+        if (auto given = engine->setPoses(poseViews(scene.groom()).views); !given)
+            return tl::unexpected(given.error());
+        engine->setPoseAmounts(poseAmounts(scene.groom()));
         return std::make_unique<GpuEngineMethod>(std::move(*engine));
     };
 }

@@ -69,10 +69,4 @@ std::string kernelError(const runtime::SimulationSettings& settings) {
     return gpuModelOf(settings.strandModel).error(settings);
 }
 
-std::string kernelError(const Groom& groom) {
-    if (std::string why = kernelError(groom.simulation); !why.empty()) return why;
-    if (!followsPoses(groom)) return {};
-    return "hair follows poses on the CPU alone. Set their amounts to 0 and remove their keys to use the GPU";
-}
-
 }  // namespace hairloom::gpu_simulation

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string>
 
-#include "core/groom/groom.h"
 #include "hairloom/plan.h"
 #include "runtime/engine/kernels.h"
 
@@ -73,7 +72,5 @@ std::string callOf(runtime::StageId stage);
 
 /// Empty, or in words why these settings have no kernels: the linear systems of backward Euler on springs.
 std::string kernelError(const runtime::SimulationSettings& settings);
-/// The same for all of a groom that moves its hair.
-std::string kernelError(const Groom& groom);
 
 }  // namespace hairloom::gpu_simulation

@@ -172,6 +172,7 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
     planInput.rootsMax_ws = high;
     planInput.rootMotion = placed.motion;
     planInput.fastest = std::numeric_limits<float>::infinity();
+    planInput.poseAmounts = poseAmounts;
     next.plan = runtime::planFrame(settings, planInput, next.wind, frameSpheres.planned,
                                    frameSpheres.plannedMotion, input.dt);
     return next;
@@ -204,6 +205,10 @@ Status StrandEngine::Impl::adopt(const Run& next) {
     if (run.settings != next.settings) {
         restsVoid = wakeAll = true;
         if (auto taken = takeModel(next.settings); !taken) return taken;
+        if (poses) {
+            run.settings = next.settings;
+            followPoses(false);
+        }
     }
     if (adopted) model->changePlan(run.plan, next.plan);
     run = next;
@@ -232,6 +237,36 @@ Status StrandEngine::setSettings(const runtime::SimulationSettings& settings) {
     if (const std::string why = kernelError(settings); !why.empty()) return fail(why);
     impl_->wanted = settings;
     return {};
+}
+
+/// `others`: poses have changed, not settings or amounts alone. Strands that rest may have to move.
+void StrandEngine::Impl::followPoses(bool others) {
+    static const runtime::PoseSet kNone;
+    known.reset();
+    model->takePoses(*shape, run.settings, {poses ? *poses : kNone, poseAmounts, others, false});
+    restsVoid = wakeAll = true;
+}
+
+void StrandEngine::Impl::takePoseAmounts(std::span<const float> amounts) {
+    if (amounts.empty() || amounts.size() != poseAmounts.size()) return;
+    if (runtime::takePoseAmounts(amounts, poseAmounts)) followPoses(false);
+}
+
+Status StrandEngine::setPoses(std::span<const runtime::PoseView> poses) {
+    const runtime::RestShape& shape = *impl_->shape;
+    if (const std::string why = runtime::validationError(poses, shape); !why.empty()) return fail(why);
+    if (poses.empty() && !impl_->poses) return {};
+    impl_->poses =
+        poses.empty() ? nullptr : std::make_shared<const runtime::PoseSet>(makePoseSet(poses, shape));
+    impl_->poseAmounts.assign(poses.size(), 0.0f);
+    impl_->followPoses(true);
+    return {};
+}
+
+bool StrandEngine::setPoseAmounts(std::span<const float> amounts) {
+    if (amounts.size() != impl_->poseAmounts.size()) return false;
+    impl_->takePoseAmounts(amounts);
+    return true;
 }
 
 Status StrandEngine::step(const runtime::FrameInput& input) {

@@ -78,6 +78,10 @@ class StrandEngine {
     void setSkinSpheres(std::span<const std::uint8_t> ofSkin);
     /// Those of the last frame.
     const runtime::SimulationSettings& settings() const;
+    /// As runtime::Engine::setPoses(), from the next frame on. Errors: why they are refused.
+    Status setPoses(std::span<const runtime::PoseView> poses);
+    /// As FrameInput::poseAmounts sets them; false for another number than there are poses.
+    bool setPoseAmounts(std::span<const float> amounts);
 
     /// Advances to the end of the frame. A dt that is not above 0 changes nothing. Returns before the device
     /// has done it; waits where more than two frames are under way.

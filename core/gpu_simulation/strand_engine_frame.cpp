@@ -258,6 +258,7 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
                      std::min(placed.min_ws.z, lowBefore.z)};
     const Float3 high{std::max(placed.max_ws.x, highBefore.x), std::max(placed.max_ws.y, highBefore.y),
                       std::max(placed.max_ws.z, highBefore.z)};
+    takePoseAmounts(input.poseAmounts);
     if (auto chosen = choose(input, low, high); !chosen) return chosen;
     movingSpheres.clear();
     movingCapsules.clear();

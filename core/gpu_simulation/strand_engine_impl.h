@@ -8,6 +8,7 @@
 #include "core/gpu_simulation/strand_model.h"
 #include "runtime/engine/frame_pieces.h"
 #include "runtime/engine/gpu_frame.h"
+#include "runtime/engine/poses.h"
 
 namespace hairloom::gpu_simulation {
 
@@ -41,6 +42,9 @@ struct StrandEngine::Impl {
     bool adopted = false;  ///< `run` has kernels and buffers
     bool switching = false;
 
+    std::shared_ptr<const runtime::PoseSet> poses;  ///< null: none
+    runtime::Vector<float> poseAmounts;
+
     // Of the scene.
     runtime::FrameRoots placed;
     std::uint32_t rejectedWinds = 0;
@@ -73,6 +77,8 @@ struct StrandEngine::Impl {
     Status makeBuffers();
     Status takeModel(const runtime::SimulationSettings& settings);
     Status allocate();
+    void takePoseAmounts(std::span<const float> amounts);
+    void followPoses(bool others);
     Status adopt(const Run& next);
     Status choose(const runtime::FrameInput& input, runtime::Float3 low, runtime::Float3 high);
     Run runFor(const runtime::SimulationSettings& settings, const runtime::FrameInput& input,

@@ -23,6 +23,9 @@ class DeviceStrands {
     virtual Status takeSettings(gpu::Device& device, const runtime::RestShape& shape,
                                 const runtime::SimulationSettings& settings,
                                 std::span<StrandBatch> batches) = 0;
+    /// As ModelStrands::takePoses(); after takeSettings().
+    virtual void takePoses(const runtime::RestShape&, const runtime::SimulationSettings&,
+                           const runtime::PoseChange&) {}
     /// Between frames; both plans ran or will.
     virtual void changePlan(const runtime::EffectPlan&, const runtime::EffectPlan&) {}
     /// Has the other ModelBuffers that the batch's key needs, and no others.

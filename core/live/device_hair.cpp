@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/live/device_hair.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
 #include "core/gpu_simulation/compiled_kernel.h"
+#include "core/groom/poses.h"
 #include "core/groom/spheres.h"
 #include "hairloom/capsules.h"
 #include "runtime/shaders/live_types.h"
@@ -81,7 +84,6 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
     const Groom& groom = scene.rest();
     auto input = SceneInput::make(groom);
     if (!input) return tl::unexpected(input.error());
-    if (const std::string why = gpu_simulation::kernelError(groom); !why.empty()) return fail(why);
     gpu_simulation::EngineOptions options;
     options.layout = gpu_simulation::layoutFor(device.info().type);
     options.velocities = true;
@@ -90,6 +92,8 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
     auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), input->strands(),
                                                      groom.simulation, options);
     if (!engine) return tl::unexpected(engine.error());
+    if (auto given = engine->setPoses(poseViews(groom).views); !given) return tl::unexpected(given.error());
+    engine->setPoseAmounts(poseAmounts(groom));
     if (auto placed = engine->reset(input->rootsAt(start)); !placed) return tl::unexpected(placed.error());
     std::vector<Vec3f> roots;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) roots.push_back(groom.strand(s).front());
@@ -167,6 +171,11 @@ Status DeviceHair::setSettings(const runtime::SimulationSettings& settings) {
     if (!made) return tl::unexpected(made.error());
     measuredRest_ = std::move(*made);
     return {};
+}
+
+Status DeviceHair::setPoseAmounts(std::span<const float> amounts) {
+    if (engine_.setPoseAmounts(amounts)) return {};
+    return fail(fmt::format("there are {} amounts", amounts.size()), "expected one for each pose");
 }
 
 /// From the head at rest to the world.
@@ -266,6 +275,7 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
     input.body_ws = bones;
     headBones_ = headBones(pose).size();
     engine_.setSkinSpheres(input_.skinSpheres());
+    input.poseAmounts = pose.poseAmounts;
     // Bones make the roots on the device, part after part of the frame.
     std::vector<std::vector<runtime::Sphere>> spheresWithin;
     std::vector<std::vector<runtime::BonePose>> bonesWithin;

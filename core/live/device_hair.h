@@ -40,6 +40,8 @@ class DeviceHair {
 
     /// From the next frame on, or from when their kernel is ready.
     Status setSettings(const runtime::SimulationSettings& settings);
+    /// As Simulation::setPoseAmounts().
+    Status setPoseAmounts(std::span<const float> amounts);
     void setSpheres(std::vector<CollisionSphere> spheres) { input_.setSpheres(std::move(spheres)); }
 
     /// Whether frames from the next on tell where all strands are: for marks that are drawn on them.

@@ -97,9 +97,8 @@ std::string obstacle(gpu::Device* device, const Groom& groom) {
     const bool meets = groom.body && groom.simulation.strandModel == runtime::StrandModel::rods;
     if (meets && device->info().backend == gpu::Backend::Direct3D11)
         return "Direct3D 11 does not keep hair out of the skin of a body, which the CPU does. Remove the "
-               "skin "
-               "collider to use the GPU: spheres alone then hold the hair";
-    return gpu_simulation::kernelError(groom);
+               "skin collider to use the GPU: spheres alone then hold the hair";
+    return gpu_simulation::kernelError(groom.simulation);
 }
 
 }  // namespace

@@ -69,9 +69,7 @@ Status MovingHair::setStyle(std::span<const Vec3f> restPositions) {
 }
 
 Status MovingHair::setPoseAmounts(std::span<const float> amounts) {
-    if (auto* const cpu = std::get_if<Simulation>(&hair_)) return cpu->setPoseAmounts(amounts);
-    if (std::ranges::none_of(amounts, [](float amount) { return amount > 0; })) return {};
-    return fail("strands on a GPU follow no pose", "expected the engine on the CPU, or amounts of 0");
+    return std::visit([&](auto& hair) { return hair.setPoseAmounts(amounts); }, hair_);
 }
 
 void MovingHair::setColliders(std::vector<CollisionSphere> spheres) {

@@ -56,8 +56,7 @@ class MovingHair {
     /// The shape that strands turn to from the next step on (Simulation::setStyle). Errors as there, and on a
     /// GPU.
     Status setStyle(std::span<const Vec3f> restPositions);
-    /// How far hair follows each of the groom's poses, from the next step on. Errors as for simulations;
-    /// amounts above 0 on a GPU.
+    /// How far hair follows each of the groom's poses, from the next step on. Errors as for simulations.
     Status setPoseAmounts(std::span<const float> amounts);
     /// In place of the groom's spheres, from the next step on.
     void setColliders(std::vector<CollisionSphere> spheres);

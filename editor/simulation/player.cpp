@@ -365,10 +365,7 @@ void Player::documentChanged(editing::Part parts) {
     const bool isMasked =
         contains(parts, editing::Part::Masks) &&
         std::ranges::any_of(groom.poses, [](const GroomPose& pose) { return pose.mask > 0; });
-    // Keys of poses may ask for another engine.
-    const bool keysPoses = contains(parts, editing::Part::TimeLine) && !groom.poses.empty();
-    const bool changed =
-        isMasked || keysPoses || contains(parts, editing::Part::Physics | editing::Part::Spheres);
+    const bool changed = isMasked || contains(parts, editing::Part::Physics | editing::Part::Spheres);
     if (!captured_ || (!followsOther && !changed)) return;
     std::shared_ptr<HeadMotion> motion = motionOfPoses();
     if (contains(parts, editing::Part::Spheres)) {
@@ -379,7 +376,9 @@ void Player::documentChanged(editing::Part parts) {
         // Engines are made with the body.
         const bool sameBody = !requests.groom || requests.groom->body == groom.body;
         // Some effects run on the CPU alone.
-        const auto runsOnGpu = [](const Groom& which) { return gpu_simulation::kernelError(which).empty(); };
+        const auto runsOnGpu = [](const Groom& which) {
+            return gpu_simulation::kernelError(which.simulation).empty();
+        };
         const bool sameEngines = !requests.groom || runsOnGpu(*requests.groom) == runsOnGpu(groom);
         // So are they with poses, whose amounts alone they take while they run.
         const bool samePoses = !requests.groom || std::ranges::equal(requests.groom->poses, groom.poses,

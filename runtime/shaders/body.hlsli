@@ -4,7 +4,7 @@
 #include "body_types.h"
 
 cbuffer Body : register(b3) { BodyConstants gBody; };
-StructuredBuffer<uint> gBodyTable : register(t10);    // arrays of BodyTable, one behind the other
+StructuredBuffer<uint> gBodyTable : register(t13);    // arrays of BodyTable, one behind the other
 StructuredBuffer<float4> gBodyPoses : register(t11);  // per step: poses of the palette; behind them: bones of each step
 
 #define BODY_NOWHERE 1e30

@@ -107,6 +107,19 @@ ROD_FUNCTION Real rodTwiceEnergy(Real3 e, Real bend, RodSection section) {
     return sum;
 }
 
+/// How a pose pulls at a node of `mass` that it is `way` from, m/s²: as a spring that hair follows at `rate`
+/// 1/s, and beyond what a speed makes of that with a steady pull.
+ROD_FUNCTION Real rodPosePull(Real mass, Real rate, Real3 way) {
+    const Real apart = maximum(root(dot(way, way)), ROD_NUMBER(1e-9));
+    return mass * rate * minimum(rate, ROD_NUMBER(2.0 * HAIRLOOM_POSE_SPEED) / apart);
+}
+/// Twice the energy of that pull.
+ROD_FUNCTION Real rodPoseTwiceEnergy(Real mass, Real rate, Real3 way) {
+    const Real reached = rate * root(dot(way, way));
+    const Real taken = minimum(reached, ROD_NUMBER(2.0 * HAIRLOOM_POSE_SPEED));
+    return mass * taken * (reached + reached - taken);
+}
+
 /// A symmetric matrix: xx, xy, xz, yy, yz, zz.
 struct RodSymmetric {
     Real m[6];

@@ -45,8 +45,15 @@ void finishRodStep() {
         const float3 turned = increment(j);
         turn = max(turn, dot(turned, turned));
         stiffness += rest.w;
+        const float metres = mass(node);
+#if HAIR_POSES
+        const float4 drawn = poseOf(node);
+        float elastic = rodTwiceEnergy(bent - poseStrain(j), rest.w, section(j, rest.w)) * 0.5;
+        elastic = mad(rodPoseTwiceEnergy(metres, drawn.w, rodRotate(gInner, drawn.xyz) - at), 0.5, elastic);
+#else
         const float elastic = rodTwiceEnergy(bent, rest.w, section(j, rest.w)) * 0.5;
-        const float metres = mass(node), weight = metres * dot(gRod.gravity.xyz, at);
+#endif
+        const float weight = metres * dot(gRod.gravity.xyz, at);
         energy += elastic - weight;
         size += elastic + abs(weight);
         kinetic = mad(metres * 0.5, dot(now, now), kinetic);

@@ -5,6 +5,11 @@
 StructuredBuffer<float4> gRodRest : register(t2);     // tangent, B/l̄ of the vertex; from the shape without load to that of rest; axis; of flat sections: long diameter
 StructuredBuffer<float> gRodMasses : register(t3);    // of each point, metres of hair
 StructuredBuffer<uint> gCurvedBlocks : register(t9);  // per work group: twist matters
+#if HAIR_POSES
+StructuredBuffer<float4> gRodPoses : register(t10);   // of a node: where it is drawn to, in the root's frame, and how fast, 1/s; the strain that a vertex rests at
+float4 poseOf(uint p) { return gRodPoses[slotOf(0, p)]; }
+float3 poseStrain(uint j) { return gRodPoses[slotOf(1, j)].xyz; }
+#endif
 RWStructuredBuffer<float> gRodState : register(u5);   // as RodView has it: planes, then turn and energy of a strand
 
 float4 restTangentAndBend(uint j) { return gRodRest[slotOf(0, j)]; }

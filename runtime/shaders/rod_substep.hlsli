@@ -9,6 +9,9 @@ static float gTimeStep, gInverseTimeStep;
 static float gDamped, gDampingShare;  // 1 + τ/h, and the part of it that is damping
 static float3 gInDisplacement;   // of the first free segment's inner node
 static float4 gInner;            // rotation of the segment before it
+#if HAIR_POSES
+static float4 gRootBefore;       // of the root, at the start of the substep
+#endif
 static bool gStill;              // nothing adds energy
 static bool gGuarded;            // in this frame: speeds were taken back
 static bool gPredicts;           // the last substep's rotations are repeated
@@ -48,13 +51,17 @@ void openRodStep() {
     MEET
     ALONE setRotation(0, gInner);
 #endif
+#if HAIR_POSES
+    gRootBefore = rotationBetween(gRotationFrom, gRotationTo, float(gSubstep) / float(gFrame.substeps));
+#endif
     const float4 turned = abs(gRotationFrom - (dot(gRotationFrom, gRotationTo) < 0.0 ? -gRotationTo : gRotationTo));
     const float moved = dot(gRootDisplacement, gRootDisplacement) + turned.x + turned.y + turned.z + turned.w;
     gStill = moved <= 0.0 && gRod.conservative != 0u;
 }
 
-/// Where inertia, gravity and air take a node, which the prediction has at `position`; w: its weight m/(h² D).
-float4 aim(uint node, float3 tangent, float3 position) {
+/// Where inertia, gravity, air and poses take a node, which the prediction has at `position`, `moved` from where it was; w: its
+/// weight m/(h² D).
+float4 aim(uint node, float3 tangent, float3 position, float3 moved) {
     const float3 now = velocity(node), faster = now - velocityBefore(node);
     float3 change = mad3(gRod.gravity.xyz, gTimeStep, mad3(faster, gBlend, now));
     float rate = gRod.numbers.rootDamping;
@@ -72,9 +79,23 @@ float4 aim(uint node, float3 tangent, float3 position) {
         rate += drag;
         change = mad3(air, drag * gTimeStep, change);
     }
+#if HAIR_POSES
+    // Moves as the pose does with the root, but for what brings it there.
+    const float4 drawn = poseOf(node);
+    const float3 pose = rodRotate(gInner, drawn.xyz);
+    const float slow = drawn.w + drawn.w;
+    rate += slow;
+    change = mad3(pose - rodRotate(gRootBefore, drawn.xyz) + gRootDisplacement, slow / gFrame.h * gTimeStep, change);
+#endif
     const float slowed = mad(rate, gTimeStep, 1.0);
-    return float4(mad3(displacement(node), gBlend, change * (gTimeStep / slowed)),
-                  mass(node) * gInverseTimeStep * gInverseTimeStep * slowed);
+    float4 aimed = float4(mad3(displacement(node), gBlend, change * (gTimeStep / slowed)),
+                          mass(node) * gInverseTimeStep * gInverseTimeStep * slowed);
+#if HAIR_POSES
+    const float3 way = pose - position;
+    const float pull = rodPosePull(mass(node), drawn.w, way), both = aimed.w + pull;
+    aimed = float4(mad3(moved + way - aimed.xyz, pull / both, aimed.xyz), both);
+#endif
+    return aimed;
 }
 
 #if HAIR_SPHERES
@@ -168,11 +189,15 @@ void predict(bool runs) {
         const float4 q = rodTurned(old, u);
         const float3 tangent = rodRotate(q, rest.xyz);
         position = mad3(tangent, along, position);
-        const float4 aimed = aim(j + 1, tangent, position);
+        const float4 aimed = aim(j + 1, tangent, position, outer);
 
-        // Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to none.
+        // Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to that of a pose, and
+        // to none without.
         const float3 last = strain(j);
-        const float3 wanted = mad3(last - strainBefore(j), gBlend, last) * gDampingShare;
+        float3 wanted = mad3(last - strainBefore(j), gBlend, last) * gDampingShare;
+#if HAIR_POSES
+        wanted = mad3(poseStrain(j), 1.0 - gDampingShare, wanted);
+#endif
         const float4 side = rodOfStrain(last), relative = rodRelative(before, q, side);
         const float bend = rest.w * gDamped;
         const RodSection resists = section(j, bend);

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "core/groom/poses.h"
 #include "core/render/flip.h"
 #include "core/render/picture.h"
 #include "tests/documents/small_head.h"
@@ -113,6 +116,45 @@ TEST_F(MovingHairTest, BothEnginesMoveAndDrawAlike) {
         const auto rest = stageOf(groom, *motion, EngineKind::cpu);
         EXPECT_GT(render::flipDifference(before, pictureOf(*rest))->mean, 0.03);
     }
+}
+
+/// A motion that says by how much hair follows its pose, from the first frame on.
+class KeyedPose final : public HeadMotion {
+  public:
+    explicit KeyedPose(const HeadMotion& head) : head_(head) {}
+    HeadPose poseAt(float time) const override {
+        HeadPose pose = head_.poseAt(time);
+        pose.poseAmounts = {std::min(1.0f, 0.3f + 2 * time)};
+        return pose;
+    }
+
+  private:
+    const HeadMotion& head_;
+};
+
+TEST_F(MovingHairTest, BothEnginesFollowPosesAlike) {
+    Groom groom = smallHead();
+    groom.simulation.strandModel = runtime::StrandModel::rods;
+    std::vector<Vec3f> shape(groom.positions().begin(), groom.positions().end());
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        const Vec3f root = groom.strand(s)[0];
+        for (std::uint32_t p = groom.offsets[s]; p < groom.offsets[s + 1]; ++p)
+            shape[p] = root + Eigen::AngleAxisf(0.5f, Vec3f::UnitZ()) * (shape[p] - root);
+    }
+    ASSERT_TRUE(putPose(groom, "Swept", shape));
+    const auto nod = makeRigidMotion("nod", groom).value();
+    const KeyedPose keyed(*nod);
+    const auto cpu = stageOf(groom, keyed, EngineKind::cpu), gpu = stageOf(groom, keyed, EngineKind::gpu);
+    const auto never = stageOf(groom, *nod, EngineKind::gpu);
+    play(*cpu, 30);
+    play(*gpu, 30);
+    play(*never, 30);
+    EXPECT_LT(farthest(positionsOf(*cpu), positionsOf(*gpu)), 1e-4f);
+    EXPECT_GT(farthest(positionsOf(*never), positionsOf(*gpu)), 0.01f);
+    // Amounts that the user sets while it plays.
+    const std::vector<float> none{0.0f};
+    for (Stage* stage : {cpu.get(), gpu.get()}) EXPECT_TRUE(stage->hair.setPoseAmounts(none));
+    EXPECT_FALSE(gpu->hair.setPoseAmounts({}));
 }
 
 TEST_F(MovingHairTest, BothEnginesKeepRootsOnAFaceThatTalks) {

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/gpu_simulation/models/models.h"
+#include "core/simulation/strand_method.h"
 #include "runtime/engine/moving_body.h"
 #include "runtime/models/rods/rod_slots.h"
 #include "runtime/shaders/body_types.h"
@@ -20,8 +22,13 @@ using runtime::Effect;
 /// Strands of a work group whose threads share them: few, so that few strands find many multiprocessors.
 constexpr std::uint32_t kSharedStrands = 8;
 
+/// Of KernelKey::own: rods follow poses.
+constexpr std::size_t kPoses = 0;
+constexpr std::uint32_t kPoseSlot = 10;
+
 /// A block is a work group and each of its strands a thread's, or some threads share one.
-void fillKey(const runtime::EffectPlan&, const runtime::SimulationSettings&, KernelKey& key) {
+void fillKey(const runtime::EffectPlan& plan, const runtime::SimulationSettings&, KernelKey& key) {
+    key.own[kPoses] = plan.on(Effect::pose) ? 1 : 0;
     BatchShape& shape = key.shape;
     shape.storage = StrandStorage::buffers;
     shape.strands = shape.members > 1 ? kSharedStrands : runtime::kBlockLanes;
@@ -36,10 +43,10 @@ std::string defines(const KernelKey& key) {
     return fmt::format(
         "#define HAIR_RODS 1\n#define HAIR_MEMBERS {}\n#define HAIR_STRANDS {}\n#define HAIR_TOGETHER {}\n"
         "#define HAIR_CLAMPED {}\n#define HAIR_SPHERES {}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
-        "#define HAIR_VELOCITIES {}\n#define HAIR_BODY {}\n#define HAIR_STAGES {}\n",
+        "#define HAIR_VELOCITIES {}\n#define HAIR_BODY {}\n#define HAIR_STAGES {}\n{}",
         key.shape.members, key.shape.strands, flag(key.shape.together), key.clampedPoints,
         static_cast<std::uint32_t>(key.spheres), flag(key.wind), flag(key.sleep), flag(key.velocities),
-        flag(key.body), key.stages);
+        flag(key.body), key.stages, key.own[kPoses] > 0 ? "#define HAIR_POSES 1\n" : "");
 }
 
 std::size_t scratchPlanes(const KernelKey& key) {
@@ -57,8 +64,12 @@ class DeviceRods final : public DeviceStrands {
     Status takeSettings(gpu::Device& device, const runtime::RestShape& shape,
                         const runtime::SimulationSettings& settings,
                         std::span<StrandBatch> batches) override {
-        if (rest_) energyKnown_ = energyKnown_ && runtime::haveEqualRodEnergy(settings, settings_);
+        const bool same = rest_ && runtime::haveEqualRodEnergy(settings, settings_);
         settings_ = settings;
+        // What rods rest in follows from no other settings.
+        if (same) return {};
+        if (rest_) energyKnown_ = false;
+        posesAreOld_ = true;
         rest_ = runtime::makeRodRest(shape, settings);
         touches_.folds =
             std::ranges::any_of(batches, [](const StrandBatch& b) { return b.clearances != nullptr; });
@@ -66,6 +77,42 @@ class DeviceRods final : public DeviceStrands {
             if (auto made = makeBuffers(device, shape, batch); !made) return made;
         }
         return {};
+    }
+
+    void takePoses(const runtime::RestShape& shape, const runtime::SimulationSettings& settings,
+                   const runtime::PoseChange& change) override {
+        const bool followed = poses_.isOn();
+        runtime::PoseChange known = change;
+        known.others = std::exchange(posesAreOld_, false) || known.others;
+        poses_.take(shape, settings, *rest_, known, applicationHost());
+        posesChanged_ = true;
+        if (followed || poses_.isOn()) energyKnown_ = false;
+    }
+
+    Status allocate(gpu::Device& device, StrandBatch& batch) override {
+        auto& read = batch.model.read;
+        const bool has = batch.model.at(kPoseSlot) != nullptr, needs = batch.key.own[kPoses] > 0;
+        if (has == needs) return {};
+        std::erase_if(read, [](const ModelBuffer& buffer) { return buffer.slot == kPoseSlot; });
+        if (!needs) return {};
+        const std::size_t points = std::size_t{batch.shape.points} * batch.slots;
+        auto made = makeBuffer<shaders::float4>(device, "poses of rods", Usage::ShaderRead, 2 * points, {});
+        if (!made) return tl::unexpected(made.error());
+        read.push_back({kPoseSlot, Effect::pose, std::move(*made)});
+        posesChanged_ = true;
+        return {};
+    }
+
+    void upload(gpu::CommandList& list, const runtime::RestShape& shape, const runtime::EffectPlan&,
+                const runtime::SimulationSettings&, float, std::span<const StrandBatch> batches) override {
+        if (!posesChanged_ || !poses_.isOn()) return;
+        for (const StrandBatch& batch : batches) {
+            const gpu::BufferPtr buffer = batch.model.at(kPoseSlot);
+            // While its kernel is being made, there is none.
+            if (buffer == nullptr) return;
+            list.updateBuffer(buffer, 0, bytesOfVector(posesOfSlots(shape, batch.inSlots(), poses_)));
+        }
+        posesChanged_ = false;
     }
 
     void setConstants(gpu::CommandList& list, const runtime::SubstepContext& context,
@@ -137,7 +184,7 @@ class DeviceRods final : public DeviceStrands {
             }
             batch.model.read.push_back({slot, Effect::angular, std::move(*made)});
         };
-        batch.model.read.clear();
+        std::erase_if(batch.model.read, [](const ModelBuffer& buffer) { return buffer.slot != kPoseSlot; });
         make("rods at rest", 2, rods.rest);
         make("masses of rods", 3, rods.masses);
         make("curved blocks", 9, rods.curved);
@@ -155,6 +202,9 @@ class DeviceRods final : public DeviceStrands {
 
     std::optional<runtime::RodRest> rest_;  ///< once settings were taken
     runtime::RodTouches touches_{.loads = true};
+    runtime::RodPoses poses_;
+    bool posesAreOld_ = false;              ///< since rest_ is another
+    bool posesChanged_ = false;             ///< since they were sent
     runtime::SimulationSettings settings_;  ///< that rest_ was made with
     bool energyKnown_ = true;               ///< what rods had before the frame is energy under these settings
     bool fresh_ = true;                     ///< the device has places of rods, and nothing else yet

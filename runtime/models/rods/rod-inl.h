@@ -322,27 +322,14 @@ class RodStrip {
         point.weight = hn::Load(D(), rod_.mass + node) * inverseStep_ * inverseStep_ * slowed;
         if (rod_.poseRate) {
             const V3 way = pose - position;
-            const V pull = posePull(node, way), both = point.weight + pull;
+            const V pull = rodPosePull(hn::Load(D(), rod_.mass + node), poseRateOf(node), way);
+            const V both = point.weight + pull;
             point.target = mad3(point.displacement + way - point.target, pull / both, point.target);
             point.weight = both;
         }
     }
     /// How fast node `node` comes to its pose, 1/s.
     V poseRateOf(std::size_t node) const { return hn::Load(D(), rod_.poseRate + node); }
-    /// Stiffness of the pull of a pose, m/s², where it is that far: no farther than a speed takes hair at its
-    /// rate it is a spring, and a steady pull beyond.
-    V posePull(std::size_t node, V3 way) const {
-        const V rate = poseRateOf(node), far = hn::Sqrt(dot(way, way));
-        const V most = all(2.0f * static_cast<float>(HAIRLOOM_POSE_SPEED)) / hn::Max(far, all(1e-9f));
-        return hn::Load(D(), rod_.mass + node) * rate * hn::Min(rate, most);
-    }
-    /// Twice the energy of that pull.
-    V poseTwiceEnergy(std::size_t node, V3 way) const {
-        const V rate = poseRateOf(node), squared = dot(way, way), far = hn::Sqrt(squared);
-        const V speed = all(2.0f * static_cast<float>(HAIRLOOM_POSE_SPEED));
-        const V spring = rate * rate * squared, steady = speed * (rate * far * all(2.0f) - speed);
-        return hn::Load(D(), rod_.mass + node) * hn::IfThenElse(rate * far > speed, steady, spring);
-    }
     V3 rootPosition() const {
         return mad3(rootDisplacement_, all(static_cast<float>(context_.index + 1)),
                     load3(lanes_.root, lane_));

@@ -66,7 +66,7 @@ void RodStrip<kBends, kTwists, kContacts>::finish() {
         }
         if (rod_.poseRate) {
             const V3 way = rodRotate(inner_, load3(rod_.pose, node)) - position;
-            elastic = mad(poseTwiceEnergy(node, way), all(0.5f), elastic);
+            elastic = mad(rodPoseTwiceEnergy(mass, poseRateOf(node), way), all(0.5f), elastic);
         }
         const V weight = mass * dot(all3(context_.gravity), position);
         energy = energy + (elastic - weight);

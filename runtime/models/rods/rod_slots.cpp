@@ -46,6 +46,16 @@ RodSlots rodsOfSlots(const RestShape& shape, const Slots& slots, const RodRest& 
     return made;
 }
 
+Vector<shaders::float4> posesOfSlots(const RestShape& shape, const Slots& slots, const RodPoses& poses) {
+    constexpr std::array<std::size_t, 4> kPlaceAndRate{0, 1, 2, RodPoses::kRatePlane};
+    constexpr std::array<std::size_t, 3> kStrain{RodPoses::kStrainPlane, RodPoses::kStrainPlane + 1,
+                                                 RodPoses::kStrainPlane + 2};
+    auto quads = quadsOfSlots(shape, slots, poses.planes(), RodPoses::kPlanes, kPlaceAndRate);
+    const auto strains = quadsOfSlots(shape, slots, poses.planes(), RodPoses::kPlanes, kStrain);
+    quads.insert(quads.end(), strains.begin(), strains.end());
+    return quads;
+}
+
 Vector<float> rodStateOfSlots(const RestShape& shape, const Slots& slots, const State& state, bool folds) {
     Vector<float> rods;
     const auto append = [&](std::size_t own, std::size_t planes) {

@@ -7,6 +7,7 @@
 
 #include "engine/slots.h"
 #include "hairloom/memory.h"
+#include "models/rods/rod_poses.h"
 #include "models/rods/rods.h"
 #include "shaders/rod_types.h"
 
@@ -18,6 +19,9 @@ struct RodSlots {
     Vector<std::uint32_t> curved;  ///< per block
 };
 RodSlots rodsOfSlots(const RestShape& shape, const Slots& slots, const RodRest& rods);
+
+/// What rods follow now, two for each point.
+Vector<shaders::float4> posesOfSlots(const RestShape& shape, const Slots& slots, const RodPoses& poses);
 
 /// The planes of the device are those of motion, strains and loads, then the rows of strands, then, with a
 /// body, the planes of `folds`; 0 where the state has none.
