@@ -16,6 +16,7 @@
 #include "tests/exporters/asset_bytes.h"
 #include "tests/exporters/levels_sample.h"
 #include "tests/runtime/allocations.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom::test {
 namespace {
@@ -526,6 +527,33 @@ TEST_F(RuntimePoses, OfDamageAreRefusedWithWordsOrFinite) {
     }
     EXPECT_GT(refusals, 10u);
     EXPECT_GT(played, 100u);
+}
+
+/// A file of version 1.5 as it was first written: what reads it now reads what stood there then, as a reader
+/// that was made from the page alone has it.
+TEST_F(RuntimePoses, FilesOfTheFirstVersionWithPosesAreStillRead) {
+    const auto bytes = readFile(sourceDir() / "tests/exporters/files/version_1_5.hairrt").value();
+    const auto opened = runtime::Asset::open(bytes);
+    ASSERT_TRUE(opened.asset) << opened.error.words;
+    ASSERT_FALSE(opened.asset->check());
+    EXPECT_EQ(opened.asset->minor(), 5u);
+    ASSERT_EQ(opened.asset->poses().size(), 2u);
+    EXPECT_EQ(opened.asset->text(opened.asset->poses()[0].name), "Bent");
+    EXPECT_EQ(opened.asset->poses()[0].amount, 0.25f);
+    EXPECT_EQ(opened.asset->text(opened.asset->poses()[1].name), "Tips");
+    const auto rest = opened.asset->strandsAtRest();
+    ASSERT_EQ(rest.positions_ss.size(), 192u);
+    const auto bent = opened.asset->poseArrays(0, rest), tips = opened.asset->poseArrays(1, rest);
+    EXPECT_TRUE(bent.weights.empty());
+    const auto apart = [](const runtime::Float3& a, float x, float y, float z) {
+        return (Vec3f(a.x, a.y, a.z) - Vec3f(x, y, z)).norm();
+    };
+    EXPECT_LT(apart(bent.positions_ss[7], 0.01815024f, 0.06723468f, 0.09349443f), 1e-6f);
+    EXPECT_LT(apart(bent.positions_ss[191], 0.02183840f, 0.06814023f, -0.09280881f), 1e-6f);
+    ASSERT_EQ(tips.weights.size(), 192u);
+    EXPECT_EQ(tips.weights[0], 0);
+    EXPECT_EQ(tips.weights[2], 73 / 255.0f);
+    EXPECT_EQ(tips.weights[7], 1);
 }
 
 TEST_F(RuntimePoses, OlderReadersSkipThem) {
