@@ -40,9 +40,9 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     if (!layout.storage) layout.storage = gpuModelOf(settings.strandModel).storage;
     impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
     if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
+    if (const std::string why = impl->bodyError(settings); !why.empty()) return fail(why);
     impl->placed.roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
-    if (auto made = impl->makeBody(); !made) return tl::unexpected(made.error());
     if (auto taken = impl->takeModel(settings); !taken) return tl::unexpected(taken.error());
     if (options.hairVolume) {
         auto volume = GpuHairVolume::make(device, *options.hairVolume);
@@ -68,15 +68,20 @@ std::string StrandEngine::Impl::velocityError() const {
     return "Direct3D 11 lets a kernel write to eight buffers, too few for velocities of strands this long";
 }
 
-/// What of the body the model needs.
-Status StrandEngine::Impl::makeBody() {
-    if (options.body == nullptr || !runtime::modelOf(wanted.strandModel).meetsBody) return {};
-    if (device.info().backend == gpu::Backend::Direct3D11)
-        return fail("Direct3D 11 has no kernels that keep hair out of the skin of a body",
-                    "expected hair without a skin collider, or the CPU");
+/// Why this device cannot have strands of these settings meet the body; empty where it can.
+std::string StrandEngine::Impl::bodyError(const runtime::SimulationSettings& settings) const {
+    const bool meets = options.body != nullptr && runtime::modelOf(settings.strandModel).meetsBody;
+    if (!meets || device.info().backend != gpu::Backend::Direct3D11) return {};
+    return "Direct3D 11 has no kernels that keep hair out of the skin of a body. Remove the skin collider, "
+           "or "
+           "use the CPU";
+}
+
+/// The body, once strands are of a model that meets it.
+Status StrandEngine::Impl::makeBody(const runtime::SimulationSettings& settings) {
+    if (body || options.body == nullptr || !runtime::modelOf(settings.strandModel).meetsBody) return {};
     auto made = DeviceBody::make(device, options.body, *shape);
     if (!made) return tl::unexpected(made.error());
-    body.emplace(std::move(*made));
     const runtime::Floats clearances = runtime::bodyClearances(*shape, *options.body);
     for (StrandBatch& batch : batches) {
         const runtime::Vector<float> own = runtime::planesOfSlots(*shape, batch.inSlots(), clearances, 1);
@@ -84,7 +89,16 @@ Status StrandEngine::Impl::makeBody() {
         if (!buffer) return tl::unexpected(buffer.error());
         batch.clearances = std::move(*buffer);
     }
+    body.emplace(std::move(*made));
     return {};
+}
+
+/// Whether the frame needs the body's poses: strands that are wanted meet it, or those of a kernel that still
+/// runs.
+bool StrandEngine::Impl::followsBody() const {
+    if (!body) return false;
+    return runtime::modelOf(wanted.strandModel).meetsBody ||
+           std::ranges::any_of(batches, [](const StrandBatch& batch) { return batch.key.body; });
 }
 
 /// Those that exist whatever the plan.
@@ -124,6 +138,7 @@ Status StrandEngine::Impl::makeBuffers() {
 /// Takes what strands are under these settings. Those of another model go on from where they are.
 Status StrandEngine::Impl::takeModel(const runtime::SimulationSettings& settings) {
     known.reset();
+    if (auto made = makeBody(settings); !made) return made;
     if (model == nullptr || settings.strandModel != run.settings.strandModel) {
         for (StrandBatch& batch : batches) batch.model = {};
         model = gpuModelOf(settings.strandModel).make();
@@ -185,7 +200,7 @@ Result<bool> StrandEngine::Impl::kernelsFor(const Run& next, bool wait) {
     for (const StrandBatch& batch : batches) {
         KernelKey key = keyFor(next.plan, next.settings, batch.shape,
                                runtime::sphereConstantsOf(frameSpheres, next.settings.strandModel),
-                               options.velocities, meetsBody());
+                               options.velocities, meetsBody(next.settings));
         if (batch.kernel != nullptr && key == batch.key) {
             found.emplace_back(std::move(key), batch.kernel);
             continue;
@@ -235,6 +250,7 @@ Status StrandEngine::Impl::choose(const runtime::FrameInput& input, Float3 low, 
 Status StrandEngine::setSettings(const runtime::SimulationSettings& settings) {
     if (const std::string why = runtime::validationError(settings); !why.empty()) return fail(why);
     if (const std::string why = kernelError(settings); !why.empty()) return fail(why);
+    if (const std::string why = impl_->bodyError(settings); !why.empty()) return fail(why);
     impl_->wanted = settings;
     return {};
 }
@@ -353,7 +369,7 @@ std::size_t StrandEngine::volumeBytes() const {
 }
 
 std::size_t StrandEngine::bodyBytes() const {
-    if (!impl_->body) return 0;
+    if (!impl_->body || !runtime::modelOf(settings().strandModel).meetsBody) return 0;
     std::size_t bytes = impl_->body->bytes();
     for (const StrandBatch& batch : impl_->batches) {
         bytes += static_cast<std::size_t>(batch.clearances->desc().size);
@@ -362,7 +378,7 @@ std::size_t StrandEngine::bodyBytes() const {
     return bytes;
 }
 const DeviceBody* StrandEngine::body() const {
-    return impl_->meetsBody() ? &*impl_->body : nullptr;
+    return impl_->meetsBody(settings()) ? &*impl_->body : nullptr;
 }
 
 std::size_t StrandEngine::frameBytes() const {

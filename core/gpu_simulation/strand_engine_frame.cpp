@@ -217,11 +217,13 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     if (input.inner.empty() || deviceRoots != nullptr) return recordStraight(list, input, deviceRoots);
     pieces.take(input, runtime::substepsIn(wanted, input.dt));
     for (std::size_t i = 0; i < pieces.count(); ++i) {
+        const auto poseBefore =
+            body ? std::span<const runtime::BonePose>(body->pose()) : std::span<const runtime::BonePose>();
         if (i > 0) {
             originShift = {};
             forgetLastPiece(list);
         }
-        const runtime::FrameInput part = pieces.at(i, {placed.roots, spheresBefore, {}});
+        const runtime::FrameInput part = pieces.at(i, {placed.roots, spheresBefore, poseBefore});
         if (auto recorded = recordStraight(list, part, nullptr); !recorded) return recorded;
     }
     return {};
@@ -244,11 +246,16 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
                          input.spheres, input.capsules, frameSpheres);
     std::uint32_t substeps = runtime::substepsIn(wanted, input.dt);
     bool bodyMoves = false;
-    if (body) {
+    const bool skin = followsBody();
+    if (!skin && body) body->setPose({});
+    if (skin) {
         // Hair is as fast as its roots were, and slows in a tenth of a second. How fast it is the device
         // knows.
         constexpr float kSlowing = 10.0f;  // 1/s
-        fastRoots = std::max(placed.motion / input.dt, fastRoots * std::exp(-kSlowing * input.dt));
+        // What is cut keeps its speed from before.
+        const bool cut = input.cut || !(placed.motion < wanted.teleportDistance);
+        fastRoots =
+            std::max(cut ? 0.0f : placed.motion / input.dt, fastRoots * std::exp(-kSlowing * input.dt));
         substeps = runtime::substepsBesideBody(fastRoots * input.dt, substeps);
         bodyMoves = body->takeFrame(input, runtime::teleportDistanceOf(wanted, input), substeps);
         wakeAll = wakeAll || bodyMoves;
@@ -264,7 +271,7 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
     movingCapsules.clear();
     pressing = 0;
     // While kernels of other settings are made; a body is posed for those that are wanted.
-    if (!body) substeps = runtime::substepsIn(run.settings, input.dt);
+    if (!skin) substeps = runtime::substepsIn(run.settings, input.dt);
     if (run.plan.on(Effect::collision)) {
         if (runtime::modelOf(run.settings.strandModel).listsSpheres) {
             pressing = moveCapsules(frameSpheres, substeps, movingSpheres, movingCapsules);
@@ -275,7 +282,7 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
     }
     runtime::SubstepContext context = runtime::substepContext(run.settings, run.plan, input.dt, substeps,
                                                               pressingSpheres(), movingCapsules);
-    if (meetsBody()) {
+    if (meetsBody(run.settings)) {
         context.spheresRest = context.spheresRest && !bodyMoves;
         context.collisionRadiusAtRoot = run.settings.collisionRadiusRoot;
         context.collisionRadiusAtTip = run.settings.collisionRadiusTip;
@@ -289,7 +296,7 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
     rootsMoved = moves;
     uploadChanges(list);
     uploadSpheres(list);
-    if (meetsBody()) {
+    if (skin && body->hasPose()) {
         if (auto sent = body->upload(list); !sent) return sent;
     }
     model->upload(list, *shape, run.plan, run.settings, context.h, batches);

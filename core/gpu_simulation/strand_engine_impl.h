@@ -73,7 +73,8 @@ struct StrandEngine::Impl {
 
     // strand_engine.cpp
     std::string velocityError() const;
-    Status makeBody();
+    std::string bodyError(const runtime::SimulationSettings& settings) const;
+    Status makeBody(const runtime::SimulationSettings& settings);
     Status makeBuffers();
     Status takeModel(const runtime::SimulationSettings& settings);
     Status allocate();
@@ -95,7 +96,11 @@ struct StrandEngine::Impl {
     bool takeRoots(const DeviceRoots& given);
     Status gatherRoots(gpu::CommandList& list, const DeviceRoots& given);
     void moveOrigin(std::array<double, 3> next_ws);
-    bool meetsBody() const { return body && body->hasPose(); }
+    /// Whether strands under these settings meet the body, once it has a pose.
+    bool meetsBody(const runtime::SimulationSettings& settings) const {
+        return body && body->hasPose() && runtime::modelOf(settings.strandModel).meetsBody;
+    }
+    bool followsBody() const;
     std::span<const runtime::MovingSphere> pressingSpheres() const {
         return std::span(movingSpheres).first(pressing);
     }

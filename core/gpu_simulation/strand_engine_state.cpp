@@ -118,6 +118,7 @@ Result<runtime::State> StrandEngine::Impl::readState() {
     state.substep = substep;
     state.origin_ws = origin_ws;
     if (body) state.body = body->pose();
+    state.fastest = fastRoots;
     known = state;
     return state;
 }
@@ -171,6 +172,7 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
     substep = state.substep;
     origin_ws = state.origin_ws;
     if (body) body->setPose(state.body);
+    fastRoots = state.fastest;
     runtime::Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     for (const RootFrame& root : placed.roots) {
         const Float3 p = root.position;

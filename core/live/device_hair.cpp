@@ -111,7 +111,8 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
         // A wisp is as wide as twice its radius at rest at most, or at 7 m/s.
         hair.reach_ += 2 * *std::ranges::max_element(view.radii);
     }
-    if (scene.bodyPush() != nullptr && options.body != nullptr) {
+    const bool isVulkan = device.info().backend != gpu::Backend::Direct3D11;
+    if (scene.bodyPush() != nullptr && options.body != nullptr && isVulkan) {
         auto made = gpu_simulation::GpuBodyPush::make(device, *scene.bodyPush());
         if (!made) return tl::unexpected(made.error());
         hair.push_.emplace(std::move(*made));

@@ -11,6 +11,7 @@
 #include "core/base/file.h"
 #include "core/base/stopwatch.h"
 #include "core/gpu_simulation/kernel_key.h"
+#include "core/groom/poses.h"
 #include "core/live/device_hair.h"
 #include "core/live/groom_scene.h"
 #include "core/simulation/simulation.h"
@@ -29,8 +30,10 @@ std::string keyOf(const gpu::DeviceInfo& device, const Groom& groom) {
         groom.interpolation.followPerGuide > 0 ? std::uint64_t{groom.interpolation.followPerGuide} : 1;
     const auto size = [](std::uint64_t count) { return std::bit_width(count); };
     const char* const model = groom.simulation.strandModel == runtime::StrandModel::rods ? "rods" : "springs";
-    return fmt::format("{} | {} | {} | points 2^{}, hairs of each 2^{}, substeps {}", device.name,
-                       device.driver, model, size(groom.pointCount()), size(hairs),
+    const char* const skin = groom.body ? ", skin" : "";
+    const char* const poses = followsPoses(groom) ? ", poses" : "";
+    return fmt::format("{} | {} | {}{}{} | points 2^{}, hairs of each 2^{}, substeps {}", device.name,
+                       device.driver, model, skin, poses, size(groom.pointCount()), size(hairs),
                        groom.simulation.substeps);
 }
 

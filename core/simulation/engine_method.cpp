@@ -168,7 +168,7 @@ constexpr float kStiffest = 2.0f, kFastestSpreading = 4.0f;
 
 Status StrandMethod::setPoseAmounts(std::span<const float> amounts) {
     if (std::ranges::none_of(amounts, [](float amount) { return amount > 0; })) return {};
-    return fail("this method follows no pose", "expected the strand engine on the CPU, or amounts of 0");
+    return fail("this method follows no pose", "expected the strand engine, or amounts of 0");
 }
 
 std::string reasonAlone(const std::string& why) {

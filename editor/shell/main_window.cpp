@@ -10,6 +10,7 @@
 #include <QMimeData>
 #include <QScreen>
 #include <QSettings>
+#include <QTimer>
 #include <QToolBar>
 #include <QToolButton>
 #include <algorithm>
@@ -186,7 +187,23 @@ void MainWindow::makePanels() {
         QAction* toggle = dock->toggleViewAction();
         toggle->setIcon(icon(info.icon));
         panelMenu_->addAction(toggle);
+        connect(toggle, &QAction::triggered, this, [this, dock](bool on) {
+            const bool wasBehind = panelsBehind_.contains(dock);
+            if (!on && !wasBehind) return;
+            dock->show();
+            dock->raise();
+        });
     }
+    // A panel that is open behind another one comes to the front when it is chosen, and does not close.
+    connect(panelMenu_, &QMenu::aboutToShow, this, [this] {
+        panelsBehind_.clear();
+        for (const PanelInfo& info : panels()) {
+            QDockWidget* const dock = panel(info.id);
+            if (dock->isVisible() && dock->visibleRegion().isEmpty()) panelsBehind_.insert(dock);
+        }
+    });
+    connect(panelMenu_, &QMenu::aboutToHide, this,
+            [this] { QTimer::singleShot(0, this, [this] { panelsBehind_.clear(); }); });
     // The first of each area is in front.
     QSet<int> seen;
     for (const PanelInfo& info : panels()) {

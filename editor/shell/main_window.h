@@ -5,6 +5,7 @@
 #include <QActionGroup>
 #include <QDockWidget>
 #include <QMainWindow>
+#include <QSet>
 #include <QStackedWidget>
 #include <optional>
 #include <thread>
@@ -137,6 +138,7 @@ class MainWindow : public QMainWindow {
     StatusLine* status_;
     QMenu* recentMenu_ = nullptr;
     QMenu* panelMenu_ = nullptr;
+    QSet<QDockWidget*> panelsBehind_;  ///< others, while their menu is open
     QMenu* groupMenu_ = nullptr;
     QActionGroup* toolGroup_;
     ManualWindow* manual_ = nullptr;  ///< made when it is first asked for

@@ -249,6 +249,7 @@ void MainWindow::addViewActions() {
     menu->addSeparator();
     addOverlayActions(*menu);
     panelMenu_ = menu->addMenu("&Panels");
+    panelMenu_->setObjectName("panels");
     add({"view.resetLayout", QString("Reset la&yout"), "", QString("Restore the default panel layout"), {}},
         [this] { resetLayout(); });
     add({"view.theme", QString("Light or &dark"), "theme", QString("Switch between the two themes"),

@@ -261,8 +261,8 @@ BodyContact bodyContact(uint step, float3 point_ws) {
     nearest.distance = BODY_NOWHERE;
     nearest.normal = float3(0, 1, 0);
     nearest.rest = float3(0, 0, 0);
-    const bool isWhole = gBody.palette == 1u;
-    const uint bones = isWhole ? 1u : gBody.size.w;
+    const bool isWhole = gBody.size.w == 1u;
+    const uint bones = gBody.size.w;
     float least = BODY_NOWHERE;
     [loop] for (uint i = 0; i < bones; ++i) {
         const float own = boneFacts(step, i).x;

@@ -2,7 +2,7 @@
 // A frame of strands as elastic rods, HAIR_MEMBERS threads a strand and HAIR_STRANDS strands a work group, as rods.cpp of the
 // engine has them. Whoever compiles this defines HAIR_RODS 1, both and, as strands.hlsli has them, HAIR_TOGETHER, HAIR_CLAMPED,
 // HAIR_SPHERES, HAIR_WIND, HAIR_SLEEP, HAIR_VELOCITIES and HAIR_STAGES; HAIR_BODY 1 for rods that meet a body, which need HAIR_SPHERES,
-// too, and HAIR_POSES 1 where rods follow poses. Any number of points has the same kernel.
+// too (body.hlsli, which games do not get), and HAIR_POSES 1 where rods follow poses. Any number of points has the same kernel.
 #define HAIR_POINTS gRod.points
 #define HAIR_EXACT 0
 #define HAIR_UNROLL 0

@@ -8,6 +8,7 @@
 #include <QFileInfo>
 #include <QKeySequenceEdit>
 #include <QLabel>
+#include <QMenu>
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
@@ -97,6 +98,30 @@ TEST_F(ShellTest, EveryToolAndPanelCanBeReachedAt1280By800) {
                 << tabs->tabText(tab).toStdString() << " is cut short";
         }
     }
+}
+
+TEST_F(ShellTest, APanelThatIsChosenIsInFront) {
+    QDockWidget* const look = window->panel("look");
+    QDockWidget* const physics = window->panel("physics");
+    const auto choose = [&](QDockWidget* dock) {
+        auto* const menu = window->findChild<QMenu*>("panels");
+        menu->aboutToShow();
+        dock->toggleViewAction()->trigger();
+        menu->aboutToHide();
+        QApplication::processEvents();
+    };
+    const auto isInFront = [](const QDockWidget* dock) { return !dock->visibleRegion().isEmpty(); };
+    look->raise();
+    QApplication::processEvents();
+    ASSERT_TRUE(look->isVisible() && physics->isVisible());
+    ASSERT_FALSE(isInFront(physics));
+    choose(physics);
+    EXPECT_TRUE(isInFront(physics)) << "it was open behind another one";
+    choose(physics);
+    EXPECT_FALSE(physics->isVisible()) << "it was in front";
+    look->raise();
+    choose(physics);
+    EXPECT_TRUE(isInFront(physics));
 }
 
 TEST_F(ShellTest, AnEmptyWindowSaysWhatToDoFirstAndOffersTheSamples) {

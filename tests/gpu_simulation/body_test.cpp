@@ -258,6 +258,69 @@ TEST_F(BodyOnGpu, WithoutABodyNothingIsThere) {
     EXPECT_EQ(springs.bodyBytes(), 0u) << "springs pass through it";
 }
 
+TEST_F(BodyOnGpu, AnotherModelMeetsTheSkinFromItsFirstFrameOn) {
+    const SceneInput input = scene();
+    const auto& body = test::hairyBody().body;
+    auto springs = input.groom().simulation;
+    springs.strandModel = runtime::StrandModel::springs;
+    StrandEngine gpu = engineOf(input.strands(), springs, beside(body, kRodLayouts[0]));
+    ASSERT_TRUE(gpu.reset(input.rootsAt({})));
+    std::vector<runtime::RootFrame> roots;
+    std::vector<Float3> points(gpu.pointCount());
+    const auto step = [&](int from, int to) {
+        for (int f = from; f <= to; ++f) {
+            const Moment at = nodding(kFrame * static_cast<float>(f));
+            ASSERT_TRUE(gpu.step(inputAt(input, at, kFrame * static_cast<float>(f), roots)));
+        }
+        ASSERT_TRUE(gpu.readPositions(points));
+    };
+    step(1, 3);
+    EXPECT_EQ(gpu.body(), nullptr);
+    ASSERT_TRUE(gpu.setSettings(input.groom().simulation));
+    step(4, 45);
+    EXPECT_NE(gpu.body(), nullptr);
+    EXPECT_GT(gpu.bodyBytes(), body->bytes());
+    EXPECT_LT(depthInBall(points, nodding(kFrame * 45).head), 1e-3f);
+    ASSERT_TRUE(gpu.setSettings(springs));
+    step(46, 47);
+    EXPECT_EQ(gpu.body(), nullptr) << "springs pass through it";
+    EXPECT_EQ(gpu.bodyBytes(), 0u);
+}
+
+/// Substeps are no multiple of the poses inside a frame: the skin goes as far through a piece as roots do.
+TEST_F(BodyOnGpu, SkinGoesThroughAFrameAsRootsDo) {
+    const SceneInput input = scene();
+    const auto& body = test::hairyBody().body;
+    StrandEngine gpu = engineOf(input.strands(), input.groom().simulation, beside(body, kRodLayouts[0]));
+    auto cpu = std::move(*runtime::Engine::make(input.strands(), input.groom().simulation).engine);
+    ASSERT_EQ(cpu.setBody(body), "");
+    ASSERT_TRUE(gpu.reset(input.rootsAt({})));
+    cpu.reset(input.rootsAt({}));
+    constexpr float kLong = 1.0f / 24;
+    std::vector<runtime::RootFrame> roots;
+    std::vector<Float3> a(gpu.pointCount()), b(gpu.pointCount());
+    for (int f = 1; f <= 4; ++f) {
+        const float end = kLong * static_cast<float>(f);
+        const Moment at = nodding(end);
+        runtime::FrameInput frame = inputAt(input, at, end, roots);
+        frame.dt = kLong;
+        std::array<Moment, 3> within;
+        std::array<std::vector<runtime::RootFrame>, 3> rootsWithin;
+        std::vector<runtime::InnerPose> inner;
+        for (std::size_t i = 0; i < within.size(); ++i) {
+            within[i] = nodding(end - kLong * static_cast<float>(3 - i) / 4);
+            rootsWithin[i] = input.rootsAt(within[i].head);
+            inner.push_back({rootsWithin[i], {}, within[i].bones});
+        }
+        frame.inner = inner;
+        ASSERT_TRUE(gpu.step(frame));
+        cpu.step(frame);
+    }
+    ASSERT_TRUE(gpu.readPositions(a));
+    cpu.readPositions(b);
+    EXPECT_LT(meanOf(a, b), 2e-5);
+}
+
 TEST_F(BodyOnGpu, DrawnHairIsLedOutAsOnTheCpu) {
     const Groom& groom = test::hairyBody();
     const SceneInput input = scene();

@@ -51,6 +51,7 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_asset_info, settings, 100, 4),
         MEMBER(hl_asset_info, attributes, 104, 4),
         MEMBER(hl_asset_info, measured_levels, 108, 4),
+        MEMBER(hl_asset_info, poses, 112, 4),
         MEMBER(hl_build, size, 0, 8),
         MEMBER(hl_build, version, 8, 4),
         MEMBER(hl_build, lanes, 12, 4),
@@ -209,7 +210,7 @@ TEST(Abi, StructsLieAsTheyDid) {
     }
     EXPECT_EQ(sizeof(hl_error), 248u);
     EXPECT_EQ(sizeof(hl_asset), 320u);
-    EXPECT_EQ(sizeof(hl_asset_info), 112u);
+    EXPECT_EQ(sizeof(hl_asset_info), 120u);
     EXPECT_EQ(sizeof(hl_build), 40u);
     EXPECT_EQ(sizeof(hl_setting), 56u);
     EXPECT_EQ(sizeof(hl_attribute), 48u);

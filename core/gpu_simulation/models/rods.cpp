@@ -105,12 +105,16 @@ class DeviceRods final : public DeviceStrands {
 
     void upload(gpu::CommandList& list, const runtime::RestShape& shape, const runtime::EffectPlan&,
                 const runtime::SimulationSettings&, float, std::span<const StrandBatch> batches) override {
-        if (!posesChanged_ || !poses_.isOn()) return;
+        if (!posesChanged_) return;
         for (const StrandBatch& batch : batches) {
             const gpu::BufferPtr buffer = batch.model.at(kPoseSlot);
             // While its kernel is being made, there is none.
             if (buffer == nullptr) return;
-            list.updateBuffer(buffer, 0, bytesOfVector(posesOfSlots(shape, batch.inSlots(), poses_)));
+            // The kernel that still runs until there is one without poses pulls nowhere then.
+            const runtime::Vector<shaders::float4> rows =
+                poses_.isOn() ? posesOfSlots(shape, batch.inSlots(), poses_)
+                              : runtime::Vector<shaders::float4>(2 * batch.inSlots().planeSize());
+            list.updateBuffer(buffer, 0, bytesOfVector(rows));
         }
         posesChanged_ = false;
     }

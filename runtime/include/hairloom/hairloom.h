@@ -362,16 +362,17 @@ HL_API hl_code hl_instance_choose(hl_instance* instance, const char* name, const
  * simulates it alone, 1 holds it in the pose but for what it collides with, and what is between draws it
  * there. Poses add up: by 1 and 1 hair stands half way between two. The amount of a frame is the game's to
  * animate. Springs follow none, and hl_gpu_step refuses hair that follows one. Asks for memory at the first
- * amount above 0, and gives it back when all are 0, unless it was reserved: at such a first amount poses are
- * laid, which docs/integrate.md has the time of. */
+ * amount above 0, and gives it back when all are 0, unless memory was reserved: at such a first amount poses
+ * are laid, which docs/integrate.md has the time of. */
 HL_API hl_code hl_instance_set_pose(hl_instance* instance, uint32_t pose, float amount, hl_error* error);
 HL_API hl_code hl_instance_pose(const hl_instance* instance, uint32_t pose, float* amount, hl_error* error);
 
 /* Memory ahead of time. hl_instance_make asks for what an instance holds, its first frames of new effects and
  * of more spheres for more. After this call no step, reset, change of level or read asks for any, whatever
  * head, bones and wind do, as long as frames have no more spheres, no more capsules than these, no more poses
- * inside, and no setting is replaced. The state stays. Takes as long as some frames at each level, and the
- * memory of a copy meanwhile. Copies of the instance have to be told again. */
+ * inside, no setting is replaced, nothing is loaded, and no pose gets its first amount without `poses`. The
+ * state stays. Takes as long as some frames at each level, and the memory of a copy meanwhile. Copies of the
+ * instance have to be told again. */
 typedef struct hl_reserve {
     size_t size;      /* sizeof(hl_reserve), set by hl_reserve_init() */
     uint32_t spheres; /* that hl_frame.spheres will have at most, up to 4096; 0: the asset's own */
