@@ -183,8 +183,16 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
             scene.spheres = {&sphere, spheres};
             const runtime::EffectPlan plan = runtime::plan(scene);
             for (const bool velocities : {false, true}) {
-                for (const BatchShape& shape : {one, shared})
+                for (const BatchShape& shape : {one, shared}) {
                     asked.push_back(keyFor(plan, scene.settings, shape, spheres, velocities).defines());
+                    // Beside skin, whose kernel is the same without spheres.
+                    const auto skin =
+                        keyFor(plan, scene.settings, shape, spheres, velocities, true).defines();
+                    if (spheres > 0)
+                        asked.push_back(skin);
+                    else
+                        EXPECT_EQ(skin.find("HAIR_SPHERES 0"), std::string::npos);
+                }
             }
         }
     }
